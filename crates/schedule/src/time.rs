@@ -3,9 +3,8 @@
 //! Invariants: an [`Instant`] was written with its time zone, and an [`Eur`] is
 //! not negative. Money is counted in cents.
 
-use crate::zone::Zone;
 use binnacle_magnetics::time::{Timestamp, TimestampError};
-use chrono::{DateTime, FixedOffset, NaiveDate, NaiveTime, TimeDelta};
+use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -33,31 +32,9 @@ impl Instant {
         Instant(self.0.plus_seconds(hours * 3600.0))
     }
 
-    /// The date in a zone.
-    pub fn date(self, zone: Zone) -> NaiveDate {
-        zone.local(self).date()
-    }
-
     /// The date in UTC.
     pub fn utc_date(self) -> NaiveDate {
         self.0.to_chrono().date_naive()
-    }
-
-    /// The instant of an hour, 0 to 24, of a day in a zone; [`Zone::instant`]
-    /// describes hours that occur twice or never.
-    pub fn at(day: NaiveDate, hour: f64, zone: Zone) -> Instant {
-        let since_midnight = TimeDelta::seconds((hour * 3600.0).round() as i64);
-        zone.instant(day.and_time(NaiveTime::MIN) + since_midnight)
-    }
-
-    /// The instant with the local time and offset of a zone.
-    #[allow(clippy::missing_panics_doc, reason = "no zone is a day from UTC")]
-    pub fn there(self, zone: Zone) -> DateTime<FixedOffset> {
-        let ahead = i32::try_from(zone.ahead_s(self)).ok();
-        let ahead = ahead.and_then(FixedOffset::east_opt);
-        self.0
-            .to_chrono()
-            .with_timezone(&ahead.expect("no zone is a day from UTC"))
     }
 }
 
@@ -126,6 +103,7 @@ pub(crate) fn euros(cents: i64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::zone::Zone;
 
     #[test]
     fn a_date_is_that_of_the_zone() {

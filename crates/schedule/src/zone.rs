@@ -9,7 +9,7 @@
 
 use crate::time::Instant;
 use binnacle_magnetics::time::Timestamp;
-use chrono::{Datelike, NaiveDate, NaiveDateTime, NaiveTime, TimeDelta, Timelike};
+use chrono::{Datelike, FixedOffset, NaiveDate, NaiveDateTime, NaiveTime, TimeDelta, Timelike};
 use jiff::civil::DateTime;
 use jiff::tz::{AmbiguousOffset, Offset, TimeZone};
 use serde::{Deserialize, Serialize};
@@ -113,6 +113,31 @@ impl Zone {
         self.0.rules.get_or_init(|| {
             TimeZone::get(&self.0.name).expect("the database was asked for its own name")
         })
+    }
+}
+
+/// The conversions between instants and local time.
+impl Instant {
+    /// The date in a zone.
+    pub fn date(self, zone: Zone) -> NaiveDate {
+        zone.local(self).date()
+    }
+
+    /// The instant of an hour, 0 to 24, of a day in a zone; [`Zone::instant`]
+    /// describes hours that occur twice or never.
+    pub fn at(day: NaiveDate, hour: f64, zone: Zone) -> Instant {
+        let since_midnight = TimeDelta::seconds((hour * 3600.0).round() as i64);
+        zone.instant(day.and_time(NaiveTime::MIN) + since_midnight)
+    }
+
+    /// The instant with the local time and offset of a zone.
+    #[allow(clippy::missing_panics_doc, reason = "no zone is a day from UTC")]
+    pub fn there(self, zone: Zone) -> chrono::DateTime<FixedOffset> {
+        let ahead = i32::try_from(zone.ahead_s(self)).ok();
+        let ahead = ahead.and_then(FixedOffset::east_opt);
+        self.0
+            .to_chrono()
+            .with_timezone(&ahead.expect("no zone is a day from UTC"))
     }
 }
 

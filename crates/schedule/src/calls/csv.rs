@@ -11,7 +11,7 @@
 //! the file. Every fault is reported with its line and column. A written file
 //! opens in a spreadsheet without formulas, and reads back unchanged.
 
-use super::faults::{FileError, FileErrors};
+use super::file_error::{FileError, FileErrors};
 use super::{Located, PortCall};
 use crate::ports::{self, PortCode};
 use crate::time::Instant;

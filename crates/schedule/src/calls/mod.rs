@@ -6,11 +6,11 @@
 
 mod berth;
 pub mod csv;
-mod faults;
+mod file_error;
 pub mod ics;
 
 pub use berth::{BerthHeading, HeadingSource, Observed, berth_heading};
-pub use faults::{FileError, FileErrors, MOST_NAMED};
+pub use file_error::{FileError, FileErrors, MOST_NAMED};
 
 use crate::ports::PortCode;
 use crate::time::Instant;

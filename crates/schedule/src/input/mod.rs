@@ -6,15 +6,17 @@
 //! reported with their JSON path.
 
 mod check;
+mod error;
 mod firm;
+mod firm_check;
 mod read;
-mod sound;
 mod weights;
 
 pub use check::must_fit;
+pub use error::InputError;
 pub use firm::{Firm, ServedPort, Taken};
-pub use read::{InputError, read};
-pub use sound::{FirmError, firm_is_sound};
+pub use firm_check::{FirmError, firm_is_sound};
+pub use read::read;
 pub use weights::{JOB_H, Weights};
 
 use crate::calls::PortCall;

@@ -1,25 +1,7 @@
 //! Reads an input from its text.
 
+use super::error::InputError;
 use super::{Checked, Input, check};
-
-/// A fault of an input, with its place.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{path}: {detail}")]
-pub struct InputError {
-    /// The JSON path, as `port_calls[3].eta`.
-    pub path: String,
-    /// The fault.
-    pub detail: String,
-}
-
-impl InputError {
-    pub(super) fn new(path: impl Into<String>, detail: impl Into<String>) -> InputError {
-        InputError {
-            path: path.into(),
-            detail: detail.into(),
-        }
-    }
-}
 
 /// Reads and checks an input.
 ///

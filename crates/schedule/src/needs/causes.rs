@@ -1,9 +1,43 @@
 //! The causes of due dates.
 
-use super::{Cause, CauseKind, Compass, Event, Predicted, Ship, Side, Terms};
+use super::facts::{Compass, Event, Predicted, Ship, Side, Terms};
 use crate::rules::{Applies, DeviationRecord, Limit, Requirement, Rule};
 use chrono::{Days, NaiveDate};
+use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
+
+/// Kind of cause of a due date.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CauseKind {
+    /// No adjustment is on record.
+    NeverAdjusted,
+    /// A rule's interval ends.
+    Interval,
+    /// A rule asks for an adjustment after an event.
+    Event,
+    /// Predicted deviation exceeds a rule's limit, or the vessel's own.
+    OverLimit,
+    /// A transit requires a newer table or a smaller deviation.
+    Transit,
+    /// The ship's magnetism changed.
+    Change,
+    /// The last adjustment failed its verification at sea.
+    FailedVerification,
+}
+
+/// One cause, with its own due date.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Cause {
+    /// Kind of cause.
+    pub kind: CauseKind,
+    /// Its own due date.
+    pub due: NaiveDate,
+    /// Reason as text.
+    pub reason: String,
+    /// Id of the rule, if it is one.
+    pub rule: Option<String>,
+}
 
 /// Prefix of an interval that begins with an unverified adjustment.
 const NOT_VERIFIED: &str = "adjusted, not yet verified at sea: ";

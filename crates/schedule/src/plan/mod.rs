@@ -9,49 +9,25 @@
 //! - A confirmed job stays unchanged while it remains possible.
 //! - The same input gives the same schedule.
 
+mod candidates;
+mod capacity;
+mod changes;
 mod confirmed;
-mod help;
 mod jobs;
-mod moves;
 mod quote;
-mod room;
+mod remedies;
 mod schedule;
-mod why;
+mod unscheduled;
 
 pub use schedule::{Change, ChangeKind, Later, Place, PlannedJob, Schedule, Unscheduled, Weighed};
 
-use crate::calls::{BerthHeading, HeadingSource, PortCall};
-use crate::input::{Checked, Firm, Input, JobState};
-use crate::ports::PortCode;
-use crate::solve::{self, Choice, Problem, Visit};
+use crate::calls::{BerthHeading, HeadingSource};
+use crate::input::{Checked, Input, JobState};
+use crate::solve;
 use crate::time::euros;
-use chrono::NaiveDate;
-use confirmed::Standing;
+use candidates::{Options, Way, travel};
 use jobs::Job;
-use quote::Quote;
 use std::collections::BTreeMap;
-
-/// Value of a confirmed job that holds, beyond its cost, in cents: ten million
-/// euros.
-const STANDS: i64 = 1_000_000_000;
-
-/// One way to do one job.
-struct Way<'a> {
-    job: usize,
-    call: &'a PortCall,
-    firm: usize,
-    day: NaiveDate,
-    quote: Quote,
-    visit: usize,
-}
-
-/// All ways to do all jobs, and the assignment problem that they form.
-struct Options<'a> {
-    all: Vec<Way<'a>>,
-    problem: Problem,
-    visits: BTreeMap<(usize, PortCode, NaiveDate), usize>,
-    firm_days: BTreeMap<(usize, NaiveDate), usize>,
-}
 
 /// Makes the schedule of an input.
 pub fn plan(checked: &Checked) -> Schedule {
@@ -78,8 +54,8 @@ pub fn plan(checked: &Checked) -> Schedule {
         proven_optimal: gap == 0,
         paid_eur: (paid * 100.0).round() / 100.0,
         jobs: planned,
-        unscheduled: why::unscheduled(input, &jobs, &made, &options.problem.unmet),
-        changes: moves::changes(input, &jobs, &standing, &options, &made),
+        unscheduled: unscheduled::unscheduled(input, &jobs, &made, &options.problem.unmet),
+        changes: changes::changes(input, &jobs, &standing, &options, &made),
         later: later
             .into_iter()
             .map(|need| Later {
@@ -89,108 +65,6 @@ pub fn plan(checked: &Checked) -> Schedule {
             })
             .collect(),
     }
-}
-
-impl<'a> Options<'a> {
-    fn of(input: &'a Input, jobs: &[Job<'a>], standing: &[Standing<'a>]) -> Options<'a> {
-        let mut options = Options {
-            all: Vec::new(),
-            problem: Problem::default(),
-            visits: BTreeMap::new(),
-            firm_days: BTreeMap::new(),
-        };
-        let mut serving: BTreeMap<PortCode, Vec<usize>> = BTreeMap::new();
-        for (at, firm) in input.firms.iter().enumerate() {
-            for served in &firm.ports {
-                serving.entry(served.port).or_default().push(at);
-            }
-        }
-        for (at, (job, standing)) in jobs.iter().zip(standing).enumerate() {
-            if let Standing::Stands {
-                call,
-                firm,
-                day,
-                quote,
-            } = standing
-            {
-                let travel = travel(&input.firms[*firm], call.port);
-                options.problem.unmet.push(quote.cost() + travel + STANDS);
-                options.add(input, at, call, *firm, *day, *quote);
-                continue;
-            }
-            let first = options.all.len();
-            let only_late = matches!(standing, Standing::Loose { only_late, .. } if *only_late);
-            for &call in &job.calls {
-                for &firm in serving.get(&call.port).into_iter().flatten() {
-                    for day in quote::days(call, input.now) {
-                        let of = &input.firms[firm];
-                        let Ok(quote) = quote::quote(input, job, call, of, day) else {
-                            continue;
-                        };
-                        // A confirmed but late job may stay, or move to a day
-                        // in time.
-                        let as_late = only_late && quote.late_days > 0;
-                        if !as_late || job.was(&call.id, &of.id, day) {
-                            options.add(input, at, call, firm, day, quote);
-                        }
-                    }
-                }
-            }
-            // An undone job waits longer than with any of its ways. So waiting
-            // never favours leaving it undone; only a fee with its travel can.
-            let ways = options.all[first..].iter();
-            let ways = ways.map(|way| way.quote.cost() - way.quote.fee);
-            let waits = ways.fold(quote::waits_at_most(input, job), i64::max);
-            let unmet = input.weights.unmet_eur.of(job.urgency()).cents();
-            options.problem.unmet.push(unmet + waits);
-        }
-        options
-    }
-
-    fn add(
-        &mut self,
-        input: &Input,
-        job: usize,
-        call: &'a PortCall,
-        firm: usize,
-        day: NaiveDate,
-        quote: Quote,
-    ) {
-        let of = &input.firms[firm];
-        let problem = &mut self.problem;
-        let firm_day = *self.firm_days.entry((firm, day)).or_insert_with(|| {
-            problem.teams.push(of.teams_on(day));
-            problem.teams.len() - 1
-        });
-        let visit = *self
-            .visits
-            .entry((firm, call.port, day))
-            .or_insert_with(|| {
-                problem.visits.push(Visit {
-                    firm_day,
-                    travel: travel(of, call.port),
-                    jobs_a_team: of.jobs_a_team_day,
-                });
-                problem.visits.len() - 1
-            });
-        problem.choices.push(Choice {
-            need: job,
-            visit,
-            cost: quote.cost(),
-        });
-        self.all.push(Way {
-            job,
-            call,
-            firm,
-            day,
-            quote,
-            visit,
-        });
-    }
-}
-
-fn travel(firm: &Firm, port: PortCode) -> i64 {
-    firm.travel(port).map_or(0, crate::time::Eur::cents)
 }
 
 fn planned(input: &Input, jobs: &[Job<'_>], made: &[Option<&Way<'_>>]) -> Vec<PlannedJob> {

@@ -5,10 +5,10 @@
 //! [`shipped()`] returns the rules of `data/rules.json`, which tests read
 //! completely.
 
-mod shipped;
-mod words;
+mod built_in;
+mod display;
 
-pub use shipped::shipped;
+pub use built_in::shipped;
 
 use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};

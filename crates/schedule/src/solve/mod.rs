@@ -12,20 +12,22 @@
 //! that no problem takes much longer than the largest one foreseen.
 
 mod bound;
-mod chain;
-mod days;
-mod exact;
-mod moves;
-mod near;
-mod prices;
+mod branch_and_bound;
+mod chain_moves;
+mod ejection_chain;
+mod lagrangian;
+mod neighbourhood;
+mod open;
 mod problem;
-mod search;
+mod state;
+mod subproblem;
 mod teams;
-mod work;
+mod work_limit;
 
 use bound::Bound;
-use prices::Prices;
-use work::Work;
+use lagrangian::Prices;
+use open::Open;
+use work_limit::Work;
 
 pub use problem::{Assignment, Choice, Problem, Visit};
 
@@ -40,25 +42,8 @@ const LAST_STEPS: usize = 4000;
 const SEARCHES: usize = 3;
 /// Work of branch and bound on a part, in nodes times choices: about a second.
 const EFFORT: usize = 300_000;
-/// Work of branch and bound on a neighbourhood, in nodes times choices.
-const EFFORT_NEAR: usize = 60_000;
-/// Needs of a neighbourhood.
-const NEIGHBOURS: usize = 60;
-/// The most open choices of a part for branch and bound. The relaxation of a
-/// larger one takes longer than everything else, and never led to a better
-/// assignment.
-const LARGE_PART: usize = 5_000;
 /// The most rounds over all neighbourhoods.
 const ROUNDS: usize = 3;
-/// No further round where the gap is at most this fraction (1/x) of the cost:
-/// half a per cent.
-const SMALL_GAP: i64 = 200;
-/// Above this number of open choices, neighbourhoods find next to nothing.
-const MANY_OPEN: usize = 5_000;
-/// With that many, no round where the gap is at most this fraction (1/x) of the
-/// cost: one per cent.
-const SMALL_GAP_OF_MANY: i64 = 100;
-
 /// An assignment with its cost and bound.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Solved {
@@ -104,7 +89,7 @@ fn search_by_prices(problem: &Problem, most_work: u64) -> (Assignment, Bound, u6
     let order = problem.by_need();
     let (mut for_prices, mut work) = (Work::new(most_work), Work::new(most_work));
     let nothing = vec![None; problem.unmet.len()];
-    let mut found = search::greedy(problem, nothing, &order, &mut work);
+    let mut found = state::greedy(problem, nothing, &order, &mut work);
     let mut prices = Prices::new(problem);
     let mut bound = prices.bound();
     for _ in 0..SEARCHES {
@@ -114,8 +99,8 @@ fn search_by_prices(problem: &Problem, most_work: u64) -> (Assignment, Bound, u6
         }
         prices.improve(known, STEPS, &mut for_prices);
         bound = prices.bound();
-        let begin = search::take_up(problem, &prices.leanings());
-        let begin = search::greedy(problem, begin, &order, &mut work);
+        let begin = state::take_up(problem, &prices.leanings());
+        let begin = state::greedy(problem, begin, &order, &mut work);
         let next = teams::improve(problem, begin, &order, &bound, &mut work);
         if cost_of(problem, &next) < known {
             found = next;
@@ -136,7 +121,7 @@ fn branch(
 ) -> (Assignment, bool) {
     for round in 0..=ROUNDS {
         let open = Open::of(problem, bound, &found, cost_of(problem, &found));
-        let finished = exact::finish(problem, &open, found, EFFORT, work);
+        let finished = branch_and_bound::finish(problem, &open, found, EFFORT, work);
         found = finished.assignment;
         let cost = cost_of(problem, &found);
         if finished.optimal || bound.cost >= cost {
@@ -145,43 +130,9 @@ fn branch(
         if round == ROUNDS || open.is_enough(round, cost - bound.cost, cost) {
             break;
         }
-        found = near::improve(problem, &open, found, work);
+        found = neighbourhood::improve(problem, &open, found, work);
     }
     (found, false)
-}
-
-/// The choices that a better assignment may contain.
-struct Open {
-    /// Open choices, including those of the current assignment.
-    choices: Vec<bool>,
-    /// Needs that may be left unmet.
-    unmet: Vec<bool>,
-}
-
-impl Open {
-    /// True if the gap is too small for a round over the neighbourhoods. A
-    /// small problem always gets one round, which may prove it optimal.
-    fn is_enough(&self, round: usize, gap: i64, cost: i64) -> bool {
-        let many = self.choices.iter().filter(|open| **open).count() > MANY_OPEN;
-        if many {
-            gap * SMALL_GAP_OF_MANY <= cost
-        } else {
-            round > 0 && gap * SMALL_GAP <= cost
-        }
-    }
-
-    fn of(problem: &Problem, bound: &Bound, found: &[Option<usize>], cost: i64) -> Open {
-        let gap = cost - bound.cost;
-        let choices = problem.choices.iter().zip(&bound.reduced).enumerate();
-        Open {
-            choices: choices
-                .map(|(index, (choice, reduced))| {
-                    *reduced < gap || found[choice.need] == Some(index)
-                })
-                .collect(),
-            unmet: bound.reduced_unmet.iter().map(|it| *it < gap).collect(),
-        }
-    }
 }
 
 fn cost_of(problem: &Problem, assignment: &[Option<usize>]) -> i64 {

@@ -6,10 +6,10 @@
 //! its former jobs again.
 
 use super::bound::Bound;
-use super::chain::{Chains, Reach};
+use super::ejection_chain::{Chains, Reach};
 use super::problem::{Assignment, Problem};
-use super::search::State;
-use super::work::Work;
+use super::state::State;
+use super::work_limit::Work;
 use std::collections::BTreeSet;
 
 /// The most rounds over all needs and all visits.
@@ -196,9 +196,9 @@ impl Teams<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::prices::Prices;
+    use crate::solve::lagrangian::Prices;
     use crate::solve::problem::made_up::problems;
-    use crate::solve::search::greedy;
+    use crate::solve::state::greedy;
     use crate::solve::{Choice, Visit, bound};
     use proptest::prelude::*;
 

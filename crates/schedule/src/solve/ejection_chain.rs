@@ -9,10 +9,10 @@
 //! Invariants: the assignment stays feasible, and a need is placed at exactly
 //! the returned cost.
 
-use super::moves::carry_out;
+use super::chain_moves::carry_out;
 use super::problem::Problem;
-use super::search::State;
-use super::work::Work;
+use super::state::State;
+use super::work_limit::Work;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -269,9 +269,9 @@ impl<'a> Chains<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::prices::Prices;
+    use crate::solve::lagrangian::Prices;
     use crate::solve::problem::made_up::problems;
-    use crate::solve::search::greedy;
+    use crate::solve::state::greedy;
     use crate::solve::{Choice, Visit};
     use proptest::prelude::*;
 

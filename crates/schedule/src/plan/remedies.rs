@@ -3,9 +3,9 @@
 //!
 //! Invariant: a line names everything that its way lacks.
 
+use super::capacity::Room;
 use super::jobs::Job;
 use super::quote::{self, Obstacle};
-use super::room::Room;
 use crate::calls::PortCall;
 use crate::input::{Firm, Input};
 use crate::ports::{self, PortCode};

@@ -3,7 +3,7 @@
 //! Invariant: every result is feasible, and depends on the problem alone.
 
 use super::problem::{Assignment, Problem};
-use super::work::Work;
+use super::work_limit::Work;
 
 /// An assignment under search, with the load of each visit and each firm's day.
 pub(super) struct State<'a> {

@@ -1,10 +1,10 @@
 //! Changes from the previous plan, with their reasons.
 
+use super::candidates::{Options, Way};
 use super::confirmed::Standing;
 use super::jobs::Job;
 use super::quote;
 use super::schedule::{Change, ChangeKind, Place};
-use super::{Options, Way};
 use crate::input::{FormerJob, Input};
 use crate::time::euros;
 

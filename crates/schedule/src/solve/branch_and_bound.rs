@@ -7,14 +7,18 @@
 //! problem has the same answer. The work of one relaxation is known only
 //! afterwards, and bounded by its part's size.
 
+use super::open::Open;
 use super::problem::{Assignment, Problem};
-use super::work::Work;
-use super::{LARGE_PART, Open};
+use super::work_limit::Work;
 use microlp::{
     ComparisonOp, LinearExpr, OptimizationDirection, SolveOptions, TerminationReason, Variable,
 };
 use std::collections::BTreeMap;
 
+/// The most open choices of a part for branch and bound. The relaxation of a
+/// larger one takes longer than everything else, and never led to a better
+/// assignment.
+const LARGE_PART: usize = 5_000;
 /// Work of a simplex step per choice.
 const PIVOT: usize = 2;
 

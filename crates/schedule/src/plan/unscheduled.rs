@@ -5,11 +5,11 @@
 //! hopeless one is left out: hours that are over cannot be changed. There is
 //! always one remedy.
 
-use super::Way;
-use super::help::{Help, Lacking};
+use super::candidates::{Way, travel};
+use super::capacity::Room;
 use super::jobs::Job;
 use super::quote::{self, Obstacle};
-use super::room::Room;
+use super::remedies::{Help, Lacking};
 use super::schedule::Unscheduled;
 use crate::calls::PortCall;
 use crate::input::{Firm, Input};
@@ -128,7 +128,7 @@ impl Found<'_> {
         let (input, job) = (self.help.input, self.help.job);
         match quote::quote(input, job, call, firm, day) {
             Ok(quote) => {
-                let travel = super::travel(firm, call.port);
+                let travel = travel(firm, call.port);
                 // A late job is done in time for less than it is worth.
                 let too_dear = if self.help.planned_late {
                     self.help.too_dear(firm, call.port).unwrap_or(-1)

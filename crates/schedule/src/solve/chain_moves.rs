@@ -1,6 +1,6 @@
 //! Applies a chain's moves, all or none.
 
-use super::search::State;
+use super::state::State;
 
 /// Applies a chain's moves. Applies none if they are not possible together for
 /// less than the limit: a link may have changed after the chain went on from

@@ -1,6 +1,6 @@
 //! Capacity that a plan leaves with the firms.
 
-use super::Way;
+use super::candidates::Way;
 use super::jobs::Job;
 use crate::input::{Firm, Input};
 use crate::ports::PortCode;

@@ -16,9 +16,9 @@
 //! never false.
 
 use super::bound::{self, Bound};
-use super::days::{Days, Taken};
 use super::problem::Problem;
-use super::work::Work;
+use super::subproblem::{Days, Taken};
+use super::work_limit::Work;
 
 /// Steps without a better bound, after which steps are made smaller.
 const PATIENCE: usize = 20;

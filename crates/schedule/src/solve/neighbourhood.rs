@@ -1,10 +1,15 @@
 //! Large neighbourhood search: needs that compete for the same teams are solved
 //! again, while all others are fixed.
 
+use super::branch_and_bound;
+use super::open::Open;
 use super::problem::{Assignment, Problem};
-use super::work::Work;
-use super::{EFFORT_NEAR, NEIGHBOURS, Open, exact};
+use super::work_limit::Work;
 
+/// Work of branch and bound on a neighbourhood, in nodes times choices.
+const EFFORT_NEAR: usize = 60_000;
+/// Needs of a neighbourhood.
+const NEIGHBOURS: usize = 60;
 /// Improves all neighbourhoods once.
 pub(super) fn improve(
     problem: &Problem,
@@ -50,7 +55,7 @@ pub(super) fn improve(
                 .map(|(free, open)| *free && *open)
                 .collect(),
         };
-        found = exact::finish(problem, &some, found, EFFORT_NEAR, work).assignment;
+        found = branch_and_bound::finish(problem, &some, found, EFFORT_NEAR, work).assignment;
     }
     found
 }
