@@ -114,7 +114,7 @@ mod tests {
         assert_eq!(evening.date(houston).to_string(), "2026-12-01");
         let morning = Instant::at(evening.date(singapore), 8.0, singapore);
         assert_eq!(morning.to_string(), "2026-12-02T00:00:00Z");
-        let there = evening.there(houston).to_rfc3339();
+        let there = evening.in_zone(houston).to_rfc3339();
         assert_eq!(there, "2026-12-01T14:00:00-06:00");
     }
 

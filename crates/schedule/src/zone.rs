@@ -132,7 +132,7 @@ impl Instant {
 
     /// The instant with the local time and offset of a zone.
     #[allow(clippy::missing_panics_doc, reason = "no zone is a day from UTC")]
-    pub fn there(self, zone: Zone) -> chrono::DateTime<FixedOffset> {
+    pub fn in_zone(self, zone: Zone) -> chrono::DateTime<FixedOffset> {
         let ahead = i32::try_from(zone.ahead_s(self)).ok();
         let ahead = ahead.and_then(FixedOffset::east_opt);
         self.0

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
-use binnacle_schedule::calls::{FileErrors, MOST_NAMED, PortCall, csv, ics};
+use binnacle_schedule::calls::{FileErrors, MAX_LISTED, PortCall, csv, ics};
 use binnacle_schedule::time::Instant;
 use std::io::{BufReader, Read};
 
@@ -121,11 +121,11 @@ fn every_bad_row_of_a_csv_is_named() {
 #[test]
 fn of_many_bad_rows_the_first_are_named_and_the_others_counted() {
     let bad = "c,v,NLRTM,soon,2026-12-02T18:00:00Z,\n";
-    let said = csv_complaint(&format!("{HEADER}{}", bad.repeat(MOST_NAMED + 3)));
-    assert_eq!(said.matches("line ").count(), MOST_NAMED);
+    let said = csv_complaint(&format!("{HEADER}{}", bad.repeat(MAX_LISTED + 3)));
+    assert_eq!(said.matches("line ").count(), MAX_LISTED);
     assert!(said.contains("line 51: eta"), "{said}");
     assert!(said.ends_with("; and 3 more"), "{said}");
-    let said = csv_complaint(&format!("{HEADER}{}", bad.repeat(csv::MOST_CALLS + 5)));
+    let said = csv_complaint(&format!("{HEADER}{}", bad.repeat(csv::MAX_CALLS + 5)));
     assert!(said.ends_with("; and 49951 more"), "{said}");
 }
 
@@ -164,7 +164,7 @@ impl<R: Read> Read for Counted<'_, R> {
 #[test]
 fn a_csv_of_too_many_calls_is_refused_at_the_first_too_many() {
     let row = |at: usize| format!("{at},v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n");
-    let rows: String = (0..csv::MOST_CALLS + 5).map(row).collect();
+    let rows: String = (0..csv::MAX_CALLS + 5).map(row).collect();
     let text = format!("{HEADER}{rows}");
     assert_eq!(
         csv_complaint(&text),
@@ -182,9 +182,9 @@ fn what_is_exported_is_no_formula_and_reads_back() {
     assert!(written.contains("\n'=1+1,'@v,"), "{written}");
     assert_eq!(csv_calls(std::str::from_utf8(&out).unwrap()), calls);
     for harmless in ["", "c1", "'c1", "a=b"] {
-        assert_eq!(csv::harmless(harmless), harmless);
+        assert_eq!(csv::escape_formula(harmless), harmless);
     }
-    assert_eq!(csv::harmless("'=1"), "''=1");
+    assert_eq!(csv::escape_formula("'=1"), "''=1");
 }
 
 /// Madrid as calendars define it.

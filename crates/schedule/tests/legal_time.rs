@@ -63,7 +63,7 @@ fn a_port_shows_its_countrys_time_in_winter_and_summer() {
         ("GBLON", "+00:00", "+01:00"), // London
     ] {
         let zone = port(code).zone;
-        let offset = |at: &str| instant(at).there(zone).format("%:z").to_string();
+        let offset = |at: &str| instant(at).in_zone(zone).format("%:z").to_string();
         assert_eq!(offset("2026-12-01T00:00:00Z"), december, "{code} {zone}");
         assert_eq!(offset("2027-07-01T00:00:00Z"), july, "{code} {zone}");
     }
@@ -77,7 +77,7 @@ fn islands_at_the_date_line_are_on_their_own_side_of_it() {
     assert_eq!(date(zone("Pacific/Kiritimati")), "2026-12-09");
     assert_eq!(date(zone("Pacific/Pago_Pago")), "2026-12-08");
     assert_eq!(
-        noon.there(zone("Pacific/Chatham")).to_rfc3339(),
+        noon.in_zone(zone("Pacific/Chatham")).to_rfc3339(),
         "2026-12-09T01:45:00+13:45"
     );
 }
@@ -127,7 +127,7 @@ fn a_time_that_clocks_skip_is_the_first_instant_after_it() {
     let beirut = zone("Asia/Beirut");
     let begins = beirut.midnight("2027-03-28".parse().unwrap());
     assert_eq!(
-        begins.there(beirut).to_rfc3339(),
+        begins.in_zone(beirut).to_rfc3339(),
         "2027-03-28T01:00:00+03:00"
     );
     // Samoa had no 30 December 2011 at all.
@@ -192,7 +192,7 @@ fn the_ends_of_the_calendar_are_no_panic() {
             let there = zone.local(at);
             assert!(zone.instant(there).hours_since(at).abs() < 24.0);
             zone.midnight(at.date(zone));
-            at.there(zone);
+            at.in_zone(zone);
         }
     }
 }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use binnacle_schedule::needs::{Cause, CauseKind, Compass, Due, Ship, Terms, Urgency, due};
-use binnacle_schedule::rules::shipped;
+use binnacle_schedule::rules::built_in_rules;
 use chrono::NaiveDate;
 use serde_json::{Value, from_value, json};
 
@@ -12,7 +12,7 @@ fn due_of(ship: Value, compass: Value) -> Due {
     let ship: Ship = from_value(ship).unwrap();
     let compass: Compass = from_value(compass).unwrap();
     let today = day("2026-11-21");
-    due(&ship, &compass, shipped(), &Terms::default(), today).unwrap()
+    due(&ship, &compass, built_in_rules(), &Terms::default(), today).unwrap()
 }
 
 fn day(text: &str) -> NaiveDate {

@@ -19,9 +19,9 @@ use std::collections::BTreeMap;
 use std::io::{BufRead, Read, Write};
 
 /// The longest line, in bytes.
-const LONGEST_LINE: u64 = 4096;
+const MAX_LINE_BYTES: u64 = 4096;
 /// The most calls of a file.
-pub const MOST_CALLS: usize = 50_000;
+pub const MAX_CALLS: usize = 50_000;
 
 const COLUMNS: [&str; 9] = [
     "id",
@@ -71,11 +71,11 @@ pub fn read(
             header = Some(columns(cells(&text, separator, line)?, line)?);
             continue;
         };
-        if taken == MOST_CALLS {
+        if taken == MAX_CALLS {
             return Err(FileError::new(
                 line,
                 "row",
-                format!("more than {MOST_CALLS} calls"),
+                format!("more than {MAX_CALLS} calls"),
             ));
         }
         let read = cells(&text, separator, line)
@@ -146,30 +146,30 @@ pub fn write(calls: &[PortCall], out: impl Write) -> std::io::Result<()> {
             call.etd_uncertainty_h.to_string(),
             heading,
         ];
-        out.write_record(cells.map(|cell| harmless(&cell)))?;
+        out.write_record(cells.map(|cell| escape_formula(&cell)))?;
     }
     out.flush()
 }
 
 /// True where a spreadsheet would read a formula.
-fn formula(text: &str) -> bool {
+fn is_formula(text: &str) -> bool {
     text.starts_with(['=', '+', '-', '@', '\t', '\r'])
 }
 
 /// A cell that no spreadsheet reads as a formula.
-pub fn harmless(text: &str) -> String {
+pub fn escape_formula(text: &str) -> String {
     let apostrophes = text.trim_start_matches('\'');
-    if formula(apostrophes) {
+    if is_formula(apostrophes) {
         format!("'{text}")
     } else {
         text.to_owned()
     }
 }
 
-/// The cell before [`harmless`].
-fn as_it_was(text: &str) -> &str {
+/// The cell before [`escape_formula`].
+fn unescape_formula(text: &str) -> &str {
     match text.strip_prefix('\'') {
-        Some(rest) if formula(rest.trim_start_matches('\'')) => rest,
+        Some(rest) if is_formula(rest.trim_start_matches('\'')) => rest,
         _ => text,
     }
 }
@@ -179,14 +179,14 @@ fn next_line(file: &mut impl BufRead, line: usize) -> Result<Option<String>, Fil
     let mut bytes = Vec::new();
     let read = file
         .by_ref()
-        .take(LONGEST_LINE + 1)
+        .take(MAX_LINE_BYTES + 1)
         .read_until(b'\n', &mut bytes);
     read.map_err(|error| failed(error.to_string()))?;
     if bytes.is_empty() {
         return Ok(None);
     }
-    if bytes.len() as u64 > LONGEST_LINE {
-        return Err(failed(format!("is longer than {LONGEST_LINE} bytes")));
+    if bytes.len() as u64 > MAX_LINE_BYTES {
+        return Err(failed(format!("is longer than {MAX_LINE_BYTES} bytes")));
     }
     let text = String::from_utf8(bytes).map_err(|_| failed("is not UTF-8 text".to_owned()))?;
     let text = if line == 1 {
@@ -270,7 +270,7 @@ fn row(
     }
     let cell = |name: &str| {
         let at = header.iter().position(|column| column == name)?;
-        Some(as_it_was(&cells[at])).filter(|text| !text.is_empty())
+        Some(unescape_formula(&cells[at])).filter(|text| !text.is_empty())
     };
     let needed = |name: &str| cell(name).ok_or_else(|| FileError::new(line, name, "is empty"));
     let instant = |name: &str| {

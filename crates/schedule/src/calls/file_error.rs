@@ -1,12 +1,12 @@
 //! Faults of a file of port calls, with their places.
 //!
 //! Invariant: however many lines are bad, [`FileErrors`] keeps the first
-//! [`MOST_NAMED`] by line, and counts the others.
+//! [`MAX_LISTED`] by line, and counts the others.
 
 use std::fmt;
 
 /// The most faults of a file that are listed.
-pub const MOST_NAMED: usize = 50;
+pub const MAX_LISTED: usize = 50;
 /// The most characters of a column's name and of a detail, which repeat text of
 /// the file.
 const LONGEST: (usize, usize) = (60, 400);
@@ -47,7 +47,7 @@ impl FileErrors {
     pub fn push(&mut self, error: FileError) {
         let at = self.named.partition_point(|known| *known <= error);
         self.named.insert(at, error);
-        if self.named.len() > MOST_NAMED {
+        if self.named.len() > MAX_LISTED {
             self.named.pop();
             self.more += 1;
         }

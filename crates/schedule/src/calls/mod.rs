@@ -1,7 +1,7 @@
 //! Port calls: their places, times and uncertainties.
 //!
 //! Invariants of a call that passed [`PortCall::checked`]: it ends after it
-//! begins, within [`LONGEST_STAY_DAYS`], and is not over; its uncertainties are
+//! begins, within [`MAX_STAY_DAYS`], and is not over; its uncertainties are
 //! hours in a credible range.
 
 mod berth;
@@ -10,16 +10,16 @@ mod file_error;
 pub mod ics;
 
 pub use berth::{BerthHeading, HeadingSource, Observed, berth_heading};
-pub use file_error::{FileError, FileErrors, MOST_NAMED};
+pub use file_error::{FileError, FileErrors, MAX_LISTED};
 
 use crate::ports::PortCode;
 use crate::time::Instant;
 use serde::{Deserialize, Serialize};
 
 /// The longest stay of a call; a ship that stays longer is laid up.
-pub const LONGEST_STAY_DAYS: f64 = 120.0;
+pub const MAX_STAY_DAYS: f64 = 120.0;
 /// The most days that a call may lie ahead.
-const MOST_DAYS_AHEAD: f64 = 730.0;
+const MAX_DAYS_AHEAD: f64 = 730.0;
 
 /// A ship's call at a port.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -84,13 +84,10 @@ impl PortCall {
                 format!("{} is not after eta, {}", self.etd, self.eta),
             );
         }
-        if self.etd.hours_since(self.eta) > LONGEST_STAY_DAYS * 24.0 {
+        if self.etd.hours_since(self.eta) > MAX_STAY_DAYS * 24.0 {
             return wrong(
                 "etd",
-                format!(
-                    "{} is more than {LONGEST_STAY_DAYS} days after eta",
-                    self.etd
-                ),
+                format!("{} is more than {MAX_STAY_DAYS} days after eta", self.etd),
             );
         }
         if self.etd <= now {
@@ -118,17 +115,17 @@ impl PortCall {
     /// # Errors
     /// [`CallError`] of its ETA.
     pub fn must_be_near(&self, now: Instant) -> Result<(), CallError> {
-        if self.eta.hours_since(now) <= MOST_DAYS_AHEAD * 24.0 {
+        if self.eta.hours_since(now) <= MAX_DAYS_AHEAD * 24.0 {
             return Ok(());
         }
         Err(CallError {
             field: "eta",
-            detail: format!("{} is more than {MOST_DAYS_AHEAD} days ahead", self.eta),
+            detail: format!("{} is more than {MAX_DAYS_AHEAD} days ahead", self.eta),
         })
     }
 
     /// Returns the name for people.
-    pub fn called(&self) -> &str {
+    pub fn display_name(&self) -> &str {
         self.name.as_deref().unwrap_or(&self.id)
     }
 

@@ -99,7 +99,7 @@ impl Firm {
     }
 
     /// Returns the name for people.
-    pub fn called(&self) -> &str {
+    pub fn display_name(&self) -> &str {
         self.name.as_deref().unwrap_or(&self.id)
     }
 }

@@ -20,7 +20,7 @@ pub struct FirmError {
 ///
 /// # Errors
 /// The first fault.
-pub fn firm_is_sound(firm: &Firm) -> Result<(), FirmError> {
+pub fn check_firm(firm: &Firm) -> Result<(), FirmError> {
     let wrong = |field, detail: &str| {
         let (detail, idle) = (detail.to_owned(), false);
         Err(FirmError {

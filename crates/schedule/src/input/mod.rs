@@ -15,7 +15,7 @@ mod weights;
 pub use check::must_fit;
 pub use error::InputError;
 pub use firm::{Firm, ServedPort, Taken};
-pub use firm_check::{FirmError, firm_is_sound};
+pub use firm_check::{FirmError, check_firm};
 pub use read::read;
 pub use weights::{JOB_H, Weights};
 
@@ -96,12 +96,12 @@ pub struct Vessel {
 
 impl Vessel {
     /// Returns the name for people.
-    pub fn called(&self) -> &str {
+    pub fn display_name(&self) -> &str {
         self.name.as_deref().unwrap_or(&self.id)
     }
 
     /// The flag as text.
-    pub(crate) fn flag_in_words(&self) -> String {
+    pub(crate) fn describe_flag(&self) -> String {
         match self.flag {
             Some(flag) => format!("flag {}", flag.letters()),
             None => "a flag that is not known".to_owned(),

@@ -168,7 +168,7 @@ fn binds(applies: &Applies, ship: &Ship) -> bool {
             .is_none_or(|canal| ship.transits.iter().any(|transit| transit.canal == canal))
 }
 
-type Found = (CauseKind, NaiveDate, String);
+type DatedReason = (CauseKind, NaiveDate, String);
 
 /// Events since the last adjustment. Instants decide where both are known,
 /// otherwise days: an adjustment settles an event of the same day.
@@ -189,7 +189,7 @@ fn over(
     words: &str,
     terms: &Terms,
     today: NaiveDate,
-) -> Option<Found> {
+) -> Option<DatedReason> {
     let limit_deg = limit.degrees();
     let over = || {
         let all = compass.predicted.iter();
@@ -239,7 +239,7 @@ fn at_transit(
     on: NaiveDate,
     below: Limit,
     too_old: impl Fn(NaiveDate) -> bool,
-) -> Option<Found> {
+) -> Option<DatedReason> {
     let found = |words| Some((CauseKind::Transit, on, words));
     match compass.adjusted_on {
         None => {

@@ -1,6 +1,6 @@
 //! The candidates of each job, as an assignment problem.
 
-use super::confirmed::Standing;
+use super::confirmed::Confirmation;
 use super::jobs::Job;
 use super::quote::{self, Quote};
 use crate::calls::PortCall;
@@ -13,10 +13,10 @@ use std::collections::BTreeMap;
 
 /// Value of a confirmed job that holds, beyond its cost, in cents: ten million
 /// euros.
-const STANDS: i64 = 1_000_000_000;
+const CONFIRMED_VALUE: i64 = 1_000_000_000;
 
 /// One way to do one job.
-pub(super) struct Way<'a> {
+pub(super) struct Candidate<'a> {
     pub(super) job: usize,
     pub(super) call: &'a PortCall,
     pub(super) firm: usize,
@@ -25,17 +25,21 @@ pub(super) struct Way<'a> {
     pub(super) visit: usize,
 }
 
-/// All ways to do all jobs, and the assignment problem that they form.
-pub(super) struct Options<'a> {
-    pub(super) all: Vec<Way<'a>>,
+/// All candidates of all jobs, and the assignment problem that they form.
+pub(super) struct Candidates<'a> {
+    pub(super) all: Vec<Candidate<'a>>,
     pub(super) problem: Problem,
     visits: BTreeMap<(usize, PortCode, NaiveDate), usize>,
     firm_days: BTreeMap<(usize, NaiveDate), usize>,
 }
 
-impl<'a> Options<'a> {
-    pub(super) fn of(input: &'a Input, jobs: &[Job<'a>], standing: &[Standing<'a>]) -> Options<'a> {
-        let mut options = Options {
+impl<'a> Candidates<'a> {
+    pub(super) fn from_jobs(
+        input: &'a Input,
+        jobs: &[Job<'a>],
+        confirmations: &[Confirmation<'a>],
+    ) -> Candidates<'a> {
+        let mut candidates = Candidates {
             all: Vec::new(),
             problem: Problem::default(),
             visits: BTreeMap::new(),
@@ -47,21 +51,25 @@ impl<'a> Options<'a> {
                 serving.entry(served.port).or_default().push(at);
             }
         }
-        for (at, (job, standing)) in jobs.iter().zip(standing).enumerate() {
-            if let Standing::Stands {
+        for (at, (job, confirmation)) in jobs.iter().zip(confirmations).enumerate() {
+            if let Confirmation::Holds {
                 call,
                 firm,
                 day,
                 quote,
-            } = standing
+            } = confirmation
             {
                 let travel = travel(&input.firms[*firm], call.port);
-                options.problem.unmet.push(quote.cost() + travel + STANDS);
-                options.add(input, at, call, *firm, *day, *quote);
+                candidates
+                    .problem
+                    .unmet
+                    .push(quote.cost() + travel + CONFIRMED_VALUE);
+                candidates.add(input, at, call, *firm, *day, *quote);
                 continue;
             }
-            let first = options.all.len();
-            let only_late = matches!(standing, Standing::Loose { only_late, .. } if *only_late);
+            let first = candidates.all.len();
+            let only_late =
+                matches!(confirmation, Confirmation::Released { only_late, .. } if *only_late);
             for &call in &job.calls {
                 for &firm in serving.get(&call.port).into_iter().flatten() {
                     for day in quote::days(call, input.now) {
@@ -72,21 +80,21 @@ impl<'a> Options<'a> {
                         // A confirmed but late job may stay, or move to a day
                         // in time.
                         let as_late = only_late && quote.late_days > 0;
-                        if !as_late || job.was(&call.id, &of.id, day) {
-                            options.add(input, at, call, firm, day, quote);
+                        if !as_late || job.was_planned(&call.id, &of.id, day) {
+                            candidates.add(input, at, call, firm, day, quote);
                         }
                     }
                 }
             }
-            // An undone job waits longer than with any of its ways. So waiting
+            // An undone job waits longer than with any of its candidates. So waiting
             // never favours leaving it undone; only a fee with its travel can.
-            let ways = options.all[first..].iter();
-            let ways = ways.map(|way| way.quote.cost() - way.quote.fee);
-            let waits = ways.fold(quote::waits_at_most(input, job), i64::max);
+            let own = candidates.all[first..].iter();
+            let without_fees = own.map(|candidate| candidate.quote.cost() - candidate.quote.fee);
+            let waits = without_fees.fold(quote::max_waiting_cost(input, job), i64::max);
             let unmet = input.weights.unmet_eur.of(job.urgency()).cents();
-            options.problem.unmet.push(unmet + waits);
+            candidates.problem.unmet.push(unmet + waits);
         }
-        options
+        candidates
     }
 
     fn add(
@@ -120,7 +128,7 @@ impl<'a> Options<'a> {
             visit,
             cost: quote.cost(),
         });
-        self.all.push(Way {
+        self.all.push(Candidate {
             job,
             call,
             firm,

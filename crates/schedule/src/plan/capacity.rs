@@ -1,6 +1,6 @@
 //! Capacity that a plan leaves with the firms.
 
-use super::candidates::Way;
+use super::candidates::Candidate;
 use super::jobs::Job;
 use crate::input::{Firm, Input};
 use crate::ports::PortCode;
@@ -8,27 +8,31 @@ use chrono::NaiveDate;
 use std::collections::BTreeMap;
 
 /// The ships that each firm's teams serve in a plan, by day and port.
-pub(super) struct Room<'a> {
+pub(super) struct Capacity<'a> {
     days: BTreeMap<(&'a str, NaiveDate), BTreeMap<PortCode, Vec<&'a str>>>,
 }
 
-impl<'a> Room<'a> {
-    pub(super) fn of(input: &'a Input, jobs: &[Job<'a>], made: &[Option<&Way<'a>>]) -> Room<'a> {
-        let mut room = Room {
+impl<'a> Capacity<'a> {
+    pub(super) fn from_plan(
+        input: &'a Input,
+        jobs: &[Job<'a>],
+        made: &[Option<&Candidate<'a>>],
+    ) -> Capacity<'a> {
+        let mut capacity = Capacity {
             days: BTreeMap::new(),
         };
-        for way in made.iter().flatten() {
-            let firm = input.firms[way.firm].id.as_str();
-            let day = room.days.entry((firm, way.day)).or_default();
-            let called = jobs[way.job].vessel.called();
-            day.entry(way.call.port).or_default().push(called);
+        for candidate in made.iter().flatten() {
+            let firm = input.firms[candidate.firm].id.as_str();
+            let day = capacity.days.entry((firm, candidate.day)).or_default();
+            let called = jobs[candidate.job].vessel.display_name();
+            day.entry(candidate.call.port).or_default().push(called);
         }
-        room
+        capacity
     }
 
     /// Number of further teams that a firm would need for one more job in a
     /// port.
-    pub(super) fn lacking(&self, firm: &Firm, port: PortCode, day: NaiveDate) -> u32 {
+    pub(super) fn missing_teams(&self, firm: &Firm, port: PortCode, day: NaiveDate) -> u32 {
         let none = BTreeMap::new();
         let ports = self.days.get(&(firm.id.as_str(), day)).unwrap_or(&none);
         let jobs = |port: &PortCode| ports.get(port).map_or(0, Vec::len);
@@ -48,7 +52,7 @@ impl<'a> Room<'a> {
     }
 
     /// Names of the ships that a firm serves on a day.
-    pub(super) fn others(&self, firm: &Firm, day: NaiveDate) -> Vec<&'a str> {
+    pub(super) fn ships_served(&self, firm: &Firm, day: NaiveDate) -> Vec<&'a str> {
         let ports = self.days.get(&(firm.id.as_str(), day));
         ports
             .into_iter()

@@ -1,7 +1,7 @@
 //! Changes from the previous plan, with their reasons.
 
-use super::candidates::{Options, Way};
-use super::confirmed::Standing;
+use super::candidates::{Candidate, Candidates};
+use super::confirmed::Confirmation;
 use super::jobs::Job;
 use super::quote;
 use super::schedule::{Change, ChangeKind, Place};
@@ -12,16 +12,16 @@ use crate::time::euros;
 pub(super) fn changes(
     input: &Input,
     jobs: &[Job<'_>],
-    standing: &[Standing<'_>],
-    options: &Options<'_>,
-    made: &[Option<&Way<'_>>],
+    confirmations: &[Confirmation<'_>],
+    candidates: &Candidates<'_>,
+    made: &[Option<&Candidate<'_>>],
 ) -> Vec<Change> {
     let mut changes = Vec::new();
     for (at, job) in jobs.iter().enumerate() {
-        let to = made[at].map(|way| Place {
-            call: way.call.id.clone(),
-            firm: input.firms[way.firm].id.clone(),
-            day: way.day,
+        let to = made[at].map(|candidate| Place {
+            call: candidate.call.id.clone(),
+            firm: input.firms[candidate.firm].id.clone(),
+            day: candidate.day,
         });
         let from = job.former.map(|former| Place {
             call: former.call.clone(),
@@ -31,16 +31,27 @@ pub(super) fn changes(
         let (what, why) = match (job.former, made[at]) {
             (None, None) => continue,
             (None, Some(_)) => (ChangeKind::New, job.needs[0].reason.clone()),
-            (Some(_), Some(_)) if from == to => (ChangeKind::Kept, kept(&standing[at])),
-            (Some(former), way) => {
-                let what = if way.is_some() {
+            (Some(_), Some(_)) if from == to => {
+                (ChangeKind::Kept, reason_to_keep(&confirmations[at]))
+            }
+            (Some(former), candidate) => {
+                let what = if candidate.is_some() {
                     ChangeKind::Moved
                 } else {
                     ChangeKind::Dropped
                 };
                 (
                     what,
-                    cause(input, jobs, &standing[at], options, former, at, way, made),
+                    reason_to_move(
+                        input,
+                        jobs,
+                        &confirmations[at],
+                        candidates,
+                        former,
+                        at,
+                        candidate,
+                        made,
+                    ),
                 )
             }
         };
@@ -76,11 +87,11 @@ pub(super) fn changes(
     changes
 }
 
-fn kept(standing: &Standing<'_>) -> String {
-    match standing {
-        Standing::Open => "still the best".to_owned(),
-        Standing::Stands { .. } => "confirmed".to_owned(),
-        Standing::Loose { cause, .. } => format!("{cause}, and nothing better is to be had"),
+fn reason_to_keep(confirmation: &Confirmation<'_>) -> String {
+    match confirmation {
+        Confirmation::None => "still the best".to_owned(),
+        Confirmation::Holds { .. } => "confirmed".to_owned(),
+        Confirmation::Released { cause, .. } => format!("{cause}, and nothing better is to be had"),
     }
 }
 
@@ -88,33 +99,32 @@ fn kept(standing: &Standing<'_>) -> String {
     clippy::too_many_arguments,
     reason = "each is a different thing that is known"
 )]
-fn cause(
+fn reason_to_move(
     input: &Input,
     jobs: &[Job<'_>],
-    standing: &Standing<'_>,
-    options: &Options<'_>,
+    confirmation: &Confirmation<'_>,
+    candidates: &Candidates<'_>,
     former: &FormerJob,
     at: usize,
-    way: Option<&Way<'_>>,
-    made: &[Option<&Way<'_>>],
+    candidate: Option<&Candidate<'_>>,
+    made: &[Option<&Candidate<'_>>],
 ) -> String {
-    if let Standing::Loose { cause, .. } = standing {
+    if let Confirmation::Released { cause, .. } = confirmation {
         return cause.clone();
     }
     let job = &jobs[at];
     let Some(call) = job.calls.iter().find(|call| call.id == former.call) else {
         return format!("call {} is cancelled or over", former.call);
     };
-    let old = options
-        .all
-        .iter()
-        .find(|old| old.job == at && job.was(&old.call.id, &input.firms[old.firm].id, old.day));
+    let old = candidates.all.iter().find(|old| {
+        old.job == at && job.was_planned(&old.call.id, &input.firms[old.firm].id, old.day)
+    });
     let Some(old) = old else {
         let firm = input.firms.iter().find(|firm| firm.id == former.firm);
         let declined = input.declined.iter().any(|declined| {
             declined.firm == former.firm && job.needs.iter().any(|need| need.id == declined.need)
         });
-        let name = firm.map_or(former.firm.as_str(), |firm| firm.called());
+        let name = firm.map_or(former.firm.as_str(), |firm| firm.display_name());
         return if declined {
             format!("{name} declined")
         } else {
@@ -123,7 +133,7 @@ fn cause(
             format!(
                 "{name} on {} is no longer possible: call {} is at {port}, {stay}",
                 former.day,
-                call.called()
+                call.display_name()
             )
         };
     };
@@ -132,21 +142,22 @@ fn cause(
         .flatten()
         .filter(|other| other.firm == old.firm && other.day == old.day);
     let names: Vec<&str> = others
-        .map(|other| jobs[other.job].vessel.called())
+        .map(|other| jobs[other.job].vessel.display_name())
         .collect();
     let teams = input.firms[old.firm].teams_on(old.day) as usize
         * input.firms[old.firm].jobs_a_team_day as usize;
     if teams == 0 {
-        let firm = input.firms[old.firm].called();
+        let firm = input.firms[old.firm].display_name();
         return format!("{firm}'s teams of {} are booked", old.day);
     }
     if names.len() >= teams {
         return format!("gives way to {}", names.join(", "));
     }
-    match way {
-        Some(way) => {
-            let travel = |way: &Way<'_>| options.problem.visits[way.visit].travel;
-            let saved = old.quote.cost() + travel(old) - way.quote.cost() - travel(way);
+    match candidate {
+        Some(candidate) => {
+            let travel =
+                |candidate: &Candidate<'_>| candidates.problem.visits[candidate.visit].travel;
+            let saved = old.quote.cost() + travel(old) - candidate.quote.cost() - travel(candidate);
             if saved > 0 {
                 format!(
                     "better by {:.2} euros, the cost of moving it included",

@@ -4,7 +4,7 @@
 use crate::calls::PortCall;
 use crate::input::{Checked, FormerJob, Input, JobState, Vessel};
 use crate::needs::{Urgency, due};
-use crate::rules::shipped;
+use crate::rules::built_in_rules;
 use chrono::{Days, NaiveDate};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -51,7 +51,7 @@ impl Job<'_> {
 
     /// True if the previous plan has the job at this call, by this firm, on
     /// this day.
-    pub(super) fn was(&self, call: &str, firm: &str, day: NaiveDate) -> bool {
+    pub(super) fn was_planned(&self, call: &str, firm: &str, day: NaiveDate) -> bool {
         self.former
             .is_some_and(|former| former.call == call && former.firm == firm && former.day == day)
     }
@@ -165,7 +165,7 @@ fn needs(input: &Input, today: NaiveDate) -> Vec<(&str, DueNeed)> {
         .collect();
     let found = input.compasses.iter().filter_map(|compass| {
         let ship = ships[compass.vessel.as_str()].ship();
-        let due = due(&ship, &compass.facts, shipped(), &input.terms, today)?;
+        let due = due(&ship, &compass.facts, built_in_rules(), &input.terms, today)?;
         let need = DueNeed {
             id: compass.id.clone(),
             due: due.on,

@@ -25,7 +25,7 @@ use crate::calls::{BerthHeading, HeadingSource};
 use crate::input::{Checked, Input, JobState};
 use crate::solve;
 use crate::time::euros;
-use candidates::{Options, Way, travel};
+use candidates::{Candidate, Candidates, travel};
 use jobs::Job;
 use std::collections::BTreeMap;
 
@@ -33,13 +33,13 @@ use std::collections::BTreeMap;
 pub fn plan(checked: &Checked) -> Schedule {
     let input = checked.get();
     let (jobs, later) = jobs::jobs(checked);
-    let standing = confirmed::standing(input, &jobs);
-    let options = Options::of(input, &jobs, &standing);
-    let solved = solve::solve(&options.problem);
-    let made: Vec<Option<&Way<'_>>> = solved
+    let confirmations = confirmed::check_all(input, &jobs);
+    let candidates = Candidates::from_jobs(input, &jobs, &confirmations);
+    let solved = solve::solve(&candidates.problem);
+    let made: Vec<Option<&Candidate<'_>>> = solved
         .assignment
         .iter()
-        .map(|choice| choice.map(|choice| &options.all[choice]))
+        .map(|choice| choice.map(|choice| &candidates.all[choice]))
         .collect();
     let planned = planned(input, &jobs, &made);
     // A floating-point sum of nothing is −0.
@@ -54,8 +54,8 @@ pub fn plan(checked: &Checked) -> Schedule {
         proven_optimal: gap == 0,
         paid_eur: (paid * 100.0).round() / 100.0,
         jobs: planned,
-        unscheduled: unscheduled::unscheduled(input, &jobs, &made, &options.problem.unmet),
-        changes: changes::changes(input, &jobs, &standing, &options, &made),
+        unscheduled: unscheduled::unscheduled(input, &jobs, &made, &candidates.problem.unmet),
+        changes: changes::changes(input, &jobs, &confirmations, &candidates, &made),
         later: later
             .into_iter()
             .map(|need| Later {
@@ -67,15 +67,22 @@ pub fn plan(checked: &Checked) -> Schedule {
     }
 }
 
-fn planned(input: &Input, jobs: &[Job<'_>], made: &[Option<&Way<'_>>]) -> Vec<PlannedJob> {
+fn planned(input: &Input, jobs: &[Job<'_>], made: &[Option<&Candidate<'_>>]) -> Vec<PlannedJob> {
     let mut at_visit: BTreeMap<usize, u32> = BTreeMap::new();
-    for option in made.iter().flatten() {
-        *at_visit.entry(option.visit).or_default() += 1;
+    for candidate in made.iter().flatten() {
+        *at_visit.entry(candidate.visit).or_default() += 1;
     }
     let mut planned: Vec<PlannedJob> = made
         .iter()
         .flatten()
-        .map(|option| planned_job(input, &jobs[option.job], option, at_visit[&option.visit]))
+        .map(|candidate| {
+            planned_job(
+                input,
+                &jobs[candidate.job],
+                candidate,
+                at_visit[&candidate.visit],
+            )
+        })
         .collect();
     planned.sort_by(|one, other| {
         (one.day, one.from, &one.needs).cmp(&(other.day, other.from, &other.needs))
@@ -83,11 +90,20 @@ fn planned(input: &Input, jobs: &[Job<'_>], made: &[Option<&Way<'_>>]) -> Vec<Pl
     planned
 }
 
-fn planned_job(input: &Input, job: &Job<'_>, option: &Way<'_>, jobs_there: u32) -> PlannedJob {
-    let (firm, call, quote) = (&input.firms[option.firm], option.call, option.quote);
+fn planned_job(
+    input: &Input,
+    job: &Job<'_>,
+    candidate: &Candidate<'_>,
+    jobs_there: u32,
+) -> PlannedJob {
+    let (firm, call, quote) = (
+        &input.firms[candidate.firm],
+        candidate.call,
+        candidate.quote,
+    );
     let port = quote::port_of(call);
     let teams = jobs_there.div_ceil(firm.jobs_a_team_day);
-    let kept = job.was(&call.id, &firm.id, option.day);
+    let kept = job.was_planned(&call.id, &firm.id, candidate.day);
     PlannedJob {
         needs: job.ids(),
         vessel: job.vessel.id.clone(),
@@ -95,7 +111,7 @@ fn planned_job(input: &Input, job: &Job<'_>, option: &Way<'_>, jobs_there: u32) 
         port: call.port,
         port_name: port.name,
         firm: firm.id.clone(),
-        day: option.day,
+        day: candidate.day,
         from: quote.from,
         to: quote.to,
         berth_heading: call.berth_heading_deg.map(|heading_deg| BerthHeading {

@@ -10,7 +10,7 @@ use crate::time::Instant;
 use chrono::{Days, NaiveDate};
 
 /// The most days counted, so that sums of money cannot overflow.
-const MOST_DAYS: i64 = 3650;
+const MAX_DAYS: i64 = 3650;
 
 /// An obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -80,7 +80,7 @@ pub(super) fn quote(
     let today = input.now.date(zone);
     let former = job
         .former
-        .filter(|_| job.was(&call.id, &firm.id, day))
+        .filter(|_| job.was_planned(&call.id, &firm.id, day))
         .map(|former| former.state);
     let confirmed = former == Some(JobState::Confirmed);
     let opens = Instant::at(day, firm.first_hour, zone);
@@ -94,10 +94,10 @@ pub(super) fn quote(
     let (from, to) = (begins.max(call.eta), closes.min(call.etd));
     let late_days = (day - job.due()).num_days().max(0);
 
-    let mut against = Vec::new();
+    let mut obstacles = Vec::new();
     let mut unless = |fine: bool, obstacle| {
         if !fine {
-            against.push(obstacle);
+            obstacles.push(obstacle);
         }
     };
     unless(firm.is_accepted_by(job.vessel.flag), Obstacle::Flag);
@@ -117,20 +117,23 @@ pub(super) fn quote(
     let in_cap = |most: u32| late_days <= i64::from(most);
     let allowed = overdue || confirmed || weights.late_days.is_none_or(in_cap);
     unless(allowed, Obstacle::AfterDue);
-    unless(!declined(input, job, call, firm, day), Obstacle::Declined);
-    if !against.is_empty() {
-        return Err(against);
+    unless(
+        !has_declined(input, job, call, firm, day),
+        Obstacle::Declined,
+    );
+    if !obstacles.is_empty() {
+        return Err(obstacles);
     }
 
     let urgency = job.urgency();
     let chance_of_missing = call.chance_of_missing(begins, closes, weights.job_h);
-    let waits = (day - today).num_days().clamp(0, MOST_DAYS);
+    let waits = (day - today).num_days().clamp(0, MAX_DAYS);
     let early_days = match urgency {
-        Urgency::Routine | Urgency::Soon => (job.due() - day).num_days().clamp(0, MOST_DAYS),
+        Urgency::Routine | Urgency::Soon => (job.due() - day).num_days().clamp(0, MAX_DAYS),
         Urgency::Urgent | Urgency::Overdue => 0,
     };
     // Past lateness cannot be changed: only days to come count.
-    let late_to_come = (day - job.due().max(today)).num_days().clamp(0, MOST_DAYS);
+    let late_to_come = (day - job.due().max(today)).num_days().clamp(0, MAX_DAYS);
     // Being late at all costs as much as leaving undone a job that could be
     // done in time.
     let at_all = late_days > 0 && !overdue && weights.late_days.is_none();
@@ -147,18 +150,18 @@ pub(super) fn quote(
         waiting: waits * weights.waiting_eur_day.of(urgency).cents(),
         late: late_to_come * weights.late_eur_day.cents() + late_at_all,
         early: early_days * weights.early_eur_day.cents(),
-        changed: changed(input, job, call, firm, day),
+        changed: change_cost(input, job, call, firm, day),
     })
 }
 
 /// The most that waiting can cost a job, without a fee: to the end of the
 /// horizon, then late, and with a missed ship. An undone job costs this much
 /// whatever the obstacles, so that no new obstacle makes a plan cheaper.
-pub(super) fn waits_at_most(input: &Input, job: &Job<'_>) -> i64 {
+pub(super) fn max_waiting_cost(input: &Input, job: &Job<'_>) -> i64 {
     let (weights, urgency) = (&input.weights, job.urgency());
     let today = input.now.utc_date();
     let ends = today + Days::new(input.horizon_days.into());
-    let days = |from: NaiveDate, to: NaiveDate| (to - from).num_days().clamp(0, MOST_DAYS);
+    let days = |from: NaiveDate, to: NaiveDate| (to - from).num_days().clamp(0, MAX_DAYS);
     let early = match urgency {
         Urgency::Routine | Urgency::Soon => days(today, job.due()),
         Urgency::Urgent | Urgency::Overdue => 0,
@@ -169,21 +172,23 @@ pub(super) fn waits_at_most(input: &Input, job: &Job<'_>) -> i64 {
     let waiting = days(today, ends) * weights.waiting_eur_day.of(urgency).cents();
     let changed = job
         .former
-        .map_or(0, |former| departing(input, former.state));
+        .map_or(0, |former| departure_cost(input, former.state));
     // A day is either early or late.
     let waits = (early * weights.early_eur_day.cents()).max(waiting + late);
     waits + weights.missed_eur.of(urgency).cents() + changed
 }
 
 /// Cost of departing from the previous plan.
-fn changed(input: &Input, job: &Job<'_>, call: &PortCall, firm: &Firm, day: NaiveDate) -> i64 {
+fn change_cost(input: &Input, job: &Job<'_>, call: &PortCall, firm: &Firm, day: NaiveDate) -> i64 {
     match job.former {
-        Some(former) if !job.was(&call.id, &firm.id, day) => departing(input, former.state),
+        Some(former) if !job.was_planned(&call.id, &firm.id, day) => {
+            departure_cost(input, former.state)
+        }
         _ => 0,
     }
 }
 
-fn departing(input: &Input, from: JobState) -> i64 {
+fn departure_cost(input: &Input, from: JobState) -> i64 {
     match from {
         JobState::Proposed => input.weights.changed_eur.cents(),
         // A confirmed job that moves has a cause, and none of these costs
@@ -192,7 +197,13 @@ fn departing(input: &Input, from: JobState) -> i64 {
     }
 }
 
-fn declined(input: &Input, job: &Job<'_>, call: &PortCall, firm: &Firm, day: NaiveDate) -> bool {
+fn has_declined(
+    input: &Input,
+    job: &Job<'_>,
+    call: &PortCall,
+    firm: &Firm,
+    day: NaiveDate,
+) -> bool {
     input.declined.iter().any(|declined| {
         declined.firm == firm.id
             && declined.day.is_none_or(|only| only == day)

@@ -3,7 +3,7 @@
 //!
 //! Invariant: a line names everything that its way lacks.
 
-use super::capacity::Room;
+use super::capacity::Capacity;
 use super::jobs::Job;
 use super::quote::{self, Obstacle};
 use crate::calls::PortCall;
@@ -16,17 +16,17 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Days ahead within which an available firm is looked for.
 const DAYS_AHEAD: u64 = 90;
 /// The most ports listed as served.
-const MOST_PORTS: usize = 12;
+const MAX_PORTS: usize = 12;
 /// Assumed hours of a firm that is not in the input.
 const USUAL_HOURS: (f64, f64) = (8.0, 18.0);
 
 /// Everything that one way lacks.
 #[derive(Default)]
-pub(super) struct Lacking(Vec<String>);
+pub(super) struct Remedy(Vec<String>);
 
-impl Lacking {
+impl Remedy {
     pub(super) fn teams(&mut self, firm: &Firm, port: &str, day: NaiveDate, teams: u32) {
-        let name = firm.called();
+        let name = firm.display_name();
         match teams {
             0 => {}
             1 => self
@@ -38,10 +38,10 @@ impl Lacking {
         }
     }
 
-    /// Adds a price cut by `too_dear` cents and a little more.
-    pub(super) fn price(&mut self, firm: &Firm, port: &str, day: NaiveDate, too_dear: i64) {
-        let euros = too_dear.div_euclid(100) + 1;
-        let name = firm.called();
+    /// Adds a price cut by `excess_price` cents and a little more.
+    pub(super) fn price(&mut self, firm: &Firm, port: &str, day: NaiveDate, excess_price: i64) {
+        let euros = excess_price.div_euclid(100) + 1;
+        let name = firm.display_name();
         self.0.push(format!(
             "{name} coming to {port} on {day} for {euros} euros less"
         ));
@@ -49,26 +49,26 @@ impl Lacking {
 }
 
 /// Remedies for one job.
-pub(super) struct Help<'a> {
+pub(super) struct Remedies<'a> {
     pub(super) input: &'a Input,
     pub(super) job: &'a Job<'a>,
-    pub(super) room: &'a Room<'a>,
+    pub(super) capacity: &'a Capacity<'a>,
     pub(super) planned_late: bool,
     /// Number of changes, their kind, the day, and the line.
     near: BTreeSet<(usize, u8, NaiveDate, String)>,
 }
 
-impl<'a> Help<'a> {
+impl<'a> Remedies<'a> {
     pub(super) fn new(
         input: &'a Input,
         job: &'a Job<'a>,
-        room: &'a Room<'a>,
+        capacity: &'a Capacity<'a>,
         planned_late: bool,
-    ) -> Help<'a> {
-        Help {
+    ) -> Remedies<'a> {
+        Remedies {
             input,
             job,
-            room,
+            capacity,
             planned_late,
             near: BTreeSet::new(),
         }
@@ -85,17 +85,17 @@ impl<'a> Help<'a> {
         lines.take(most).map(|(.., line)| line.clone()).collect()
     }
 
-    pub(super) fn add(&mut self, kind: u8, day: NaiveDate, Lacking(lacking): Lacking) {
-        let things = lacking.len();
+    pub(super) fn add(&mut self, kind: u8, day: NaiveDate, Remedy(remedy): Remedy) {
+        let things = remedy.len();
         if things > 0 {
-            self.near.insert((things, kind, day, lacking.join(" and ")));
+            self.near.insert((things, kind, day, remedy.join(" and ")));
         }
     }
 
     /// Adds an extension of the due date.
-    pub(super) fn extension(&mut self, day: NaiveDate) {
+    pub(super) fn add_extension(&mut self, day: NaiveDate) {
         let help = self.extension_to(day);
-        self.add(4, day, Lacking(vec![help]));
+        self.add(4, day, Remedy(vec![help]));
     }
 
     fn extension_to(&self, day: NaiveDate) -> String {
@@ -116,7 +116,7 @@ impl<'a> Help<'a> {
     }
 
     /// Adds what would remove the obstacles to a firm's day of a call.
-    pub(super) fn against(
+    pub(super) fn overcome(
         &mut self,
         call: &PortCall,
         firm: &Firm,
@@ -124,40 +124,45 @@ impl<'a> Help<'a> {
         obstacles: &[Obstacle],
     ) {
         if obstacles == [Obstacle::AfterDue] {
-            self.earlier(firm, call.port);
+            self.add_earlier_call(firm, call.port);
         }
-        let Some(mut lacking) = self.lacking_of_firm(firm, call, day, obstacles) else {
+        let Some(mut remedy) = self.remedy_of_firm(firm, call, day, obstacles) else {
             return;
         };
         let port = quote::port_of(call).name;
-        lacking.teams(firm, port, day, self.room.lacking(firm, call.port, day));
-        if let Some(too_dear) = self.too_dear(firm, call.port) {
-            lacking.price(firm, port, day, too_dear);
+        remedy.teams(
+            firm,
+            port,
+            day,
+            self.capacity.missing_teams(firm, call.port, day),
+        );
+        if let Some(excess_price) = self.excess_price(firm, call.port) {
+            remedy.price(firm, port, day, excess_price);
         }
         let (mut kind, mut about) = (1, day);
         if obstacles.contains(&Obstacle::AfterDue) {
-            lacking.0.push(self.extension_to(day));
+            remedy.0.push(self.extension_to(day));
             // Remedies for days that are too late are sorted by the due date.
             (kind, about) = (4, self.job.due().max(day));
         }
-        self.add(kind, about, lacking);
+        self.add(kind, about, remedy);
     }
 
     /// `None` where nothing helps: the hours of that day are over.
-    fn lacking_of_firm(
+    fn remedy_of_firm(
         &self,
         firm: &Firm,
         call: &PortCall,
         day: NaiveDate,
         obstacles: &[Obstacle],
-    ) -> Option<Lacking> {
+    ) -> Option<Remedy> {
         let port = quote::port_of(call);
-        let (name, at) = (firm.called(), port.name);
-        let mut lacking =
-            Lacking(self.lacking_of_terms(firm, obstacles, &format!("at {at} on {day}")));
+        let (name, at) = (firm.display_name(), port.name);
+        let mut remedy =
+            Remedy(self.remedy_of_terms(firm, obstacles, &format!("at {at} on {day}")));
         if obstacles.contains(&Obstacle::NotWorking) {
             let weekday = day.format("%A");
-            lacking
+            remedy
                 .0
                 .push(format!("{name} working at {at} on {weekday}, {day}"));
         }
@@ -166,7 +171,7 @@ impl<'a> Help<'a> {
         let [opens, closes] = hours.map(|hour| Instant::at(day, hour, port.zone));
         let is_short = obstacles.contains(&Obstacle::Stay);
         let (from, to) = if is_short {
-            lacking
+            remedy
                 .0
                 .push(format!("a longer stay at {at} on {day}, for {name}"));
             (opens, closes)
@@ -181,34 +186,34 @@ impl<'a> Help<'a> {
             return None;
         }
         if firm.lead_time_h > notice_h {
-            lacking.0.push(format!(
+            remedy.0.push(format!(
                 "{name} coming to {at} at {notice_h} h notice, on {day}"
             ));
         }
-        Some(lacking)
+        Some(remedy)
     }
 
     /// Changes that a firm needs at any place.
-    fn lacking_of_terms(&self, firm: &Firm, obstacles: &[Obstacle], there: &str) -> Vec<String> {
-        let name = firm.called();
-        let mut lacking = Vec::new();
+    fn remedy_of_terms(&self, firm: &Firm, obstacles: &[Obstacle], there: &str) -> Vec<String> {
+        let name = firm.display_name();
+        let mut remedy = Vec::new();
         if obstacles.contains(&Obstacle::Flag) {
-            let flag = self.job.vessel.flag_in_words();
-            lacking.push(format!("{flag} accepting {name}, {there}"));
+            let flag = self.job.vessel.describe_flag();
+            remedy.push(format!("{flag} accepting {name}, {there}"));
         }
         if obstacles.contains(&Obstacle::Licence) {
             let licence = self.job.vessel.licence.as_deref().unwrap_or_default();
-            lacking.push(format!("{name} holding licence {licence}, {there}"));
+            remedy.push(format!("{name} holding licence {licence}, {there}"));
         }
         if obstacles.contains(&Obstacle::Declined) {
-            lacking.push(format!("{name} accepting after all, {there}"));
+            remedy.push(format!("{name} accepting after all, {there}"));
         }
-        lacking
+        remedy
     }
 
     /// Cents by which a firm costs more than an unmet need; `None` where it is
     /// worth its price on any day.
-    pub(super) fn too_dear(&self, firm: &Firm, port: PortCode) -> Option<i64> {
+    pub(super) fn excess_price(&self, firm: &Firm, port: PortCode) -> Option<i64> {
         let more = self.job.needs.iter().skip(1);
         let extra: i64 = more.map(|_| firm.extra_compass_eur.cents()).sum();
         let price = firm.fee_eur.cents() + extra + firm.travel(port).map_or(0, Eur::cents);
@@ -217,7 +222,7 @@ impl<'a> Help<'a> {
     }
 
     /// Adds a firm at a port that none serves.
-    pub(super) fn a_firm_at(&mut self, call: &PortCall) {
+    pub(super) fn add_firm_at(&mut self, call: &PortCall) {
         let (port, now) = (quote::port_of(call), self.input.now);
         let long_enough = |day: &NaiveDate| {
             let [opens, closes] =
@@ -231,14 +236,14 @@ impl<'a> Help<'a> {
         if self.planned_late && day > self.job.due() {
             return;
         }
-        let mut lacking = Lacking(vec![format!(
+        let mut remedy = Remedy(vec![format!(
             "a firm at {} ({}) on {day}",
             port.name, call.port
         )]);
         if !self.may_be_on(day) {
-            lacking.0.push(self.extension_to(day));
+            remedy.0.push(self.extension_to(day));
         }
-        self.add(2, day, lacking);
+        self.add(2, day, remedy);
     }
 
     /// The first day on which a firm could come to a port, if the ship called
@@ -254,12 +259,12 @@ impl<'a> Help<'a> {
             let [opens, closes] = hours.map(|hour| Instant::at(*day, hour, zone));
             firm.works(*day)
                 && closes.hours_since(opens.max(ready)) >= job_h
-                && self.room.lacking(firm, port, *day) == 0
+                && self.capacity.missing_teams(firm, port, *day) == 0
         })
     }
 
     /// Obstacles to a firm at any place and time.
-    fn never(&self, firm: &Firm) -> Vec<Obstacle> {
+    fn permanent_obstacles(&self, firm: &Firm) -> Vec<Obstacle> {
         let mut never = Vec::new();
         if !firm.is_accepted_by(self.job.vessel.flag) {
             never.push(Obstacle::Flag);
@@ -280,25 +285,26 @@ impl<'a> Help<'a> {
     }
 
     /// Adds a call in time where a firm could only come late.
-    fn earlier(&mut self, firm: &Firm, port: PortCode) {
-        let able = self.never(firm).is_empty() && self.too_dear(firm, port).is_none();
+    fn add_earlier_call(&mut self, firm: &Firm, port: PortCode) {
+        let able =
+            self.permanent_obstacles(firm).is_empty() && self.excess_price(firm, port).is_none();
         let Some(day) = self.first_day(firm, port).filter(|_| able) else {
             return;
         };
         let (name, at) = (
-            firm.called(),
+            firm.display_name(),
             ports::find(port).map_or("", |port| port.name),
         );
-        let mut lacking = Lacking(vec![self.called(day, &format!("{at}: {name} could come"))]);
+        let mut remedy = Remedy(vec![self.call_at(day, &format!("{at}: {name} could come"))]);
         if !self.may_be_on(day) {
-            lacking.0.push(self.extension_to(day));
+            remedy.0.push(self.extension_to(day));
         }
-        self.add(1, self.job.due(), lacking);
+        self.add(1, self.job.due(), remedy);
     }
 
     /// A call at a place, where a firm could come on `first` at the earliest. A
     /// date in the past, or before `first`, is not offered.
-    fn called(&self, first: NaiveDate, place: &str) -> String {
+    fn call_at(&self, first: NaiveDate, place: &str) -> String {
         let (today, due) = (self.input.now.utc_date(), self.job.due());
         if due <= today || self.job.is_overdue(today) || first > due {
             format!("as soon as she can call at {place}")
@@ -308,11 +314,11 @@ impl<'a> Help<'a> {
     }
 
     /// Adds a call at any port that a firm serves.
-    pub(super) fn another_call(&mut self) {
+    pub(super) fn add_call(&mut self) {
         let due = self.job.due();
         let (mut in_time, mut later) = (BTreeSet::new(), BTreeMap::new());
         for firm in &self.input.firms {
-            if !self.never(firm).is_empty() {
+            if !self.permanent_obstacles(firm).is_empty() {
                 continue;
             }
             for served in &firm.ports {
@@ -320,7 +326,7 @@ impl<'a> Help<'a> {
                 let Some(day) = self.first_day(firm, port) else {
                     continue;
                 };
-                if self.too_dear(firm, port).is_some() {
+                if self.excess_price(firm, port).is_some() {
                     continue;
                 }
                 if day <= due || self.job.is_overdue(self.input.now.utc_date()) {
@@ -332,36 +338,36 @@ impl<'a> Help<'a> {
             }
         }
         let named = |ports: &BTreeSet<PortCode>| {
-            let ports = ports.iter().take(MOST_PORTS).map(ToString::to_string);
+            let ports = ports.iter().take(MAX_PORTS).map(ToString::to_string);
             format!(
                 "a port that a firm serves: {}",
                 ports.collect::<Vec<_>>().join(", ")
             )
         };
         if !in_time.is_empty() {
-            let help = self.called(due, &named(&in_time));
-            self.add(3, due, Lacking(vec![help]));
+            let help = self.call_at(due, &named(&in_time));
+            self.add(3, due, Remedy(vec![help]));
         } else if let Some(first) = later.values().min().copied() {
             let soonest = later.iter().filter(|(_, day)| **day == first);
             let soonest = soonest.map(|(port, _)| *port).collect();
-            let mut lacking = Lacking(vec![self.called(first, &named(&soonest))]);
+            let mut remedy = Remedy(vec![self.call_at(first, &named(&soonest))]);
             if !self.may_be_on(first) {
-                lacking.0.push(self.extension_to(first));
+                remedy.0.push(self.extension_to(first));
             }
             // A job that is planned late already would be no earlier.
             if !self.planned_late || !self.may_be_on(first) {
-                self.add(3, due, lacking);
+                self.add(3, due, remedy);
             }
         } else {
-            self.somebody();
+            self.add_another_firm();
         }
     }
 
     /// Adds the changes that each firm would need, or another firm, where none
     /// could come anywhere.
-    fn somebody(&mut self) {
+    fn add_another_firm(&mut self) {
         for firm in &self.input.firms {
-            let never = self.never(firm);
+            let never = self.permanent_obstacles(firm);
             let Some(served) = firm.ports.first() else {
                 continue;
             };
@@ -372,20 +378,20 @@ impl<'a> Help<'a> {
                 continue;
             };
             let at = ports::find(served.port).map_or("", |port| port.name);
-            let mut lacking = Lacking(self.lacking_of_terms(firm, &never, &format!("at {at}")));
-            if let Some(too_dear) = self.too_dear(firm, served.port) {
-                lacking.price(firm, at, day, too_dear);
+            let mut remedy = Remedy(self.remedy_of_terms(firm, &never, &format!("at {at}")));
+            if let Some(excess_price) = self.excess_price(firm, served.port) {
+                remedy.price(firm, at, day, excess_price);
             }
-            lacking.0.push(self.called(day, at));
+            remedy.0.push(self.call_at(day, at));
             if !self.may_be_on(day) {
-                lacking.0.push(self.extension_to(day));
+                remedy.0.push(self.extension_to(day));
             }
-            self.add(3, self.job.due(), lacking);
+            self.add(3, self.job.due(), remedy);
         }
         if self.is_empty() {
             let help =
                 "another firm that may adjust her, at a port where she calls for a working day";
-            self.add(5, self.job.due(), Lacking(vec![help.to_owned()]));
+            self.add(5, self.job.due(), Remedy(vec![help.to_owned()]));
         }
     }
 }

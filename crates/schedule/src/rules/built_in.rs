@@ -7,7 +7,7 @@ static RULES: OnceLock<Vec<Rule>> = OnceLock::new();
 
 /// Returns the rules of `data/rules.json`.
 #[allow(clippy::missing_panics_doc, reason = "a test reads the same file")]
-pub fn shipped() -> &'static [Rule] {
+pub fn built_in_rules() -> &'static [Rule] {
     RULES.get_or_init(|| {
         serde_json::from_str(include_str!("../../data/rules.json"))
             .expect("the rules that are compiled in are read by a test")
@@ -22,10 +22,13 @@ mod tests {
 
     #[test]
     fn every_shipped_rule_has_a_name_of_its_own_and_a_source() {
-        let names: BTreeSet<&str> = shipped().iter().map(|rule| rule.id.as_str()).collect();
-        assert_eq!(names.len(), shipped().len());
+        let names: BTreeSet<&str> = built_in_rules()
+            .iter()
+            .map(|rule| rule.id.as_str())
+            .collect();
+        assert_eq!(names.len(), built_in_rules().len());
         assert!(
-            shipped()
+            built_in_rules()
                 .iter()
                 .all(|rule| !rule.citation.document.is_empty())
         );
@@ -33,7 +36,7 @@ mod tests {
 
     #[test]
     fn only_a_transits_rule_names_a_canal() {
-        for rule in shipped() {
+        for rule in built_in_rules() {
             let transit = matches!(rule.requires, Requirement::Transit { .. });
             assert_eq!(transit, rule.applies.canal.is_some(), "{}", rule.id);
         }

@@ -2,13 +2,13 @@
 //!
 //! Invariants of a [`Rule`]: its numbers are positive and in a credible range,
 //! its flags are two capital letters, and a transit's rule names the canal.
-//! [`shipped()`] returns the rules of `data/rules.json`, which tests read
+//! [`built_in_rules()`] returns the rules of `data/rules.json`, which tests read
 //! completely.
 
 mod built_in;
 mod display;
 
-pub use built_in::shipped;
+pub use built_in::built_in_rules;
 
 use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};

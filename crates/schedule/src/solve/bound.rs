@@ -4,7 +4,7 @@
 use super::problem::Problem;
 
 /// Larger than every cost, and far from overflow.
-const NEVER: i64 = 1 << 60;
+const INFINITE: i64 = 1 << 60;
 
 /// A lower bound, and each choice's reduced cost against it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub(super) struct Bound {
 
 /// Computes the bound: each day's teams take the best loads, and a choice
 /// replaces the last of them.
-pub(super) fn add_up(problem: &Problem, prices: &[i64]) -> Bound {
+pub(super) fn compute(problem: &Problem, prices: &[i64]) -> Bound {
     let mut cost: i64 = prices.iter().sum();
     let mut reduced = vec![0; problem.choices.len()];
     let mut worth = vec![0; problem.visits.len()];
@@ -45,7 +45,7 @@ pub(super) fn add_up(problem: &Problem, prices: &[i64]) -> Bound {
         loads.sort_unstable();
         cost += loads.iter().take(teams).sum::<i64>();
         let last = match teams {
-            0 => -NEVER,
+            0 => -INFINITE,
             teams => loads.get(teams - 1).copied().unwrap_or(0),
         };
         for (&index, gains) in visits.iter().zip(&gains) {

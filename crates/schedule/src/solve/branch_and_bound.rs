@@ -9,7 +9,7 @@
 
 use super::open::Open;
 use super::problem::{Assignment, Problem};
-use super::work_limit::Work;
+use super::work_limit::WorkLimit;
 use microlp::{
     ComparisonOp, LinearExpr, OptimizationDirection, SolveOptions, TerminationReason, Variable,
 };
@@ -23,7 +23,7 @@ const LARGE_PART: usize = 5_000;
 const PIVOT: usize = 2;
 
 /// The result of branch and bound.
-pub(super) struct Finished {
+pub(super) struct Outcome {
     pub(super) assignment: Assignment,
     /// True if no other assignment of these choices is cheaper.
     pub(super) optimal: bool,
@@ -32,13 +32,13 @@ pub(super) struct Finished {
 /// Finds the cheapest assignment within `open`, for each part of choices that
 /// share no need and no firm's day. A part of many choices may take fewer
 /// nodes, and one that is too large none: `effort` is nodes times choices.
-pub(super) fn finish(
+pub(super) fn solve_parts(
     problem: &Problem,
     open: &Open,
     known: Assignment,
     effort: usize,
-    work: &mut Work,
-) -> Finished {
+    work: &mut WorkLimit,
+) -> Outcome {
     work.spend(2 * problem.choices.len());
     let mut assignment = known;
     let mut optimal = true;
@@ -57,7 +57,7 @@ pub(super) fn finish(
             continue;
         }
         let nodes = (effort / part.len().max(1)).max(1) as u64;
-        let Some((found, proven)) = solve(problem, &part, &assignment, nodes, work) else {
+        let Some((found, proven)) = solve_part(problem, &part, &assignment, nodes, work) else {
             optimal = false;
             continue;
         };
@@ -75,7 +75,7 @@ pub(super) fn finish(
             }
         }
     }
-    Finished {
+    Outcome {
         assignment,
         optimal,
     }
@@ -112,17 +112,17 @@ fn find(leader: &mut [usize], mut of: usize) -> usize {
     of
 }
 
-type Found = Vec<(usize, Option<usize>)>;
+type Assigned = Vec<(usize, Option<usize>)>;
 
 /// Solves one part: its best choices and whether they are proven optimal;
 /// `None` without a solution.
-fn solve(
+fn solve_part(
     problem: &Problem,
     part: &[usize],
     known: &[Option<usize>],
     nodes: u64,
-    work: &mut Work,
-) -> Option<(Found, bool)> {
+    work: &mut WorkLimit,
+) -> Option<(Assigned, bool)> {
     const CENTS: f64 = 100.0;
     let mut model = microlp::Problem::new(OptimizationDirection::Minimize);
     let mut warm: Vec<(Variable, f64)> = Vec::new();
@@ -148,15 +148,15 @@ fn solve(
             .cast_signed();
         let y = model.add_integer_var(visit.travel as f64 / CENTS, (0, most));
         warm.push((y, f64::from(going[&at].div_ceil(visit.jobs_a_team))));
-        let mut room = LinearExpr::empty();
-        room.add(y, -f64::from(visit.jobs_a_team));
+        let mut capacity = LinearExpr::empty();
+        capacity.add(y, -f64::from(visit.jobs_a_team));
         for &x in jobs {
-            room.add(x, 1.0);
+            capacity.add(x, 1.0);
             if visit.jobs_a_team > 1 {
                 model.add_constraint([(x, 1.0), (y, -1.0)], ComparisonOp::Le, 0.0);
             }
         }
-        model.add_constraint(room, ComparisonOp::Le, 0.0);
+        model.add_constraint(capacity, ComparisonOp::Le, 0.0);
         of_day
             .entry(visit.firm_day)
             .or_insert_with(LinearExpr::empty)

@@ -5,7 +5,7 @@ use super::state::State;
 /// Applies a chain's moves. Applies none if they are not possible together for
 /// less than the limit: a link may have changed after the chain went on from
 /// it.
-pub(super) fn carry_out(
+pub(super) fn apply(
     state: &mut State<'_>,
     need: usize,
     moves: &[(usize, Option<usize>)],
@@ -41,6 +41,6 @@ pub(super) fn carry_out(
     if fits && cost < limit {
         return Some(cost);
     }
-    state.go_back(mark);
+    state.undo_to(mark);
     None
 }

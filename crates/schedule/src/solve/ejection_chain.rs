@@ -9,17 +9,17 @@
 //! Invariants: the assignment stays feasible, and a need is placed at exactly
 //! the returned cost.
 
-use super::chain_moves::carry_out;
+use super::chain_moves::apply;
 use super::problem::Problem;
 use super::state::State;
-use super::work_limit::Work;
+use super::work_limit::WorkLimit;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// The most steps of one search.
-const MOST_LOOKS: usize = 300_000;
+const MAX_STEPS: usize = 300_000;
 /// Larger than every cost.
-const NEVER: i64 = i64::MAX / 4;
+const INFINITE: i64 = i64::MAX / 4;
 
 /// Link of a chain to a visit: the need that goes there, and the visit it was
 /// displaced from.
@@ -53,8 +53,8 @@ pub(super) struct Chains<'a> {
     /// Number of choices on each visit.
     wanted: Vec<u32>,
     /// Steps of this search.
-    looks: usize,
-    pub(super) work: &'a mut Work,
+    steps: usize,
+    pub(super) work: &'a mut WorkLimit,
 }
 
 /// The best end of a chain so far.
@@ -62,13 +62,13 @@ struct End {
     cost: i64,
     at: Option<usize>,
     /// The need left unmet there.
-    given_up: Option<usize>,
+    unmet: Option<usize>,
 }
 
 impl End {
-    fn offer(&mut self, cost: i64, at: usize, given_up: Option<usize>) {
+    fn offer(&mut self, cost: i64, at: usize, unmet: Option<usize>) {
         if cost < self.cost {
-            (self.cost, self.at, self.given_up) = (cost, Some(at), given_up);
+            (self.cost, self.at, self.unmet) = (cost, Some(at), unmet);
         }
     }
 }
@@ -78,7 +78,7 @@ impl<'a> Chains<'a> {
         problem: &Problem,
         order: &'a [Vec<usize>],
         worth: &'a [i64],
-        work: &'a mut Work,
+        work: &'a mut WorkLimit,
     ) -> Chains<'a> {
         let mut wanted = vec![0; worth.len()];
         for choice in &problem.choices {
@@ -92,12 +92,12 @@ impl<'a> Chains<'a> {
         Chains {
             order,
             worth,
-            cost: vec![NEVER; worth.len()],
+            cost: vec![INFINITE; worth.len()],
             by: vec![none; worth.len()],
             queue: BinaryHeap::new(),
             seen: Vec::new(),
             wanted,
-            looks: 0,
+            steps: 0,
             work,
         }
     }
@@ -107,13 +107,13 @@ impl<'a> Chains<'a> {
         let mark = state.mark();
         let mut home = self.worth_of_place(state, need);
         if reach == Reach::Far {
-            home = home.max(self.left_over(state));
+            home = home.max(self.best_free_place(state));
         }
         let saved = state.take(need);
         if self.place(state, need, saved, home).is_some() {
             return true;
         }
-        state.go_back(mark);
+        state.undo_to(mark);
         false
     }
 
@@ -124,32 +124,32 @@ impl<'a> Chains<'a> {
 
     /// Places an unplaced need if that costs less than `limit`, and returns the
     /// cost with all displaced needs. Capacity freed on the way is worth at
-    /// most `room`.
+    /// most `capacity`.
     pub(super) fn place(
         &mut self,
         state: &mut State<'_>,
         need: usize,
         limit: i64,
-        room: i64,
+        capacity: i64,
     ) -> Option<i64> {
-        let end = self.search(state, need, limit, room);
+        let end = self.search(state, need, limit, capacity);
         if end.cost >= limit {
             return None;
         }
         let mut moves: Vec<(usize, Option<usize>)> = Vec::new();
-        moves.extend(end.given_up.map(|need| (need, None)));
+        moves.extend(end.unmet.map(|need| (need, None)));
         let mut at = end.at;
         while let Some(visit) = at {
             let link = self.by[visit];
             moves.push((link.need, Some(link.choice)));
             at = link.from;
         }
-        carry_out(state, need, &moves, limit)
+        apply(state, need, &moves, limit)
     }
 
     /// Largest value, beyond its cost, of a free place that some need could
     /// take.
-    fn left_over(&mut self, state: &State<'_>) -> i64 {
+    fn best_free_place(&mut self, state: &State<'_>) -> i64 {
         self.work.spend(self.worth.len() / 2);
         let worth = |at: usize| {
             let price = state.price_of_place(at)?;
@@ -158,37 +158,37 @@ impl<'a> Chains<'a> {
         (0..self.worth.len()).filter_map(worth).max().unwrap_or(0)
     }
 
-    fn search(&mut self, state: &State<'_>, need: usize, limit: i64, room: i64) -> End {
+    fn search(&mut self, state: &State<'_>, need: usize, limit: i64, capacity: i64) -> End {
         for visit in self.seen.drain(..) {
-            self.cost[visit] = NEVER;
+            self.cost[visit] = INFINITE;
         }
         self.queue.clear();
-        self.looks = 0;
+        self.steps = 0;
         let mut end = End {
             cost: limit.min(state.problem.unmet[need]),
             at: None,
-            given_up: None,
+            unmet: None,
         };
-        self.go_on(state, need, None, 0, &mut end, room);
+        self.extend(state, need, None, 0, &mut end, capacity);
         while let Some(Reverse((key, at))) = self.queue.pop() {
-            if key >= end.cost.saturating_add(room) || self.looks > MOST_LOOKS {
+            if key >= end.cost.saturating_add(capacity) || self.steps > MAX_STEPS {
                 break;
             }
             let cost = self.cost[at];
             if key == cost + self.worth[at] {
-                self.arrive(state, at, cost, &mut end, room);
+                self.arrive(state, at, cost, &mut end, capacity);
             }
         }
-        self.work.spend(self.looks);
+        self.work.spend(self.steps);
         end
     }
 
     /// Ends a chain on a visit, or displaces a need there.
-    fn arrive(&mut self, state: &State<'_>, at: usize, cost: i64, end: &mut End, room: i64) {
+    fn arrive(&mut self, state: &State<'_>, at: usize, cost: i64, end: &mut End, capacity: i64) {
         let problem = state.problem;
         let visit = problem.visits[at];
         for &beside in &state.visits_of[visit.firm_day] {
-            self.looks += 1;
+            self.steps += 1;
             let other = problem.visits[beside];
             let cost = if beside == at {
                 cost
@@ -204,27 +204,27 @@ impl<'a> Chains<'a> {
                 };
                 let cost = cost - problem.choices[had].cost;
                 end.offer(cost + problem.unmet[need], at, Some(need));
-                self.go_on(state, need, Some(at), cost, end, room);
+                self.extend(state, need, Some(at), cost, end, capacity);
             }
         }
     }
 
     /// Extends a chain from a displaced need to all visits where it may go.
-    fn go_on(
+    fn extend(
         &mut self,
         state: &State<'_>,
         need: usize,
         from: Option<usize>,
         cost: i64,
         end: &mut End,
-        room: i64,
+        capacity: i64,
     ) {
         let order = self.order;
         for &choice in &order[need] {
-            self.looks += 1;
+            self.steps += 1;
             let to = state.problem.choices[choice];
             let cost = cost + to.cost;
-            let most = end.cost.saturating_add(room);
+            let most = end.cost.saturating_add(capacity);
             if cost >= most {
                 break;
             }
@@ -235,10 +235,10 @@ impl<'a> Chains<'a> {
                 Some(price) => cost + price < end.cost,
                 None => key < most,
             };
-            if !leads || cost >= self.cost[to.visit] || self.passed(state, from, to.visit) {
+            if !leads || cost >= self.cost[to.visit] || self.has_used_day(state, from, to.visit) {
                 continue;
             }
-            if self.cost[to.visit] == NEVER {
+            if self.cost[to.visit] == INFINITE {
                 self.seen.push(to.visit);
             }
             self.cost[to.visit] = cost;
@@ -252,11 +252,11 @@ impl<'a> Chains<'a> {
 
     /// True if a chain has used a visit's day before; it counts on that day's
     /// teams only once.
-    fn passed(&mut self, state: &State<'_>, from: Option<usize>, visit: usize) -> bool {
+    fn has_used_day(&mut self, state: &State<'_>, from: Option<usize>, visit: usize) -> bool {
         let day = state.problem.visits[visit].firm_day;
         let mut at = from;
         while let Some(passed) = at {
-            self.looks += 1;
+            self.steps += 1;
             if state.problem.visits[passed].firm_day == day {
                 return true;
             }
@@ -270,7 +270,7 @@ impl<'a> Chains<'a> {
 mod tests {
     use super::*;
     use crate::solve::lagrangian::Prices;
-    use crate::solve::problem::made_up::problems;
+    use crate::solve::problem::test_problems::problems;
     use crate::solve::state::greedy;
     use crate::solve::{Choice, Visit};
     use proptest::prelude::*;
@@ -305,7 +305,7 @@ mod tests {
         };
         let mut state = State::new(&problem, vec![Some(0), Some(2), Some(4)]);
         let order = problem.by_need();
-        let mut work = Work::new(1_000);
+        let mut work = WorkLimit::new(1_000);
         assert!(Chains::new(&problem, &order, &[0; 3], &mut work).improve(
             &mut state,
             0,
@@ -325,7 +325,7 @@ mod tests {
         };
         let mut state = State::new(&problem, vec![Some(0), None]);
         let order = problem.by_need();
-        let mut work = Work::new(1_000);
+        let mut work = WorkLimit::new(1_000);
         assert!(Chains::new(&problem, &order, &[0; 3], &mut work).improve(
             &mut state,
             1,
@@ -340,7 +340,7 @@ mod tests {
         #[test]
         fn a_need_is_placed_at_the_cost_that_is_given_back_or_nothing_changes(problem in problems()) {
             let order = problem.by_need();
-            let mut work = Work::new(1_000_000);
+            let mut work = WorkLimit::new(1_000_000);
             let begin = greedy(&problem, vec![None; problem.unmet.len()], &order, &mut work);
             let mut prices = Prices::new(&problem);
             prices.improve(problem.cost(&begin).unwrap(), 300, &mut work);

@@ -17,8 +17,8 @@
 
 use super::bound::{self, Bound};
 use super::problem::Problem;
-use super::subproblem::{Days, Taken};
-use super::work_limit::Work;
+use super::subproblem::{Solution, Subproblem};
+use super::work_limit::WorkLimit;
 
 /// Steps without a better bound, after which steps are made smaller.
 const PATIENCE: usize = 20;
@@ -38,7 +38,7 @@ const LEAST_WEIGHT: f64 = 1e-3;
 /// Prices of needs in cents, at the best bound so far.
 pub(super) struct Prices<'a> {
     problem: &'a Problem,
-    days: Days<'a>,
+    subproblem: Subproblem<'a>,
     at: Vec<f64>,
     cost: f64,
     /// Cost of leaving each need unmet: its highest price.
@@ -56,7 +56,7 @@ pub(super) struct Prices<'a> {
 impl<'a> Prices<'a> {
     /// Starts with the cost of each need's cheapest choice alone.
     pub(super) fn new(problem: &'a Problem) -> Prices<'a> {
-        let days = Days::of(problem);
+        let subproblem = Subproblem::of(problem);
         let most: Vec<f64> = problem.unmet.iter().map(|unmet| *unmet as f64).collect();
         let mut at = most.clone();
         for choice in &problem.choices {
@@ -64,17 +64,17 @@ impl<'a> Prices<'a> {
             let alone = (choice.cost + visit.travel) as f64;
             at[choice.need] = at[choice.need].min(alone);
         }
-        let taken = days.taken(&at);
+        let solution = subproblem.solve(&at);
         let mut mean = vec![0.0; problem.choices.len()];
-        for choice in &taken.choices {
+        for choice in &solution.choices {
             mean[*choice] = 1.0;
         }
         Prices {
-            met: met(problem, &taken),
+            met: met(problem, &solution),
             problem,
-            days,
+            subproblem,
             at,
-            cost: taken.cost,
+            cost: solution.cost,
             most,
             mean,
             factor: FIRST_STEP,
@@ -84,7 +84,7 @@ impl<'a> Prices<'a> {
 
     /// Raises the bound by at most `steps` steps, towards an assignment of cost
     /// `known`.
-    pub(super) fn improve(&mut self, known: i64, steps: usize, work: &mut Work) {
+    pub(super) fn improve(&mut self, known: i64, steps: usize, work: &mut WorkLimit) {
         let each = self.mean.len() + self.at.len();
         let (mut since, mut before) = (0, self.cost);
         // The step factor starts again: it may have become small on the way to
@@ -95,13 +95,13 @@ impl<'a> Prices<'a> {
             let Some(trial) = self.trial(known as f64) else {
                 return;
             };
-            let taken = self.days.taken(&trial);
-            let met = met(self.problem, &taken);
-            let uphill = self.uphill(&met);
-            self.add_to_mean(&taken, &met, &trial);
-            if taken.cost > self.cost {
-                (self.at, self.cost, since) = (trial, taken.cost, 0);
-                if uphill {
+            let solution = self.subproblem.solve(&trial);
+            let met = met(self.problem, &solution);
+            let slopes_agree = self.slopes_agree(&met);
+            self.add_to_mean(&solution, &met, &trial);
+            if solution.cost > self.cost {
+                (self.at, self.cost, since) = (trial, solution.cost, 0);
+                if slopes_agree {
                     self.factor = (self.factor * 1.1).min(2.0);
                 }
             } else {
@@ -154,7 +154,7 @@ impl<'a> Prices<'a> {
     }
 
     /// True if the newest slope agrees with the mean's.
-    fn uphill(&self, met: &[f64]) -> bool {
+    fn slopes_agree(&self, met: &[f64]) -> bool {
         let each = met.iter().enumerate();
         each.map(|(need, met)| (1.0 - met) * self.slope(need))
             .sum::<f64>()
@@ -163,7 +163,7 @@ impl<'a> Prices<'a> {
 
     /// Adds the newest solution with the weight that makes the mean's slope the
     /// shortest.
-    fn add_to_mean(&mut self, taken: &Taken, met: &[f64], prices: &[f64]) {
+    fn add_to_mean(&mut self, solution: &Solution, met: &[f64], prices: &[f64]) {
         let (mut down, mut square) = (0.0, 0.0);
         for need in 0..met.len() {
             let (mut mean, mut new) = (1.0 - self.met[need], 1.0 - met[need]);
@@ -182,7 +182,7 @@ impl<'a> Prices<'a> {
         for mean in &mut self.mean {
             *mean *= 1.0 - weight;
         }
-        for choice in &taken.choices {
+        for choice in &solution.choices {
             self.mean[*choice] += weight;
         }
         for (mean, new) in self.met.iter_mut().zip(met) {
@@ -192,7 +192,7 @@ impl<'a> Prices<'a> {
 
     /// Choices with a share of at least a twentieth in the mean, the largest
     /// share first.
-    pub(super) fn leanings(&self) -> Vec<usize> {
+    pub(super) fn favoured_choices(&self) -> Vec<usize> {
         let mut choices: Vec<usize> = (0..self.mean.len())
             .filter(|choice| self.mean[*choice] > 0.05)
             .collect();
@@ -209,14 +209,14 @@ impl<'a> Prices<'a> {
         let whole: Vec<i64> = prices
             .map(|(price, unmet)| (price.round() as i64).clamp(0, *unmet))
             .collect();
-        bound::add_up(self.problem, &whole)
+        bound::compute(self.problem, &whole)
     }
 }
 
 /// Number of times that each need is met.
-fn met(problem: &Problem, taken: &Taken) -> Vec<f64> {
+fn met(problem: &Problem, solution: &Solution) -> Vec<f64> {
     let mut met = vec![0.0; problem.unmet.len()];
-    for choice in &taken.choices {
+    for choice in &solution.choices {
         met[problem.choices[*choice].need] += 1.0;
     }
     met
@@ -225,7 +225,7 @@ fn met(problem: &Problem, taken: &Taken) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::problem::made_up::problems;
+    use crate::solve::problem::test_problems::problems;
     use crate::solve::solve;
     use proptest::prelude::*;
 
@@ -240,7 +240,7 @@ mod tests {
         ) {
             let best = solve(&problem);
             let mut prices = Prices::new(&problem);
-            prices.improve(best.cost, steps, &mut Work::new(1_000_000));
+            prices.improve(best.cost, steps, &mut WorkLimit::new(1_000_000));
             let found = prices.bound();
             prop_assert!(found.cost <= best.cost, "{} {}", found.cost, best.cost);
             for (need, choice) in best.assignment.iter().enumerate() {
@@ -253,7 +253,7 @@ mod tests {
         fn more_steps_make_the_bound_no_worse(problem in problems(), steps in 0..100_usize) {
             let known = problem.unmet.iter().sum();
             let mut prices = Prices::new(&problem);
-            let mut work = Work::new(1_000_000);
+            let mut work = WorkLimit::new(1_000_000);
             prices.improve(known, steps, &mut work);
             let before = prices.cost;
             prices.improve(known, steps, &mut work);

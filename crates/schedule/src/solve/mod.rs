@@ -27,13 +27,13 @@ mod work_limit;
 use bound::Bound;
 use lagrangian::Prices;
 use open::Open;
-use work_limit::Work;
+use work_limit::WorkLimit;
 
 pub use problem::{Assignment, Choice, Problem, Visit};
 
 /// The most work of a problem, in looks at a choice: fifteen seconds of a
 /// processor of 2026 for 8,000 ships.
-const MOST_WORK: u64 = 1_200_000_000;
+const MAX_WORK: u64 = 1_200_000_000;
 /// Price steps before each search.
 const STEPS: usize = 1000;
 /// Price steps after the last search.
@@ -59,19 +59,19 @@ pub struct Solved {
 
 /// Solves a problem.
 pub fn solve(problem: &Problem) -> Solved {
-    solve_within(problem, MOST_WORK)
+    solve_within(problem, MAX_WORK)
 }
 
-/// Solves a problem within about `most_work`; less work may leave a wider gap.
+/// Solves a problem within about `max_work`; less work may leave a wider gap.
 /// Prices get a third of it, search another, branch and bound the rest.
-pub fn solve_within(problem: &Problem, most_work: u64) -> Solved {
-    let (found, bound, mut spent) = search_by_prices(problem, most_work / 3);
+pub fn solve_within(problem: &Problem, max_work: u64) -> Solved {
+    let (found, bound, mut spent) = search_by_prices(problem, max_work / 3);
     let cost = cost_of(problem, &found);
-    let mut work = Work::new(most_work / 3);
+    let mut work = WorkLimit::new(max_work / 3);
     let (assignment, optimal) = if bound.cost >= cost {
         (found, true)
     } else {
-        branch(problem, &bound, found, &mut work)
+        branch_and_bound(problem, &bound, found, &mut work)
     };
     spent += work.spent();
     let cost = cost_of(problem, &assignment);
@@ -85,9 +85,9 @@ pub fn solve_within(problem: &Problem, most_work: u64) -> Solved {
 
 /// Alternates prices and search; returns an assignment, a bound, and the work
 /// of both.
-fn search_by_prices(problem: &Problem, most_work: u64) -> (Assignment, Bound, u64) {
+fn search_by_prices(problem: &Problem, max_work: u64) -> (Assignment, Bound, u64) {
     let order = problem.by_need();
-    let (mut for_prices, mut work) = (Work::new(most_work), Work::new(most_work));
+    let (mut for_prices, mut work) = (WorkLimit::new(max_work), WorkLimit::new(max_work));
     let nothing = vec![None; problem.unmet.len()];
     let mut found = state::greedy(problem, nothing, &order, &mut work);
     let mut prices = Prices::new(problem);
@@ -99,7 +99,7 @@ fn search_by_prices(problem: &Problem, most_work: u64) -> (Assignment, Bound, u6
         }
         prices.improve(known, STEPS, &mut for_prices);
         bound = prices.bound();
-        let begin = state::take_up(problem, &prices.leanings());
+        let begin = state::take_first_feasible(problem, &prices.favoured_choices());
         let begin = state::greedy(problem, begin, &order, &mut work);
         let next = teams::improve(problem, begin, &order, &bound, &mut work);
         if cost_of(problem, &next) < known {
@@ -113,15 +113,15 @@ fn search_by_prices(problem: &Problem, most_work: u64) -> (Assignment, Bound, u6
 
 /// Branches on the open choices, and on neighbourhoods of them; returns whether
 /// the result is proven optimal.
-fn branch(
+fn branch_and_bound(
     problem: &Problem,
     bound: &Bound,
     mut found: Assignment,
-    work: &mut Work,
+    work: &mut WorkLimit,
 ) -> (Assignment, bool) {
     for round in 0..=ROUNDS {
         let open = Open::of(problem, bound, &found, cost_of(problem, &found));
-        let finished = branch_and_bound::finish(problem, &open, found, EFFORT, work);
+        let finished = branch_and_bound::solve_parts(problem, &open, found, EFFORT, work);
         found = finished.assignment;
         let cost = cost_of(problem, &found);
         if finished.optimal || bound.cost >= cost {

@@ -113,7 +113,7 @@ impl Problem {
 
 /// Small problems for tests.
 #[cfg(test)]
-pub(super) mod made_up {
+pub(super) mod test_problems {
     use super::{Choice, Problem, Visit};
     use proptest::collection::vec;
     use proptest::prelude::*;

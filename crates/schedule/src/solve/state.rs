@@ -3,7 +3,7 @@
 //! Invariant: every result is feasible, and depends on the problem alone.
 
 use super::problem::{Assignment, Problem};
-use super::work_limit::Work;
+use super::work_limit::WorkLimit;
 
 /// An assignment under search, with the load of each visit and each firm's day.
 pub(super) struct State<'a> {
@@ -23,7 +23,7 @@ pub(super) fn greedy(
     problem: &Problem,
     begin: Assignment,
     order: &[Vec<usize>],
-    work: &mut Work,
+    work: &mut WorkLimit,
 ) -> Assignment {
     let mut state = State::new(problem, begin);
     loop {
@@ -40,7 +40,7 @@ pub(super) fn greedy(
 }
 
 /// Takes the first of these choices for each need for which there is a team.
-pub(super) fn take_up(problem: &Problem, choices: &[usize]) -> Assignment {
+pub(super) fn take_first_feasible(problem: &Problem, choices: &[usize]) -> Assignment {
     let mut state = State::new(problem, vec![None; problem.unmet.len()]);
     for &choice in choices {
         let need = problem.choices[choice].need;
@@ -127,13 +127,13 @@ impl<'a> State<'a> {
         choice.cost
     }
 
-    /// The mark for [`State::go_back`].
+    /// The mark for [`State::undo_to`].
     pub(super) fn mark(&self) -> usize {
         self.moves.len()
     }
 
     /// Undoes all moves since a mark.
-    pub(super) fn go_back(&mut self, mark: usize) {
+    pub(super) fn undo_to(&mut self, mark: usize) {
         for (need, before) in self.moves.split_off(mark).into_iter().rev() {
             match before {
                 Some(choice) => self.put(need, choice),

@@ -4,13 +4,13 @@
 use super::problem::Problem;
 
 /// A solution of the subproblem, and its total cost.
-pub(super) struct Taken {
+pub(super) struct Solution {
     pub(super) cost: f64,
     pub(super) choices: Vec<usize>,
 }
 
 /// The choices by visit, contiguous in memory, and the visits by day.
-pub(super) struct Days<'a> {
+pub(super) struct Subproblem<'a> {
     problem: &'a Problem,
     seats: Vec<Seat>,
     /// Range of each visit's seats.
@@ -31,9 +31,9 @@ struct Load {
     end: usize,
 }
 
-impl<'a> Days<'a> {
-    pub(super) fn of(problem: &'a Problem) -> Days<'a> {
-        let mut days = Days {
+impl<'a> Subproblem<'a> {
+    pub(super) fn of(problem: &'a Problem) -> Subproblem<'a> {
+        let mut days = Subproblem {
             problem,
             seats: Vec::with_capacity(problem.choices.len()),
             of_visit: Vec::with_capacity(problem.visits.len()),
@@ -55,8 +55,8 @@ impl<'a> Days<'a> {
         days
     }
 
-    pub(super) fn taken(&self, prices: &[f64]) -> Taken {
-        let mut taken = Taken {
+    pub(super) fn solve(&self, prices: &[f64]) -> Solution {
+        let mut solution = Solution {
             cost: prices.iter().sum(),
             choices: Vec::new(),
         };
@@ -73,14 +73,14 @@ impl<'a> Days<'a> {
                 by_gain.then(one.first.cmp(&other.first))
             });
             for load in loads.iter().take(teams) {
-                taken.cost += load.gain;
+                solution.cost += load.gain;
                 let done = kept[load.first..load.end].iter();
-                taken
+                solution
                     .choices
                     .extend(done.map(|(_, seat)| self.seats[*seat].choice));
             }
         }
-        taken
+        solution
     }
 
     /// Adds the profitable loads of a visit, the best first, as many as there

@@ -6,14 +6,14 @@
 
 /// A limit of work.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Work {
+pub(super) struct WorkLimit {
     most: u64,
     spent: u64,
 }
 
-impl Work {
-    pub(super) fn new(most: u64) -> Work {
-        Work { most, spent: 0 }
+impl WorkLimit {
+    pub(super) fn new(most: u64) -> WorkLimit {
+        WorkLimit { most, spent: 0 }
     }
 
     pub(super) fn spend(&mut self, looks: usize) {

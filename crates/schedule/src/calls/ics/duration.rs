@@ -6,9 +6,9 @@ use crate::calls::FileError;
 /// Parses hours from `P2DT12H`, `PT90M`, `P1W` and the like.
 ///
 /// # Errors
-/// When it is something else, negative, or more than [`MOST_HOURS`].
+/// When it is something else, negative, or more than [`MAX_HOURS`].
 pub(super) fn hours(line: &Line) -> Result<f64, FileError> {
-    let hours = read(&line.value).filter(|hours| *hours <= MOST_HOURS);
+    let hours = read(&line.value).filter(|hours| *hours <= MAX_HOURS);
     hours.ok_or_else(|| {
         let what = format!(
             "{:?} is not a duration of a year at most, as P2DT12H",
@@ -19,7 +19,7 @@ pub(super) fn hours(line: &Line) -> Result<f64, FileError> {
 }
 
 /// The longest call, a year.
-const MOST_HOURS: f64 = 366.0 * 24.0;
+const MAX_HOURS: f64 = 366.0 * 24.0;
 
 fn read(text: &str) -> Option<f64> {
     let text = text.strip_prefix('+').unwrap_or(text).strip_prefix('P')?;

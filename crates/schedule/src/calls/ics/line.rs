@@ -3,7 +3,7 @@
 use crate::calls::FileError;
 
 /// The longest unfolded line, in bytes.
-const LONGEST: usize = 16_384;
+const MAX_LINE_BYTES: usize = 16_384;
 
 /// A content line.
 #[derive(Debug, PartialEq, Eq)]
@@ -36,11 +36,14 @@ pub(super) fn lines(text: &str) -> Result<Vec<Line>, FileError> {
             (Some(more), Some((_, begun))) => begun.push_str(more),
             _ => whole.push((at + 1, line.to_owned())),
         }
-        if whole.last().is_some_and(|(_, line)| line.len() > LONGEST) {
+        if whole
+            .last()
+            .is_some_and(|(_, line)| line.len() > MAX_LINE_BYTES)
+        {
             return Err(FileError::new(
                 at + 1,
                 "line",
-                format!("is longer than {LONGEST} bytes"),
+                format!("is longer than {MAX_LINE_BYTES} bytes"),
             ));
         }
     }

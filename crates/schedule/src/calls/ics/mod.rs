@@ -16,7 +16,7 @@ mod place;
 mod zone;
 
 use super::FileError;
-use super::csv::{MOST_CALLS, must_be_new};
+use super::csv::{MAX_CALLS, must_be_new};
 use super::{Located, PortCall};
 use crate::time::Instant;
 use binnacle_magnetics::time::Timestamp;
@@ -61,11 +61,11 @@ pub fn read(text: &str, vessel: &str, now: Instant) -> Result<Calendar, FileErro
         match &mut event {
             None if line.is("BEGIN", "VEVENT") => event = Some((line.number, Vec::new())),
             Some((begins, own)) if line.is("END", "VEVENT") => {
-                if calendar.calls.len() == MOST_CALLS {
+                if calendar.calls.len() == MAX_CALLS {
                     return Err(FileError::new(
                         *begins,
                         "VEVENT",
-                        format!("more than {MOST_CALLS} calls"),
+                        format!("more than {MAX_CALLS} calls"),
                     ));
                 }
                 match read_event(*begins, own, &zones, vessel, now)? {

@@ -31,13 +31,13 @@ pub(super) fn port<'a>(
         };
     }
     match said("LOCATION") {
-        Some(line) => of_location(&line.value, summary)
+        Some(line) => port_of_location(&line.value, summary)
             .map_err(|what| FileError::new(line.number, "LOCATION", what)),
-        None => of_summary(summary).map_err(|what| FileError::new(begins, "LOCATION", what)),
+        None => port_of_summary(summary).map_err(|what| FileError::new(begins, "LOCATION", what)),
     }
 }
 
-fn of_location(text: &str, summary: &str) -> Result<PortCode, String> {
+fn port_of_location(text: &str, summary: &str) -> Result<PortCode, String> {
     let mut named = named(text.split(',').next().unwrap_or_default());
     if named.is_empty() {
         named = self::named(text.split(BETWEEN).next().unwrap_or_default());
@@ -51,7 +51,7 @@ fn of_location(text: &str, summary: &str) -> Result<PortCode, String> {
             "{text:?} has the code {code} and the name of {} ({}); write one of them",
             port.name, port.code
         )),
-        ([one, other, ..], _) => Err(may_be(text, *one, *other)),
+        ([one, other, ..], _) => Err(ambiguous(text, *one, *other)),
         ([], [port]) => Ok(port.code),
         ([], []) => Err(format!(
             "{text:?} is no port that is known; write the UN/LOCODE"
@@ -64,13 +64,13 @@ fn of_location(text: &str, summary: &str) -> Result<PortCode, String> {
             });
             match distinct(meant)[..] {
                 [code] => Ok(code),
-                _ => Err(may_be(&one.name.to_lowercase(), one.code, other.code)),
+                _ => Err(ambiguous(&one.name.to_lowercase(), one.code, other.code)),
             }
         }
     }
 }
 
-fn of_summary(text: &str) -> Result<PortCode, String> {
+fn port_of_summary(text: &str) -> Result<PortCode, String> {
     let behind_at = parts(text).filter_map(|part| {
         let (_, there) = part.rsplit_once(" at ")?;
         let capitals = there.split_whitespace().take_while(|word| is_capital(word));
@@ -84,11 +84,11 @@ fn of_summary(text: &str) -> Result<PortCode, String> {
              port's name"
                 .to_owned(),
         ),
-        [one, other, ..] => Err(may_be(text, one, other)),
+        [one, other, ..] => Err(ambiguous(text, one, other)),
     }
 }
 
-fn may_be(what: &str, one: PortCode, other: PortCode) -> String {
+fn ambiguous(what: &str, one: PortCode, other: PortCode) -> String {
     format!("{what:?} may be {one} or {other}; write the UN/LOCODE")
 }
 

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// The most offsets of one zone. Zones in use have two, and far fewer than this
 /// with all their past. Each time in the file is compared with every one of
 /// them.
-const MOST_OFFSETS: usize = 200;
+const MAX_OFFSETS: usize = 200;
 
 /// A time zone.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -100,8 +100,8 @@ pub(super) fn zones(lines: &[Line]) -> Result<BTreeMap<String, Zone>, FileError>
                     ));
                 };
                 let yearly = rule.map(yearly).transpose()?;
-                if observed.len() == MOST_OFFSETS {
-                    let what = format!("more than {MOST_OFFSETS} offsets in one time zone");
+                if observed.len() == MAX_OFFSETS {
+                    let what = format!("more than {MAX_OFFSETS} offsets in one time zone");
                     return Err(FileError::new(line.number, &line.value, what));
                 }
                 observed.push(Observance {
