@@ -29,7 +29,7 @@ struct Known {
 
 /// The reason why a text is not a time zone.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is no time zone like Europe/Madrid")]
+#[error("{0:?} is not a time zone such as Europe/Madrid")]
 pub struct ZoneError(String);
 
 /// All zones, in the order of their names.

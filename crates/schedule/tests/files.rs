@@ -63,7 +63,7 @@ fn each_fault_of_a_csv_is_named_with_line_and_column() {
         ),
         (
             "c,v,XXXXX,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,",
-            "line 2: port: XXXXX is no sea port",
+            "line 2: port: XXXXX is not a sea port",
         ),
         (
             "c,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,six",
@@ -95,7 +95,7 @@ fn each_fault_of_a_csv_is_named_with_line_and_column() {
         csv_complaint("port,eta\n"),
         "line 1: etd: the column is missing"
     );
-    assert!(csv_complaint("port,eta,etd,colour\n").starts_with("line 1: colour: is no column"));
+    assert!(csv_complaint("port,eta,etd,colour\n").starts_with("line 1: colour: is not a column"));
 }
 
 #[test]
@@ -278,7 +278,7 @@ fn a_port_is_found_by_code_or_by_a_name_that_only_one_has() {
     assert!(
         port_of("LOCATION:Nowhere")
             .unwrap_err()
-            .contains("LOCATION: \"Nowhere\" is no port")
+            .contains("LOCATION: \"Nowhere\" is not a known port")
     );
     assert!(
         port_of("LOCATION:Newport")

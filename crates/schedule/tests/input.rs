@@ -58,7 +58,7 @@ fn each_fault_is_named_with_its_path() {
         (
             "/port_calls/0/port",
             json!("NLXXX"),
-            "port_calls[0].port: NLXXX is no sea port",
+            "port_calls[0].port: NLXXX is not a sea port",
         ),
         (
             "/port_calls/0/port",
@@ -73,7 +73,7 @@ fn each_fault_is_named_with_its_path() {
         (
             "/port_calls/1/id",
             json!("c1"),
-            "port_calls[1].id: \"c1\" stands there twice",
+            "port_calls[1].id: \"c1\" appears twice",
         ),
         (
             "/port_calls/1/eta",
@@ -160,7 +160,7 @@ fn each_fault_is_named_with_its_path() {
         (
             "/compasses",
             json!([{"id": "n1", "vessel": "v1", "facts": {}}]),
-            "compasses[0].id: \"n1\" stands there twice",
+            "compasses[0].id: \"n1\" appears twice",
         ),
     ];
     for (pointer, value, expected) in cases {

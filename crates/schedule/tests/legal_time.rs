@@ -177,7 +177,7 @@ fn what_is_no_zone_is_refused_in_words() {
         "../etc/passwd",
     ] {
         let refused = Zone::find(wrong).unwrap_err().to_string();
-        assert!(refused.ends_with("is no time zone like Europe/Madrid"));
+        assert!(refused.ends_with("is not a time zone such as Europe/Madrid"));
     }
     assert!(serde_json::from_str::<Zone>("\"Nowhere\"").is_err());
     let madrid: Zone = serde_json::from_str("\"Europe/Madrid\"").unwrap();

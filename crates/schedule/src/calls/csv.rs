@@ -202,7 +202,7 @@ fn next_line(file: &mut impl BufRead, line: usize) -> Result<Option<String>, Fil
 fn separator_of(header: &str, line: usize) -> Result<char, FileError> {
     match (header.contains(','), header.contains(';')) {
         (true, true) => {
-            let what = "has both commas and semicolons between its fields; write one of them";
+            let what = "has both commas and semicolons between its fields; use only one of them";
             Err(FileError::new(line, "row", what))
         }
         (false, true) => Ok(';'),
@@ -238,11 +238,11 @@ fn cells(text: &str, separator: char, line: usize) -> Result<Vec<String>, FileEr
 fn columns(header: Vec<String>, line: usize) -> Result<Vec<String>, FileError> {
     for (at, name) in header.iter().enumerate() {
         if !COLUMNS.contains(&name.as_str()) {
-            let what = format!("is no column; known are {}", COLUMNS.join(", "));
+            let what = format!("is not a column; known columns are {}", COLUMNS.join(", "));
             return Err(FileError::new(line, name, what));
         }
         if header[..at].contains(name) {
-            return Err(FileError::new(line, name, "stands there twice"));
+            return Err(FileError::new(line, name, "appears twice"));
         }
     }
     for needed in ["port", "eta", "etd"] {

@@ -97,7 +97,7 @@ pub(super) fn check(input: Input) -> Result<Checked> {
         if job.needs.is_empty() {
             return Err(InputError::new(
                 format!("former[{at}].needs"),
-                "a job meets at least one need",
+                "a job must meet at least one need",
             ));
         }
         for (of, need) in job.needs.iter().enumerate() {
@@ -146,7 +146,7 @@ fn lists(input: &Input) -> Result<()> {
         if length > MAX_LIST {
             return Err(InputError::new(
                 list,
-                format!("{length} are more than {MAX_LIST}"),
+                format!("{length} entries exceed the limit of {MAX_LIST}"),
             ));
         }
     }
@@ -183,7 +183,7 @@ fn one_more<'a>(names: &mut BTreeSet<&'a str>, path: &str, id: &'a str) -> Resul
     if !names.insert(id) {
         return Err(InputError::new(
             format!("{path}.id"),
-            format!("{id:?} stands there twice"),
+            format!("{id:?} appears twice"),
         ));
     }
     Ok(())

@@ -51,7 +51,7 @@ pub fn check_firm(firm: &Firm) -> Result<(), FirmError> {
             return wrong("ports", &ports::unknown(port.port));
         }
         if !served.insert(port.port) {
-            return wrong("ports", &format!("{} stands there twice", port.port));
+            return wrong("ports", &format!("{} appears twice", port.port));
         }
     }
     let idle = |field, detail: &str| {

@@ -244,7 +244,7 @@ fn at_transit(
     match compass.adjusted_on {
         None => {
             return found(format!(
-                "the transit of {on} asks for a deviation table, and none is on record"
+                "the transit of {on} requires a deviation table, and none is on record"
             ));
         }
         Some(day) if too_old(day) => {
@@ -264,7 +264,7 @@ fn at_transit(
         return None;
     }
     found(format!(
-        "{} predicted at the transit of {on}, which asks for less than {}°",
+        "{} predicted at the transit of {on}, which requires less than {}°",
         worst(then),
         below.degrees()
     ))

@@ -81,7 +81,7 @@ pub(super) fn changes(
                 day: former.day,
             }),
             to: None,
-            why: "not due within the horizon any more".to_owned(),
+            why: "no longer due within the horizon".to_owned(),
         });
     }
     changes
@@ -91,7 +91,7 @@ fn reason_to_keep(confirmation: &Confirmation<'_>) -> String {
     match confirmation {
         Confirmation::None => "still the best".to_owned(),
         Confirmation::Holds { .. } => "confirmed".to_owned(),
-        Confirmation::Released { cause, .. } => format!("{cause}, and nothing better is to be had"),
+        Confirmation::Released { cause, .. } => format!("{cause}, and nothing better is available"),
     }
 }
 
@@ -164,9 +164,9 @@ fn reason_to_move(
                     euros(saved)
                 )
             } else {
-                "makes the whole plan better, for others' sake".to_owned()
+                "improves the plan as a whole".to_owned()
             }
         }
-        None => "makes room for others that weigh more".to_owned(),
+        None => "makes room for jobs of greater weight".to_owned(),
     }
 }

@@ -100,7 +100,7 @@ fn check<'a>(input: &'a Input, job: &Job<'a>) -> Confirmation<'a> {
             Obstacle::Flag => format!("{} does not accept {name}", job.vessel.describe_flag()),
             Obstacle::Licence => format!("{name} lacks the licence that the operator asks for"),
             Obstacle::NotWorking => format!("{name} does not work on {day}"),
-            Obstacle::LeadTime => format!("too little is left of {day}"),
+            Obstacle::LeadTime => format!("too little of {day} is left"),
             Obstacle::Stay => format!(
                 "the ship is now alongside from {} to {}, not long enough in {name}'s hours of {day}",
                 call.eta, call.etd

@@ -103,7 +103,7 @@ impl<'a> Remedies<'a> {
             Some(flag) => format!("flag {}", flag.letters()),
             None => "the flag".to_owned(),
         };
-        format!("an extension to {day}, asked of {whose} where its rules know one")
+        format!("an extension to {day}, from {whose}, where its rules allow one")
     }
 
     /// True if the due date allows a job on that day.
@@ -307,7 +307,7 @@ impl<'a> Remedies<'a> {
     fn call_at(&self, first: NaiveDate, place: &str) -> String {
         let (today, due) = (self.input.now.utc_date(), self.job.due());
         if due <= today || self.job.is_overdue(today) || first > due {
-            format!("as soon as she can call at {place}")
+            format!("a call as soon as possible at {place}")
         } else {
             format!("a call by {due} at {place}")
         }
@@ -389,8 +389,7 @@ impl<'a> Remedies<'a> {
             self.add(3, self.job.due(), remedy);
         }
         if self.is_empty() {
-            let help =
-                "another firm that may adjust her, at a port where she calls for a working day";
+            let help = "another firm that may adjust the vessel, at a port where it calls for a working day";
             self.add(5, self.job.due(), Remedy(vec![help.to_owned()]));
         }
     }

@@ -170,7 +170,7 @@ impl Explanation<'_> {
         } else if excess_price >= 0 {
             format!("{name} at {port} on {day} costs more than leaving it undone")
         } else {
-            format!("{name} at {port} on {day} was not found in the time of the search")
+            format!("{name} at {port} on {day} was not found within the search limit")
         });
         let mut remedy = Remedy::default();
         remedy.teams(firm, port, day, teams);
@@ -208,7 +208,7 @@ fn describe_obstacle(
         Obstacle::NotWorking => format!("{name} does not work on {}, {day}", day.format("%A")),
         Obstacle::LeadTime => {
             let lead_time_h = firm.lead_time_h;
-            format!("{name} wants to be asked {lead_time_h} h ahead, too long for {day}")
+            format!("{name} needs {lead_time_h} h notice, too long for {day}")
         }
         Obstacle::Stay => {
             let call = call.display_name();

@@ -72,7 +72,7 @@ pub fn zone(code: PortCode) -> Zone {
 /// Explains why a code is not a port of the table, and suggests the port that
 /// may be meant: cities and airports have codes of their own.
 pub fn unknown(code: PortCode) -> String {
-    let wrong = format!("{code} is no sea port of the UN/LOCODE table");
+    let wrong = format!("{code} is not a sea port in the UN/LOCODE table");
     let places = include_str!("../../data/places.csv").lines().skip(1);
     let mut places = places.filter_map(|line| line.split_once(','));
     let text = code.to_string();
@@ -212,10 +212,13 @@ mod tests {
         let said = |code: &str| unknown(PortCode::parse(code).unwrap());
         assert_eq!(
             said("CNSHA"),
-            "CNSHA is no sea port of the UN/LOCODE table; the sea port Shanghai is CNSGH"
+            "CNSHA is not a sea port in the UN/LOCODE table; the sea port Shanghai is CNSGH"
         );
         assert!(said("CNNGB").ends_with("the sea port Ningbo is CNNBO"));
-        assert_eq!(said("XXXXX"), "XXXXX is no sea port of the UN/LOCODE table");
+        assert_eq!(
+            said("XXXXX"),
+            "XXXXX is not a sea port in the UN/LOCODE table"
+        );
     }
 
     #[test]

@@ -114,7 +114,7 @@ fn a_confirmed_job_that_became_late_stays_where_there_is_no_other() {
     assert!(
         found.changes[0]
             .why
-            .ends_with("and nothing better is to be had"),
+            .ends_with("and nothing better is available"),
         "{}",
         found.changes[0].why
     );

@@ -36,7 +36,7 @@ fn what_is_overdue_or_due_today_is_wanted_as_soon_as_can_be_and_by_no_day_gone_b
         });
         assert_eq!(
             found.would_help,
-            ["as soon as she can call at a port that a firm serves: NLRTM"]
+            ["a call as soon as possible at a port that a firm serves: NLRTM"]
         );
     }
     let today = unscheduled(|input| {
@@ -47,7 +47,7 @@ fn what_is_overdue_or_due_today_is_wanted_as_soon_as_can_be_and_by_no_day_gone_b
     // calls.
     assert_eq!(
         today.would_help,
-        ["an extension to 2026-12-01, asked of flag NO where its rules know one"]
+        ["an extension to 2026-12-01, from flag NO, where its rules allow one"]
     );
 }
 
@@ -96,7 +96,7 @@ fn what_can_only_be_late_is_planned_and_wants_an_earlier_call_or_an_extension() 
         found.would_help,
         [
             "a call by 2026-11-30 at a port that a firm serves: NLRTM",
-            "an extension to 2026-12-01, asked of flag NO where its rules know one"
+            "an extension to 2026-12-01, from flag NO, where its rules allow one"
         ]
     );
 }
@@ -113,7 +113,7 @@ fn who_allows_no_late_days_is_told_what_would_help_instead() {
         [
             "a call by 2026-11-30 at Rotterdam: f could come",
             "a call by 2026-11-30 at a port that a firm serves: NLRTM",
-            "an extension to 2026-12-01, asked of flag NO where its rules know one"
+            "an extension to 2026-12-01, from flag NO, where its rules allow one"
         ]
     );
 }
@@ -136,7 +136,7 @@ fn a_firm_that_must_be_asked_earlier_is_named_with_its_hours() {
     let found = unscheduled(|input| input["firms"][0]["lead_time_h"] = json!(300));
     assert_eq!(
         found.because[0],
-        "f wants to be asked 300 h ahead, too long for 2026-12-01"
+        "f needs 300 h notice, too long for 2026-12-01"
     );
 }
 

@@ -105,7 +105,7 @@ fn apply(input: &mut Value, vessel: &str, thing: &str) {
         firms.push(json!({"id": "new", "fee_eur": 0, "ports": [{"port": port}],
                           "licences": ["MCA"], "closed": [],
                           "working_days": ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"]}));
-    } else if thing.starts_with("a call by ") || thing.starts_with("as soon as ") {
+    } else if thing.starts_with("a call by ") || thing.starts_with("a call as soon as ") {
         let port = if let Some((_, codes)) = thing.split_once("serves: ") {
             codes.split(',').next().unwrap()
         } else {

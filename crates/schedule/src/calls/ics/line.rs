@@ -57,7 +57,7 @@ pub(super) fn lines(text: &str) -> Result<Vec<Line>, FileError> {
 fn read(number: usize, line: &str) -> Result<Line, FileError> {
     let Some(colon) = outside_quotes(line, ':').next() else {
         let what = format!(
-            "{:?} is no line of a calendar",
+            "{:?} is not a calendar line",
             line.chars().take(40).collect::<String>()
         );
         return Err(FileError::new(number, "line", what));

@@ -48,14 +48,12 @@ fn port_of_location(text: &str, summary: &str) -> Result<PortCode, String> {
         ([code], []) => Ok(*code),
         ([code], named) if named.iter().any(|port| is_called(*code, port)) => Ok(*code),
         ([code], [port, ..]) => Err(format!(
-            "{text:?} has the code {code} and the name of {} ({}); write one of them",
+            "{text:?} has the code {code} and the name of {} ({}); use only one of them",
             port.name, port.code
         )),
         ([one, other, ..], _) => Err(ambiguous(text, *one, *other)),
         ([], [port]) => Ok(port.code),
-        ([], []) => Err(format!(
-            "{text:?} is no port that is known; write the UN/LOCODE"
-        )),
+        ([], []) => Err(format!("{text:?} is not a known port; write the UN/LOCODE")),
         // The summary may choose among ports of the same name.
         ([], [one, other, ..]) => {
             let meant = words_as_codes(summary).filter(|code| {
