@@ -27,7 +27,16 @@ struct Observance {
     begins: NaiveDateTime,
     offset_s: i64,
     /// The rule of its yearly beginning.
-    yearly: Option<(u32, Weekday, i32)>,
+    yearly: Option<YearlyRule>,
+}
+
+/// A weekday of a month, each year.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct YearlyRule {
+    month: u32,
+    weekday: Weekday,
+    /// Number within the month; counted from its end, if negative.
+    which: i32,
 }
 
 impl Zone {
@@ -50,7 +59,7 @@ impl Observance {
         let years = [local.year(), local.year() - 1];
         let onsets = years
             .iter()
-            .filter_map(|year| Some(on(*year, rule)?.and_time(self.begins.time())));
+            .filter_map(|year| Some(day_in(*year, rule)?.and_time(self.begins.time())));
         onsets
             .filter(|onset| *onset <= local && *onset >= self.begins)
             .max()
@@ -58,7 +67,12 @@ impl Observance {
 }
 
 /// The day of a rule in a year.
-fn on(year: i32, (month, weekday, which): (u32, Weekday, i32)) -> Option<NaiveDate> {
+fn day_in(year: i32, rule: YearlyRule) -> Option<NaiveDate> {
+    let YearlyRule {
+        month,
+        weekday,
+        which,
+    } = rule;
     if which > 0 {
         return NaiveDate::from_weekday_of_month_opt(year, month, weekday, which as u8);
     }
@@ -152,7 +166,7 @@ fn offset(text: &str) -> Option<i64> {
     })
 }
 
-fn yearly(line: &Line) -> Result<(u32, Weekday, i32), FileError> {
+fn yearly(line: &Line) -> Result<YearlyRule, FileError> {
     let wrong = || {
         let what = format!(
             "{:?} is not a yearly rule of a month and a weekday",
@@ -170,7 +184,11 @@ fn yearly(line: &Line) -> Result<(u32, Weekday, i32), FileError> {
         }
     }
     let (month, (weekday, which)) = month.zip(day).ok_or_else(wrong)?;
-    Ok((month, weekday, which))
+    Ok(YearlyRule {
+        month,
+        weekday,
+        which,
+    })
 }
 
 /// Parses `-1SU` and the like.
