@@ -1,5 +1,5 @@
-//! Instants as sentences write them, without asking a calendar library: this is
-//! done for every position a fleet sends.
+//! Calendar dates and times for sentences. A fleet sends so many positions that
+//! a calendar library would be too slow.
 
 use binnacle_magnetics::time::Timestamp;
 
@@ -11,12 +11,12 @@ pub(crate) struct CalendarTime {
     pub(crate) day: u64,
     pub(crate) hour: u64,
     pub(crate) minute: u64,
-    /// Seconds and hundredths.
+    /// Hundredths of a second, from 0 to 5999.
     pub(crate) centisecond: u64,
 }
 
 impl CalendarTime {
-    /// Instants before the year 0 do not happen to ships.
+    /// Converts a time; years before 0 are not supported.
     pub(crate) fn of(time: Timestamp) -> CalendarTime {
         let micros = time.micros();
         let (year, month, day) = civil(micros.div_euclid(86_400_000_000));
@@ -32,8 +32,8 @@ impl CalendarTime {
     }
 }
 
-/// Gregorian date from days since 1970 (Hinnant, "chrono-compatible low-level
-/// date algorithms", `civil_from_days`).
+/// The Gregorian date of a number of days since 1970 (Hinnant,
+/// "chrono-compatible low-level date algorithms", `civil_from_days`).
 fn civil(days: i64) -> (u64, u64, u64) {
     let shifted = (days + 719_468).max(0) as u64;
     let era = shifted / 146_097;

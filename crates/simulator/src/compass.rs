@@ -1,8 +1,9 @@
-//! A magnetic compass in its bowl: it obeys the field, slowly, with friction.
+//! A magnetic compass in its bowl, which follows the field slowly and with
+//! friction.
 //!
-//! Noise: a swing of the card of 0.35° in a mean of one minute, a wander of 0.2°
-//! over twenty minutes, friction of (3/H)° with H in µT (ISO 25862), and the
-//! Gaussian error that a turn leaves for two to three minutes.
+//! Noise: a swing of the card of 0.35° in a mean of one minute, a wander of
+//! 0.2° over twenty minutes, friction of (3/H)° with H in µT (ISO 25862), and
+//! the Gaussian error that a turn leaves for two to three minutes.
 
 use crate::poisson::{Field, Magnetism};
 use crate::process::Wander;
@@ -10,16 +11,17 @@ use crate::random::Random;
 use crate::scenario::ShipPlan;
 use binnacle_magnetics::angle::wrap_180;
 
-/// The card follows the field's direction with this delay.
+/// Delay with which the card follows the field's direction.
 const CARD_S: f64 = 5.0;
-/// Correlated over 15 s with this spread, the mean of a minute has 0.35°.
+/// Standard deviation of the swing; correlated over 15 s, the mean of a minute
+/// has 0.35°.
 const SWING_DEG: f64 = 0.57;
 const SWING_S: f64 = 15.0;
 const WANDER_DEG: f64 = 0.2;
 const WANDER_S: f64 = 1200.0;
-/// Falls to a twentieth in two and a half minutes.
+/// Time constant: the error falls to a twentieth in two and a half minutes.
 const GAUSSIAN_S: f64 = 50.0;
-/// The turn for which the Gaussian error is given, degrees a second.
+/// Reference turn of the Gaussian error, degrees a second.
 const GAUSSIAN_TURN_DEG_S: f64 = 0.3;
 const FRICTION_DEG_UT: f64 = 3.0;
 
@@ -31,16 +33,16 @@ pub(crate) struct Compass {
     gaussian_deg: f64,
     swing: Wander,
     wander: Wander,
-    /// Where friction holds the card, degrees off its free place.
+    /// Offset at which friction holds the card, degrees from its free position.
     held_deg: f64,
     random: Random,
 }
 
-/// What the compass is exposed to in one step.
+/// The compass's surroundings in one step.
 pub(crate) struct Exposure<'a> {
     pub(crate) magnetism: &'a Magnetism,
     pub(crate) field: Field,
-    /// Heading from the magnetic north that the needle obeys, degrees.
+    /// Heading from the magnetic north of the needle, degrees.
     pub(crate) magnetic_deg: f64,
     pub(crate) roll_deg: f64,
     /// Degrees turned in this step.
@@ -63,7 +65,7 @@ impl Compass {
         }
     }
 
-    /// What the compass shows after `dt` seconds, degrees, not wrapped.
+    /// Returns the compass reading after `dt` seconds, degrees, not wrapped.
     pub(crate) fn read(&mut self, dt: f64, on: &Exposure<'_>) -> f64 {
         let settled = on
             .magnetism
@@ -78,7 +80,7 @@ impl Compass {
             decay * self.gaussian_deg + self.gaussian_gain_s * on.turned_deg * (1.0 - decay) / dt;
         let swing = self.swing.step(dt, &mut self.random) * (0.6 + 0.4 * on.sea);
         let wander = self.wander.step(dt, &mut self.random);
-        // The card goes with the ship in a turn: the reading falls behind.
+        // The card is dragged along in a turn: the reading lags behind.
         let free = swing + wander - self.gaussian_deg;
         let friction = FRICTION_DEG_UT / (on.field.h_nt / 1000.0);
         self.held_deg = self.held_deg.clamp(free - friction, free + friction);

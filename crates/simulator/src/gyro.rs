@@ -1,9 +1,10 @@
 //! A gyro compass and its errors.
 //!
-//! A constant; the Schuler swing of 84.4 minutes, damped by a fifth and set going
-//! by turns; a bias that wanders over three days; the part of the speed error
-//! that its corrector leaves; what a turn leaves until it has settled; a fault,
-//! when the scenario has one. Swing and bias grow with 1/cos(latitude).
+//! The errors are: a constant; the Schuler swing of 84.4 minutes, damped by a
+//! fifth and excited by turns; a bias that wanders over three days; the
+//! uncorrected part of the speed error; the remainder of a turn until it has
+//! settled; and the scenario's faults. Swing and bias grow with
+//! 1/cos(latitude).
 
 use crate::motion::{Motion, Turned};
 use crate::process::{Swing, Wander};
@@ -11,10 +12,10 @@ use crate::random::Random;
 use crate::scenario::{Event, GyroPlan, ShipPlan};
 
 const SCHULER_S: f64 = 84.4 * 60.0;
-/// Damping ratio 0.2: falls by e in so long.
+/// Decay by e with a damping ratio of 0.2.
 const SCHULER_DECAY_S: f64 = SCHULER_S / std::f64::consts::TAU / 0.2;
 const SLOW_S: f64 = 3.0 * 86_400.0;
-/// A turn beyond this sets the gyro swinging.
+/// The smallest turn that excites the swing.
 const KICKING_TURN_DEG: f64 = 20.0;
 const SETTLING_S: f64 = 480.0;
 const SETTLING_DEG: f64 = 0.4;
@@ -63,7 +64,7 @@ impl Gyro {
         self.settling_deg += SETTLING_DEG * size * self.random.gaussian();
     }
 
-    /// Errors that change slowly; once a minute.
+    /// Updates the slow errors, once a minute.
     pub(crate) fn step_slow(&mut self, elapsed_s: f64, day: f64, motion: &Motion) {
         let cos_latitude = motion.position.lat_deg().to_radians().cos();
         let schuler = self.schuler.step(elapsed_s, &mut self.random);
@@ -76,7 +77,7 @@ impl Gyro {
             + self.fault_deg(day);
     }
 
-    /// What the gyro shows, degrees, not wrapped.
+    /// Returns the gyro reading, degrees, not wrapped.
     pub(crate) fn read(&mut self, heading_deg: f64) -> f64 {
         heading_deg + self.error_deg + NOISE_DEG * self.random.gaussian()
     }
@@ -97,9 +98,9 @@ impl Gyro {
     }
 }
 
-/// What a gyro without a corrector shows too much on northerly courses:
-/// sin error = V cos C / (902.5 cos latitude), V in knots (the earth turns its
-/// equator at 902.5 kn).
+/// Speed error of a gyro without a corrector, positive on northerly courses:
+/// sin error = V cos C / (902.5 cos latitude), V in knots (the earth's equator
+/// turns at 902.5 kn).
 fn speed_error_deg(motion: &Motion, cos_latitude: f64) -> f64 {
     let northward_kn = motion.sog_kn * motion.cog_deg.to_radians().cos();
     (northward_kn / (902.5 * cos_latitude))

@@ -24,7 +24,7 @@ fn main() -> ExitCode {
     match ended {
         Ok(code) => code,
         Err(error) => {
-            // A closed standard error leaves nobody to tell.
+            // A closed standard error cannot be reported.
             writeln!(std::io::stderr(), "binnacle-simulator: {error:#}").ok();
             let blames_input = error.is::<cli::BadInput>();
             ExitCode::from(if blames_input { 2 } else { 1 })

@@ -1,5 +1,5 @@
-//! How a ship moves: she turns no faster than she can, yaws and rolls with the
-//! sea, gathers way slowly, and is set by the current.
+//! Motion of a ship: limited rate of turn, yaw and roll in the sea, slow
+//! changes of speed, and drift by the current.
 
 use crate::passage::Order;
 use crate::process::{Swing, Wander};
@@ -8,7 +8,7 @@ use crate::scenario::ShipPlan;
 use binnacle_magnetics::angle::{wrap_180, wrap_360};
 use binnacle_magnetics::position::Position;
 
-/// A turn that is over: by how much the course changed, starboard positive.
+/// A completed turn, with its change of course, starboard positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Turned {
     pub(crate) by_deg: f64,
@@ -25,7 +25,7 @@ pub(crate) struct Motion {
     pub(crate) rate_deg_min: f64,
     pub(crate) sog_kn: f64,
     pub(crate) cog_deg: f64,
-    /// How rough it is, 1 being usual.
+    /// Sea state, 1 being usual.
     pub(crate) sea: f64,
     course_deg: f64,
     turn_deg_s: f64,
@@ -80,7 +80,7 @@ impl Motion {
         }
     }
 
-    /// Heads as ordered, as if she had long done so.
+    /// Starts in the ordered state, without a transient.
     pub(crate) fn begin(&mut self, order: Order) {
         self.course_deg = match order {
             Order::Steer { course_deg, .. } => course_deg,
@@ -89,7 +89,7 @@ impl Motion {
         self.heading_deg = self.course_deg;
     }
 
-    /// What changes slowly; once a minute.
+    /// Updates the slow quantities, once a minute.
     pub(crate) fn step_slow(&mut self, elapsed_s: f64) {
         let log_sea = self.log_sea.step(elapsed_s, &mut self.random);
         self.sea = self.usual_sea * (log_sea - 0.125).exp();
@@ -124,7 +124,7 @@ impl Motion {
         self.sog_kn = 0.0;
     }
 
-    /// Brings the course round; gives the turn when it is over.
+    /// Turns towards the ordered course; returns the turn when it is complete.
     fn turn(&mut self, dt: f64, order_deg: f64) -> Option<Turned> {
         let left_deg = wrap_180(order_deg - self.course_deg);
         let most = self.greatest_turn_deg_s;

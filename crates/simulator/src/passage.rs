@@ -1,8 +1,8 @@
-//! Where a ship wants to go: to and fro on her route, with waiting off ports,
-//! time alongside, and alterations for other ships.
+//! Orders for a ship: to and fro on its route, with waiting off ports, time
+//! alongside, and alterations for traffic.
 //!
-//! Decides once a minute; what comes out is a course and a speed to keep, which
-//! [`crate::motion`] follows as a ship can.
+//! The orders change once a minute. Each is a course and a speed, which
+//! [`crate::motion`] follows within a ship's limits.
 
 use crate::random::Random;
 use crate::rhumb;
@@ -11,17 +11,17 @@ use binnacle_magnetics::angle::wrap_360;
 use binnacle_magnetics::position::Position;
 use std::sync::Arc;
 
-/// Near enough to a point to go on to the next.
+/// Distance at which a point is reached.
 const ARRIVED_NM: f64 = 1.0;
-/// Ships slow down so far from a port.
+/// Distance from a port at which ships slow down.
 const APPROACH_NM: f64 = 5.0;
 const APPROACH_KN: f64 = 8.5;
 const WAITING_KN: f64 = 7.5;
 
-/// What the bridge orders.
+/// An order of the bridge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Order {
-    /// Steer and make way.
+    /// Steer this course at this speed.
     Steer { course_deg: f64, speed_kn: f64 },
     /// Lie alongside on this heading.
     Alongside { heading_deg: f64 },
@@ -29,7 +29,7 @@ pub(crate) enum Order {
 
 #[derive(Clone, Debug)]
 enum Phase {
-    /// To the target.
+    /// Under way to the target.
     Passage,
     /// Under way off the port until there is a berth.
     Waiting {
@@ -51,7 +51,7 @@ pub(crate) struct Passage {
     speed_kn: f64,
     traffic_every_s: f64,
     next_alteration_s: f64,
-    /// Degrees off the course, and seconds left.
+    /// Degrees off the route's course, and seconds left.
     alteration: (f64, f64),
     random: Random,
 }
@@ -88,7 +88,7 @@ impl Passage {
         matches!(self.phase, Phase::Alongside { .. })
     }
 
-    /// Goes on by `elapsed_s` and gives the order for now.
+    /// Advances by `elapsed_s` and returns the current order.
     pub(crate) fn step(&mut self, elapsed_s: f64, here: Position) -> Order {
         match &mut self.phase {
             Phase::Alongside { left_s, .. } => {
@@ -148,7 +148,7 @@ impl Passage {
         }
     }
 
-    /// At the target: wait, make fast, or go on.
+    /// At the target: waits, makes fast, or continues.
     fn arrive(&mut self) {
         let point = &self.route[self.target];
         if point.port.is_none() {
@@ -192,7 +192,7 @@ impl Passage {
         };
     }
 
-    /// Masters keep clear of the fairway and come back before they are far off.
+    /// Ships keep clear of the fairway and turn back before they are far off.
     fn turn_while_waiting(&mut self, here: Position) {
         let leg = self.leg(here);
         let within = self.route[self.target].wait_nm;
@@ -222,7 +222,7 @@ impl Passage {
             return;
         }
         self.next_alteration_s = self.random.waiting(self.traffic_every_s);
-        // Most ships keep to starboard of each other.
+        // Most ships pass each other on the port side, and alter to starboard.
         let side = if self.random.unit() < 0.7 { 1.0 } else { -1.0 };
         let off_deg = side * self.random.between(8.0, 45.0);
         self.alteration = (off_deg, self.random.between(480.0, 1800.0));

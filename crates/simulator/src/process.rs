@@ -1,8 +1,8 @@
-//! Random motions with a memory, stepped exactly for any length of step.
+//! Random processes with memory, stepped exactly for steps of any length.
 
 use crate::random::Random;
 
-/// A wandering quantity: Gaussian, its correlation falling by e in `memory`
+/// A Gaussian process whose correlation falls by e in `memory`
 /// (Ornstein–Uhlenbeck). `memory` and steps share any one unit: seconds, miles.
 #[derive(Clone, Debug)]
 pub(crate) struct Wander {
@@ -15,7 +15,7 @@ pub(crate) struct Wander {
 }
 
 impl Wander {
-    /// Begins somewhere typical.
+    /// Starts from a random state of the stationary distribution.
     pub(crate) fn new(sd: f64, memory: f64, random: &mut Random) -> Wander {
         Wander {
             value: sd * random.gaussian(),
@@ -43,7 +43,7 @@ impl Wander {
     }
 }
 
-/// A damped swing kept going by chance: yaw, roll, a gyro's Schuler swing.
+/// A damped oscillation driven by noise: yaw, roll, a gyro's Schuler swing.
 #[derive(Clone, Debug)]
 pub(crate) struct Swing {
     re: f64,
@@ -58,8 +58,8 @@ pub(crate) struct Swing {
 }
 
 impl Swing {
-    /// A swing with this standard deviation and period whose free amplitude
-    /// falls by e in `decay_s`.
+    /// An oscillation with this standard deviation and period, whose free
+    /// amplitude falls by e in `decay_s`.
     pub(crate) fn new(sd: f64, period_s: f64, decay_s: f64, random: &mut Random) -> Swing {
         Swing {
             re: sd * random.gaussian(),
@@ -74,7 +74,7 @@ impl Swing {
         }
     }
 
-    /// Sets it swinging further, by this standard deviation.
+    /// Adds a random impulse of this standard deviation.
     pub(crate) fn kick(&mut self, sd: f64, random: &mut Random) {
         self.re += sd * random.gaussian();
         self.im += sd * random.gaussian();

@@ -1,12 +1,13 @@
-//! Chance, repeatably: the same seed, ship and purpose give the same numbers.
+//! Repeatable random numbers: the same seed, ship and purpose give the same
+//! numbers.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// A source of random numbers for one purpose aboard one ship.
+/// A source of random numbers for one purpose on one ship.
 ///
 /// Purposes draw from separate streams, so that a change in one part of a ship
-/// leaves the chance of all the others as it was.
+/// leaves the numbers of all others unchanged.
 #[derive(Clone, Debug)]
 pub(crate) struct Random {
     generator: ChaCha8Rng,
@@ -38,7 +39,7 @@ impl Random {
         if self.unit() < 0.5 { -1.0 } else { 1.0 }
     }
 
-    /// How long until something that happens once in `mean` on the average.
+    /// Time until an event that happens once in `mean` on average.
     pub(crate) fn waiting(&mut self, mean: f64) -> f64 {
         -mean * (1.0 - self.unit()).ln()
     }
@@ -61,7 +62,7 @@ impl Random {
     }
 }
 
-/// FNV-1a over the parts, with a mark between them.
+/// FNV-1a over the parts, with a separator between them.
 fn hash(parts: &[&str]) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     for part in parts {

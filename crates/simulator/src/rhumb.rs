@@ -1,23 +1,25 @@
-//! Courses and distances along rhumb lines, on a sphere with 60 miles to a degree.
+//! Courses and distances along rhumb lines, on a sphere with 60 miles to a
+//! degree.
 //!
-//! Bowditch, The American Practical Navigator, "The Sailings": Mercator sailing.
+//! Bowditch, The American Practical Navigator, "The Sailings": Mercator
+//! sailing.
 
 use binnacle_magnetics::angle::{wrap_180, wrap_360};
 use binnacle_magnetics::position::Position;
 
-/// The steady course, degrees true, and the distance, nautical miles.
+/// The constant course, degrees true, and the distance, nautical miles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Leg {
     pub(crate) course_deg: f64,
     pub(crate) distance_nm: f64,
 }
 
-/// From one place to another by the shorter way round.
+/// Returns the leg from one place to another, by the shorter way round.
 pub(crate) fn leg(from: Position, to: Position) -> Leg {
     let north_deg = to.lat_deg() - from.lat_deg();
     let east_deg = wrap_180(to.lon_deg() - from.lon_deg());
     let meridional_deg = meridional_parts_deg(to) - meridional_parts_deg(from);
-    // Along a parallel both go to zero, and their ratio to the cosine.
+    // Along a parallel both become zero, and their ratio the cosine.
     let stretch = if meridional_deg.abs() > 1e-9 {
         north_deg / meridional_deg
     } else {

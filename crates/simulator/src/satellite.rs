@@ -1,5 +1,5 @@
-//! A satellite compass: free of magnetism and of speed, 0.5° of noise, and
-//! silent about heading when it has lost its satellites.
+//! A satellite compass: independent of magnetism and speed, with 0.5° of noise,
+//! and without a heading while it has lost its satellites.
 
 use crate::process::Wander;
 use crate::random::Random;
@@ -7,7 +7,7 @@ use crate::scenario::{SatellitePlan, ShipPlan};
 
 const NOISE_DEG: f64 = 0.3;
 const NOISE_S: f64 = 30.0;
-/// Reflections from the ship's own upper works.
+/// Reflections from the ship's own superstructure.
 const REFLECTION_DEG: f64 = 0.4;
 const REFLECTION_S: f64 = 400.0;
 
@@ -34,7 +34,7 @@ impl Satellite {
         }
     }
 
-    /// What it shows, degrees, not wrapped; none while it has no satellites.
+    /// Returns the reading, degrees, not wrapped; `None` without satellites.
     pub(crate) fn read(&mut self, dt: f64, heading_deg: f64) -> Option<f64> {
         let noise = self.noise.step(dt, &mut self.random);
         let reflection = self.reflection.step(dt, &mut self.random);

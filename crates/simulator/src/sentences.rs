@@ -1,14 +1,15 @@
-//! NMEA 0183 sentences as the simulated instruments write them.
+//! NMEA 0183 sentences of the simulated instruments.
 //!
-//! Written here byte by byte, and not by the crate that reads them: two years
-//! of a fleet pass through in minutes, and an error in a shared writer and
-//! reader would hide itself. Nothing is allocated once the buffer has grown.
+//! They are written here byte by byte, without the crate that reads them: an
+//! error common to writer and reader would stay hidden. Two years of a fleet
+//! are written in minutes, so nothing is allocated once the buffer has grown.
 
 use crate::calendar::CalendarTime;
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
 
-/// `$HCHDG`: the raw reading; the instrument knows neither deviation nor variation.
+/// `$HCHDG`: the raw reading; the instrument has neither deviation nor
+/// variation.
 pub(crate) fn hchdg(out: &mut Vec<u8>, compass_deg: f64) {
     sentence(out, b"$HCHDG,", |out| {
         heading(out, compass_deg);
@@ -16,7 +17,7 @@ pub(crate) fn hchdg(out: &mut Vec<u8>, compass_deg: f64) {
     });
 }
 
-/// `$HETHS` or `$GPTHS`: a heading in mode A; without one, mode V.
+/// `$HETHS` or `$GPTHS`: a heading in mode A, or mode V without one.
 pub(crate) fn ths(out: &mut Vec<u8>, head: [u8; 7], heading_deg: Option<f64>) {
     sentence(out, &head, |out| {
         if let Some(degrees) = heading_deg {
@@ -26,7 +27,7 @@ pub(crate) fn ths(out: &mut Vec<u8>, head: [u8; 7], heading_deg: Option<f64>) {
     });
 }
 
-/// `$HEROT`: degrees a minute, minus for bow to port.
+/// `$HEROT`: degrees a minute, negative for a turn to port.
 pub(crate) fn herot(out: &mut Vec<u8>, rate_deg_min: f64) {
     sentence(out, b"$HEROT,", |out| {
         signed_tenths(out, rate_deg_min);
@@ -104,7 +105,7 @@ fn sentence(out: &mut Vec<u8>, head: &[u8], body: impl FnOnce(&mut Vec<u8>)) {
     out.extend_from_slice(&[b'*', hex(sum >> 4), hex(sum & 15), b'\r', b'\n']);
 }
 
-/// Degrees to a tenth, in 000.0 to 359.9.
+/// Degrees to a tenth, from 000.0 to 359.9.
 fn heading(out: &mut Vec<u8>, degrees: f64) {
     let tenths = ((degrees * 10.0).round() as i64).rem_euclid(3600) as u64;
     digits(out, tenths / 10, 3);

@@ -1,8 +1,8 @@
-//! One ship at sea: everything together, one step at a time.
+//! One ship at sea, advanced step by step.
 //!
-//! What always holds: the same scenario, seed, ship, start and steps give the
-//! same readings to the bit. Slow things change once a minute of ship time,
-//! quick ones at every step.
+//! Invariant: the same scenario, seed, ship, start and steps give bit-identical
+//! readings. Slow quantities change once a minute of ship time, fast ones at
+//! every step.
 
 use crate::compass::{Compass, Exposure};
 use crate::gyro::Gyro;
@@ -20,12 +20,12 @@ use binnacle_magnetics::time::Timestamp;
 
 const MINUTE_S: f64 = 60.0;
 
-/// What the instruments show at one instant, and what is really so.
+/// Readings of the instruments at one instant, with the true values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// When.
+    /// Time of the reading.
     pub time: Timestamp,
-    /// Where.
+    /// Position.
     pub position: Position,
     /// Speed over ground, knots.
     pub sog_kn: f64,
@@ -35,22 +35,22 @@ pub struct Reading {
     pub rate_deg_min: f64,
     /// Roll, degrees, starboard down positive.
     pub roll_deg: f64,
-    /// The magnetic compass, raw, degrees, not wrapped.
+    /// Raw reading of the magnetic compass, degrees, not wrapped.
     pub compass_deg: f64,
-    /// The gyro, degrees, not wrapped.
+    /// Reading of the gyro, degrees, not wrapped.
     pub gyro_deg: f64,
-    /// The satellite compass, degrees, not wrapped.
+    /// Reading of the satellite compass, degrees, not wrapped.
     pub satellite: SatelliteReading,
-    /// Whether she lies alongside.
+    /// True if the ship lies alongside.
     pub alongside: bool,
     /// The true heading.
     pub heading_deg: f64,
 }
 
-/// What the satellite compass says.
+/// Reading of the satellite compass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SatelliteReading {
-    /// She has none.
+    /// The ship has none.
     Absent,
     /// It has lost its satellites.
     Lost,
@@ -58,7 +58,7 @@ pub enum SatelliteReading {
     Heading(f64),
 }
 
-/// A ship under way through a scenario.
+/// A ship under way in a scenario.
 #[derive(Clone, Debug)]
 pub struct Ship {
     plan: ShipPlan,
@@ -77,7 +77,8 @@ pub struct Ship {
     satellite: Option<Satellite>,
 }
 
-/// The quay's steel: 0.1 to 1.5 µT at the compass, another at every berth.
+/// Magnetic field of the quay: 0.1 to 1.5 µT at the compass, different at every
+/// berth.
 #[derive(Clone, Debug)]
 struct Berth {
     steel: Option<Magnetism>,
@@ -85,7 +86,7 @@ struct Berth {
 }
 
 impl Ship {
-    /// A ship of the scenario at the start of her voyage.
+    /// Creates a ship of the scenario at the start of its voyage.
     ///
     /// # Errors
     /// When the earth's field is not known for that time.
@@ -130,7 +131,7 @@ impl Ship {
         &self.plan
     }
 
-    /// When the voyage began.
+    /// The start of the voyage.
     pub fn start(&self) -> Timestamp {
         self.start
     }
@@ -140,32 +141,32 @@ impl Ship {
         self.start.plus_seconds(self.elapsed_s)
     }
 
-    /// Where she is.
+    /// The ship's position.
     pub fn position(&self) -> Position {
         self.motion.position
     }
 
-    /// Whether she lies alongside.
+    /// True if the ship lies alongside.
     pub fn is_alongside(&self) -> bool {
         self.passage.is_alongside()
     }
 
-    /// Her true heading now, degrees.
+    /// The present true heading, degrees.
     pub fn heading_deg(&self) -> f64 {
         self.motion.heading_deg
     }
 
-    /// Her own magnetism now, without that of a quay.
+    /// The ship's own present magnetism, without that of a quay.
     pub fn magnetism(&self) -> Magnetism {
         self.magnetism
     }
 
-    /// Variation by the chart here and now, degrees east.
+    /// Charted variation here and now, degrees east.
     pub fn charted_variation_deg(&self) -> f64 {
         self.surroundings.charted.declination().degrees_east()
     }
 
-    /// The field by the chart here and now.
+    /// Charted field here and now.
     pub fn charted_field(&self) -> Field {
         Field {
             h_nt: self.surroundings.charted.h_nt(),
@@ -173,16 +174,17 @@ impl Ship {
         }
     }
 
-    /// The deviation that a perfect model gives on a compass reading, here and
-    /// now, degrees east: true heading less charted variation less the
-    /// reading, lubber line included, every noise left out.
+    /// Returns the deviation of a perfect model on a compass reading, here and
+    /// now, degrees east: true heading less charted variation less the reading,
+    /// with the lubber line and without noise.
     pub fn deviation_deg(&self, compass_deg: f64) -> f64 {
         let card_deg = compass_deg - self.plan.alignment_deg;
         let magnetic = self.magnetism.magnetic_deg(self.charted_field(), card_deg);
         wrap_180(magnetic - compass_deg)
     }
 
-    /// What the compass would show now without any noise, degrees, not wrapped.
+    /// The compass reading here and now without any noise, degrees, not
+    /// wrapped.
     pub fn quiet_compass_deg(&self) -> f64 {
         let magnetic = self.motion.heading_deg - self.charted_variation_deg();
         let deviation = self
@@ -191,7 +193,7 @@ impl Ship {
         magnetic - deviation + self.plan.alignment_deg
     }
 
-    /// Sails on for `dt` seconds and reads all instruments.
+    /// Advances by `dt` seconds and reads all instruments.
     pub fn step(&mut self, dt: f64) -> Reading {
         self.elapsed_s += dt;
         self.minute_s += dt;
@@ -277,7 +279,7 @@ impl Berth {
     }
 }
 
-/// A ship's magnetism so many days from the start, by her events.
+/// Returns a ship's magnetism `day` days from the start, by its events.
 pub fn magnetism_at(plan: &ShipPlan, day: f64) -> Magnetism {
     plan.events
         .iter()

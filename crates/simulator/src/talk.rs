@@ -1,5 +1,5 @@
-//! What goes over the wire and when: the instruments' sentences, and what a
-//! poor line makes of some of them.
+//! The instruments' sentences on the wire: their schedule, and the damage done
+//! by a poor line.
 
 use crate::random::Random;
 use crate::scenario::{LineFaults, Scenario, Timing};
@@ -27,7 +27,7 @@ pub struct Talker {
 }
 
 impl Talker {
-    /// The instruments of a ship of the scenario.
+    /// Creates the instruments of a ship of the scenario.
     pub fn new(scenario: &Scenario, ship: Ship, seed: u64) -> Talker {
         let mut random = Random::new(seed, &ship.plan().name, "line");
         let faults = scenario.faults;
@@ -46,22 +46,22 @@ impl Talker {
         }
     }
 
-    /// The ship they are on.
+    /// The ship.
     pub fn ship(&self) -> &Ship {
         &self.ship
     }
 
-    /// Groups of sentences written.
+    /// Number of groups of sentences written.
     pub fn groups(&self) -> u64 {
         self.groups
     }
 
-    /// Sentences written.
+    /// Number of sentences written.
     pub fn sentences(&self) -> u64 {
         self.sentences
     }
 
-    /// From now on speaks once in `interval_s` seconds, also in port.
+    /// Sets the interval of all sentences, also in port.
     pub fn set_interval(&mut self, interval_s: f64) {
         self.timing = Timing {
             interval_s,
@@ -70,12 +70,12 @@ impl Talker {
         };
     }
 
-    /// When the next group will be spoken.
+    /// Time of the next group of sentences.
     pub fn next_time(&self) -> Timestamp {
         self.ship.time().plus_seconds(self.interval_s())
     }
 
-    /// Sails on to the next group of sentences and appends them to `out`.
+    /// Advances to the next group of sentences and appends them to `out`.
     pub fn speak(&mut self, out: &mut Vec<u8>) -> Reading {
         let dt = self.interval_s();
         let reading = self.ship.step(dt);
@@ -83,7 +83,7 @@ impl Talker {
         self.since_roll_s += dt;
         self.since_date_s += dt;
         self.groups += 1;
-        // Half a step's grace, or rounding would skip every other one.
+        // Half a step of tolerance, or rounding would skip every other one.
         let due = |since_s: f64, every_s: f64| since_s + 0.5 * dt >= every_s;
         if due(self.since_position_s, self.timing.position_interval_s) {
             self.since_position_s = 0.0;

@@ -1,4 +1,4 @@
-//! What really was: the answers that a model is to be judged by.
+//! The true values for judging a model.
 
 use crate::poisson::Magnetism;
 use crate::scenario::{Anomaly, Event, Scenario, Storm};
@@ -7,11 +7,11 @@ use binnacle_magnetics::angle::{wrap_180, wrap_360};
 use binnacle_magnetics::time::Timestamp;
 use serde::Serialize;
 
-/// Headings of the final table, degrees apart.
+/// Interval between headings of the final table, degrees.
 const STEP_DEG: u32 = 10;
 const HOUR_S: f64 = 3600.0;
 
-/// Gathers the truth of one ship's voyage.
+/// Records the truth of one ship's voyage.
 #[derive(Clone, Debug)]
 pub struct Log {
     hours: Vec<Hour>,
@@ -35,7 +35,7 @@ pub struct Truth {
     at_the_end: Place,
 }
 
-/// An interval without an event; magnetism is that of its beginning.
+/// An interval without an event, with the magnetism at its beginning.
 #[derive(Clone, Debug, Serialize)]
 struct Epoch {
     from: Timestamp,
@@ -46,7 +46,7 @@ struct Epoch {
     parameters_over_lambda: OverLambda,
 }
 
-/// The seven ratios that headings can tell.
+/// The seven ratios that can be identified from headings.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct OverLambda {
     bx_nt: f64,
@@ -81,36 +81,36 @@ struct Hour {
     deviation_deg: f64,
 }
 
-/// The whole curve at one place and time.
+/// The deviation curve at one place and time.
 #[derive(Clone, Debug, Serialize)]
 pub struct Place {
-    /// Where.
+    /// Latitude, degrees north.
     pub lat: f64,
-    /// Where.
+    /// Longitude, degrees east.
     pub lon: f64,
-    /// When.
+    /// Time.
     pub at: Timestamp,
-    /// By the chart, degrees east.
+    /// Charted variation, degrees east.
     pub variation_deg: f64,
-    /// By the chart.
+    /// Charted horizontal field, nT.
     pub h_nt: f64,
-    /// By the chart.
+    /// Charted vertical field, nT, positive down.
     pub z_nt: f64,
-    /// Every ten degrees of compass heading.
+    /// The deviation every ten degrees of compass heading.
     pub rows: Vec<Row>,
 }
 
 /// The true deviation on one heading.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Row {
-    /// As the compass shows it.
+    /// Compass reading, degrees.
     pub compass_deg: f64,
     /// True heading less variation less compass reading, degrees east.
     pub deviation_deg: f64,
 }
 
 impl Log {
-    /// An empty log of a voyage about to begin.
+    /// Creates an empty record of a voyage about to begin.
     pub fn new(ship: &Ship) -> Log {
         Log {
             hours: Vec::new(),
@@ -118,7 +118,7 @@ impl Log {
         }
     }
 
-    /// Notes the ship's state when another hour has passed.
+    /// Records the ship's state when another hour has passed.
     pub fn note(&mut self, ship: &Ship) {
         if ship.time() < self.next_hour {
             return;
@@ -141,7 +141,7 @@ impl Log {
         });
     }
 
-    /// The truth so far.
+    /// Returns the truth so far.
     pub fn truth(&self, scenario: &Scenario, seed: u64, ship: &Ship) -> Truth {
         let plan = ship.plan();
         Truth {
@@ -161,7 +161,7 @@ impl Log {
     }
 }
 
-/// The true deviation on all headings where the ship is now.
+/// Returns the true deviation on all headings at the ship's present place.
 pub fn place(ship: &Ship) -> Place {
     let field = ship.charted_field();
     Place {

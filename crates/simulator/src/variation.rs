@@ -1,9 +1,9 @@
-//! The earth's field as the ship really meets it: the charted field, with what
-//! the chart leaves out.
+//! The actual earth's field at the ship: the charted field and its
+//! disturbances.
 //!
-//! The crust (0.2°, correlated over 60 miles), the day (0.12°), magnetic storms
-//! and local anomalies. None of this is in the truth that a model is compared
-//! with: to a compass's user it is noise.
+//! The disturbances are the crust (0.2°, correlated over 60 miles), the diurnal
+//! variation (0.12°), magnetic storms and local anomalies. They are not part of
+//! the truth that a model is compared with: to a compass's user they are noise.
 
 use crate::earth::Chart;
 use crate::poisson::Field;
@@ -18,7 +18,7 @@ use binnacle_magnetics::time::Timestamp;
 const CRUST_DEG: f64 = 0.2;
 const CRUST_NM: f64 = 60.0;
 const DAY_DEG: f64 = 0.12;
-/// How long the field keeps its direction in a storm.
+/// Time over which the field keeps its direction in a storm.
 const STORM_S: f64 = 900.0;
 
 #[derive(Clone, Debug)]
@@ -30,11 +30,11 @@ pub(crate) struct Surroundings {
     storm: Wander,
     random: Random,
     chart: Chart,
-    /// What the chart says, for the truth.
+    /// Charted variation, for the truth.
     pub(crate) charted: field::Field,
-    /// Variation that the needle obeys, degrees.
+    /// Variation of the needle's north, degrees.
     pub(crate) variation_deg: f64,
-    /// Field that the needle obeys.
+    /// Field at the needle.
     pub(crate) field: Field,
 }
 
@@ -66,7 +66,7 @@ impl Surroundings {
         })
     }
 
-    /// Looks again; once a minute.
+    /// Updates the field, once a minute.
     pub(crate) fn step(
         &mut self,
         elapsed_s: f64,
@@ -96,7 +96,7 @@ impl Surroundings {
         };
     }
 
-    /// Storms come up in two hours and die away over their last third.
+    /// Storms rise within two hours and fade over their last third.
     fn storm_nt(&self, time: Timestamp) -> f64 {
         let hours = time.seconds_since(self.start) / 3600.0;
         let latitude = self.charted.magnetic_latitude_deg().abs();
@@ -114,7 +114,7 @@ impl Surroundings {
     }
 }
 
-/// The sun's hour angle, radians.
+/// Returns the sun's hour angle, radians.
 fn solar_angle(position: Position, time: Timestamp) -> f64 {
     let day = time.micros().rem_euclid(86_400_000_000) as f64 / 86_400e6;
     std::f64::consts::TAU * (day + position.lon_deg() / 360.0)

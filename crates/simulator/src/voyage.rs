@@ -1,4 +1,4 @@
-//! `voyage`: one ship's sentences, and the truth beside them.
+//! `voyage`: writes one ship's sentences and their truth.
 
 use crate::cli::{self, BadInput, VoyageArgs};
 use crate::clock;
@@ -18,7 +18,7 @@ use tokio::net::UdpSocket;
 
 const BUFFER_BYTES: usize = 64 * 1024;
 
-/// Where the sentences go.
+/// Destination of the sentences.
 enum Sink {
     File(File),
     Tcp(TcpLine),
@@ -94,9 +94,10 @@ fn open(args: &VoyageArgs, partial: Option<&Path>) -> Result<Sink> {
     Ok(Sink::Udp(UdpSocket::from_std(socket)?, to))
 }
 
-/// A file gets its name when it is whole; devices and pipes have theirs.
+/// Path of the unfinished file, renamed when complete; devices and pipes are
+/// written directly.
 fn partial_path(out: &Path) -> PathBuf {
-    // What /dev/stdout stands for may be a file, but not one to be renamed to.
+    // /dev/stdout may lead to a file, but a rename must not replace it.
     let is_device = out.starts_with("/dev")
         || out.starts_with("/proc")
         || std::fs::metadata(out).is_ok_and(|found| !found.is_file());
@@ -115,7 +116,7 @@ fn finish(partial: &Path, out: &Path) -> Result<()> {
     std::fs::rename(partial, out).map_err(|error| bad_path(out, &error).into())
 }
 
-/// Writes a file that is there wholly or not at all.
+/// Writes a file completely or not at all.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let partial = partial_path(path);
     std::fs::write(&partial, bytes).map_err(|error| bad_path(path, &error))?;
@@ -126,7 +127,7 @@ fn bad_path(path: &Path, error: &std::io::Error) -> BadInput {
     BadInput(format!("{}: {error}", path.display()))
 }
 
-/// Waits until the wall clock, shifted, shows this time.
+/// Waits until the shifted wall clock shows this time.
 async fn wait_for(time: Timestamp, ahead_s: f64) {
     let left_s = time.seconds_since(clock::now()) - ahead_s;
     if left_s > 0.0 {

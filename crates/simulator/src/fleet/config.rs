@@ -1,4 +1,4 @@
-//! What is written for an agent before it runs.
+//! Writes an agent's configuration.
 
 use anyhow::Result;
 use binnacle_simulator::scenario::ShipPlan;
@@ -8,16 +8,16 @@ use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 /// The addresses of one ship's agent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ports {
-    /// Where her instruments speak.
+    /// Address of the ship's instruments.
     pub(super) instruments: SocketAddr,
-    /// Where the corrected heading comes out.
+    /// Address of the corrected heading's output.
     pub(super) output: SocketAddr,
-    /// The local page.
+    /// Address of the local page.
     pub(super) page: SocketAddr,
 }
 
 impl Ports {
-    /// Takes free ports for what the agent opens.
+    /// Chooses free ports for the agent.
     pub(super) fn choose(instruments: SocketAddr) -> Result<Ports> {
         let any = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
         // Both are held until both are known, so that they differ.
@@ -30,7 +30,7 @@ impl Ports {
     }
 }
 
-/// `agent.toml` for a simulated ship.
+/// Returns the `agent.toml` of a simulated ship.
 pub(super) fn agent_toml(plan: &ShipPlan, ports: Ports) -> String {
     let mut text = String::from("data_dir = \"state\"\n\n[inputs.bridge]\n");
     let mut line = |content: std::fmt::Arguments<'_>| {
@@ -57,14 +57,14 @@ pub(super) fn agent_toml(plan: &ShipPlan, ports: Ports) -> String {
         ports.output
     ));
     line(format_args!("\n[page]\nlisten = \"{}\"", ports.page));
-    // A demonstration lasts minutes: models are asked for every ten seconds.
+    // A demonstration lasts minutes: models are polled every ten seconds.
     line(format_args!(
         "\n[uplink]\npoll_s = 10\nretry_min_s = 1\nretry_max_s = 10"
     ));
     text
 }
 
-/// A folder's name for a ship: her letters and digits, with hyphens between.
+/// Returns a ship's folder name: its letters and digits, with hyphens between.
 pub(super) fn slug(name: &str) -> String {
     let lower = name.to_lowercase();
     let words = lower.split(|c: char| !c.is_alphanumeric());

@@ -1,8 +1,8 @@
-//! `fleet`: many ships with real agents against a real server.
+//! `fleet`: many ships with real agents and a real server.
 //!
-//! The past is sailed as fast as the agents take it; then the server's models
-//! are compared with the truth; then, if asked, the ships sail on in real time.
-//! Whatever way this ends, every agent that was started has been stopped.
+//! The past is sailed as fast as the agents can read it. Then the server's
+//! models are compared with the truth. If asked, the ships then sail on in real
+//! time. However the run ends, every started agent is stopped.
 
 mod agent;
 mod config;
@@ -29,13 +29,13 @@ use tokio::signal::unix::{SignalKind, signal};
 use tokio::task::JoinSet;
 use verdict::Verdict;
 
-/// As shells have it for a program that a signal ended.
+/// Exit code of a program ended by a signal, as shells have it.
 const STOPPED: u8 = 130;
-/// Ships catch up with the clock if the past ended no longer ago than this;
-/// otherwise they sail on from where they are.
+/// The longest gap between the end of the past and now that ships catch up;
+/// after a longer one they continue from where they are.
 const CATCH_UP_S: f64 = 86_400.0;
 
-/// What all parts need to know of the run.
+/// The settings of a run.
 struct Run<'a> {
     args: &'a FleetArgs,
     scenario: Scenario,
@@ -73,7 +73,7 @@ pub(crate) async fn run(args: &FleetArgs) -> Result<ExitCode> {
 }
 
 impl Run<'_> {
-    /// Every ship at her berth, listening for a client.
+    /// Starts every ship at its berth, listening for a client.
     fn launch(&self) -> Result<Vec<Sailing>> {
         let ships = self.scenario.ships.iter();
         ships
@@ -121,7 +121,7 @@ impl Run<'_> {
         }
     }
 
-    /// Serves the sentences for agents that somebody else runs.
+    /// Serves the sentences for agents that are run elsewhere.
     async fn serve(&self, fleet: Vec<Sailing>, progress: &Arc<Progress>) -> Result<()> {
         let ships = fleet
             .iter()
@@ -139,13 +139,13 @@ impl Run<'_> {
         if self.args.live {
             return self.sail_live(fleet).await;
         }
-        // The lines stay open until somebody has had enough.
+        // The connections stay open until the program is stopped.
         std::future::pending::<()>().await;
         drop(fleet);
         Ok(())
     }
 
-    /// Sails all ships to the end of the past, each at her agent's pace.
+    /// Sails all ships to the end of the past, each at its agent's pace.
     async fn sail_past(
         &self,
         fleet: Vec<Sailing>,
@@ -258,7 +258,7 @@ fn whole_second(time: Timestamp) -> Timestamp {
     time.plus_seconds(-(time.micros().rem_euclid(1_000_000) as f64) * 1e-6)
 }
 
-/// Ends when somebody wants the program to end.
+/// Returns when a signal asks the program to end.
 async fn stop_asked() -> Result<()> {
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;

@@ -1,4 +1,4 @@
-//! How far the fleet has come, for those who wait.
+//! Shows the progress of the fleet.
 
 use super::shore::{Shore, Uploads};
 use binnacle_magnetics::time::Timestamp;
@@ -7,10 +7,10 @@ use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::{Duration, Instant};
 
 const EVERY: Duration = Duration::from_secs(2);
-/// A log wants fewer lines than a terminal.
+/// A log needs fewer lines than a terminal.
 const EVERY_IN_A_LOG: Duration = Duration::from_secs(10);
 
-/// Every ship's time.
+/// The time of each ship.
 #[derive(Debug)]
 pub(super) struct Progress {
     from: Timestamp,
@@ -34,7 +34,7 @@ impl Progress {
         self.times[ship].store(time.micros(), Ordering::Relaxed);
     }
 
-    /// Shows a line now and then, for ever.
+    /// Prints a line at intervals, forever.
     pub(super) async fn show(&self, shore: &Shore, vessels: &[String]) {
         let terminal = std::io::stderr().is_terminal();
         let mut ticks = tokio::time::interval(if terminal { EVERY } else { EVERY_IN_A_LOG });
@@ -87,7 +87,7 @@ impl Progress {
 
 fn print(terminal: bool, line: &str) {
     let mut out = std::io::stderr().lock();
-    // Nobody left to show it to is no reason to stop.
+    // A closed standard error is no reason to stop.
     if terminal {
         write!(out, "\r{line}\x1b[K").ok();
     } else {

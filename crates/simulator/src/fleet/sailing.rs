@@ -1,4 +1,5 @@
-//! A ship with her line: what goes out, and how fast.
+//! A simulated ship with its line: sends sentences at the client's pace or in
+//! real time.
 
 use super::Run;
 use crate::cli::BadInput;
@@ -56,12 +57,12 @@ impl Sailing {
         self.log.truth(&run.scenario, run.seed, self.talker.ship())
     }
 
-    /// The true curve where she is now.
+    /// Returns the true curve at the ship's present place.
     pub(super) fn place(&self) -> Place {
         place(self.talker.ship())
     }
 
-    /// Sails as fast as the client takes it; stands still while there is none.
+    /// Sails as fast as the client reads; waits while there is none.
     pub(super) async fn sail_to(
         &mut self,
         until: Timestamp,
@@ -80,7 +81,7 @@ impl Sailing {
         Ok(())
     }
 
-    /// Sails by the wall clock less `shift_s`, once she has caught up with it.
+    /// Sails by the wall clock less `shift_s`, after catching up with it.
     pub(super) async fn sail_live(&mut self, shift_s: f64) -> Result<()> {
         let now = || clock::now().plus_seconds(-shift_s);
         while now().seconds_since(self.talker.next_time()) > 60.0 {

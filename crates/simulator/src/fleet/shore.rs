@@ -1,4 +1,4 @@
-//! The server's API, as an operator's administrator uses it.
+//! The server's API, as used by an operator's administrator.
 
 use anyhow::{Context, Result, ensure};
 use binnacle_magnetics::time::Timestamp;
@@ -19,7 +19,7 @@ pub(super) struct Shore {
     cookie: String,
 }
 
-/// What the server says of a vessel.
+/// The server's state of a vessel.
 #[derive(Debug, Deserialize)]
 pub(super) struct VesselState {
     pub(super) last_position: Option<LastPosition>,
@@ -37,7 +37,7 @@ pub(super) struct ModelState {
     pub(super) data_until: Timestamp,
 }
 
-/// What has come in from a vessel.
+/// Uploads received from a vessel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Uploads {
     pub(super) batches: u64,
@@ -83,7 +83,7 @@ impl Shore {
         let cookie = cookies
             .filter_map(|cookie| cookie.to_str().ok())
             .filter_map(|cookie| cookie.split(';').next())
-            // For https alone its name begins with `__Host-`.
+            // Only for https does its name begin with `__Host-`.
             .find(|cookie| cookie.contains("binnacle_session="))
             .map(str::to_owned);
         read::<Value>(answer).await.context("signing in")?;
@@ -132,8 +132,8 @@ impl Shore {
             }))
     }
 
-    /// The model's deviation at a place and time, every ten degrees; none when
-    /// there is no model.
+    /// Returns the model's deviation at a place and time, every ten degrees;
+    /// `None` without a model.
     pub(super) async fn deviation(
         &self,
         vessel: &str,
@@ -149,7 +149,7 @@ impl Shore {
         Ok(Some(table.rows))
     }
 
-    /// What an agent says of itself on its local page.
+    /// Returns the status from an agent's local page.
     pub(super) async fn agent_status(&self, page: std::net::SocketAddr) -> Result<Value> {
         read(
             self.client
@@ -178,7 +178,7 @@ impl Shore {
     }
 }
 
-/// The answer's content, or the problem it tells.
+/// Returns the content of a response, or its problem as an error.
 async fn read<T: DeserializeOwned>(answer: reqwest::Response) -> Result<T> {
     let status = answer.status();
     let body = answer.bytes().await?;

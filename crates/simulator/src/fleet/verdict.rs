@@ -1,9 +1,9 @@
-//! Whether the server's models hold what is true.
+//! Compares the server's models with the truth.
 //!
 //! A model holds when its 95 % band at the ship's own place contains the true
-//! deviation on nine headings of ten. The truth is what the compass's user sees:
-//! true heading less variation less compass reading, lubber line included,
-//! noise left out.
+//! deviation on nine headings of ten. The truth is that of the compass's user:
+//! true heading less variation less compass reading, with the lubber line and
+//! without noise.
 
 use super::Run;
 use super::agent::Vessel;
@@ -20,14 +20,14 @@ use std::time::{Duration, Instant};
 
 const LEAST_SHARE: f64 = 0.9;
 const ASK_EVERY: Duration = Duration::from_secs(1);
-/// The shore gets so long to catch up after anything last moved.
+/// Time for the server to catch up after the last change.
 const PATIENCE: Duration = Duration::from_mins(3);
-/// When all is quiet for so long, a model of older data is what there will be.
+/// After this long without change, a model of older data is final.
 const QUIET: Duration = Duration::from_secs(30);
-/// Sentences come once a minute in port.
+/// Sentences are sent once a minute in port.
 const SLACK_S: f64 = 150.0;
 
-/// The whole comparison.
+/// The comparison of all vessels.
 #[derive(Debug, Serialize)]
 pub(super) struct Verdict {
     scenario: String,
@@ -38,7 +38,7 @@ pub(super) struct Verdict {
     vessels: Vec<Judged>,
 }
 
-/// One vessel's comparison.
+/// The comparison of one vessel.
 #[derive(Debug, Serialize)]
 struct Judged {
     name: String,
@@ -66,7 +66,7 @@ struct Compared {
     in_band: bool,
 }
 
-/// Waits for the shore and compares every vessel.
+/// Waits for the server and compares every vessel.
 pub(super) async fn judge(
     run: &Run<'_>,
     shore: &Shore,
@@ -90,7 +90,8 @@ pub(super) async fn judge(
     })
 }
 
-/// Waits until the agent has sent what it sealed and the model knows of it.
+/// Waits until the agent has sent its sealed batches and the model includes
+/// them.
 async fn wait_for(shore: &Shore, vessel: &Vessel, until: Timestamp) -> Result<()> {
     writeln!(
         std::io::stderr(),
@@ -122,21 +123,21 @@ async fn wait_for(shore: &Shore, vessel: &Vessel, until: Timestamp) -> Result<()
     }
 }
 
-/// How far a vessel's data have come.
+/// The progress of a vessel's data.
 #[derive(Debug, PartialEq, Eq)]
 struct Standing {
     ship_time: Option<Timestamp>,
     waiting_batches: Option<u64>,
     uploads: Uploads,
     model: Option<(u64, Timestamp)>,
-    /// Everything that was sealed is on shore.
+    /// Every sealed batch is on the server.
     sent: bool,
-    /// And the model knows all of it.
+    /// Everything is sent, and the model includes it.
     settled: bool,
 }
 
 async fn standing(shore: &Shore, vessel: &Vessel, until: Timestamp) -> Result<Standing> {
-    // The agent may just be starting again.
+    // The agent may be restarting.
     let status = shore.agent_status(vessel.page).await.unwrap_or_default();
     let ship_time = status["ship_time"]
         .as_str()
@@ -239,7 +240,7 @@ impl Verdict {
         self.holds
     }
 
-    /// For people.
+    /// Returns a table for people.
     pub(super) fn table(&self) -> String {
         let mut text = String::new();
         self.write_table(&mut text)

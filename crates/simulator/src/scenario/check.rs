@@ -1,4 +1,4 @@
-//! From what stands in the file to what can be sailed.
+//! Converts the raw scenario of a file to a checked one.
 
 use super::error::Source;
 use super::event::LATEST_DAY;

@@ -1,4 +1,4 @@
-//! What befalls a ship, from what stands in the file.
+//! Reads a ship's events.
 
 use super::Event;
 use super::error::Source;
@@ -7,7 +7,7 @@ use super::values::{Checked, PERMANENT_NT};
 use crate::poisson::Magnetism;
 use std::ops::Range;
 
-/// Ten years.
+/// The last day of a scenario, after ten years.
 pub(super) const LATEST_DAY: f64 = 3650.0;
 
 pub(super) fn event(source: &Source<'_>, span: Range<usize>, raw: &RawEvent) -> Checked<Event> {

@@ -1,4 +1,4 @@
-//! A ship's plan, from what stands in the file.
+//! Converts a ship's part of the file to its plan.
 
 use super::error::Source;
 use super::event::event;
@@ -14,8 +14,8 @@ use std::sync::Arc;
 
 pub(super) type Routes = BTreeMap<String, Arc<[RoutePoint]>>;
 
-/// A card that is pulled north by less than this share of the earth's force on
-/// some heading is of no use there.
+/// The least directive force, as a fraction of the earth's, with which a
+/// compass can still be used.
 const LEAST_DIRECTIVE_FORCE: f64 = 0.2;
 
 pub(super) fn ship(
@@ -143,7 +143,7 @@ fn events(
     Ok(events)
 }
 
-/// Where a ship is going to sail.
+/// The waters of a ship's route.
 struct Waters<'a> {
     source: &'a Source<'a>,
     route: &'a [RoutePoint],
@@ -151,7 +151,8 @@ struct Waters<'a> {
 }
 
 impl Waters<'_> {
-    /// Refuses a magnetism whose compass would point nowhere on some heading.
+    /// Refuses a magnetism that leaves the compass without directive force on
+    /// some heading.
     fn can_be_steered_in(
         &self,
         magnetism: &Magnetism,

@@ -1,4 +1,4 @@
-//! Whether what goes over the line is what instruments send.
+//! The sentences on the line are those of real instruments.
 
 use crate::support::{scenario, sentences, ship};
 use binnacle_magnetics::angle::wrap_180;

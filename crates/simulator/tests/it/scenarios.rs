@@ -1,4 +1,4 @@
-//! Whether what is wrong in a scenario is named.
+//! Faults of a scenario are named.
 
 use binnacle_simulator::scenario::Scenario;
 use std::path::Path;

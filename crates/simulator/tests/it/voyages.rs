@@ -1,4 +1,4 @@
-//! Whether ships do what the scenario says.
+//! Ships behave as the scenario says.
 
 use crate::support::{sail, scenario, sentences, ship};
 use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation, wrap_180};
@@ -81,7 +81,7 @@ fn the_instruments_are_no_better_than_described() {
             minute.clear();
         }
     });
-    // From minute to minute only what is quick differs.
+    // From minute to minute only fast quantities differ.
     let steps: Vec<f64> = minutes.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let quick = sd(&steps) / 2f64.sqrt();
     assert!(
@@ -240,7 +240,7 @@ fn every_ship_of_the_demonstration_steers_most_headings() {
         let mut ship = binnacle_simulator::ship::Ship::new(&scenario, plan, 1, start).unwrap();
         let mut minutes = [0_u32; 24];
         let mut alongside = 0;
-        // Coarse steps will do to see where she goes.
+        // Coarse steps are enough to see the route.
         for _ in 0..60 * 86_400 / 30 {
             let reading = ship.step(30.0);
             if reading.alongside {
@@ -269,7 +269,7 @@ fn the_truth_at_the_end_is_a_whole_curve() {
     for row in &place.rows {
         assert!((row.deviation_deg - ship.deviation_deg(row.compass_deg)).abs() < 1e-12);
     }
-    // A = alignment with the sign of a reading that is too great, nearly.
+    // A is nearly the alignment, with the sign of a reading that is too great.
     let rows: Vec<f64> = place.rows.iter().map(|row| row.deviation_deg).collect();
     assert!((mean(&rows) + 0.5).abs() < 0.2, "{}", mean(&rows));
 }
