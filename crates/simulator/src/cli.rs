@@ -3,15 +3,11 @@
 //! Exit code 2 and one line for bad input; 1 for every other failure, and for a
 //! fleet whose models do not hold.
 
-use crate::fleet;
-use crate::voyage;
-use anyhow::Result;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_simulator::scenario::{Scenario, ShipPlan};
 use clap::{Args, Parser, Subcommand};
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// Simulates ships, voyages and instruments with NMEA output.
 #[derive(Debug, Parser)]
@@ -119,13 +115,6 @@ pub(crate) struct BadInput(pub(crate) String);
 impl BadInput {
     pub(crate) fn new(problem: impl std::fmt::Display) -> BadInput {
         BadInput(problem.to_string())
-    }
-}
-
-pub(crate) async fn run(command: Command) -> Result<ExitCode> {
-    match command {
-        Command::Voyage(args) => voyage::run(&args).await,
-        Command::Fleet(args) => fleet::run(&args).await,
     }
 }
 

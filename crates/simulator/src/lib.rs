@@ -8,21 +8,14 @@
 
 pub mod scenario;
 
+pub mod nmea;
 pub mod ship;
-pub mod talk;
 pub mod truth;
 
 pub mod poisson;
 
-mod calendar;
-mod compass;
 mod earth;
-mod gyro;
-mod motion;
-mod passage;
-mod process;
+mod instruments;
+mod local_field;
+mod navigation;
 mod random;
-mod rhumb;
-mod satellite;
-mod sentences;
-mod variation;

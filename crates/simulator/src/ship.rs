@@ -4,15 +4,15 @@
 //! readings. Slow quantities change once a minute of ship time, fast ones at
 //! every step.
 
-use crate::compass::{Compass, Exposure};
-use crate::gyro::Gyro;
-use crate::motion::Motion;
-use crate::passage::{Order, Passage};
+use crate::instruments::compass::{Compass, Exposure};
+use crate::instruments::gyro::Gyro;
+use crate::instruments::satellite::Satellite;
+use crate::local_field::Surroundings;
+use crate::navigation::motion::Motion;
+use crate::navigation::passage::{Order, Passage};
 use crate::poisson::{Field, Magnetism};
 use crate::random::Random;
-use crate::satellite::Satellite;
 use crate::scenario::{Event, Scenario, ShipPlan};
-use crate::variation::Surroundings;
 use binnacle_magnetics::angle::wrap_180;
 use binnacle_magnetics::field::FieldError;
 use binnacle_magnetics::position::Position;

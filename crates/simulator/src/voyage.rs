@@ -1,17 +1,18 @@
 //! `voyage`: writes one ship's sentences and their truth.
 
+use crate::atomic_file::{bad_path, finish, partial_path, write_whole};
 use crate::cli::{self, BadInput, VoyageArgs};
 use crate::clock;
 use crate::line::{TcpLine, send_datagrams};
 use anyhow::{Context, Result};
 use binnacle_magnetics::time::Timestamp;
+use binnacle_simulator::nmea::Talker;
 use binnacle_simulator::ship::Ship;
-use binnacle_simulator::talk::Talker;
 use binnacle_simulator::truth::Log;
 use std::fs::File;
 use std::io::Write;
 use std::net::{Ipv4Addr, SocketAddr};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use tokio::net::UdpSocket;
@@ -92,39 +93,6 @@ fn open(args: &VoyageArgs, partial: Option<&Path>) -> Result<Sink> {
     socket.set_broadcast(true)?;
     socket.set_nonblocking(true)?;
     Ok(Sink::Udp(UdpSocket::from_std(socket)?, to))
-}
-
-/// Path of the unfinished file, renamed when complete; devices and pipes are
-/// written directly.
-fn partial_path(out: &Path) -> PathBuf {
-    // /dev/stdout may lead to a file, but a rename must not replace it.
-    let is_device = out.starts_with("/dev")
-        || out.starts_with("/proc")
-        || std::fs::metadata(out).is_ok_and(|found| !found.is_file());
-    if is_device {
-        return out.to_owned();
-    }
-    let mut name = out.as_os_str().to_owned();
-    name.push(".partial");
-    PathBuf::from(name)
-}
-
-fn finish(partial: &Path, out: &Path) -> Result<()> {
-    if partial == out {
-        return Ok(());
-    }
-    std::fs::rename(partial, out).map_err(|error| bad_path(out, &error).into())
-}
-
-/// Writes a file completely or not at all.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let partial = partial_path(path);
-    std::fs::write(&partial, bytes).map_err(|error| bad_path(path, &error))?;
-    finish(&partial, path)
-}
-
-fn bad_path(path: &Path, error: &std::io::Error) -> BadInput {
-    BadInput(format!("{}: {error}", path.display()))
 }
 
 /// Waits until the shifted wall clock shows this time.

@@ -1,8 +1,8 @@
 //! The real agents: installs, watches and stops them.
 
-use super::config::{Ports, agent_toml};
-use super::sailing::Sailing;
-use super::shore::Shore;
+use super::agent_config::{Ports, agent_toml};
+use super::server_api::Shore;
+use super::simulated_ship::Sailing;
 use crate::cli::BadInput;
 use anyhow::{Context, Result, bail, ensure};
 use rustix::process::{Pid, Signal, kill_process};

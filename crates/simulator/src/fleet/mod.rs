@@ -5,44 +5,36 @@
 //! time. However the run ends, every started agent is stopped.
 
 mod agent;
-mod config;
+mod agent_config;
+mod comparison;
 mod progress;
-mod sailing;
-mod shore;
-mod verdict;
+mod run;
+mod server_api;
+mod simulated_ship;
 
+use crate::atomic_file::write_whole;
 use crate::cli::{self, BadInput, FleetArgs};
 use crate::clock;
-use crate::voyage::write_whole;
 use agent::Agents;
 use anyhow::{Context, Result};
 use binnacle_magnetics::time::Timestamp;
-use binnacle_simulator::scenario::Scenario;
+use comparison::Verdict;
 use progress::Progress;
-use sailing::Sailing;
-use shore::Shore;
+use run::Run;
+use server_api::Shore;
+use simulated_ship::Sailing;
 use std::io::{Read, Write};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::task::JoinSet;
-use verdict::Verdict;
 
 /// Exit code of a program ended by a signal, as shells have it.
 const STOPPED: u8 = 130;
 /// The longest gap between the end of the past and now that ships catch up;
 /// after a longer one they continue from where they are.
 const CATCH_UP_S: f64 = 86_400.0;
-
-/// The settings of a run.
-struct Run<'a> {
-    args: &'a FleetArgs,
-    scenario: Scenario,
-    seed: u64,
-    from: Timestamp,
-    until: Timestamp,
-}
 
 pub(crate) async fn run(args: &FleetArgs) -> Result<ExitCode> {
     let scenario = cli::read_scenario(&args.scenario)?;
@@ -94,7 +86,7 @@ impl Run<'_> {
         let shore = self.sign_in().await?;
         let mut vessels = Vec::new();
         for ship in &fleet {
-            let folder = self.work_dir()?.join(config::slug(ship.name()));
+            let folder = self.work_dir()?.join(agent_config::slug(ship.name()));
             let program = self.args.agent.as_deref().context("--agent is required")?;
             vessels.push(agent::install(&shore, ship, program, &folder).await?);
         }
@@ -107,7 +99,7 @@ impl Run<'_> {
                 .sail_past(fleet, &progress, progress.show(&shore, &ids))
                 .await?;
             self.write_truths(&fleet)?;
-            let judged = verdict::judge(self, &shore, &vessels, &fleet).await?;
+            let judged = comparison::judge(self, &shore, &vessels, &fleet).await?;
             self.write_report(&judged)?;
             *verdict = Some(judged.holds());
             if self.args.live {
@@ -229,7 +221,7 @@ impl Run<'_> {
         for ship in fleet {
             let path = self
                 .work_dir()?
-                .join(config::slug(ship.name()))
+                .join(agent_config::slug(ship.name()))
                 .join("truth.json");
             write_whole(&path, &serde_json::to_vec(&ship.truth(self))?)?;
         }

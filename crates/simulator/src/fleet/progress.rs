@@ -1,6 +1,6 @@
 //! Shows the progress of the fleet.
 
-use super::shore::{Shore, Uploads};
+use super::server_api::{Shore, Uploads};
 use binnacle_magnetics::time::Timestamp;
 use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicI64, Ordering};

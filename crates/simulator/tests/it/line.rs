@@ -4,8 +4,8 @@ use crate::support::{scenario, sentences, ship};
 use binnacle_magnetics::angle::wrap_180;
 use binnacle_nmea::sentence::Data;
 use binnacle_nmea::{Rejected, parse};
+use binnacle_simulator::nmea::Talker;
 use binnacle_simulator::ship::SatelliteReading;
-use binnacle_simulator::talk::Talker;
 
 const CLEAN: &str = "wrong_checksum_rate = 0\ngarbage_rate = 0";
 

@@ -1,8 +1,8 @@
 //! Small scenarios and voyages for the tests.
 
+use binnacle_simulator::nmea::Talker;
 use binnacle_simulator::scenario::Scenario;
 use binnacle_simulator::ship::{Reading, Ship};
-use binnacle_simulator::talk::Talker;
 
 /// A scenario of a day and a half from port to port along 45° N with a usual
 /// ship; `more` is added to the ship, `around` before everything.

@@ -1,6 +1,8 @@
 //! Repeatable random numbers: the same seed, ship and purpose give the same
 //! numbers.
 
+pub(crate) mod process;
+
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 

@@ -1,9 +1,9 @@
 //! The instruments' sentences on the wire: their schedule, and the damage done
 //! by a poor line.
 
+use super::sentences;
 use crate::random::Random;
 use crate::scenario::{LineFaults, Scenario, Timing};
-use crate::sentences;
 use crate::ship::{Reading, SatelliteReading, Ship};
 use binnacle_magnetics::time::Timestamp;
 

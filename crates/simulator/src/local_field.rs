@@ -6,10 +6,10 @@
 //! the truth that a model is compared with: to a compass's user they are noise.
 
 use crate::earth::Chart;
+use crate::navigation::rhumb;
 use crate::poisson::Field;
-use crate::process::Wander;
 use crate::random::Random;
-use crate::rhumb;
+use crate::random::process::Wander;
 use crate::scenario::{Anomaly, Scenario, Storm};
 use binnacle_magnetics::field::{self, FieldError};
 use binnacle_magnetics::position::Position;

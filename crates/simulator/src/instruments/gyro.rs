@@ -6,9 +6,9 @@
 //! settled; and the scenario's faults. Swing and bias grow with
 //! 1/cos(latitude).
 
-use crate::motion::{Motion, Turned};
-use crate::process::{Swing, Wander};
+use crate::navigation::motion::{Motion, Turned};
 use crate::random::Random;
+use crate::random::process::{Swing, Wander};
 use crate::scenario::{Event, GyroPlan, ShipPlan};
 
 const SCHULER_S: f64 = 84.4 * 60.0;

@@ -1,8 +1,8 @@
 //! A satellite compass: independent of magnetism and speed, with 0.5° of noise,
 //! and without a heading while it has lost its satellites.
 
-use crate::process::Wander;
 use crate::random::Random;
+use crate::random::process::Wander;
 use crate::scenario::{SatellitePlan, ShipPlan};
 
 const NOISE_DEG: f64 = 0.3;

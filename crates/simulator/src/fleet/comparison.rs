@@ -5,10 +5,10 @@
 //! true heading less variation less compass reading, with the lubber line and
 //! without noise.
 
-use super::Run;
 use super::agent::Vessel;
-use super::sailing::Sailing;
-use super::shore::{Predicted, Shore, Uploads};
+use super::run::Run;
+use super::server_api::{Predicted, Shore, Uploads};
+use super::simulated_ship::Sailing;
 use anyhow::{Result, bail};
 use binnacle_magnetics::angle::wrap_180;
 use binnacle_magnetics::time::Timestamp;

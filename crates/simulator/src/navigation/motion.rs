@@ -1,9 +1,9 @@
 //! Motion of a ship: limited rate of turn, yaw and roll in the sea, slow
 //! changes of speed, and drift by the current.
 
-use crate::passage::Order;
-use crate::process::{Swing, Wander};
+use crate::navigation::passage::Order;
 use crate::random::Random;
+use crate::random::process::{Swing, Wander};
 use crate::scenario::ShipPlan;
 use binnacle_magnetics::angle::{wrap_180, wrap_360};
 use binnacle_magnetics::position::Position;

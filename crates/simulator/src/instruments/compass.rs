@@ -6,8 +6,8 @@
 //! the Gaussian error that a turn leaves for two to three minutes.
 
 use crate::poisson::{Field, Magnetism};
-use crate::process::Wander;
 use crate::random::Random;
+use crate::random::process::Wander;
 use crate::scenario::ShipPlan;
 use binnacle_magnetics::angle::wrap_180;
 

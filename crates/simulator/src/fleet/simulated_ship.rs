@@ -1,15 +1,15 @@
 //! A simulated ship with its line: sends sentences at the client's pace or in
 //! real time.
 
-use super::Run;
+use super::run::Run;
 use crate::cli::BadInput;
 use crate::clock;
 use crate::line::TcpLine;
 use anyhow::Result;
 use binnacle_magnetics::time::Timestamp;
+use binnacle_simulator::nmea::Talker;
 use binnacle_simulator::scenario::{Scenario, ShipPlan};
 use binnacle_simulator::ship::Ship;
-use binnacle_simulator::talk::Talker;
 use binnacle_simulator::truth::{Log, Place, Truth, place};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;

@@ -4,7 +4,7 @@
 //! error common to writer and reader would stay hidden. Two years of a fleet
 //! are written in minutes, so nothing is allocated once the buffer has grown.
 
-use crate::calendar::CalendarTime;
+use super::calendar::CalendarTime;
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
 

@@ -2,10 +2,10 @@
 //! alongside, and alterations for traffic.
 //!
 //! The orders change once a minute. Each is a course and a speed, which
-//! [`crate::motion`] follows within a ship's limits.
+//! [`crate::navigation::motion`] follows within a ship's limits.
 
+use crate::navigation::rhumb;
 use crate::random::Random;
-use crate::rhumb;
 use crate::scenario::{RoutePoint, ShipPlan};
 use binnacle_magnetics::angle::wrap_360;
 use binnacle_magnetics::position::Position;
