@@ -14,7 +14,7 @@ use tokio::net::{TcpListener, TcpSocket, TcpStream, UdpSocket};
 /// voyage.
 const SEND_BUFFER_BYTES: u32 = 64 * 1024;
 /// Time after which a live client that reads nothing is dropped.
-const LIVE_PATIENCE: Duration = Duration::from_secs(5);
+const LIVE_TIMEOUT: Duration = Duration::from_secs(5);
 /// The largest datagram, which fits every Ethernet.
 const DATAGRAM_BYTES: usize = 1400;
 
@@ -72,7 +72,7 @@ impl TcpLine {
         let Some(client) = &mut self.client else {
             return;
         };
-        let sent = tokio::time::timeout(LIVE_PATIENCE, client.write_all(bytes)).await;
+        let sent = tokio::time::timeout(LIVE_TIMEOUT, client.write_all(bytes)).await;
         if !matches!(sent, Ok(Ok(()))) {
             self.client = None;
         }

@@ -22,7 +22,7 @@ const DAY_DEG: f64 = 0.12;
 const STORM_S: f64 = 900.0;
 
 #[derive(Clone, Debug)]
-pub(crate) struct Surroundings {
+pub(crate) struct LocalField {
     start: Timestamp,
     storms: Vec<Storm>,
     anomalies: Vec<Anomaly>,
@@ -38,18 +38,18 @@ pub(crate) struct Surroundings {
     pub(crate) field: Field,
 }
 
-impl Surroundings {
+impl LocalField {
     pub(crate) fn new(
         scenario: &Scenario,
         ship: &str,
         seed: u64,
         start: Timestamp,
         position: Position,
-    ) -> Result<Surroundings, FieldError> {
+    ) -> Result<LocalField, FieldError> {
         let mut random = Random::new(seed, ship, "surroundings");
         let mut chart = Chart::new(start)?;
         let charted = chart.field(position, start);
-        Ok(Surroundings {
+        Ok(LocalField {
             start,
             storms: scenario.storms.clone(),
             anomalies: scenario.anomalies.clone(),

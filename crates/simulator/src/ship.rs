@@ -7,7 +7,7 @@
 use crate::instruments::compass::{Compass, Exposure};
 use crate::instruments::gyro::Gyro;
 use crate::instruments::satellite::Satellite;
-use crate::local_field::Surroundings;
+use crate::local_field::LocalField;
 use crate::navigation::motion::Motion;
 use crate::navigation::passage::{Order, Passage};
 use crate::poisson::{Field, Magnetism};
@@ -69,7 +69,7 @@ pub struct Ship {
     passage: Passage,
     order: Order,
     motion: Motion,
-    surroundings: Surroundings,
+    local_field: LocalField,
     magnetism: Magnetism,
     berth: Berth,
     compass: Compass,
@@ -97,7 +97,7 @@ impl Ship {
         start: Timestamp,
     ) -> Result<Ship, FieldError> {
         let mut motion = Motion::new(plan, seed);
-        let surroundings = Surroundings::new(scenario, &plan.name, seed, start, motion.position)?;
+        let local_field = LocalField::new(scenario, &plan.name, seed, start, motion.position)?;
         let mut passage = Passage::new(plan, seed);
         let order = passage.step(0.0, motion.position);
         motion.begin(order);
@@ -110,7 +110,7 @@ impl Ship {
             passage,
             order,
             motion,
-            surroundings,
+            local_field,
             magnetism: plan.magnetism,
             berth: Berth {
                 steel: None,
@@ -163,14 +163,14 @@ impl Ship {
 
     /// Charted variation here and now, degrees east.
     pub fn charted_variation_deg(&self) -> f64 {
-        self.surroundings.charted.declination().degrees_east()
+        self.local_field.charted.declination().degrees_east()
     }
 
     /// Charted field here and now.
     pub fn charted_field(&self) -> Field {
         Field {
-            h_nt: self.surroundings.charted.h_nt(),
-            z_nt: self.surroundings.charted.z_nt,
+            h_nt: self.local_field.charted.h_nt(),
+            z_nt: self.local_field.charted.z_nt,
         }
     }
 
@@ -219,8 +219,8 @@ impl Ship {
             dt,
             &Exposure {
                 magnetism: &at_compass,
-                field: self.surroundings.field,
-                magnetic_deg: motion.heading_deg - self.surroundings.variation_deg,
+                field: self.local_field.field,
+                magnetic_deg: motion.heading_deg - self.local_field.variation_deg,
                 roll_deg: motion.roll_deg,
                 turned_deg: wrap_180(motion.heading_deg - before_deg),
                 sea: motion.sea,
@@ -255,7 +255,7 @@ impl Ship {
         self.order = self.passage.step(elapsed_s, self.motion.position);
         self.motion.step_slow(elapsed_s);
         let run_nm = std::mem::take(&mut self.run_nm);
-        self.surroundings
+        self.local_field
             .step(elapsed_s, run_nm, self.motion.position, time);
         self.magnetism = magnetism_at(&self.plan, day);
         self.gyro.step_slow(elapsed_s, day, &self.motion);

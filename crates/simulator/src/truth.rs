@@ -13,7 +13,7 @@ const HOUR_S: f64 = 3600.0;
 
 /// Records the truth of one ship's voyage.
 #[derive(Clone, Debug)]
-pub struct Log {
+pub struct TruthRecorder {
     hours: Vec<Hour>,
     next_hour: Timestamp,
 }
@@ -30,7 +30,7 @@ pub struct Truth {
     gyro_constant_deg: f64,
     satellite_alignment_deg: Option<f64>,
     epochs: Vec<Epoch>,
-    events: Vec<Happening>,
+    events: Vec<EventRecord>,
     hours: Vec<Hour>,
     at_the_end: Place,
 }
@@ -59,7 +59,7 @@ struct OverLambda {
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct Happening {
+struct EventRecord {
     kind: &'static str,
     from: Timestamp,
     to: Option<Timestamp>,
@@ -109,17 +109,17 @@ pub struct Row {
     pub deviation_deg: f64,
 }
 
-impl Log {
+impl TruthRecorder {
     /// Creates an empty record of a voyage about to begin.
-    pub fn new(ship: &Ship) -> Log {
-        Log {
+    pub fn new(ship: &Ship) -> TruthRecorder {
+        TruthRecorder {
             hours: Vec::new(),
             next_hour: ship.start(),
         }
     }
 
     /// Records the ship's state when another hour has passed.
-    pub fn note(&mut self, ship: &Ship) {
+    pub fn record(&mut self, ship: &Ship) {
         if ship.time() < self.next_hour {
             return;
         }
@@ -154,7 +154,7 @@ impl Log {
             gyro_constant_deg: plan.gyro.constant_deg,
             satellite_alignment_deg: plan.satellite.map(|satellite| satellite.alignment_deg),
             epochs: epochs(ship),
-            events: happenings(scenario, ship),
+            events: event_records(scenario, ship),
             hours: self.hours.clone(),
             at_the_end: place(ship),
         }
@@ -229,7 +229,7 @@ fn over_lambda(magnetism: &Magnetism) -> OverLambda {
     }
 }
 
-fn happenings(scenario: &Scenario, ship: &Ship) -> Vec<Happening> {
+fn event_records(scenario: &Scenario, ship: &Ship) -> Vec<EventRecord> {
     let at = |day: f64| ship.start().plus_seconds(day * 86_400.0);
     let own = ship.plan().events.iter().map(|event| match event {
         Event::Lightning {
@@ -237,7 +237,7 @@ fn happenings(scenario: &Scenario, ship: &Ship) -> Vec<Happening> {
             b_nt,
             returning,
             return_days,
-        } => Happening {
+        } => EventRecord {
             kind: "lightning",
             from: at(*day),
             to: None,
@@ -249,7 +249,7 @@ fn happenings(scenario: &Scenario, ship: &Ship) -> Vec<Happening> {
             from_day,
             to_day,
             magnetism,
-        } => Happening {
+        } => EventRecord {
             kind: "cargo",
             from: at(*from_day),
             to: Some(at(*to_day)),
@@ -260,7 +260,7 @@ fn happenings(scenario: &Scenario, ship: &Ship) -> Vec<Happening> {
             to_day,
             offset_deg,
             drift_deg_per_h,
-        } => Happening {
+        } => EventRecord {
             kind: "gyro_fault",
             from: at(*from_day),
             to: Some(at(*to_day)),
@@ -269,13 +269,13 @@ fn happenings(scenario: &Scenario, ship: &Ship) -> Vec<Happening> {
             }),
         },
     });
-    let storm = |storm: &Storm| Happening {
+    let storm = |storm: &Storm| EventRecord {
         kind: "storm",
         from: at(storm.day),
         to: Some(at(storm.day + storm.hours / 24.0)),
         detail: serde_json::json!({ "strength_nt": storm.strength_nt }),
     };
-    let anomaly = |anomaly: &Anomaly| Happening {
+    let anomaly = |anomaly: &Anomaly| EventRecord {
         kind: "anomaly",
         from: ship.start(),
         to: None,

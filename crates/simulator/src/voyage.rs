@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use binnacle_magnetics::time::Timestamp;
 use binnacle_simulator::nmea::Talker;
 use binnacle_simulator::ship::Ship;
-use binnacle_simulator::truth::Log;
+use binnacle_simulator::truth::TruthRecorder;
 use std::fs::File;
 use std::io::Write;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -34,7 +34,7 @@ pub(crate) async fn run(args: &VoyageArgs) -> Result<ExitCode> {
     let seed = args.seed.unwrap_or(scenario.seed);
     let ship = Ship::new(&scenario, plan, seed, start)
         .map_err(|error| BadInput(format!("--start: {error}")))?;
-    let mut log = Log::new(&ship);
+    let mut recorder = TruthRecorder::new(&ship);
     let mut talker = Talker::new(&scenario, ship, seed);
     let until = start.plus_seconds(days * 86_400.0);
     let partial = args.out.as_deref().map(partial_path);
@@ -46,8 +46,8 @@ pub(crate) async fn run(args: &VoyageArgs) -> Result<ExitCode> {
         if args.real_time {
             wait_for(talker.next_time(), ahead_s).await;
         }
-        talker.speak(&mut buffer);
-        log.note(talker.ship());
+        talker.write_group(&mut buffer);
+        recorder.record(talker.ship());
         if args.real_time || buffer.len() >= BUFFER_BYTES {
             bytes += buffer.len();
             sink.send(&buffer).await?;
@@ -60,7 +60,7 @@ pub(crate) async fn run(args: &VoyageArgs) -> Result<ExitCode> {
         finish(partial, out)?;
     }
     if let Some(path) = &args.truth {
-        let truth = log.truth(&scenario, seed, talker.ship());
+        let truth = recorder.truth(&scenario, seed, talker.ship());
         write_whole(path, &serde_json::to_vec(&truth)?)?;
     }
     report(&talker, bytes, began.elapsed())?;

@@ -1,8 +1,8 @@
 //! The real agents: installs, watches and stops them.
 
 use super::agent_config::{Ports, agent_toml};
-use super::server_api::Shore;
-use super::simulated_ship::Sailing;
+use super::server_api::ServerApi;
+use super::simulated_ship::SimulatedShip;
 use crate::cli::BadInput;
 use anyhow::{Context, Result, bail, ensure};
 use rustix::process::{Pid, Signal, kill_process};
@@ -20,7 +20,7 @@ use tokio::task::JoinSet;
 const RESTARTS: u32 = 20;
 const RESTART_AFTER: Duration = Duration::from_secs(1);
 /// Time for an agent to finish and close its spool.
-const TIME_TO_END: Duration = Duration::from_secs(10);
+const STOP_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// A vessel on the server, and its agent's installation.
 pub(super) struct Vessel {
@@ -42,8 +42,8 @@ pub(super) struct Agents {
 /// Creates the vessel on the server, writes the agent's configuration and
 /// enrols it.
 pub(super) async fn install(
-    shore: &Shore,
-    ship: &Sailing,
+    api: &ServerApi,
+    ship: &SimulatedShip,
     program: &Path,
     folder: &Path,
 ) -> Result<Vessel> {
@@ -55,13 +55,13 @@ pub(super) async fn install(
         .map_err(|error| BadInput(format!("{}: {error}", folder.display())))?;
     let ports = Ports::choose(ship.address()?)?;
     std::fs::write(folder.join("agent.toml"), agent_toml(ship.plan(), ports))?;
-    let id = shore.create_vessel(ship.plan()).await?;
-    let code = shore.create_enrolment_code(&id).await?;
+    let id = api.create_vessel(ship.plan()).await?;
+    let code = api.create_enrolment_code(&id).await?;
     let enrolment = Command::new(program)
         .args([
             "enrol",
             "--server",
-            shore.server(),
+            api.server(),
             "--code",
             &code,
             "--config",
@@ -131,7 +131,7 @@ async fn watch(
     for _ in 0..RESTARTS {
         let status = tokio::select! {
             status = child.wait() => status?,
-            () = stop_asked(&mut stop) => return end(child).await,
+            () = wait_for_stop(&mut stop) => return end(child).await,
         };
         writeln!(
             std::io::stderr(),
@@ -139,7 +139,7 @@ async fn watch(
         )?;
         tokio::select! {
             () = tokio::time::sleep(RESTART_AFTER) => {}
-            () = stop_asked(&mut stop) => return Ok(()),
+            () = wait_for_stop(&mut stop) => return Ok(()),
         }
         child = spawn(&mut command, &log)?;
     }
@@ -151,7 +151,7 @@ async fn watch(
 }
 
 /// Returns when all agents are to end, or when the sender is gone.
-async fn stop_asked(stop: &mut watch::Receiver<bool>) {
+async fn wait_for_stop(stop: &mut watch::Receiver<bool>) {
     stop.wait_for(|stop| *stop).await.ok();
 }
 
@@ -172,7 +172,7 @@ async fn end(mut child: Child) -> Result<()> {
         // It may have ended in the meantime.
         kill_process(id, Signal::TERM).ok();
     }
-    if tokio::time::timeout(TIME_TO_END, child.wait())
+    if tokio::time::timeout(STOP_TIMEOUT, child.wait())
         .await
         .is_err()
     {

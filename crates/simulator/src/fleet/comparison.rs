@@ -7,8 +7,8 @@
 
 use super::agent::Vessel;
 use super::run::Run;
-use super::server_api::{Predicted, Shore, Uploads};
-use super::simulated_ship::Sailing;
+use super::server_api::{Predicted, ServerApi, Uploads};
+use super::simulated_ship::SimulatedShip;
 use anyhow::{Result, bail};
 use binnacle_magnetics::angle::wrap_180;
 use binnacle_magnetics::time::Timestamp;
@@ -18,29 +18,29 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::time::{Duration, Instant};
 
-const LEAST_SHARE: f64 = 0.9;
-const ASK_EVERY: Duration = Duration::from_secs(1);
+const MIN_HEADINGS_IN_BAND: f64 = 0.9;
+const POLL_INTERVAL: Duration = Duration::from_secs(1);
 /// Time for the server to catch up after the last change.
-const PATIENCE: Duration = Duration::from_mins(3);
+const TIMEOUT: Duration = Duration::from_mins(3);
 /// After this long without change, a model of older data is final.
-const QUIET: Duration = Duration::from_secs(30);
+const QUIET_TIME: Duration = Duration::from_secs(30);
 /// Sentences are sent once a minute in port.
-const SLACK_S: f64 = 150.0;
+const READ_TOLERANCE_S: f64 = 150.0;
 
 /// The comparison of all vessels.
 #[derive(Debug, Serialize)]
-pub(super) struct Verdict {
+pub(super) struct Comparison {
     scenario: String,
     seed: u64,
     from: Timestamp,
     until: Timestamp,
     holds: bool,
-    vessels: Vec<Judged>,
+    vessels: Vec<VesselComparison>,
 }
 
 /// The comparison of one vessel.
 #[derive(Debug, Serialize)]
-struct Judged {
+struct VesselComparison {
     name: String,
     vessel_id: String,
     batches: u64,
@@ -54,11 +54,11 @@ struct Judged {
     holds: bool,
     worst_error_deg: Option<f64>,
     mean_band_deg: Option<f64>,
-    rows: Vec<Compared>,
+    rows: Vec<HeadingComparison>,
 }
 
 #[derive(Clone, Copy, Debug, Serialize)]
-struct Compared {
+struct HeadingComparison {
     compass_deg: f64,
     true_deviation_deg: f64,
     deviation_deg: f64,
@@ -67,32 +67,32 @@ struct Compared {
 }
 
 /// Waits for the server and compares every vessel.
-pub(super) async fn judge(
+pub(super) async fn compare_fleet(
     run: &Run<'_>,
-    shore: &Shore,
+    api: &ServerApi,
     vessels: &[Vessel],
-    fleet: &[Sailing],
-) -> Result<Verdict> {
-    let mut judged = Vec::new();
+    fleet: &[SimulatedShip],
+) -> Result<Comparison> {
+    let mut compared = Vec::new();
     for vessel in vessels {
-        wait_for(shore, vessel, run.until).await?;
+        wait_for(api, vessel, run.until).await?;
     }
     for (vessel, ship) in vessels.iter().zip(fleet) {
-        judged.push(compare(shore, vessel, &ship.place()).await?);
+        compared.push(compare(api, vessel, &ship.place()).await?);
     }
-    Ok(Verdict {
+    Ok(Comparison {
         scenario: run.scenario.name.clone(),
         seed: run.seed,
         from: run.from,
         until: run.until,
-        holds: judged.iter().all(|vessel| vessel.holds),
-        vessels: judged,
+        holds: compared.iter().all(|vessel| vessel.holds),
+        vessels: compared,
     })
 }
 
 /// Waits until the agent has sent its sealed batches and the model includes
 /// them.
-async fn wait_for(shore: &Shore, vessel: &Vessel, until: Timestamp) -> Result<()> {
+async fn wait_for(api: &ServerApi, vessel: &Vessel, until: Timestamp) -> Result<()> {
     writeln!(
         std::io::stderr(),
         "waiting for the model of {}",
@@ -101,31 +101,31 @@ async fn wait_for(shore: &Shore, vessel: &Vessel, until: Timestamp) -> Result<()
     let mut last = None;
     let mut moved = Instant::now();
     loop {
-        let standing = standing(shore, vessel, until).await?;
-        if standing.settled {
+        let state = read_state(api, vessel, until).await?;
+        if state.settled {
             return Ok(());
         }
-        if last.as_ref() != Some(&standing) {
+        if last.as_ref() != Some(&state) {
             moved = Instant::now();
         }
-        if standing.sent && moved.elapsed() > QUIET {
+        if state.sent && moved.elapsed() > QUIET_TIME {
             return Ok(());
         }
-        if moved.elapsed() > PATIENCE {
+        if moved.elapsed() > TIMEOUT {
             bail!(
-                "{}: nothing has moved for {} s: {standing:?}",
+                "{}: nothing has moved for {} s: {state:?}",
                 vessel.name,
-                PATIENCE.as_secs()
+                TIMEOUT.as_secs()
             );
         }
-        last = Some(standing);
-        tokio::time::sleep(ASK_EVERY).await;
+        last = Some(state);
+        tokio::time::sleep(POLL_INTERVAL).await;
     }
 }
 
 /// The progress of a vessel's data.
 #[derive(Debug, PartialEq, Eq)]
-struct Standing {
+struct DataState {
     ship_time: Option<Timestamp>,
     waiting_batches: Option<u64>,
     uploads: Uploads,
@@ -136,9 +136,9 @@ struct Standing {
     settled: bool,
 }
 
-async fn standing(shore: &Shore, vessel: &Vessel, until: Timestamp) -> Result<Standing> {
+async fn read_state(api: &ServerApi, vessel: &Vessel, until: Timestamp) -> Result<DataState> {
     // The agent may be restarting.
-    let status = shore.agent_status(vessel.page).await.unwrap_or_default();
+    let status = api.agent_status(vessel.page).await.unwrap_or_default();
     let ship_time = status["ship_time"]
         .as_str()
         .and_then(|time| Timestamp::parse(time).ok());
@@ -155,19 +155,19 @@ async fn standing(shore: &Shore, vessel: &Vessel, until: Timestamp) -> Result<St
             vessel.name
         );
     }
-    let on_shore = shore.vessel(&vessel.id).await?;
-    let uploads = shore.uploads(&vessel.id).await?;
-    let model = on_shore
+    let vessel_state = api.vessel(&vessel.id).await?;
+    let uploads = api.uploads(&vessel.id).await?;
+    let model = vessel_state
         .model
         .map(|model| (model.version, model.data_until));
-    let read_all = ship_time.is_some_and(|time| until.seconds_since(time) < SLACK_S);
+    let read_all = ship_time.is_some_and(|time| until.seconds_since(time) < READ_TOLERANCE_S);
     let sent = read_all && waiting_batches == Some(0);
-    let newest = on_shore.last_position.map(|position| position.at);
+    let newest = vessel_state.last_position.map(|position| position.at);
     let knows_all = match (&model, newest) {
         (Some((_, data_until)), Some(newest)) => *data_until >= newest,
         _ => false,
     };
-    Ok(Standing {
+    Ok(DataState {
         ship_time,
         waiting_batches,
         uploads,
@@ -177,18 +177,15 @@ async fn standing(shore: &Shore, vessel: &Vessel, until: Timestamp) -> Result<St
     })
 }
 
-async fn compare(shore: &Shore, vessel: &Vessel, truth: &Place) -> Result<Judged> {
-    let rows = shore
-        .deviation(&vessel.id, truth)
-        .await?
-        .unwrap_or_default();
-    let uploads = shore.uploads(&vessel.id).await?;
-    let version = shore
+async fn compare(api: &ServerApi, vessel: &Vessel, truth: &Place) -> Result<VesselComparison> {
+    let rows = api.deviation(&vessel.id, truth).await?.unwrap_or_default();
+    let uploads = api.uploads(&vessel.id).await?;
+    let version = api
         .vessel(&vessel.id)
         .await?
         .model
         .map(|model| model.version);
-    let compared: Vec<Compared> = truth
+    let compared: Vec<HeadingComparison> = truth
         .rows
         .iter()
         .filter_map(|truth| {
@@ -206,7 +203,7 @@ async fn compare(shore: &Shore, vessel: &Vessel, truth: &Place) -> Result<Judged
     let mean = bands.iter().sum::<f64>() / bands.len() as f64;
     let in_band = compared.iter().filter(|row| row.in_band).count();
     let headings = truth.rows.len();
-    Ok(Judged {
+    Ok(VesselComparison {
         name: vessel.name.clone(),
         vessel_id: vessel.id.clone(),
         batches: uploads.batches,
@@ -217,16 +214,16 @@ async fn compare(shore: &Shore, vessel: &Vessel, truth: &Place) -> Result<Judged
         at: truth.at,
         headings,
         in_band,
-        holds: in_band as f64 >= LEAST_SHARE * headings as f64,
+        holds: in_band as f64 >= MIN_HEADINGS_IN_BAND * headings as f64,
         worst_error_deg: worst,
         mean_band_deg: (!bands.is_empty()).then_some(mean),
         rows: compared,
     })
 }
 
-fn compare_row(predicted: &Predicted, true_deviation_deg: f64) -> Compared {
+fn compare_row(predicted: &Predicted, true_deviation_deg: f64) -> HeadingComparison {
     let error = wrap_180(predicted.deviation_deg - true_deviation_deg).abs();
-    Compared {
+    HeadingComparison {
         compass_deg: predicted.compass_deg,
         true_deviation_deg,
         deviation_deg: predicted.deviation_deg,
@@ -235,7 +232,7 @@ fn compare_row(predicted: &Predicted, true_deviation_deg: f64) -> Compared {
     }
 }
 
-impl Verdict {
+impl Comparison {
     pub(super) fn holds(&self) -> bool {
         self.holds
     }

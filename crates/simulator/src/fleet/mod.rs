@@ -18,11 +18,11 @@ use crate::clock;
 use agent::Agents;
 use anyhow::{Context, Result};
 use binnacle_magnetics::time::Timestamp;
-use comparison::Verdict;
+use comparison::Comparison;
 use progress::Progress;
 use run::Run;
-use server_api::Shore;
-use simulated_ship::Sailing;
+use server_api::ServerApi;
+use simulated_ship::SimulatedShip;
 use std::io::{Read, Write};
 use std::path::Path;
 use std::process::ExitCode;
@@ -31,7 +31,7 @@ use tokio::signal::unix::{SignalKind, signal};
 use tokio::task::JoinSet;
 
 /// Exit code of a program ended by a signal, as shells have it.
-const STOPPED: u8 = 130;
+const INTERRUPTED: u8 = 130;
 /// The longest gap between the end of the past and now that ships catch up;
 /// after a longer one they continue from where they are.
 const CATCH_UP_S: f64 = 86_400.0;
@@ -49,46 +49,46 @@ pub(crate) async fn run(args: &FleetArgs) -> Result<ExitCode> {
     };
     let fleet = run.launch()?;
     let mut agents = Agents::default();
-    let mut verdict = None;
+    let mut holds = None;
     let ended = tokio::select! {
-        ended = run.sail(fleet, &mut agents, &mut verdict) => ended,
-        stopped = stop_asked() => stopped,
+        ended = run.sail(fleet, &mut agents, &mut holds) => ended,
+        stopped = wait_for_signal() => stopped,
     };
     agents.stop().await;
     ended?;
-    Ok(match verdict {
+    Ok(match holds {
         Some(true) => ExitCode::SUCCESS,
         Some(false) => ExitCode::FAILURE,
         None if args.serve_only => ExitCode::SUCCESS,
-        None => ExitCode::from(STOPPED),
+        None => ExitCode::from(INTERRUPTED),
     })
 }
 
 impl Run<'_> {
     /// Starts every ship at its berth, listening for a client.
-    fn launch(&self) -> Result<Vec<Sailing>> {
+    fn launch(&self) -> Result<Vec<SimulatedShip>> {
         let ships = self.scenario.ships.iter();
         ships
-            .map(|plan| Sailing::new(&self.scenario, plan, self.seed, self.from))
+            .map(|plan| SimulatedShip::new(&self.scenario, plan, self.seed, self.from))
             .collect()
     }
 
     async fn sail(
         &self,
-        fleet: Vec<Sailing>,
+        fleet: Vec<SimulatedShip>,
         agents: &mut Agents,
-        verdict: &mut Option<bool>,
+        holds: &mut Option<bool>,
     ) -> Result<()> {
         let progress = Arc::new(Progress::new(fleet.len(), self.from, self.until));
         if self.args.serve_only {
             return self.serve(fleet, &progress).await;
         }
-        let shore = self.sign_in().await?;
+        let api = self.sign_in().await?;
         let mut vessels = Vec::new();
         for ship in &fleet {
             let folder = self.work_dir()?.join(agent_config::slug(ship.name()));
             let program = self.args.agent.as_deref().context("--agent is required")?;
-            vessels.push(agent::install(&shore, ship, program, &folder).await?);
+            vessels.push(agent::install(&api, ship, program, &folder).await?);
         }
         for vessel in &vessels {
             agents.start(vessel)?;
@@ -96,12 +96,12 @@ impl Run<'_> {
         let ids: Vec<String> = vessels.iter().map(|vessel| vessel.id.clone()).collect();
         let past = async {
             let fleet = self
-                .sail_past(fleet, &progress, progress.show(&shore, &ids))
+                .sail_past(fleet, &progress, progress.show(&api, &ids))
                 .await?;
             self.write_truths(&fleet)?;
-            let judged = comparison::judge(self, &shore, &vessels, &fleet).await?;
-            self.write_report(&judged)?;
-            *verdict = Some(judged.holds());
+            let comparison = comparison::compare_fleet(self, &api, &vessels, &fleet).await?;
+            self.write_report(&comparison)?;
+            *holds = Some(comparison.holds());
             if self.args.live {
                 self.sail_live(fleet).await?;
             }
@@ -114,12 +114,12 @@ impl Run<'_> {
     }
 
     /// Serves the sentences for agents that are run elsewhere.
-    async fn serve(&self, fleet: Vec<Sailing>, progress: &Arc<Progress>) -> Result<()> {
+    async fn serve(&self, fleet: Vec<SimulatedShip>, progress: &Arc<Progress>) -> Result<()> {
         let ships = fleet
             .iter()
             .map(|ship| Ok(serde_json::json!({"name": ship.name(), "address": ship.address()?})))
             .collect::<Result<Vec<_>>>()?;
-        say(&serde_json::json!({"from": self.from, "until": self.until, "ships": ships}))?;
+        print_json(&serde_json::json!({"from": self.from, "until": self.until, "ships": ships}))?;
         let fleet = self
             .sail_past(fleet, progress, std::future::pending())
             .await?;
@@ -127,7 +127,7 @@ impl Run<'_> {
             let truths: Vec<_> = fleet.iter().map(|ship| ship.truth(self)).collect();
             write_whole(path, &serde_json::to_vec(&truths)?)?;
         }
-        say(&serde_json::json!({"sailed": true}))?;
+        print_json(&serde_json::json!({"sailed": true}))?;
         if self.args.live {
             return self.sail_live(fleet).await;
         }
@@ -140,15 +140,15 @@ impl Run<'_> {
     /// Sails all ships to the end of the past, each at its agent's pace.
     async fn sail_past(
         &self,
-        fleet: Vec<Sailing>,
+        fleet: Vec<SimulatedShip>,
         progress: &Arc<Progress>,
         shown: impl Future<Output = ()>,
-    ) -> Result<Vec<Sailing>> {
+    ) -> Result<Vec<SimulatedShip>> {
         let mut tasks = JoinSet::new();
         for (index, mut ship) in fleet.into_iter().enumerate() {
             let (until, progress) = (self.until, Arc::clone(progress));
             tasks.spawn(async move {
-                ship.sail_to(until, |time| progress.note(index, time))
+                ship.sail_to(until, |time| progress.set_time(index, time))
                     .await?;
                 anyhow::Ok((index, ship))
             });
@@ -169,7 +169,7 @@ impl Run<'_> {
         Ok(arrived.into_iter().map(|(_, ship)| ship).collect())
     }
 
-    async fn sail_live(&self, fleet: Vec<Sailing>) -> Result<()> {
+    async fn sail_live(&self, fleet: Vec<SimulatedShip>) -> Result<()> {
         let behind_s = clock::now().seconds_since(self.until);
         let shift_s = if (0.0..CATCH_UP_S).contains(&behind_s) {
             0.0
@@ -191,7 +191,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    async fn sign_in(&self) -> Result<Shore> {
+    async fn sign_in(&self) -> Result<ServerApi> {
         let server = self
             .args
             .server
@@ -207,7 +207,7 @@ impl Run<'_> {
                 BadInput("a password is needed: --password-stdin or BINNACLE_PASSWORD".to_owned())
             })?
         };
-        Shore::sign_in(server, email, &password).await
+        ServerApi::sign_in(server, email, &password).await
     }
 
     fn work_dir(&self) -> Result<&Path> {
@@ -217,7 +217,7 @@ impl Run<'_> {
             .context("--work-dir is required")
     }
 
-    fn write_truths(&self, fleet: &[Sailing]) -> Result<()> {
+    fn write_truths(&self, fleet: &[SimulatedShip]) -> Result<()> {
         for ship in fleet {
             let path = self
                 .work_dir()?
@@ -228,18 +228,18 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn write_report(&self, verdict: &Verdict) -> Result<()> {
+    fn write_report(&self, comparison: &Comparison) -> Result<()> {
         let mut out = std::io::stdout().lock();
-        out.write_all(verdict.table().as_bytes())?;
+        out.write_all(comparison.table().as_bytes())?;
         out.flush()?;
         match &self.args.report {
-            Some(path) => write_whole(path, &serde_json::to_vec_pretty(verdict)?),
+            Some(path) => write_whole(path, &serde_json::to_vec_pretty(comparison)?),
             None => Ok(()),
         }
     }
 }
 
-fn say(line: &serde_json::Value) -> Result<()> {
+fn print_json(line: &serde_json::Value) -> Result<()> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "{line}")?;
     out.flush()?;
@@ -251,7 +251,7 @@ fn whole_second(time: Timestamp) -> Timestamp {
 }
 
 /// Returns when a signal asks the program to end.
-async fn stop_asked() -> Result<()> {
+async fn wait_for_signal() -> Result<()> {
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;
     let mut hangup = signal(SignalKind::hangup())?;

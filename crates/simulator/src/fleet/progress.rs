@@ -1,14 +1,14 @@
 //! Shows the progress of the fleet.
 
-use super::server_api::{Shore, Uploads};
+use super::server_api::{ServerApi, Uploads};
 use binnacle_magnetics::time::Timestamp;
 use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::{Duration, Instant};
 
-const EVERY: Duration = Duration::from_secs(2);
+const INTERVAL: Duration = Duration::from_secs(2);
 /// A log needs fewer lines than a terminal.
-const EVERY_IN_A_LOG: Duration = Duration::from_secs(10);
+const LOG_INTERVAL: Duration = Duration::from_secs(10);
 
 /// The time of each ship.
 #[derive(Debug)]
@@ -30,19 +30,19 @@ impl Progress {
         }
     }
 
-    pub(super) fn note(&self, ship: usize, time: Timestamp) {
+    pub(super) fn set_time(&self, ship: usize, time: Timestamp) {
         self.times[ship].store(time.micros(), Ordering::Relaxed);
     }
 
     /// Prints a line at intervals, forever.
-    pub(super) async fn show(&self, shore: &Shore, vessels: &[String]) {
+    pub(super) async fn show(&self, api: &ServerApi, vessels: &[String]) {
         let terminal = std::io::stderr().is_terminal();
-        let mut ticks = tokio::time::interval(if terminal { EVERY } else { EVERY_IN_A_LOG });
+        let mut ticks = tokio::time::interval(if terminal { INTERVAL } else { LOG_INTERVAL });
         loop {
             ticks.tick().await;
             let mut uploads = Uploads::default();
             for vessel in vessels {
-                let found = shore.uploads(vessel).await.unwrap_or_default();
+                let found = api.uploads(vessel).await.unwrap_or_default();
                 uploads.batches += found.batches;
                 uploads.samples += found.samples;
             }

@@ -10,10 +10,10 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 use std::time::Duration;
 
-const PATIENCE: Duration = Duration::from_mins(1);
+const TIMEOUT: Duration = Duration::from_mins(1);
 
 /// A signed-in session.
-pub(super) struct Shore {
+pub(super) struct ServerApi {
     server: String,
     client: Client,
     cookie: String,
@@ -69,26 +69,26 @@ struct DeviationTable {
     rows: Vec<Predicted>,
 }
 
-impl Shore {
-    pub(super) async fn sign_in(server: &str, email: &str, password: &str) -> Result<Shore> {
+impl ServerApi {
+    pub(super) async fn sign_in(server: &str, email: &str, password: &str) -> Result<ServerApi> {
         let server = server.trim_end_matches('/').to_owned();
-        let client = Client::builder().timeout(PATIENCE).build()?;
-        let answer = client
+        let client = Client::builder().timeout(TIMEOUT).build()?;
+        let response = client
             .post(format!("{server}/api/v1/session"))
             .json(&json!({"email": email, "password": password}))
             .send()
             .await
             .with_context(|| format!("cannot reach {server}"))?;
-        let cookies = answer.headers().get_all("set-cookie").iter();
+        let cookies = response.headers().get_all("set-cookie").iter();
         let cookie = cookies
             .filter_map(|cookie| cookie.to_str().ok())
             .filter_map(|cookie| cookie.split(';').next())
             // Only for https does its name begin with `__Host-`.
             .find(|cookie| cookie.contains("binnacle_session="))
             .map(str::to_owned);
-        read::<Value>(answer).await.context("signing in")?;
+        read::<Value>(response).await.context("signing in")?;
         let cookie = cookie.context("signing in: the server gave no session cookie")?;
-        Ok(Shore {
+        Ok(ServerApi {
             server,
             client,
             cookie,
@@ -141,11 +141,11 @@ impl Shore {
     ) -> Result<Option<Vec<Predicted>>> {
         let Place { lat, lon, at, .. } = place;
         let path = format!("/vessels/{vessel}/deviation?lat={lat}&lon={lon}&at={at}&step_deg=10");
-        let answer = self.request(Method::GET, &path).send().await?;
-        if answer.status() == StatusCode::NOT_FOUND {
+        let response = self.request(Method::GET, &path).send().await?;
+        if response.status() == StatusCode::NOT_FOUND {
             return Ok(None);
         }
-        let table: DeviationTable = read(answer).await?;
+        let table: DeviationTable = read(response).await?;
         Ok(Some(table.rows))
     }
 
@@ -161,13 +161,13 @@ impl Shore {
     }
 
     async fn get<T: DeserializeOwned>(&self, path: &str) -> Result<T> {
-        let answer = self.request(Method::GET, path).send().await?;
-        read(answer).await.with_context(|| format!("GET {path}"))
+        let response = self.request(Method::GET, path).send().await?;
+        read(response).await.with_context(|| format!("GET {path}"))
     }
 
     async fn post<T: DeserializeOwned>(&self, path: &str, body: &Value) -> Result<T> {
-        let answer = self.request(Method::POST, path).json(body).send().await?;
-        read(answer).await.with_context(|| format!("POST {path}"))
+        let response = self.request(Method::POST, path).json(body).send().await?;
+        read(response).await.with_context(|| format!("POST {path}"))
     }
 
     fn request(&self, method: Method, path: &str) -> RequestBuilder {
@@ -179,9 +179,9 @@ impl Shore {
 }
 
 /// Returns the content of a response, or its problem as an error.
-async fn read<T: DeserializeOwned>(answer: reqwest::Response) -> Result<T> {
-    let status = answer.status();
-    let body = answer.bytes().await?;
+async fn read<T: DeserializeOwned>(response: reqwest::Response) -> Result<T> {
+    let status = response.status();
+    let body = response.bytes().await?;
     if status.is_success() {
         return serde_json::from_slice(&body).context("the answer is not as agreed");
     }

@@ -10,31 +10,31 @@ use binnacle_magnetics::time::Timestamp;
 use binnacle_simulator::nmea::Talker;
 use binnacle_simulator::scenario::{Scenario, ShipPlan};
 use binnacle_simulator::ship::Ship;
-use binnacle_simulator::truth::{Log, Place, Truth, place};
+use binnacle_simulator::truth::{Place, Truth, TruthRecorder, place};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
 const BUFFER_BYTES: usize = 64 * 1024;
 const LIVE_INTERVAL_S: f64 = 1.0;
 
-pub(super) struct Sailing {
+pub(super) struct SimulatedShip {
     talker: Talker,
-    log: Log,
+    recorder: TruthRecorder,
     line: TcpLine,
     buffer: Vec<u8>,
 }
 
-impl Sailing {
+impl SimulatedShip {
     pub(super) fn new(
         scenario: &Scenario,
         plan: &ShipPlan,
         seed: u64,
         from: Timestamp,
-    ) -> Result<Sailing> {
+    ) -> Result<SimulatedShip> {
         let ship = Ship::new(scenario, plan, seed, from)
             .map_err(|error| BadInput(format!("--until: {error}")))?;
-        Ok(Sailing {
-            log: Log::new(&ship),
+        Ok(SimulatedShip {
+            recorder: TruthRecorder::new(&ship),
             talker: Talker::new(scenario, ship, seed),
             line: TcpLine::listen(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)))?,
             buffer: Vec::with_capacity(BUFFER_BYTES + 1024),
@@ -54,7 +54,8 @@ impl Sailing {
     }
 
     pub(super) fn truth(&self, run: &Run<'_>) -> Truth {
-        self.log.truth(&run.scenario, run.seed, self.talker.ship())
+        self.recorder
+            .truth(&run.scenario, run.seed, self.talker.ship())
     }
 
     /// Returns the true curve at the ship's present place.
@@ -69,8 +70,8 @@ impl Sailing {
         note: impl Fn(Timestamp),
     ) -> Result<()> {
         while self.talker.next_time() <= until {
-            self.talker.speak(&mut self.buffer);
-            self.log.note(self.talker.ship());
+            self.talker.write_group(&mut self.buffer);
+            self.recorder.record(self.talker.ship());
             if self.buffer.len() >= BUFFER_BYTES {
                 self.flush().await?;
                 note(self.talker.ship().time());
@@ -93,7 +94,7 @@ impl Sailing {
             if early_s > 0.0 {
                 tokio::time::sleep(Duration::from_secs_f64(early_s)).await;
             }
-            self.talker.speak(&mut self.buffer);
+            self.talker.write_group(&mut self.buffer);
             self.line.send_live(&self.buffer).await;
             self.buffer.clear();
         }

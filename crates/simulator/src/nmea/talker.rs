@@ -76,7 +76,7 @@ impl Talker {
     }
 
     /// Advances to the next group of sentences and appends them to `out`.
-    pub fn speak(&mut self, out: &mut Vec<u8>) -> Reading {
+    pub fn write_group(&mut self, out: &mut Vec<u8>) -> Reading {
         let dt = self.interval_s();
         let reading = self.ship.step(dt);
         self.since_position_s += dt;
@@ -88,27 +88,29 @@ impl Talker {
         if due(self.since_position_s, self.timing.position_interval_s) {
             self.since_position_s = 0.0;
             let (at, sog, cog) = (reading.position, reading.sog_kn, reading.cog_deg);
-            self.say(out, |out| sentences::gprmc(out, reading.time, at, sog, cog));
-            self.say(out, |out| sentences::herot(out, reading.rate_deg_min));
+            self.write_sentence(out, |out| sentences::gprmc(out, reading.time, at, sog, cog));
+            self.write_sentence(out, |out| sentences::herot(out, reading.rate_deg_min));
         }
-        self.say(out, |out| sentences::hchdg(out, reading.compass_deg));
-        self.say(out, |out| {
+        self.write_sentence(out, |out| sentences::hchdg(out, reading.compass_deg));
+        self.write_sentence(out, |out| {
             sentences::ths(out, *b"$HETHS,", Some(reading.gyro_deg));
         });
         match reading.satellite {
             SatelliteReading::Absent => {}
-            SatelliteReading::Lost => self.say(out, |out| sentences::ths(out, *b"$GPTHS,", None)),
+            SatelliteReading::Lost => {
+                self.write_sentence(out, |out| sentences::ths(out, *b"$GPTHS,", None));
+            }
             SatelliteReading::Heading(degrees) => {
-                self.say(out, |out| sentences::ths(out, *b"$GPTHS,", Some(degrees)));
+                self.write_sentence(out, |out| sentences::ths(out, *b"$GPTHS,", Some(degrees)));
             }
         }
         if due(self.since_roll_s, ROLL_EVERY_S) {
             self.since_roll_s = 0.0;
-            self.say(out, |out| sentences::iixdr_roll(out, reading.roll_deg));
+            self.write_sentence(out, |out| sentences::iixdr_roll(out, reading.roll_deg));
         }
         if due(self.since_date_s, DATE_EVERY_S) {
             self.since_date_s = 0.0;
-            self.say(out, |out| sentences::gpzda(out, reading.time));
+            self.write_sentence(out, |out| sentences::gpzda(out, reading.time));
         }
         reading
     }
@@ -121,7 +123,7 @@ impl Talker {
         }
     }
 
-    fn say(&mut self, out: &mut Vec<u8>, write: impl FnOnce(&mut Vec<u8>)) {
+    fn write_sentence(&mut self, out: &mut Vec<u8>, write: impl FnOnce(&mut Vec<u8>)) {
         let start = out.len();
         write(out);
         self.sentences += 1;
@@ -133,7 +135,7 @@ impl Talker {
         self.until_garbage -= 1.0;
         if self.until_garbage <= 0.0 {
             self.until_garbage = until_next(self.faults.garbage, &mut self.random);
-            self.babble(out);
+            self.write_noise(out);
         }
     }
 
@@ -144,7 +146,7 @@ impl Talker {
         sentence[at.min(last)] ^= 1;
     }
 
-    fn babble(&mut self, out: &mut Vec<u8>) {
+    fn write_noise(&mut self, out: &mut Vec<u8>) {
         let length = self.random.between(3.0, 90.0) as usize;
         for _ in 0..length {
             let byte = (self.random.unit() * 256.0) as u8;

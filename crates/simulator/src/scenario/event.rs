@@ -8,7 +8,7 @@ use crate::poisson::Magnetism;
 use std::ops::Range;
 
 /// The last day of a scenario, after ten years.
-pub(super) const LATEST_DAY: f64 = 3650.0;
+pub(super) const MAX_DAY: f64 = 3650.0;
 
 pub(super) fn event(source: &Source<'_>, span: Range<usize>, raw: &RawEvent) -> Checked<Event> {
     let b_nt = match &raw.b_nt {
@@ -66,7 +66,7 @@ impl EventReader<'_> {
             let problem = format!("missing in an event of kind {:?}", self.raw.kind.get_ref());
             return Err(self.source.error(self.span.clone(), field, problem));
         };
-        self.source.number(field, value, 0.0..=LATEST_DAY)
+        self.source.number(field, value, 0.0..=MAX_DAY)
     }
 
     fn span_of_days(&self) -> Checked<(f64, f64)> {

@@ -16,7 +16,7 @@ pub(super) type Routes = BTreeMap<String, Arc<[RoutePoint]>>;
 
 /// The least directive force, as a fraction of the earth's, with which a
 /// compass can still be used.
-const LEAST_DIRECTIVE_FORCE: f64 = 0.2;
+const MIN_DIRECTIVE_FORCE: f64 = 0.2;
 
 pub(super) fn ship(
     source: &Source<'_>,
@@ -39,7 +39,7 @@ pub(super) fn ship(
         b_nt: source.vector("magnetism.b_nt", &iron.b_nt, PERMANENT_NT)?,
         chi: source.matrix("magnetism.chi", &iron.chi)?,
     };
-    waters.can_be_steered_in(&magnetism, raw.magnetism.span(), "magnetism")?;
+    waters.check_directive_force(&magnetism, raw.magnetism.span(), "magnetism")?;
     let gaussian = raw.gaussian_error_deg.as_ref();
     Ok(ShipPlan {
         name: name.to_owned(),
@@ -137,7 +137,7 @@ fn events(
                 chi: [[0.0; 3]; 3],
             },
         };
-        waters.can_be_steered_in(&magnetism.plus(&more, 1.0), raw.span(), "events")?;
+        waters.check_directive_force(&magnetism.plus(&more, 1.0), raw.span(), "events")?;
         events.push(event);
     }
     Ok(events)
@@ -153,7 +153,7 @@ struct Waters<'a> {
 impl Waters<'_> {
     /// Refuses a magnetism that leaves the compass without directive force on
     /// some heading.
-    fn can_be_steered_in(
+    fn check_directive_force(
         &self,
         magnetism: &Magnetism,
         span: Range<usize>,
@@ -167,11 +167,11 @@ impl Waters<'_> {
                 z_nt: earth.z_nt,
             };
             let force = magnetism.least_directive_force(here);
-            if force < LEAST_DIRECTIVE_FORCE {
+            if force < MIN_DIRECTIVE_FORCE {
                 let (lat, lon) = (point.position.lat_deg(), point.position.lon_deg());
                 let problem = format!(
                     "at {lat}, {lon} the force on the card falls to {force:.2} of the earth's, \
-                     less than {LEAST_DIRECTIVE_FORCE}"
+                     less than {MIN_DIRECTIVE_FORCE}"
                 );
                 return Err(self.source.error(span, field, problem));
             }

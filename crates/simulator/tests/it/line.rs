@@ -27,7 +27,7 @@ fn every_sentence_is_read_back_as_it_was_meant() {
     let mut out = Vec::new();
     for _ in 0..50_000 {
         out.clear();
-        let meant = talker.speak(&mut out);
+        let meant = talker.write_group(&mut out);
         for line in lines(&out) {
             let text = String::from_utf8_lossy(line);
             let sentence = parse(line).unwrap_or_else(|error| panic!("{text}: {error:?}"));
@@ -95,7 +95,7 @@ fn in_port_the_instruments_speak_once_a_minute() {
     let mut steps = std::collections::BTreeSet::new();
     for _ in 0..20_000 {
         let (before, alongside) = (talker.ship().time(), talker.ship().is_alongside());
-        talker.speak(&mut out);
+        talker.write_group(&mut out);
         let step = talker.ship().time().seconds_since(before).round() as u32;
         steps.insert((alongside, step));
     }

@@ -43,7 +43,7 @@ pub(crate) fn sentences(scenario: &Scenario, seed: u64, days: f64) -> Vec<u8> {
     let until = scenario.start.plus_seconds(days * 86_400.0);
     let mut out = Vec::new();
     while talker.next_time() <= until {
-        talker.speak(&mut out);
+        talker.write_group(&mut out);
     }
     out
 }

@@ -4,7 +4,7 @@ use crate::support::{sail, scenario, sentences, ship};
 use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation, wrap_180};
 use binnacle_simulator::scenario::Scenario;
 use binnacle_simulator::ship::SatelliteReading;
-use binnacle_simulator::truth::{Log, place};
+use binnacle_simulator::truth::{TruthRecorder, place};
 use std::path::Path;
 
 fn mean(values: &[f64]) -> f64 {
@@ -146,12 +146,12 @@ fn lightning_stays_and_cargo_goes_ashore_again() {
     ]"#;
     let scenario = scenario("", events);
     let mut ship = ship(&scenario, 1);
-    let mut log = Log::new(&ship);
+    let mut recorder = TruthRecorder::new(&ship);
     let mut at_noon = Vec::new();
     for _ in 0..6 {
-        sail(&mut ship, 0.5, |ship, _| log.note(ship));
+        sail(&mut ship, 0.5, |ship, _| recorder.record(ship));
         at_noon.push(ship.magnetism().b_nt);
-        sail(&mut ship, 0.5, |ship, _| log.note(ship));
+        sail(&mut ship, 0.5, |ship, _| recorder.record(ship));
     }
     let forward: Vec<f64> = at_noon.iter().map(|b| b[0]).collect();
     assert!((forward[0] - 2000.0).abs() < 1e-9 && (forward[1] - 2900.0).abs() < 1e-9);
@@ -168,7 +168,7 @@ fn lightning_stays_and_cargo_goes_ashore_again() {
         "half returns: {}",
         starboard[5]
     );
-    let truth = serde_json::to_value(log.truth(&scenario, 1, &ship)).unwrap();
+    let truth = serde_json::to_value(recorder.truth(&scenario, 1, &ship)).unwrap();
     assert_eq!(truth["epochs"].as_array().unwrap().len(), 4);
     assert_eq!(truth["events"].as_array().unwrap().len(), 2);
     assert!(truth["hours"].as_array().unwrap().len() >= 143);
