@@ -138,7 +138,7 @@ pub(crate) fn choose_ship<'a>(
             .map(|ship| ship.name.as_str())
             .collect();
         BadInput(format!(
-            "--ship: there is no {name:?}; there are {}",
+            "--ship: unknown ship {name:?}; the ships are {}",
             names.join(", ")
         ))
     })

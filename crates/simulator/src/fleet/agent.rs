@@ -48,7 +48,7 @@ pub(super) async fn install(
     folder: &Path,
 ) -> Result<Vessel> {
     if folder.join("state").exists() {
-        let problem = "an agent of an earlier run is there; give another --work-dir";
+        let problem = "contains an agent of an earlier run; choose another --work-dir";
         return Err(BadInput(format!("{}: {problem}", folder.display())).into());
     }
     std::fs::create_dir_all(folder)

@@ -113,7 +113,7 @@ async fn wait_for(api: &ServerApi, vessel: &Vessel, until: Timestamp) -> Result<
         }
         if moved.elapsed() > TIMEOUT {
             bail!(
-                "{}: nothing has moved for {} s: {state:?}",
+                "{}: no progress for {} s: {state:?}",
                 vessel.name,
                 TIMEOUT.as_secs()
             );
@@ -151,7 +151,7 @@ async fn read_state(api: &ServerApi, vessel: &Vessel, until: Timestamp) -> Resul
             .as_str()
             .unwrap_or("no reason given");
         bail!(
-            "{}: the shore refused {parked} batches: {because}",
+            "{}: the server refused {parked} batches: {because}",
             vessel.name
         );
     }
@@ -275,7 +275,7 @@ impl Comparison {
         writeln!(
             out,
             "\nThe 95 % band {word}: it contains the truth on at least 90 % of headings for \
-             {good} of {all} vessels, each at her own place.\n"
+             {good} of {all} vessels, each at its own place.\n"
         )
     }
 }

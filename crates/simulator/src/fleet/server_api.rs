@@ -183,7 +183,7 @@ async fn read<T: DeserializeOwned>(response: reqwest::Response) -> Result<T> {
     let status = response.status();
     let body = response.bytes().await?;
     if status.is_success() {
-        return serde_json::from_slice(&body).context("the answer is not as agreed");
+        return serde_json::from_slice(&body).context("unexpected response");
     }
     let problem: Value = serde_json::from_slice(&body).unwrap_or_default();
     let detail = problem["detail"]
@@ -191,12 +191,12 @@ async fn read<T: DeserializeOwned>(response: reqwest::Response) -> Result<T> {
         .or(problem["title"].as_str())
         .unwrap_or("");
     ensure!(status.is_success(), "{status} {detail}");
-    unreachable!("an answer either succeeds or does not")
+    unreachable!("a response either succeeds or fails")
 }
 
 fn text(value: &Value, field: &str) -> Result<String> {
     let text = value[field].as_str();
     Ok(text
-        .with_context(|| format!("the answer has no {field}"))?
+        .with_context(|| format!("the response has no {field}"))?
         .to_owned())
 }

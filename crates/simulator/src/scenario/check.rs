@@ -99,7 +99,7 @@ fn route(
         .map(|raw| point(source, raw))
         .collect::<Checked<Vec<_>>>()?;
     let [first, .., last] = points.as_slice() else {
-        return Err(source.error(raw.span(), field, "a route needs two points or more"));
+        return Err(source.error(raw.span(), field, "a route needs at least two points"));
     };
     if first.port.is_none() || last.port.is_none() {
         return Err(source.error(
@@ -131,12 +131,16 @@ fn ships(
     for raw in raw.get_ref() {
         let next = ship(source, raw, routes, start)?;
         if ships.iter().any(|ship| ship.name == next.name) {
-            return Err(source.error(raw.name.span(), "name", "another ship has this name"));
+            return Err(source.error(
+                raw.name.span(),
+                "name",
+                "the name is already taken by another ship",
+            ));
         }
         ships.push(next);
     }
     if ships.is_empty() {
-        return Err(source.error(raw.span(), "ships", "there is no ship"));
+        return Err(source.error(raw.span(), "ships", "at least one ship is required"));
     }
     Ok(ships)
 }

@@ -49,7 +49,7 @@ pub(super) fn event(source: &Source<'_>, span: Range<usize>, raw: &RawEvent) -> 
         other => Err(source.error(
             raw.kind.span(),
             "kind",
-            format!("{other:?} is none of lightning, cargo, gyro_fault"),
+            format!("{other:?} is not one of lightning, cargo, gyro_fault"),
         )),
     }
 }

@@ -62,7 +62,7 @@ fn what_cannot_be_sailed_is_refused() {
     );
     assert!(
         error("name = \"Noordzee\"", "name = \"Estrella del Sur\"")
-            .contains("another ship has this name")
+            .contains("already taken by another ship")
     );
     assert!(
         error(
@@ -89,7 +89,7 @@ fn an_event_says_what_it_lacks() {
         let satellite = "satellite = { alignment_deg = 0.2, dropouts_per_day = 4 }";
         error(satellite, &format!("{satellite}\nevents = [{event}]"))
     };
-    assert!(with("{ kind = \"meteor\" }").contains("kind: \"meteor\" is none of"));
+    assert!(with("{ kind = \"meteor\" }").contains("kind: \"meteor\" is not one of"));
     assert!(with("{ kind = \"lightning\" }").contains("day: missing"));
     assert!(
         with("{ kind = \"cargo\", from_day = 3, to_day = 2 }").contains("to_day: 2 is not after")
