@@ -1,4 +1,4 @@
-//! A ship at the far end of a satellite link, with all that belongs to her.
+//! A ship at the far end of a satellite link, with its server.
 
 use crate::feed::{Pace, Progress};
 use crate::ledger::{Spool, ensure_same_at_both_ends};
@@ -12,15 +12,15 @@ use std::time::Duration;
 use tempfile::TempDir;
 use uuid::Uuid;
 
-/// When the scenarios of this package begin.
+/// Start of this package's scenarios.
 pub const START: &str = "2026-10-01T00:00:00Z";
-/// Long enough for acknowledgements to wait for what they can travel with, as over a
-/// satellite; twice that time changes nothing but the tests' own.
+/// Long enough that acknowledgements are sent together with other packets, as
+/// over a satellite. Doubling it only makes the tests slower.
 const ROUND_TRIP_MS: f64 = 300.0;
-/// What a busy machine may take for a few days' sailing.
+/// Time that a busy machine may take for a few days' sailing.
 pub const PATIENCE: Duration = Duration::from_mins(8);
 
-/// So many days after the start.
+/// Returns the instant a number of days after the start.
 ///
 /// # Panics
 /// Never: the start is a date.
@@ -29,33 +29,35 @@ pub fn day(day: f64) -> Timestamp {
     start.plus_seconds(day * 86_400.0)
 }
 
-/// A ship at sea.
+/// A ship on a satellite link, with its server.
 #[derive(Debug)]
 pub struct AtSea {
     /// The link, to be changed and read.
     pub satellite: Satellite,
     /// The server.
     pub shore: Shore,
-    /// The shore's certificates.
+    /// The server's certificates.
     pub tls: Certificates,
-    /// The ship as the server knows her.
+    /// The ship's id on the server.
     pub vessel: Uuid,
-    /// Her instruments.
+    /// Its instruments.
     pub voyage: Voyage,
-    /// Her agent.
+    /// Its agent.
     pub ship: Ship,
     folder: TempDir,
 }
 
 impl AtSea {
-    /// Starts everything; time stands still. `uplink` is added to the agent's settings.
+    /// Starts everything, with the voyage paused. `uplink` is added to the
+    /// agent's settings.
     ///
     /// # Errors
     /// When something does not start.
     pub async fn sail(scenario: &str, uplink: &str) -> Result<AtSea> {
         let folder = tempfile::tempdir()?;
         let mut satellite = Satellite::launch().await?;
-        // From the start: what TCP has learned of a better link it does not soon forget.
+        // Set before anything is sent: TCP would remember a better link for a
+        // while.
         let round_trip_ms = Some(ROUND_TRIP_MS);
         let weather = Weather {
             round_trip_ms,
@@ -85,28 +87,29 @@ impl AtSea {
         })
     }
 
-    /// Where everybody's files are.
+    /// The folder of all files.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Sails on to an instant; returns when the agent has heard of it.
+    /// Sails to an instant; returns when the agent has read the sentences up to
+    /// it.
     ///
     /// # Errors
-    /// When she does not get there.
+    /// When the ship does not get there.
     pub async fn until(&mut self, time: Timestamp) -> Result<()> {
         until(&mut self.voyage, &self.ship, time).await
     }
 
-    /// Waits until nothing waits on board.
+    /// Waits until no batch waits in the spool.
     ///
     /// # Errors
-    /// When something goes on waiting.
+    /// When a batch keeps waiting.
     pub async fn all_ashore(&self) -> Result<Spool> {
         all_ashore(&self.ship).await
     }
 
-    /// Waits until the shore has analysed what it has.
+    /// Waits until the server has analysed all its samples.
     ///
     /// # Errors
     /// When it does not.
@@ -122,10 +125,11 @@ impl AtSea {
         .await
     }
 
-    /// Both ends' records are the same, to the checksum; stops everything.
+    /// Checks that both ends' records match, to the checksum, and stops
+    /// everything.
     ///
     /// # Errors
-    /// When they are not, or a program failed.
+    /// When they do not match, or a program failed.
     pub async fn arrive(mut self) -> Result<()> {
         let spool = self.all_ashore().await?;
         ensure_same_at_both_ends(&self.shore, self.vessel, &spool).await?;
@@ -136,15 +140,15 @@ impl AtSea {
     }
 }
 
-/// Sails on to an instant; returns when the agent has heard of it.
+/// Sails to an instant; returns when the agent has read the sentences up to it.
 ///
 /// # Errors
-/// When she does not get there.
+/// When the ship does not get there.
 pub async fn until(voyage: &mut Voyage, ship: &Ship, time: Timestamp) -> Result<()> {
     voyage.feed.set_pace(Pace::FastUntil(time))?;
     let there = |progress: &Progress| *progress == Progress::Ended || progress.time() >= Some(time);
     let reached = voyage.feed.reached(PATIENCE, there).await?;
-    // The last sentences of a voyage may stop short of her end.
+    // The last sentences of a voyage may come before its end.
     let time = reached.time().unwrap_or(time.plus_seconds(-60.0));
     eventually("the agent has heard it", PATIENCE, async || {
         let status = ship.status().await?;
@@ -163,10 +167,10 @@ fn ship_time(status: &Value) -> Result<Option<Timestamp>> {
     time.transpose().context("ship_time")
 }
 
-/// Waits until nothing waits on board.
+/// Waits until no batch waits in the spool.
 ///
 /// # Errors
-/// When something goes on waiting.
+/// When a batch keeps waiting.
 pub async fn all_ashore(ship: &Ship) -> Result<Spool> {
     eventually("all is ashore", PATIENCE, async || {
         let spool = Spool::of(ship).await?;

@@ -1,5 +1,5 @@
-//! A ship and her shore on one machine, with a gateway between, and what must hold
-//! whatever happened to them.
+//! A ship and its server on one machine, with a gateway between them, and the
+//! invariants that hold under any fault.
 
 use crate::at_sea::{PATIENCE, day, until};
 use crate::feed::Pace;
@@ -15,32 +15,33 @@ use tempfile::TempDir;
 use tokio::time::Instant;
 use uuid::Uuid;
 
-/// What days under faults may add to the memory that a first day took.
+/// The most that days under faults may add to the memory of the first day.
 const MEMORY_GROWS_KB: u64 = 8_000;
-/// An agent of some megabytes, built without optimisation.
+/// The most memory of an agent built without optimisation.
 const MEMORY_MOST_KB: u64 = 45_000;
-/// Windows of the stretch that is not finished yet, and of the commit under way.
+/// Windows of the unfinished sample and of the commit under way.
 const OPEN_WINDOWS: f64 = 120.0;
-/// Windows that a sample leaves out as outliers; a quarter of a day's batch is 2,000.
+/// Fraction of windows that a sample leaves out as outliers; a quarter of a
+/// day's batch has 2,000.
 const OUTLIERS: f64 = 0.01;
 const SETTLES: Duration = Duration::from_mins(1);
-/// The agent looks once a second whether something is to be sealed.
+/// Longer than the second at which the agent checks for something to seal.
 const CALM: Duration = Duration::from_millis(2_500);
 
-/// How a ship sails.
+/// Set-up of a ship.
 #[derive(Clone, Copy, Debug)]
 pub struct Passage {
-    /// The scenario of this package.
+    /// Scenario of this package.
     pub scenario: &'static str,
-    /// More lines of `[uplink]`.
+    /// Further lines of `[uplink]`.
     pub uplink: &'static str,
-    /// Whether the shore speaks TLS, by an authority that the ship has pinned.
+    /// True for a server with TLS, by an authority that the ship has pinned.
     pub tls: bool,
-    /// What she is called.
+    /// Name of the vessel.
     pub name: &'static str,
 }
 
-/// What waits for nothing, on a link that costs nothing.
+/// Settings of an agent that waits for nothing, on a link that costs nothing.
 pub const SWIFT: &str = "poll_s = 2\nretry_min_s = 0.2\nretry_max_s = 1";
 
 impl Default for Passage {
@@ -54,28 +55,28 @@ impl Default for Passage {
     }
 }
 
-/// A ship and her shore.
+/// A ship and its server.
 #[derive(Debug)]
 pub struct Coast {
     /// The server.
     pub shore: Shore,
-    /// What stands between.
+    /// The gateway between them.
     pub gateway: Gateway,
-    /// The ship as the server knows her.
+    /// The ship's id on the server.
     pub vessel: Uuid,
-    /// Her instruments.
+    /// Its instruments.
     pub voyage: Voyage,
-    /// Her agent.
+    /// Its agent.
     pub ship: Ship,
-    /// The shore's, if it speaks TLS.
+    /// The server's certificates, with TLS.
     pub tls: Option<Certificates>,
-    /// What the agent took when it had something behind it.
+    /// Memory of the agent after the first days.
     memory_kb: Option<u64>,
     folder: TempDir,
 }
 
 impl Coast {
-    /// Starts everything; time stands still.
+    /// Starts everything, with the voyage paused.
     ///
     /// # Errors
     /// When something does not start.
@@ -83,7 +84,8 @@ impl Coast {
         Coast::sail_on(Passage::default(), |_| Ok(())).await
     }
 
-    /// The same otherwise; `prepare` gets the ship before anything is run aboard.
+    /// Starts everything with a set-up; `prepare` gets the ship before any
+    /// program runs.
     ///
     /// # Errors
     /// When something does not start, or `prepare` fails.
@@ -127,15 +129,16 @@ impl Coast {
         })
     }
 
-    /// Where everybody's files are.
+    /// The folder of all files.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Sails on to so many days after the start; returns when the agent has heard of it.
+    /// Sails to a number of days after the start; returns when the agent has
+    /// read the sentences up to then.
     ///
     /// # Errors
-    /// When she does not get there.
+    /// When the ship does not get there.
     pub async fn until(&mut self, days: f64) -> Result<()> {
         until(&mut self.voyage, &self.ship, day(days)).await?;
         if self.memory_kb.is_none() {
@@ -144,18 +147,18 @@ impl Coast {
         Ok(())
     }
 
-    /// Waits until nothing waits on board, and nothing more comes while the ship does.
+    /// Waits until no batch waits in the spool, and the spool is idle.
     ///
     /// # Errors
-    /// When something goes on waiting.
+    /// When a batch keeps waiting.
     pub async fn all_ashore(&self) -> Result<Spool> {
         calm(&self.ship).await
     }
 
-    /// Waits until a line of `status --json` is as wanted; what it says.
+    /// Waits until a value of `status --json` contains a text, and returns it.
     ///
     /// # Errors
-    /// When it is not.
+    /// When it does not.
     pub async fn says(&self, pointer: &str, wanted: &str) -> Result<String> {
         let what = format!("{pointer} says {wanted:?}");
         eventually(what, SETTLES, async || {
@@ -170,11 +173,11 @@ impl Coast {
         .await
     }
 
-    /// What was acknowledged before still is, and nothing of it more than once; what is
-    /// not acknowledged is on board.
+    /// Checks that acknowledged batches stay acknowledged, each once, and that
+    /// unacknowledged samples are still on board.
     ///
     /// # Errors
-    /// When it is not so.
+    /// When a check fails.
     pub async fn ensure_nothing_went(&self, before: &Spool) -> Result<Spool> {
         let now = Spool::of(&self.ship).await?;
         ensure!(
@@ -184,11 +187,11 @@ impl Coast {
         Ok(now)
     }
 
-    /// The windows that the agent accepted since it was started on an empty spool are in
-    /// samples, ashore or on board.
+    /// Checks that all windows accepted since the agent started on an empty
+    /// spool are in samples, on the server or on board.
     ///
     /// # Errors
-    /// When one is not.
+    /// When one is missing.
     pub async fn ensure_every_window_is_there(&self) -> Result<()> {
         eventually("every window is there", SETTLES, async || {
             let status = self.ship.status().await?;
@@ -207,11 +210,12 @@ impl Coast {
         .await
     }
 
-    /// In the end nothing waits; what is acknowledged is ashore, no window twice, and the
-    /// agent's memory is what it was after its first day.
+    /// Checks the final state and stops everything: nothing waits, acknowledged
+    /// samples are stored, no window twice, and the agent's memory has hardly
+    /// grown since its first day.
     ///
     /// # Errors
-    /// When it is not so, or a program failed.
+    /// When a check fails, or a program failed.
     pub async fn arrive(mut self) -> Result<()> {
         let spool = self.all_ashore().await?;
         ensure_acknowledged_is_ashore(&self.shore, self.vessel, &spool).await?;
@@ -230,10 +234,10 @@ impl Coast {
     }
 }
 
-/// Waits until nothing waits on board of a ship, and nothing more comes.
+/// Waits until no batch waits in a ship's spool, and the spool is idle.
 ///
 /// # Errors
-/// When something goes on waiting.
+/// When a batch keeps waiting.
 pub async fn calm(ship: &Ship) -> Result<Spool> {
     let mut last = (Spool::default(), Instant::now());
     eventually("all is ashore, and calm", PATIENCE, async || {

@@ -1,11 +1,11 @@
-//! A database of its own for every test.
+//! A separate database for every test.
 
 use anyhow::{Context, Result};
 use sqlx::{AssertSqlSafe, Connection, Executor, PgConnection};
 use std::path::Path;
 use uuid::Uuid;
 
-/// The two kinds.
+/// The two kinds of database.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Engine {
     /// A file.
@@ -14,16 +14,16 @@ pub enum Engine {
     Postgres,
 }
 
-/// An empty database, as the server's `--database-url` wants it.
+/// An empty database, for the server's `--database-url`.
 #[derive(Debug)]
 pub struct Database {
     url: String,
-    /// The PostgreSQL server and the name there.
+    /// URL of the PostgreSQL server, and the database's name there.
     created: Option<(String, String)>,
 }
 
 impl Database {
-    /// Makes one; an SQLite file lies in `folder`.
+    /// Creates a database; an SQLite file lies in `folder`.
     ///
     /// # Errors
     /// Without PostgreSQL: tests are never skipped for that.
@@ -50,12 +50,12 @@ impl Database {
         })
     }
 
-    /// What `--database-url` takes.
+    /// The URL for `--database-url`.
     pub fn url(&self) -> &str {
         &self.url
     }
 
-    /// Removes it. A failed test leaves it to be looked at.
+    /// Removes the database. A failed test leaves it for inspection.
     ///
     /// # Errors
     /// When PostgreSQL refuses.
@@ -70,7 +70,7 @@ impl Database {
     }
 }
 
-/// The server's URL with another database in its path.
+/// Returns the server's URL with another database in its path.
 fn at(server: &str, name: &str) -> Result<String> {
     let mut url = reqwest::Url::parse(server).context("BINNACLE_TEST_POSTGRES")?;
     url.set_path(name);

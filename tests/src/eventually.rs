@@ -1,18 +1,18 @@
-//! Waiting for what another process does.
+//! Waits for another process.
 
 use anyhow::{Result, bail};
 use std::fmt::Display;
 use std::time::Duration;
 use tokio::time::{Instant, MissedTickBehavior, interval};
 
-/// How often is asked.
+/// Polling interval.
 const EVERY: Duration = Duration::from_millis(50);
 
-/// Asks until there is an answer, or else why there is none yet.
+/// Polls until there is a result.
 ///
 /// # Errors
-/// With `what`, and why not, when there is none `within` the time; or as soon as
-/// asking fails.
+/// With `what` and the last reason, when there is no result `within` the time;
+/// or as soon as polling itself fails.
 pub async fn eventually<T>(
     what: impl Display,
     within: Duration,

@@ -1,7 +1,7 @@
-//! A ship's bridge: sentences over TCP, as fast as the agent takes them.
+//! A ship's bridge: sends sentences over TCP at the agent's pace.
 //!
-//! Time passes on the bridge whether an agent listens or not: what was on the
-//! way to an agent that died is lost, and the next one goes on from there.
+//! Time passes on the bridge with or without an agent. Sentences under way to
+//! an agent that died are lost, and the next one continues from there.
 
 use anyhow::{Context, Result, bail};
 use binnacle_magnetics::time::Timestamp;
@@ -13,22 +13,22 @@ use tokio::sync::watch;
 use tokio::task::JoinHandle;
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
-/// Sentences are sent in pieces of about so many bytes.
+/// Approximate size of the pieces sent, in bytes.
 const PIECE: usize = 32 * 1024;
-/// How long a ship's second takes once the feed sails on live.
+/// Real time of a ship's second in live mode.
 const LIVE_SECOND: Duration = Duration::from_millis(20);
 
-/// How fast time passes on the bridge.
+/// Pace of time on the bridge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pace {
     /// As fast as the agent reads, up to an instant; then the ship waits.
     FastUntil(Timestamp),
-    /// Fifty seconds in one, to the end.
+    /// At fifty times real time, to the end.
     Live,
 }
 
 impl Pace {
-    /// Whether time may pass beyond an instant.
+    /// True if time may pass beyond an instant.
     fn allows(&self, time: Timestamp) -> bool {
         match self {
             Pace::FastUntil(end) => time < *end,
@@ -37,19 +37,19 @@ impl Pace {
     }
 }
 
-/// How far the bridge has come.
+/// Progress of the bridge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Progress {
     /// Nothing was sent yet.
     Waiting,
-    /// The last fix that was sent.
+    /// Time of the last fix sent.
     At(Timestamp),
-    /// There is nothing more to send.
+    /// Everything was sent.
     Ended,
 }
 
 impl Progress {
-    /// The last fix that was sent.
+    /// Returns the time of the last fix sent.
     pub fn time(&self) -> Option<Timestamp> {
         match self {
             Progress::At(time) => Some(*time),
@@ -69,7 +69,7 @@ pub struct Feed {
 }
 
 impl Feed {
-    /// Listens on a free port for an agent of this machine.
+    /// Listens on a free port for an agent on this machine.
     ///
     /// # Errors
     /// When there is no port.
@@ -113,7 +113,7 @@ impl Feed {
         })
     }
 
-    /// Where the agent finds its sentences.
+    /// The address of the sentences.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
@@ -126,8 +126,8 @@ impl Feed {
         self.pace.send(pace).context("the feed has ended")
     }
 
-    /// Lets the receiver's clock be wrong by so much; the pace and the progress stay
-    /// right.
+    /// Sets the error of the receiver's clock; pace and progress use the right
+    /// time.
     ///
     /// # Errors
     /// When the feed has failed.
@@ -135,10 +135,10 @@ impl Feed {
         self.clock.send(off_s).context("the feed has ended")
     }
 
-    /// Waits until the bridge has come so far.
+    /// Waits until the bridge's progress is `enough`.
     ///
     /// # Errors
-    /// When it has not `within` the time, or failed on the way.
+    /// When it is not `within` the time, or the feed failed.
     pub async fn reached(
         &mut self,
         within: Duration,
@@ -206,11 +206,11 @@ impl<S: AsyncRead + Unpin> Bridge<S> {
         }
         self.send().await?;
         self.news.send_replace(Progress::Ended);
-        // The instruments fall silent; the line stays open.
+        // The instruments fall silent; the connection stays open.
         std::future::pending().await
     }
 
-    /// Sends the piece to the agent that listens, or waits for one.
+    /// Sends the piece to the connected agent, or waits for one.
     async fn send(&mut self) -> Result<()> {
         while !self.piece.is_empty() {
             let agent = match &mut self.agent {
@@ -220,15 +220,15 @@ impl<S: AsyncRead + Unpin> Bridge<S> {
             if agent.write_all(&self.piece).await.is_err() {
                 self.agent = None;
             }
-            // Heard or lost: the bridge does not say it again.
+            // Read or lost: the bridge does not repeat it.
             self.piece.clear();
         }
         Ok(())
     }
 }
 
-/// When the fix of an RMC sentence was taken. The line is as poor as a ship's:
-/// a sentence with a wrong checksum tells nothing.
+/// Returns the time of the fix in an RMC sentence. A sentence with a wrong
+/// checksum, as on a poor line, is ignored.
 fn time_of_fix(line: &[u8]) -> Option<Timestamp> {
     if line.get(3..7)? != b"RMC," {
         return None;
@@ -248,7 +248,7 @@ fn time_of_fix(line: &[u8]) -> Option<Timestamp> {
     Timestamp::parse(&format!("20{yy}-{mm}-{dd}T{hour}:{minute}:{second}Z")).ok()
 }
 
-/// An RMC or ZDA sentence of another time.
+/// Returns an RMC or ZDA sentence with its time shifted.
 fn dated_anew(line: &[u8], off_s: f64) -> Option<Vec<u8>> {
     let text = std::str::from_utf8(line).ok()?;
     let (body, _) = text.strip_prefix('$')?.trim_end().split_once('*')?;

@@ -1,5 +1,5 @@
-//! What stands between a ship and her shore: a way through, or something that answers in
-//! the shore's place, badly.
+//! A gateway between a ship and its server: it passes connections on, or
+//! misbehaves.
 
 use anyhow::{Context, Result, bail};
 use std::net::SocketAddr;
@@ -10,30 +10,30 @@ use tokio::sync::watch;
 use tokio::task::JoinHandle;
 use tokio::time::{interval, timeout};
 
-/// What it does with a connection.
+/// The treatment of connections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Manners {
-    /// Passes it on.
+    /// Passes everything.
     Passes,
-    /// Answers with the login page of a harbour's network.
+    /// Responds with the login page of a harbour's network.
     ShowsPage,
-    /// Answers that something went wrong.
+    /// Responds with a server error.
     Fails,
     /// Refuses with this status, in JSON.
     Refuses(&'static str),
-    /// Passes so many octets of each way on, and then cuts it.
+    /// Passes this many bytes each way, then cuts the connection.
     CutsAfter(u64),
-    /// Begins an answer, and then sends an octet of it twice a second, for ever.
+    /// Starts a response, then sends a byte of it twice a second, forever.
     Drips,
 }
 
-/// Far more often than the silence that the agent puts up with.
+/// Much shorter than the silence that the agent accepts.
 const DRIP: Duration = Duration::from_millis(500);
 
 const PAGE: &str = "<html><body>Welcome to Harbour Wi-Fi</body></html>";
 const REFUSAL: &str = r#"{"title":"no route matched","message":"sign in first"}"#;
 
-/// A gateway before a shore; what it answers itself is without TLS.
+/// A gateway before a server; its own responses are without TLS.
 #[derive(Debug)]
 pub struct Gateway {
     scheme: String,
@@ -44,7 +44,7 @@ pub struct Gateway {
 }
 
 impl Gateway {
-    /// Opens one before a server's URL; it passes everything.
+    /// Opens a gateway before a server's URL; it passes everything.
     ///
     /// # Errors
     /// When there is no port, or the URL has no address.
@@ -61,7 +61,8 @@ impl Gateway {
                 let mut changed = current.clone();
                 let count = count.clone();
                 tokio::spawn(async move {
-                    // A connection ends when manners change: nobody goes on over an old one.
+                    // A change ends open connections, so that none continues
+                    // with the old behaviour.
                     tokio::select! {
                         _ = treat(ship, shore, now) => {}
                         _ = changed.changed() => {}
@@ -84,18 +85,18 @@ impl Gateway {
         format!("{}://{}", self.scheme, self.address)
     }
 
-    /// Changes its manners, for connections that are open too.
+    /// Changes the behaviour, for open connections too.
     pub fn set(&mut self, manners: Manners) {
         self.manners.send_replace(manners);
         self.met.mark_unchanged();
     }
 
-    /// How many connections have ended.
+    /// Number of connections that have ended.
     pub fn count(&self) -> u64 {
         *self.met.borrow()
     }
 
-    /// Waits until so many more connections have ended.
+    /// Waits until `more` further connections have ended.
     ///
     /// # Errors
     /// When they do not within the time.
@@ -130,7 +131,7 @@ async fn treat(mut ship: TcpStream, shore: SocketAddr, manners: Manners) -> Resu
             let (from_ship, mut to_ship) = ship.into_split();
             let (from_shore, mut to_shore) = shore.into_split();
             let (mut up, mut down) = (from_ship.take(octets), from_shore.take(octets));
-            // Whichever is used up first ends both.
+            // The first direction to use up its bytes ends both.
             tokio::select! {
                 _ = tokio::io::copy(&mut up, &mut to_shore) => {}
                 _ = tokio::io::copy(&mut down, &mut to_ship) => {}
@@ -140,7 +141,7 @@ async fn treat(mut ship: TcpStream, shore: SocketAddr, manners: Manners) -> Resu
     Ok(())
 }
 
-/// Never ends: whoever waits for it must give up.
+/// Never ends: the client must give up.
 async fn drip(mut ship: TcpStream) -> Result<()> {
     let mut ticks = interval(DRIP);
     ship.write_all(b"HTTP/1.1 200 OK\r\ncontent-length: 1000000\r\n\r\n")
@@ -151,7 +152,7 @@ async fn drip(mut ship: TcpStream) -> Result<()> {
     }
 }
 
-/// Reads until there is a request's head, answers, and reads the rest away.
+/// Reads the head of a request, responds, and discards the rest.
 async fn answer(mut ship: TcpStream, status: &str, body: &str) -> Result<()> {
     let mut head = Vec::new();
     while !head.windows(4).any(|end| end == b"\r\n\r\n") {

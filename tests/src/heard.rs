@@ -1,5 +1,5 @@
-//! What an autopilot hears from the agent: its own reading of the sentences,
-//! with nothing of the product's code.
+//! The agent's corrected headings as an autopilot reads them, without any code
+//! of the product.
 
 use anyhow::{Context, Result, bail, ensure};
 use std::net::SocketAddr;
@@ -8,27 +8,27 @@ use tokio::io::{AsyncBufReadExt, BufReader};
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
-/// An HDG, the THS after it, and the PBINQ that says how good they are.
+/// An HDG, the THS after it, and the PBINQ with their quality.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction {
-    /// What the compass reads.
+    /// Compass reading.
     pub compass_deg: f64,
-    /// East positive.
+    /// Deviation, positive to the east.
     pub deviation_deg: f64,
-    /// East positive.
+    /// Variation, positive to the east.
     pub variation_deg: f64,
-    /// The true heading of a THS in mode E.
+    /// True heading of a THS in mode E.
     pub true_deg: f64,
-    /// The version of the model, by PBINQ.
+    /// Version of the model, from PBINQ.
     pub model_version: u32,
-    /// The deviation's standard error, degrees, by PBINQ.
+    /// Standard error of the deviation, degrees, from PBINQ.
     pub standard_error_deg: f64,
 }
 
-/// Listens until `count` whole corrections were heard.
+/// Listens until `count` complete corrections have arrived.
 ///
 /// # Errors
-/// When they are not `within` the time, or a sentence is wrong.
+/// When they do not arrive `within` the time, or a sentence is wrong.
 pub async fn corrections(
     agent: SocketAddr,
     count: usize,
@@ -57,7 +57,7 @@ pub async fn corrections(
     }
 }
 
-/// The fields of a sentence whose checksum is right.
+/// Returns the fields of a sentence with a right checksum.
 fn fields_of(line: &str) -> Result<Vec<&str>> {
     let (body, sum) = line
         .strip_prefix('$')
@@ -68,7 +68,7 @@ fn fields_of(line: &str) -> Result<Vec<&str>> {
     Ok(body.split(',').collect())
 }
 
-/// Reading, deviation, variation; `None` where one is not known.
+/// Returns reading, deviation and variation; `None` if one is unknown.
 fn hdg(fields: &[&str]) -> Result<Option<(f64, f64, f64)>> {
     ensure!(fields.len() == 6, "HDG has five fields: {fields:?}");
     if fields.iter().any(|field| field.is_empty()) {
@@ -88,13 +88,13 @@ fn east(degrees: &str, side: &str) -> Result<f64> {
     }
 }
 
-/// The heading of mode E.
+/// Returns the heading in mode E.
 fn ths(fields: &[&str]) -> Option<f64> {
     let heading = fields.get(1)?.parse().ok()?;
     (fields.get(2) == Some(&"E")).then_some(heading)
 }
 
-/// All three together, when each has something to say.
+/// Combines all three sentences, when each has its values.
 fn correction(
     hdg: Option<(f64, f64, f64)>,
     ths: Option<f64>,

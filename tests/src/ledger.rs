@@ -1,5 +1,5 @@
-//! Both ends' own records of what was sent: the agent's spool and the server's
-//! batch log, read from their databases as they lie.
+//! Records of sent batches at both ends: the agent's spool and the server's
+//! batch log, read directly from their databases.
 
 use crate::database::Database;
 use crate::ship::Ship;
@@ -12,26 +12,26 @@ use sqlx::{Connection, PgConnection, SqliteConnection};
 use std::str::FromStr;
 use uuid::Uuid;
 
-/// What an agent knows of its batches.
+/// The agent's record of its batches.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Spool {
-    /// Those the shore acknowledged, by stream and number.
+    /// Acknowledged batches, by stream and number.
     pub acknowledged: Vec<Acknowledged>,
-    /// Sealed and not acknowledged.
+    /// Number of sealed batches without an acknowledgement.
     pub waiting: i64,
-    /// Refused by the shore, or unreadable: there must be none.
+    /// Batches refused by the server, or unreadable: there must be none.
     pub in_trouble: i64,
-    /// Samples that are not acknowledged, in batches or not yet.
+    /// Samples without an acknowledgement, in batches or not yet.
     pub samples_aboard: i64,
-    /// The windows in those.
+    /// Windows in those samples.
     pub windows_aboard: u64,
 }
 
-/// Writes the spool's journal into its file and leaves nothing of it, so that on a full
-/// disk the next that is stored finds no room.
+/// Writes the spool's journal into its file and truncates it, so that the next
+/// write on a full disk fails.
 ///
 /// # Errors
-/// When there is no spool, or its agent does not let go of it.
+/// When there is no spool, or its agent holds a lock.
 pub async fn clear_journal(ship: &Ship) -> Result<()> {
     let options = SqliteConnectOptions::new().filename(ship.data_dir().join("spool.db"));
     let mut db = SqliteConnection::connect_with(&options).await?;
@@ -42,21 +42,21 @@ pub async fn clear_journal(ship: &Ship) -> Result<()> {
     Ok(db.close().await?)
 }
 
-/// One acknowledged batch.
+/// An acknowledged batch.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Acknowledged {
     /// The stream.
     pub stream: Uuid,
-    /// Its number there.
+    /// Its number in the stream.
     pub seq: i64,
-    /// How many samples it had.
+    /// Its number of samples.
     pub samples: i64,
-    /// The checksum of the whole of it.
+    /// Checksum of the whole batch.
     pub crc32: i64,
 }
 
 impl Spool {
-    /// As it is now.
+    /// Reads the spool as it is now.
     ///
     /// # Errors
     /// When there is none, or it cannot be read.
@@ -66,7 +66,7 @@ impl Spool {
         let mut db = SqliteConnection::connect_with(&options)
             .await
             .with_context(|| file.display().to_string())?;
-        // One moment of it: a batch is acknowledged between any two statements.
+        // One snapshot: a batch may be acknowledged between two statements.
         let mut db = db.begin().await?;
         let rows: Vec<(String, i64, i64, i64)> = sqlx::query_as(
             "SELECT stream, seq, samples, crc32 FROM acknowledged ORDER BY stream, seq",
@@ -133,7 +133,7 @@ async fn windows_aboard(db: &mut SqliteConnection) -> Result<u64> {
 /// A batch in the server's log: stream, number, bytes.
 pub type Logged = (Uuid, i64, Vec<u8>);
 
-/// The server's log of a vessel's batches.
+/// Reads the server's log of a vessel's batches.
 ///
 /// # Errors
 /// When the database cannot be read.
@@ -150,11 +150,11 @@ pub async fn batch_log(database: &Database, vessel: Uuid) -> Result<Vec<Logged>>
     Ok(sqlx::query_as(SQL).bind(vessel).fetch_all(&mut db).await?)
 }
 
-/// Compares both ends' records: what the agent holds to be acknowledged and what the
-/// shore holds are the same batches, to the checksum.
+/// Compares both ends' records: the batches that the agent holds for
+/// acknowledged are those of the server, to the checksum.
 ///
 /// # Errors
-/// When they are not, or a batch is in trouble.
+/// When they differ, or a batch was refused.
 pub async fn ensure_same_at_both_ends(shore: &Shore, vessel: Uuid, spool: &Spool) -> Result<()> {
     ensure!(spool.in_trouble == 0, "{spool:?}");
     let logged = logged(shore, vessel).await?;
@@ -165,11 +165,11 @@ pub async fn ensure_same_at_both_ends(shore: &Shore, vessel: Uuid, spool: &Spool
     Ok(())
 }
 
-/// What the agent holds to be acknowledged is on shore, to the checksum; there may be
-/// more there, as when an answer or the record of it was lost.
+/// Checks that acknowledged batches are on the server, to the checksum. The
+/// server may have more, when a response or its record was lost.
 ///
 /// # Errors
-/// When something is not.
+/// When one is missing.
 pub async fn ensure_acknowledged_is_ashore(
     shore: &Shore,
     vessel: Uuid,
@@ -195,15 +195,16 @@ async fn logged(shore: &Shore, vessel: Uuid) -> Result<Vec<Acknowledged>> {
     log.into_iter().map(read).collect()
 }
 
-/// Of what the frame holds: with its own checksum at its end every frame has the same.
+/// Checksum of a frame without its own checksum, with which every frame would
+/// have the same.
 pub fn checksum(frame: &[u8]) -> u32 {
     crc32fast::hash(&frame[..frame.len().saturating_sub(4)])
 }
 
-/// The samples in the server's log, each counted once, in order of time.
+/// Returns the samples in the server's log, each once, in order of time.
 ///
 /// # Errors
-/// When two are of the same windows and not the same sample.
+/// When two different samples share windows.
 pub async fn samples_ashore(shore: &Shore, vessel: Uuid) -> Result<Vec<Sample>> {
     let mut samples = Vec::new();
     for (_, _, bytes) in batch_log(shore.database(), vessel).await? {

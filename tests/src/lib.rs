@@ -1,8 +1,8 @@
-//! End-to-end tests of the real programs: what they share.
+//! Shared parts of the end-to-end tests of the real programs.
 //!
-//! The tests start the server, agents and the simulator as users would, as
-//! processes, on loopback ports that the system chooses, and kill them. Nothing
-//! is skipped: a missing program or database fails the test with what to do.
+//! The tests start the server, agents and the simulator as processes, as users
+//! would, on loopback ports chosen by the system, and kill them. No test is
+//! skipped: a missing program or database fails the test with advice.
 
 pub mod at_sea;
 pub mod coast;

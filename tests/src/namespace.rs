@@ -1,25 +1,25 @@
-//! Tests that need something of the system's to themselves: a network, a disk.
+//! Runs tests that need a network or mounts of their own.
 
 use anyhow::Result;
 use std::future::Future;
 
-/// Set for a test that has it.
+/// Set in a test that already has its namespace.
 const OWN: &str = "BINNACLE_TEST_OWN_NAMESPACE";
 
-/// Runs `body` in a new network that has nothing but itself: starts this test
-/// again in one. `test` is its name.
+/// Runs `body` in a new, isolated network, by starting this test again in one.
+/// `test` is its name.
 ///
 /// # Panics
-/// When the system gives no network (it wants root, or user namespaces that anyone
-/// may make), or `body` fails.
+/// When the system gives no network (it takes root, or unprivileged user
+/// namespaces), or `body` fails.
 pub fn in_own_network(test: &str, body: impl Future<Output = Result<()>>) {
     in_own("--net", test, body);
 }
 
-/// The same where it may mount what nobody else sees.
+/// Runs `body` with mounts of its own, in the same way.
 ///
 /// # Panics
-/// As above.
+/// As [`in_own_network`].
 pub fn in_own_mounts(test: &str, body: impl Future<Output = Result<()>>) {
     in_own("--mount", test, body);
 }

@@ -9,10 +9,10 @@ use std::process::{Output, Stdio};
 use tokio::io::AsyncWriteExt;
 use tokio::process::{Child, Command};
 
-/// Where a program lies that was built with these tests.
+/// Returns the path of a program built with these tests.
 ///
 /// # Errors
-/// When it is not there: cargo builds a package's own programs only.
+/// When it is missing: cargo builds a package's own programs only.
 pub fn path(name: &str) -> Result<PathBuf> {
     let tests = std::env::current_exe().context("the path of this test")?;
     let folder = tests
@@ -28,7 +28,7 @@ pub fn path(name: &str) -> Result<PathBuf> {
     Ok(program)
 }
 
-/// A command for one of the programs, with none of the caller's settings.
+/// Returns a command for one of the programs, without the caller's settings.
 ///
 /// # Errors
 /// When the program is missing.
@@ -39,7 +39,7 @@ pub fn command(name: &str) -> Result<Command> {
     Ok(command)
 }
 
-/// Takes the caller's settings from a command.
+/// Removes the caller's settings from a command.
 pub(crate) fn without_settings(command: &mut Command) {
     for (variable, _) in std::env::vars_os() {
         if variable.to_string_lossy().starts_with("BINNACLE_") {
@@ -76,7 +76,7 @@ pub async fn answer_of(mut command: Command, input: &str) -> Result<String> {
     let mut child = command.spawn()?;
     let mut stdin = child.stdin.take().context("standard input was asked for")?;
     match stdin.write_all(input.as_bytes()).await {
-        // What reads nothing may have ended by now.
+        // A program that reads nothing may have ended by now.
         Err(error) if error.kind() == ErrorKind::BrokenPipe => {}
         written => written?,
     }
@@ -91,16 +91,16 @@ pub async fn answer_of(mut command: Command, input: &str) -> Result<String> {
     Ok(String::from_utf8(output.stdout)?)
 }
 
-/// A program that runs until it is killed. When a test fails before that, the
-/// end of its log is shown.
+/// A program that runs until it is killed. If a test fails before that, the end
+/// of its log is shown.
 #[derive(Debug)]
 pub struct Program {
     name: String,
     child: Child,
     log: PathBuf,
-    /// Bytes of the log that earlier runs wrote.
+    /// Bytes of the log from earlier runs.
     before: usize,
-    /// Killed on purpose.
+    /// True after an intended end.
     done: bool,
 }
 
@@ -134,26 +134,26 @@ impl Program {
         &mut self.child
     }
 
-    /// What it wrote to standard error since it was started.
+    /// Returns its standard error since the start.
     pub fn log(&self) -> String {
         let bytes = std::fs::read(&self.log).unwrap_or_default();
         String::from_utf8_lossy(bytes.get(self.before..).unwrap_or_default()).into_owned()
     }
 
-    /// Is it still up?
+    /// True while the process runs.
     ///
     /// # Errors
-    /// When the system does not say.
+    /// When the system does not tell.
     pub fn is_running(&mut self) -> Result<bool> {
         Ok(self.child.try_wait()?.is_none())
     }
 
-    /// It has ended, as it should.
+    /// Marks an intended end.
     pub fn done(&mut self) {
         self.done = true;
     }
 
-    /// Signal 9: it has no chance to tidy up.
+    /// Kills the process with signal 9, so that it cannot clean up.
     ///
     /// # Errors
     /// When it had ended before.

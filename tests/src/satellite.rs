@@ -1,8 +1,9 @@
-//! A satellite link between a shore and a ship, each in a network of its own.
+//! A satellite link between a server and a ship, each in a network of its own.
 //!
-//! `satellite/link.py` carries the packets, late, seldom and slowly, and counts
-//! them. A test on it calls [`crate::namespace::in_own_network`] first: the test's own network is the
-//! shore's, where nothing else on the machine can be reached.
+//! `satellite/link.py` carries the packets with delay, loss and limited rate,
+//! and counts them. A test on it calls [`crate::namespace::in_own_network`]
+//! first: the test's own network is the server's, isolated from the rest of the
+//! machine.
 
 use crate::program;
 use anyhow::{Context, Result, ensure};
@@ -19,58 +20,58 @@ use tokio::io::{AsyncBufReadExt, AsyncWriteExt, BufReader, Lines};
 use tokio::process::{Child, ChildStdin, ChildStdout, Command};
 use tokio::time::timeout;
 
-/// The shore's address on the link.
+/// The server's address on the link.
 pub const SHORE: IpAddr = IpAddr::V4(Ipv4Addr::new(10, 77, 0, 1));
-/// Where the ship finds her instruments.
+/// Address of the ship's instruments.
 pub const INSTRUMENTS: IpAddr = IpAddr::V4(Ipv4Addr::new(10, 78, 0, 1));
 const START: Duration = Duration::from_secs(30);
 
-/// How the link is; what is left out stays.
+/// Conditions on the link; absent ones stay unchanged.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Weather {
-    /// Whether anything passes.
+    /// True while packets pass.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub up: Option<bool>,
-    /// There and back, milliseconds.
+    /// Round-trip time, milliseconds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub round_trip_ms: Option<f64>,
-    /// The share of packets that get lost.
+    /// Fraction of packets lost.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub loss: Option<f64>,
-    /// Bits a second each way; 0 is without limit.
+    /// Bits per second each way; 0 without limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bits_per_s: Option<f64>,
 }
 
-/// What was put on the link.
+/// Packets put on the link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub struct Tally {
-    /// By the ship.
+    /// Sent by the ship.
     pub to_shore: Count,
-    /// By the shore.
+    /// Sent by the server.
     pub to_ship: Count,
 }
 
-/// IP packets one way.
+/// IP packets in one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub struct Count {
-    /// How many.
+    /// Number of packets.
     pub packets: u64,
     /// Their bytes, IP headers included.
     pub bytes: u64,
 }
 
 impl Tally {
-    /// Octets both ways.
+    /// Returns the bytes of both directions.
     pub fn bytes(&self) -> u64 {
         self.to_shore.bytes + self.to_ship.bytes
     }
 }
 
-/// The link, up until it is dropped.
+/// The link, which is up until it is dropped.
 #[derive(Debug)]
 pub struct Satellite {
-    // Dropped first: the end of its input is the end of the link.
+    // Dropped first: closing its input ends the link.
     orders: ChildStdin,
     answers: Lines<BufReader<ChildStdout>>,
     _link: Child,
@@ -83,11 +84,11 @@ struct Up {
 }
 
 impl Satellite {
-    /// Sets the link up; it is perfect until told otherwise. The shore's host is set up as
-    /// docs/uplink.md asks for.
+    /// Sets the link up without loss or delay, and the server's host as
+    /// docs/uplink.md requires.
     ///
     /// # Errors
-    /// When Python or the system does not let it.
+    /// When Python or the system does not allow it.
     pub async fn launch() -> Result<Satellite> {
         std::fs::write("/proc/sys/net/ipv4/tcp_timestamps", "0").context("tcp_timestamps")?;
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("satellite/link.py");
@@ -125,37 +126,37 @@ impl Satellite {
         Ok(self.orders.write_all(line.as_bytes()).await?)
     }
 
-    /// Changes how the link is.
+    /// Changes the conditions on the link.
     ///
     /// # Errors
-    /// When it has ended.
+    /// When the link has ended.
     pub async fn set(&mut self, weather: Weather) -> Result<()> {
         self.order(serde_json::to_string(&weather)?).await?;
-        // Once it counts, it has taken the order before.
+        // A tally shows that the change before it was applied.
         self.tally().await.map(drop)
     }
 
-    /// What was put on the link so far.
+    /// Returns the packets put on the link so far.
     ///
     /// # Errors
-    /// When it has ended.
+    /// When the link has ended.
     pub async fn tally(&mut self) -> Result<Tally> {
         self.order(r#"{"tally": true}"#.to_owned()).await?;
         Ok(serde_json::from_str(&self.answer().await?)?)
     }
 
-    /// What makes a program run on board.
+    /// Returns the ship's network.
     pub fn berth(&self) -> Berth {
         Berth(self.ship)
     }
 }
 
-/// A place for programs on board: the ship's network.
+/// The ship's network, in which programs on board run.
 #[derive(Clone, Copy, Debug)]
 pub struct Berth(u32);
 
 impl Berth {
-    /// A command for one of the programs, on board.
+    /// Returns a command for one of the programs, on board.
     ///
     /// # Errors
     /// When the program is missing.
@@ -170,32 +171,32 @@ impl Berth {
     }
 }
 
-/// An authority of one's own, and the shore's certificate by it, as files: small ones, as
-/// docs/uplink.md asks for.
+/// A private authority and the server's certificate by it, as small files, as
+/// docs/uplink.md recommends.
 #[derive(Clone, Debug)]
 pub struct Certificates {
     shore: IpAddr,
-    /// PEM.
+    /// PEM of the authority's key.
     issuer_key: String,
-    /// Whom to believe.
+    /// The authority's certificate.
     pub authority: PathBuf,
-    /// The shore's.
+    /// The server's certificate.
     pub chain: PathBuf,
-    /// Its private key.
+    /// The server's private key.
     pub key: PathBuf,
 }
 
-/// When a certificate holds.
+/// Validity of a certificate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Validity {
-    /// Now.
+    /// Valid now.
     Current,
-    /// Until some years ago.
+    /// Expired some years ago.
     Past,
 }
 
 impl Certificates {
-    /// Makes them anew for a shore at an address, and writes them.
+    /// Makes new certificates for a server at an address, and writes them.
     ///
     /// # Errors
     /// When the folder cannot be written.
@@ -214,7 +215,7 @@ impl Certificates {
         Ok(made)
     }
 
-    /// Gives the shore another certificate of the same authority.
+    /// Gives the server another certificate of the same authority.
     ///
     /// # Errors
     /// When the files cannot be written.
@@ -234,7 +235,7 @@ impl Certificates {
     }
 }
 
-/// Names cross the link with every certificate.
+/// Short, since names cross the link with every certificate.
 fn short_name() -> DistinguishedName {
     let mut name = DistinguishedName::new();
     name.push(DnType::CommonName, "B");
@@ -248,11 +249,11 @@ fn authority() -> Result<CertificateParams> {
     Ok(authority)
 }
 
-/// Fails unless both ends used the link: a test on one that they went round proves
+/// Fails unless both ends used the link: a test that went around it proves
 /// nothing.
 ///
 /// # Errors
-/// When one did not.
+/// When one did not use it.
 pub fn ensure_used(tally: &Tally) -> Result<()> {
     ensure!(tally.to_shore.packets > 0, "the ship never called");
     ensure!(tally.to_ship.packets > 0, "the shore never answered");

@@ -12,7 +12,7 @@ use std::time::Duration;
 use tokio::process::Command;
 use tokio::time::timeout;
 
-/// Machines may be busy.
+/// Start-up time on a busy machine.
 const START: Duration = Duration::from_secs(30);
 
 /// An agent, running or not.
@@ -26,7 +26,8 @@ pub struct Ship {
 
 impl Ship {
     /// Writes `agent.toml` into a new folder. The agent reads its sentences at
-    /// `feed`, and gives out corrected headings at a port that [`Ship::ready`] tells.
+    /// `feed`, and serves corrected headings at a port that [`Ship::ready`]
+    /// returns.
     ///
     /// # Errors
     /// When the folder cannot be written.
@@ -34,7 +35,7 @@ impl Ship {
         Ship::with_uplink(name, parent, feed, SWIFT)
     }
 
-    /// The same with other lines in `[uplink]`.
+    /// Creates a ship with other lines in `[uplink]`.
     ///
     /// # Errors
     /// When the folder cannot be written.
@@ -71,7 +72,8 @@ stale_s = 15
         })
     }
 
-    /// Puts the ship at the other end of a satellite link: before anything is run.
+    /// Puts the ship at the other end of a satellite link, before any program
+    /// runs.
     #[must_use]
     pub fn at_sea(mut self, berth: Berth) -> Ship {
         self.berth = Some(berth);
@@ -91,12 +93,12 @@ stale_s = 15
         self.folder.join("agent.toml")
     }
 
-    /// Her folder: what the agent has to itself, and its log.
+    /// The ship's folder, with the agent's data and its log.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Where the agent keeps its spool.
+    /// The folder of the agent's spool.
     pub fn data_dir(&self) -> PathBuf {
         self.folder.join("state")
     }
@@ -131,8 +133,8 @@ stale_s = 15
         Ok(())
     }
 
-    /// Waits until the agent has opened everything; where it gives out corrected
-    /// headings.
+    /// Waits until the agent has opened everything, and returns the address of
+    /// the corrected headings.
     ///
     /// # Errors
     /// When it ends instead, or takes too long.
@@ -146,7 +148,7 @@ stale_s = 15
         .await
     }
 
-    /// Where the local page of an agent that is ready is.
+    /// Returns the address of a ready agent's local page.
     ///
     /// # Errors
     /// When it is not ready.
@@ -155,7 +157,7 @@ stale_s = 15
         address_in(&agent.log(), "page").context("the agent is not ready")
     }
 
-    /// What `status --json` says.
+    /// Returns the output of `status --json`.
     ///
     /// # Errors
     /// When it fails.
@@ -168,10 +170,10 @@ stale_s = 15
         serde_json::from_str(&answer).with_context(|| answer.clone())
     }
 
-    /// The most memory the agent ever had, in kilobytes.
+    /// Returns the agent's peak memory, in kilobytes.
     ///
     /// # Errors
-    /// When the system does not say.
+    /// When the system does not tell.
     pub fn peak_memory_kb(&mut self) -> Result<u64> {
         let agent = self.agent.as_mut().context("the agent runs")?;
         let id = agent.child().id().context("the agent has ended")?;
@@ -181,10 +183,10 @@ stale_s = 15
         Ok(kb.context("VmHWM in /proc")?.parse()?)
     }
 
-    /// Waits until the agent has ended by itself; its log.
+    /// Waits until the agent has failed by itself, and returns its log.
     ///
     /// # Errors
-    /// When it does not, or did not fail.
+    /// When it does not end, or ends without a failure.
     pub async fn fails(&mut self) -> Result<String> {
         let mut agent = self.agent.take().context("the agent runs")?;
         let ended = timeout(START, agent.child().wait()).await;
@@ -210,7 +212,7 @@ stale_s = 15
     /// Asks the agent to end, and waits until it has.
     ///
     /// # Errors
-    /// When it does not, or not well.
+    /// When it does not end, or fails.
     pub async fn stop(&mut self) -> Result<()> {
         let mut agent = self.agent.take().context("the agent runs")?;
         let id = agent.child().id().context("it has ended by itself")?;
@@ -232,10 +234,10 @@ stale_s = 15
         self.start()
     }
 
-    /// Fails unless the agent is up.
+    /// Fails unless the agent runs.
     ///
     /// # Errors
-    /// When it is not.
+    /// When it does not.
     pub fn assert_running(&mut self) -> Result<()> {
         let agent = self.agent.as_mut().context("the agent runs")?;
         ensure!(
@@ -248,7 +250,7 @@ stale_s = 15
     }
 }
 
-/// An address in the line that says that the agent is ready.
+/// Returns an address in the log line of a ready agent.
 fn address_in(log: &str, name: &str) -> Option<SocketAddr> {
     let line = log.lines().find(|line| line.contains(" ready "))?;
     let (_, rest) = line.split_once(&format!("{name}=\""))?;

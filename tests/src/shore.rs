@@ -1,4 +1,4 @@
-//! The server, and its API as an operator's admin sees it.
+//! The server process, and its API as used by an operator's admin.
 
 use crate::database::{Database, Engine};
 use crate::program::{self, Program};
@@ -16,15 +16,15 @@ use tokio::time::timeout;
 
 const EMAIL: &str = "captain@test.example";
 const PASSWORD: &str = "correct-horse-battery";
-/// The server may stand at another host's address: its metrics are not for whoever is near.
+/// The server may listen beyond loopback, where its metrics need a token.
 const METRICS_TOKEN: &str = "scraper-of-these-tests";
-/// A start migrates the database; machines may be busy.
+/// A start migrates the database, on a machine that may be busy.
 const START: Duration = Duration::from_mins(1);
 
 /// A running server with one operator, and an admin signed in.
 #[derive(Debug)]
 pub struct Shore {
-    /// As `http://127.0.0.1:PORT`, the same after a restart.
+    /// URL such as `http://127.0.0.1:PORT`, the same after a restart.
     pub url: String,
     database: Database,
     folder: PathBuf,
@@ -83,7 +83,7 @@ impl Shore {
         &self.database
     }
 
-    /// Another operator, with an admin: the cookie of a stranger.
+    /// Creates an admin of another operator, and returns the session cookie.
     ///
     /// # Errors
     /// When the server refuses.
@@ -117,7 +117,7 @@ impl Shore {
         Ok(())
     }
 
-    /// Runs the server's program beside the server, on its database.
+    /// Runs a command of the server's program on its database.
     ///
     /// # Errors
     /// When it fails.
@@ -171,7 +171,8 @@ impl Shore {
         self.stopped_for(|| Ok(())).await
     }
 
-    /// Stops the server with signal 9, does something, and starts it on the same port.
+    /// Stops the server with signal 9, calls `meanwhile`, and starts it on the
+    /// same port.
     ///
     /// # Errors
     /// When it had ended by itself, does not start again, or `meanwhile` fails.
@@ -184,10 +185,10 @@ impl Shore {
         self.serve(&listen).await
     }
 
-    /// How many analyses wait or are under way.
+    /// Returns the number of analyses waiting or under way.
     ///
     /// # Errors
-    /// When the server does not say.
+    /// When the server does not tell.
     pub async fn jobs(&self) -> Result<u64> {
         let metrics = self.http.get(format!("{}/metrics", self.url));
         let metrics = metrics
@@ -205,7 +206,7 @@ impl Shore {
         Ok(waiting.sum())
     }
 
-    /// Fails unless the server is up and well.
+    /// Fails unless the server runs and is healthy.
     ///
     /// # Errors
     /// When it is not.
@@ -260,7 +261,7 @@ impl Shore {
         Ok(pair.to_owned())
     }
 
-    /// A request below `/api/v1` with nobody's name on it.
+    /// A request below `/api/v1` without credentials.
     pub fn anonymous(&self, method: Method, path: &str) -> RequestBuilder {
         self.http
             .request(method, format!("{}/api/v1{path}", self.url))
@@ -278,10 +279,11 @@ impl Shore {
             .header("x-binnacle-request", "1")
     }
 
-    /// What the admin sees at a path; `None` for what is not there.
+    /// Returns the resource at a path as the admin, or `None` for a missing
+    /// one.
     ///
     /// # Errors
-    /// When the answer is neither.
+    /// When the response is neither.
     pub async fn find(&self, path: &str) -> Result<Option<Value>> {
         let answer = self
             .with_cookie(Method::GET, path, &self.cookie)
@@ -293,10 +295,10 @@ impl Shore {
         json_of(answer).await.map(Some)
     }
 
-    /// What the admin sees at a path.
+    /// Returns the resource at a path as the admin.
     ///
     /// # Errors
-    /// When there is nothing.
+    /// When it is missing.
     pub async fn get(&self, path: &str) -> Result<Value> {
         self.find(path)
             .await?
@@ -314,7 +316,7 @@ impl Shore {
         json_of(request.send().await?).await
     }
 
-    /// A list, all its pages.
+    /// Returns a list with all its pages.
     ///
     /// # Errors
     /// When a page is refused.
@@ -335,7 +337,8 @@ impl Shore {
         }
     }
 
-    /// A new vessel with its standard compass, and a code to enrol an agent with.
+    /// Creates a vessel with its standard compass; returns its id and an
+    /// enrolment code.
     ///
     /// # Errors
     /// When the server refuses.
@@ -346,7 +349,7 @@ impl Shore {
         Ok((id, code))
     }
 
-    /// A code to enrol an agent of a vessel with.
+    /// Creates an enrolment code for an agent of a vessel.
     ///
     /// # Errors
     /// When the server refuses.
@@ -373,7 +376,7 @@ async fn json_of(answer: Response) -> Result<Value> {
 
 fn http_client(tls: Option<&Certificates>) -> Result<Client> {
     static PROVIDER: Once = Once::new();
-    // A second installation fails, which is as good.
+    // A second installation fails, which does not matter.
     PROVIDER.call_once(|| drop(rustls::crypto::ring::default_provider().install_default()));
     let mut builder = Client::builder().timeout(Duration::from_mins(1)).no_proxy();
     if let Some(tls) = tls {

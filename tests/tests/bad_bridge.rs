@@ -1,4 +1,4 @@
-//! A bridge that sends rubbish: the agent counts it and goes on.
+//! A bridge that sends rubbish: the agent counts it and continues.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -14,7 +14,7 @@ fn sentence(body: &str) -> String {
     format!("${body}*{sum:02X}\r\n")
 }
 
-/// A ship on a steady course, second after second.
+/// Sentences of a ship on a steady heading, second by second.
 fn watch(seconds: u32) -> String {
     (0..seconds).fold(String::new(), |mut text, second| {
         let (minute, second) = (second / 60, second % 60);

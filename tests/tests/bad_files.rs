@@ -1,5 +1,5 @@
-//! Files and arguments that no command can use: exit code 2 and one line that
-//! says where and what, and nothing on standard output that looks whole.
+//! Unusable files and arguments: exit code 2, one line with the place and the
+//! fault, and no output that looks complete.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -37,7 +37,7 @@ fn assert_refused(what: &str, output: &Output, words: &[&str]) {
     }
 }
 
-/// Bytes of every kind, without a system.
+/// Bytes of every kind, without structure.
 fn noise(count: usize) -> Vec<u8> {
     let mut state = 1_u64;
     let mut next = || {

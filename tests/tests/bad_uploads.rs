@@ -1,4 +1,4 @@
-//! Batches that must not be stored, and what the server says to each.
+//! Batches that must not be stored, and the server's response to each.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 use uuid::Uuid;
 
-/// An analysis of a dozen samples, on a busy machine.
+/// Time for an analysis of a dozen samples on a busy machine.
 const PATIENCE: Duration = Duration::from_mins(1);
 
 /// An agent without a ship: this test sends its batches.
@@ -75,7 +75,7 @@ fn frame(stream: StreamId, seq: u64, samples: Vec<Sample>) -> Vec<u8> {
     .unwrap()
 }
 
-/// Sends a frame and gives back the status and the problem.
+/// Sends a frame and returns the status and the problem.
 async fn put(
     shore: &Shore,
     token: Option<&str>,
@@ -126,7 +126,7 @@ async fn assert_nothing_stored(shore: &mut Shore, agent: &Agent) -> Result<()> {
     Ok(())
 }
 
-/// What is sent in whose name, and the statuses that may answer it.
+/// A request with its credentials, and the statuses allowed in response.
 struct Attempt<'a> {
     name: &'static str,
     token: Option<&'a str>,
@@ -179,7 +179,7 @@ fn attempts<'a>(ours: &'a Agent, other: &'a Agent) -> Vec<Attempt<'a>> {
     ]
 }
 
-/// The real batch, once, again, and changed.
+/// The real batch, sent once, again, and changed.
 async fn assert_stored_once(shore: &Shore, ours: &Agent) -> Result<()> {
     let send = async |samples| {
         let body = frame(ours.stream, 1, samples);
@@ -198,7 +198,7 @@ async fn assert_stored_once(shore: &Shore, ours: &Agent) -> Result<()> {
         status == StatusCode::CONFLICT && kind.ends_with("/stream-forked"),
         "{problem}"
     );
-    // The API lists what the analysis has seen, which comes a moment later.
+    // The API lists analysed samples, which takes a moment.
     let path = format!("/vessels/{}/samples", ours.vessel);
     let stored = eventually("the samples are analysed", PATIENCE, async || {
         let stored = shore.list(&path).await?;

@@ -1,5 +1,5 @@
-//! What may happen to ship, shore and link: what was acknowledged is ashore, once, and what
-//! was not is still on board.
+//! Faults of ship, server and link: an acknowledged batch is stored once, and
+//! everything else is still on board.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -26,7 +26,7 @@ async fn no_wrong_answer() -> Result<()> {
         Manners::Refuses("400 Bad Request"),
         Manners::Refuses("401 Unauthorized"),
         Manners::Refuses("404 Not Found"),
-        // Of a request; then of an answer.
+        // Cuts a request; then a response.
         Manners::CutsAfter(100),
         Manners::CutsAfter(60),
     ];
@@ -81,7 +81,8 @@ async fn many_kills() -> Result<()> {
         state = state
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(9);
-        // Somewhere on the way there, wherever the agent and its uplink are by then.
+        // At a random point of the way, whatever agent and uplink are doing
+        // then.
         let part = (state >> 33) as f64 / f64::from(1_u32 << 31);
         let from = moment.plus_seconds(-86_400.0 * DAYS / f64::from(kills()) * part);
         let passed = |progress: &binnacle_tests::Progress| progress.time() >= Some(from);
@@ -92,10 +93,11 @@ async fn many_kills() -> Result<()> {
             coast.ship.kill_and_restart().await?;
         }
     }
-    // The last one may have come when all was said.
+    // The last kill may have come after everything was sent.
     coast.until(DAYS + 0.5).await?;
     let spool = coast.all_ashore().await?;
-    // What was on the way to an agent that died is lost: there is less to send.
+    // Sentences under way to an agent that died are lost, so there is less to
+    // send.
     let samples = spool.acknowledged.iter().map(|batch| batch.samples);
     ensure!(samples.sum::<i64>() > 50, "{spool:?}");
     ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
@@ -115,7 +117,7 @@ async fn torn_tail() -> Result<()> {
         coast.ship.kill().await?;
         let before = Spool::of(&coast.ship).await?;
         ensure!(before.samples_aboard > 0, "{before:?}");
-        // Half a frame of the journal, of which nothing was said to be on the disk.
+        // Half a frame of the journal, never reported as durable.
         let journal = coast.ship.data_dir().join("spool.db-wal");
         let mut octets = std::fs::read(&journal)?;
         octets.extend(vec![0xa5; 24 + 1000 * torn as usize]);
@@ -181,7 +183,7 @@ async fn old_spool() -> Result<()> {
     };
     ensure!((streams(&spool), streams(&after)) == (1, 2), "{after:?}");
     ensure_acknowledged_is_ashore(&coast.shore, coast.vessel, &spool).await?;
-    // One computer that went back is not two.
+    // One computer with an old spool is not two.
     let alerts = coast.shore.list("/alerts").await?;
     let is_clone = |alert: &Value| alert["cause"] == "cloned_agent";
     ensure!(!alerts.iter().any(is_clone), "{alerts:?}");
@@ -245,7 +247,7 @@ async fn long_silence() -> Result<()> {
     coast.arrive().await
 }
 
-/// Only what the others need of it too.
+/// Checks the gateway's behaviour that the other tests need.
 #[tokio::test]
 async fn a_gateway_passes_and_answers_in_the_shores_place() {
     let folder = tempfile::tempdir().unwrap();

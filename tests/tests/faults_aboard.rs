@@ -1,5 +1,5 @@
-//! What may go wrong aboard: a disk that is full or read-only, a receiver whose clock
-//! jumps, words from outside that mean harm.
+//! Faults on board: a full or read-only disk, a receiver with a wrong clock,
+//! and hostile input from outside.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -26,14 +26,14 @@ fn mount(arguments: &[&str], place: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A disk of so much for what the agent keeps.
+/// Mounts a disk of a limited size for the agent's data.
 fn small_disk(place: &Path, size: &str) -> Result<()> {
     std::fs::create_dir_all(place)?;
     let size = format!("size={size},mode=700");
     mount(&["-t", "tmpfs", "-o", &size, "tmpfs"], place)
 }
 
-/// Fills a disk to the last octet; the file to remove.
+/// Fills a disk to the last byte, and returns the file to remove.
 fn fill(place: &Path, name: &str) -> Result<PathBuf> {
     let path = place.join(name);
     let mut file = File::create(&path)?;
@@ -54,7 +54,8 @@ async fn full_disk() -> Result<()> {
     let mut coast = Coast::sail_on(Passage::default(), disk).await?;
     coast.until(1.0).await?;
     let before = coast.all_ashore().await?;
-    // At first the ring makes way for the spool; then there is nothing left to give.
+    // First the raw log gives way to the spool; then there is nothing left to
+    // free.
     let state = coast.ship.data_dir();
     let most = fill(&state, "somebody-elses")?;
     coast.until(2.0).await?;
@@ -97,7 +98,7 @@ async fn read_only_disk() -> Result<()> {
     coast.ship.kill().await?;
     let before = Spool::of(&coast.ship).await?;
     ensure!(before.waiting > 1, "{before:?}");
-    // What a system does with a disk that fails.
+    // As a system treats a failing disk.
     let state = coast.ship.data_dir();
     eventually("nobody writes to the disk", PATIENCE, async || {
         Ok(mount(&["-o", "remount,ro"], &state).map_err(|why| why.to_string()))
@@ -127,7 +128,8 @@ fn a_disk_that_fails_under_a_running_agent_is_said_and_keeps_what_is_on_it() {
     in_own_mounts(name, failing_disk());
 }
 
-/// A file system of its own for what the agent keeps, that can be made to fail.
+/// Mounts a separate file system for the agent's data, which can be made to
+/// fail.
 fn own_disk(image: &Path, place: &Path) -> Result<()> {
     std::fs::create_dir_all(place)?;
     File::create(image)?.set_len(64_000_000)?;
@@ -156,7 +158,8 @@ async fn failing_disk() -> Result<()> {
     coast.until(2.0).await?;
     let before = Spool::of(&coast.ship).await?;
     ensure!(before.waiting > 0, "{before:?}");
-    // From here on every write fails, as on a disk that the system has given up.
+    // From here on every write fails, as on a disk that the system has given
+    // up.
     let state = coast.ship.data_dir();
     mount(&["-o", "remount,abort"], &state)?;
     coast.until(3.0).await?;
@@ -181,7 +184,7 @@ async fn failing_disk() -> Result<()> {
         })
     })
     .await?;
-    // What it put right is not 0.
+    // A repair has an exit code other than 0.
     Command::new("e2fsck").arg("-fy").arg(&image).output()?;
     mount_image(&image, &state)?;
     coast.ship.start()?;
@@ -205,7 +208,7 @@ async fn no_sample_has_a_wrong_time_whatever_the_receivers_clock_says() {
 async fn wrong_clock() -> Result<()> {
     let mut coast = Coast::sail().await?;
     coast.until(1.0).await?;
-    // A quarter of a day each, while she is under way.
+    // A quarter of a day each, while the ship is under way.
     let wrong = [(1.0, DAY_S), (2.0, -DAY_S), (3.0, DAY_S)];
     for (from, off_s) in wrong {
         coast.voyage.feed.set_clock(off_s)?;
@@ -216,7 +219,7 @@ async fn wrong_clock() -> Result<()> {
         coast.until(from + 1.0).await?;
         coast.says("/clock_problem", "null").await?;
     }
-    // Here she knows what time it is.
+    // Here the agent knows the right time.
     coast.voyage.feed.set_clock(-ROLL_OVER_S)?;
     coast.until(5.0).await?;
     coast.says("/clock_problem", "1024 weeks").await?;
@@ -263,7 +266,7 @@ async fn wrong_from_the_start() -> Result<()> {
         coast.voyage.feed.set_clock(off_s + wrong_s)?;
         coast.ship.start()?;
         coast.ship.ready().await?;
-        // What is written to an agent that has ended is lost: the first of it is.
+        // The first sentences to an agent that has ended are lost.
         eventually("the agent hears something", PATIENCE, async || {
             minutes += 0.5;
             reach(&mut coast, 1.0 + minutes / 1_440.0).await?;
@@ -308,8 +311,8 @@ async fn reach(coast: &mut Coast, days: f64) -> Result<()> {
     Ok(())
 }
 
-/// No sample is from where she cannot have been at its time: a wrong one would be 300 nm
-/// off.
+/// Checks that no sample is from an impossible position for its time; a wrong
+/// one would be 300 nm off.
 fn ensure_she_sailed(samples: &[Sample]) -> Result<()> {
     let (first, last) = (
         samples.first().context("samples")?,

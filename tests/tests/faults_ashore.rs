@@ -1,5 +1,5 @@
-//! What may go wrong ashore, and between: what was acknowledged is there, once, and what
-//! was not is still on board.
+//! Faults of the server and of the link: an acknowledged batch is stored once,
+//! and everything else is still on board.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 const HASTY: &str = "poll_s = 2\nretry_min_s = 0.2\nretry_max_s = 1\nexchange_s = 2";
-/// Refused once, it asks again in an hour.
+/// After a refusal it retries in an hour.
 const PATIENT: &str = "poll_s = 2\nretry_min_s = 0.2\nretry_max_s = 3600";
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -61,7 +61,7 @@ async fn expired_certificate() -> Result<()> {
     coast.until(1.0).await?;
     let before = coast.all_ashore().await?;
     let tls = coast.tls.clone().context("the shore speaks TLS")?;
-    // Started anew, it resumes no session of before.
+    // A new process cannot resume an old session.
     let expires = || tls.renew(Validity::Past);
     coast.shore.stopped_for(expires).await?;
     coast.until(2.0).await?;
@@ -113,7 +113,7 @@ async fn revoked() -> Result<()> {
     ensure!(said.contains("enrol it again"), "{said}");
     coast.says("/link/state", "refused").await?;
     let calls = coast.gateway.count();
-    // A day, with four more batches, which become one.
+    // A day with four more batches, which become one.
     coast.until(3.0).await?;
     ensure!(coast.gateway.count() <= calls + 1, "it called again");
     let aboard = coast.ensure_nothing_went(&before).await?;
@@ -156,7 +156,7 @@ async fn cloned() -> Result<()> {
         ensure_acknowledged_is_ashore(&coast.shore, coast.vessel, &spool).await?;
     }
     twin.kill().await?;
-    // Two ships' samples: their windows overlap, as they must.
+    // Two ships' samples: their windows must overlap.
     coast.ship.assert_running()?;
     coast.ship.kill().await?;
     coast.shore.assert_well().await?;

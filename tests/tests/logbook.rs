@@ -1,5 +1,5 @@
-//! What an officer reports on the agent's page stands in the logbook ashore, once,
-//! whoever is killed on the way.
+//! An officer's report from the agent's page reaches the server's logbook once,
+//! whichever process is killed on the way.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -21,7 +21,7 @@ async fn put(page: SocketAddr, report: &Value) -> StatusCode {
     request.send().await.unwrap().status()
 }
 
-/// Waits until an entry stands in the logbook that ended at a time, or goes on.
+/// Waits for a logbook entry with this end, or an open one.
 async fn logbook(shore: &Shore, vessel: &str, to: &Value) -> Vec<Value> {
     let path = format!("/vessels/{vessel}/logbook");
     eventually("the report is in the logbook", PATIENCE, async || {

@@ -1,4 +1,4 @@
-//! The real programs over a satellite: what it costs, and what it may do to them.
+//! The real programs over a satellite link: data volume and robustness.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -11,7 +11,7 @@ use binnacle_tests::satellite::{Tally, Weather, ensure_used};
 use std::time::Duration;
 use tokio::time::interval;
 
-/// How often a ship sends, and the most octets that a day of that may cost.
+/// A sending interval, and the most bytes that a day of it may cost.
 struct Policy {
     profile: &'static str,
     seal_s: u32,
@@ -40,13 +40,12 @@ fn days() -> u32 {
     asked.map_or(2, |days| days.parse().expect("a number of days"))
 }
 
-/// Sails for some days as she would, but that time passes faster: she waits wherever
-/// she is when a batch is sealed until it is ashore and analysed, as it would be by the
-/// next one.
+/// Sails for some days in fast time: at each sealed batch the ship waits until
+/// it is uploaded and analysed, as it would be before the next one.
 async fn costs(policy: Policy) -> Result<()> {
     let profile = format!("profile = \"{}\"", policy.profile);
     let mut at_sea = AtSea::sail("month.toml", &profile).await?;
-    // The first day brings settings and a first model: later ones are like each other.
+    // The first day brings settings and a first model; later days are alike.
     sail_on(&mut at_sea, &policy, 0, 2).await?;
     let before = at_sea.satellite.tally().await?;
     sail_on(&mut at_sea, &policy, 2, 2 + days()).await?;
@@ -66,7 +65,7 @@ async fn costs(policy: Policy) -> Result<()> {
 }
 
 async fn sail_on(at_sea: &mut AtSea, policy: &Policy, from: u32, to: u32) -> Result<()> {
-    // The next batch is sealed when a sample is older: no two in one step.
+    // The next batch is sealed when a sample is older: not two in one step.
     let step = f64::from(policy.seal_s) / 86_400.0;
     let mut time = f64::from(from);
     while time < f64::from(to) {
@@ -107,10 +106,9 @@ struct Windows {
     round_trip_ms: f64,
 }
 
-/// As they are, with `make soak`; else in a quarter of the time: a window holds as many
-/// requests as the real one. Between two windows there is enough time for the agent to
-/// give up and for its pauses to grow to their longest; the rest of the ten minutes is
-/// left out.
+/// The real times with `make soak`, otherwise a quarter of them: a window still
+/// holds as many requests. Between two windows the agent has time to give up
+/// and to reach its longest backoff; the rest of the ten minutes is left out.
 fn windows() -> Windows {
     if std::env::var_os("BINNACLE_SOAK").is_some() {
         return Windows {
@@ -133,7 +131,7 @@ fn a_link_that_is_up_for_20_s_at_a_time_brings_all_ashore() {
 }
 
 async fn short_windows() -> Result<()> {
-    // As impatient as may be: it has a few windows, not a day of them.
+    // As impatient as possible: it has a few windows, not a day of them.
     let uplink = "retry_min_s = 1\nretry_max_s = 3\nexchange_s = 10";
     let mut at_sea = AtSea::sail("biscay.toml", uplink).await?;
     at_sea.until(day(1.0)).await?;

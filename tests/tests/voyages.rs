@@ -1,6 +1,6 @@
-//! The whole way: two ships sail, their agents upload, agents and server are
-//! killed on the way, and in the end nothing is lost, nothing is double, the
-//! models hold the truth, and the autopilot hears it.
+//! The complete path: two ships sail, their agents upload, and agents and
+//! server are killed on the way. In the end nothing is lost or doubled, the
+//! models hold the truth, and the autopilot reads it.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -19,15 +19,16 @@ use uuid::Uuid;
 
 const START: &str = "2026-10-01T00:00:00Z";
 const DAYS: f64 = 12.0;
-/// A ship sails on for so long while another is hit.
+/// Time that a ship sails on while another is killed.
 const AFTER_KILL_S: f64 = 12.0 * 3600.0;
-/// Sailed at the end, for the autopilot.
+/// Sailed live at the end, for the autopilot.
 const LIVE_S: f64 = 600.0;
-/// A few days' sailing may take so long on a busy machine.
+/// Time for a few days' sailing on a busy machine.
 const PATIENCE: Duration = Duration::from_mins(5);
-/// A tenth of a degree in a sentence, and a line between rows of the truth.
+/// A tenth of a degree in a sentence, and interpolation between rows of the
+/// truth.
 const ROUNDING_DEG: f64 = 0.15;
-/// Either ship settles more often than this in the days that she sails.
+/// The least number of samples of each ship in these days.
 const LEAST_SAMPLES: i64 = 1_000;
 
 struct Vessel {
@@ -36,7 +37,7 @@ struct Vessel {
     voyage: Voyage,
 }
 
-/// Who is killed.
+/// The process to kill.
 #[derive(Clone, Copy, Debug)]
 enum Victim {
     Agent(usize),
@@ -49,7 +50,7 @@ fn day(day: f64) -> Timestamp {
         .plus_seconds(day * 86_400.0)
 }
 
-/// Where the fast part ends.
+/// End of the fast part.
 fn fast_end() -> Timestamp {
     day(DAYS).plus_seconds(-LIVE_S)
 }
@@ -60,7 +61,7 @@ fn seeds() -> std::ops::Range<u64> {
     3..if soak { 23 } else { 4 }
 }
 
-/// Eight moments in order, by a generator with a known seed.
+/// Eight moments in order, from a seeded generator.
 fn kills(seed: u64) -> Vec<(f64, Victim)> {
     let mut state = seed;
     let mut next = || {
@@ -98,7 +99,7 @@ async fn set_sail(shore: &Shore, scenario: &str, seed: u64, folder: &Path) -> Re
 }
 
 /// Sails to the end of the fast part, with the kills on the way: no ship runs
-/// ahead of them, and all are still under way when one comes.
+/// ahead of them, and all are under way at each kill.
 async fn sail(shore: &mut Shore, vessels: &mut [Vessel], seed: u64) -> Result<()> {
     for (when, victim) in kills(seed) {
         let moment = day(when);
@@ -127,7 +128,7 @@ async fn sail(shore: &mut Shore, vessels: &mut [Vessel], seed: u64) -> Result<()
     Ok(())
 }
 
-/// Waits until the agent has taken in all that was said and nothing waits.
+/// Waits until the agent has read all sentences and no batch waits.
 async fn settled(vessel: &Vessel, until: Timestamp) -> Result<Spool> {
     eventually("the agent has sent all", PATIENCE, async || {
         let status = vessel.ship.status().await?;
@@ -146,9 +147,9 @@ async fn settled(vessel: &Vessel, until: Timestamp) -> Result<Spool> {
     .await
 }
 
-/// Compares both ends' records: what the agent holds to be acknowledged and
-/// what the shore holds must be the same batches, to the checksum. Gives back
-/// the samples in them, in order of time.
+/// Compares both ends' records: the batches that the agent holds for
+/// acknowledged must be those of the server, to the checksum. Returns their
+/// samples in order of time.
 async fn assert_every_batch_once(
     shore: &Shore,
     vessel: &Vessel,
@@ -159,7 +160,7 @@ async fn assert_every_batch_once(
         "{} batches are in trouble",
         spool.in_trouble
     );
-    // How many batches carry them depends on how long a busy server lets them wait.
+    // The number of batches depends on the waiting times at a busy server.
     let samples: i64 = spool.acknowledged.iter().map(|batch| batch.samples).sum();
     ensure!(samples > LEAST_SAMPLES, "only {samples} samples are ashore");
     let mut sent = Vec::new();
@@ -213,7 +214,7 @@ async fn final_model(shore: &Shore, vessel: &Vessel, sent: &[Sample]) -> Result<
     .await
 }
 
-/// What the API gives out is what was sent, each sample once.
+/// Checks that the API returns the samples sent, each once.
 async fn assert_every_sample_once(shore: &Shore, vessel: &Vessel, sent: &[Sample]) -> Result<()> {
     let listed = shore
         .list(&format!("/vessels/{}/samples", vessel.id))
@@ -241,8 +242,8 @@ fn apart_deg(a: f64, b: f64) -> f64 {
     wrap_180(a - b).abs()
 }
 
-/// The band of the deviation curve at the voyage's end holds the truth on at
-/// least nine headings in ten.
+/// Checks that the band of the deviation curve at the voyage's end contains the
+/// truth on at least nine headings in ten.
 async fn assert_band_holds_truth(shore: &Shore, vessel: &Vessel, truth: &Place) -> Result<()> {
     let Place { lat, lon, at, .. } = truth;
     let path = format!("/vessels/{}/deviation", vessel.id);
@@ -280,13 +281,13 @@ fn missed(row: &Value, truth: &Place) -> Option<String> {
     Some(format!("{row}: {error:+.3} from the truth"))
 }
 
-/// Sails on for ten minutes and listens as an autopilot would.
+/// Sails on for ten minutes and reads the output as an autopilot.
 async fn assert_autopilot_hears_truth(vessel: &mut Vessel, last: Timestamp) -> Result<()> {
     eventually("the model is on board", PATIENCE, async || {
         let status = vessel.ship.status().await?;
         let until = status["model"]["data_until"].as_str();
         let until = until.map(Timestamp::parse).transpose()?;
-        // One that is hardly another is sent when it is three days younger.
+        // A nearly identical model is sent once it is three days younger.
         let aboard = until > Some(last.plus_seconds(-3.0 * 86_400.0));
         Ok(if aboard {
             Ok(())
