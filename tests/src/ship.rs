@@ -1,9 +1,8 @@
 //! A ship: an agent process with its own folder, fed over TCP.
 
-use crate::coast::SWIFT;
 use crate::eventually::eventually;
-use crate::program::{self, Program};
-use crate::satellite::Berth;
+use crate::link::satellite::Berth;
+use crate::process::program::{self, Program};
 use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 use std::net::SocketAddr;
@@ -12,6 +11,8 @@ use std::time::Duration;
 use tokio::process::Command;
 use tokio::time::timeout;
 
+/// Settings of an agent that waits for nothing, on a link that costs nothing.
+pub const SWIFT: &str = "poll_s = 2\nretry_min_s = 0.2\nretry_max_s = 1";
 /// Start-up time on a busy machine.
 const START: Duration = Duration::from_secs(30);
 

@@ -1,7 +1,7 @@
 //! A simulated voyage that feeds an agent, with its truth.
 
 use crate::feed::{Feed, Pace};
-use crate::program;
+use crate::process::program;
 use anyhow::{Context, Result, ensure};
 use binnacle_magnetics::time::Timestamp;
 use serde::Deserialize;

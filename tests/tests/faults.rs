@@ -4,10 +4,10 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Result, ensure};
-use binnacle_tests::at_sea::{PATIENCE, day};
-use binnacle_tests::coast::copy_folder;
-use binnacle_tests::gateway::{Gateway, Manners};
-use binnacle_tests::ledger::{Spool, ensure_acknowledged_is_ashore, ensure_same_at_both_ends};
+use binnacle_tests::link::gateway::{Gateway, Manners};
+use binnacle_tests::records::{Spool, ensure_acknowledged_is_ashore, ensure_same_at_both_ends};
+use binnacle_tests::sailing::{PATIENCE, day};
+use binnacle_tests::ship_and_server::copy_folder;
 use binnacle_tests::{Coast, Engine, Pace, Passage, Shore, eventually};
 use serde_json::Value;
 

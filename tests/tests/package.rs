@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Context, Result, ensure};
-use binnacle_tests::namespace::in_own_mounts;
+use binnacle_tests::process::namespace::in_own_mounts;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

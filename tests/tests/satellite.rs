@@ -4,10 +4,10 @@
 
 use anyhow::{Result, ensure};
 use binnacle_tests::AtSea;
-use binnacle_tests::at_sea::day;
-use binnacle_tests::ledger::Spool;
-use binnacle_tests::namespace::in_own_network;
-use binnacle_tests::satellite::{Tally, Weather, ensure_used};
+use binnacle_tests::link::satellite::{Tally, Weather, ensure_used};
+use binnacle_tests::process::namespace::in_own_network;
+use binnacle_tests::records::Spool;
+use binnacle_tests::sailing::day;
 use std::time::Duration;
 use tokio::time::interval;
 

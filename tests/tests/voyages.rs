@@ -8,9 +8,9 @@ use anyhow::{Context, Result, ensure};
 use binnacle_magnetics::angle::wrap_180;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
-use binnacle_tests::ledger::{Acknowledged, Spool, batch_log, checksum};
+use binnacle_tests::records::{Acknowledged, Spool, batch_log, checksum};
 use binnacle_tests::voyage::Place;
-use binnacle_tests::{Engine, Pace, Progress, Ship, Shore, Voyage, eventually, heard};
+use binnacle_tests::{Engine, Pace, Progress, Ship, Shore, Voyage, autopilot, eventually};
 use binnacle_wire::decode;
 use serde_json::Value;
 use std::path::Path;
@@ -298,7 +298,7 @@ async fn assert_autopilot_hears_truth(vessel: &mut Vessel, last: Timestamp) -> R
     .await?;
     let output = vessel.ship.ready().await?;
     vessel.voyage.feed.set_pace(Pace::Live)?;
-    let heard = heard::corrections(output, 20, PATIENCE).await?;
+    let heard = autopilot::corrections(output, 20, PATIENCE).await?;
     vessel
         .voyage
         .feed

@@ -1,11 +1,11 @@
 //! A satellite link between a server and a ship, each in a network of its own.
 //!
 //! `satellite/link.py` carries the packets with delay, loss and limited rate,
-//! and counts them. A test on it calls [`crate::namespace::in_own_network`]
+//! and counts them. A test on it calls [`crate::process::namespace::in_own_network`]
 //! first: the test's own network is the server's, isolated from the rest of the
 //! machine.
 
-use crate::program;
+use crate::process::program;
 use anyhow::{Context, Result, ensure};
 use rcgen::{
     BasicConstraints, CertificateParams, DistinguishedName, DnType, IsCa, Issuer, KeyPair,

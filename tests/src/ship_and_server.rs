@@ -1,11 +1,12 @@
 //! A ship and its server on one machine, with a gateway between them, and the
 //! invariants that hold under any fault.
 
-use crate::at_sea::{PATIENCE, day, until};
 use crate::feed::Pace;
-use crate::gateway::Gateway;
-use crate::ledger::{Spool, ensure_acknowledged_is_ashore, samples_ashore};
-use crate::satellite::Certificates;
+use crate::link::gateway::Gateway;
+use crate::link::satellite::Certificates;
+use crate::records::{Spool, ensure_acknowledged_is_ashore, samples_ashore};
+use crate::sailing::{PATIENCE, day, until};
+use crate::ship::SWIFT;
 use crate::{Engine, Ship, Shore, Voyage, eventually};
 use anyhow::{Context, Result, ensure};
 use std::net::{IpAddr, Ipv4Addr};
@@ -40,9 +41,6 @@ pub struct Passage {
     /// Name of the vessel.
     pub name: &'static str,
 }
-
-/// Settings of an agent that waits for nothing, on a link that costs nothing.
-pub const SWIFT: &str = "poll_s = 2\nretry_min_s = 0.2\nretry_max_s = 1";
 
 impl Default for Passage {
     fn default() -> Passage {

@@ -1,9 +1,9 @@
 //! Records of sent batches at both ends: the agent's spool and the server's
 //! batch log, read directly from their databases.
 
-use crate::database::Database;
+use crate::process::database::Database;
+use crate::server_process::Shore;
 use crate::ship::Ship;
-use crate::shore::Shore;
 use anyhow::{Context, Result, ensure};
 use binnacle_magnetics::sample::Sample;
 use binnacle_wire::decode;

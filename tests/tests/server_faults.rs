@@ -4,13 +4,13 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Context, Result, ensure};
-use binnacle_tests::at_sea::{PATIENCE, day};
-use binnacle_tests::coast::{calm, copy_folder};
-use binnacle_tests::gateway::Manners;
-use binnacle_tests::ledger::{
+use binnacle_tests::link::gateway::Manners;
+use binnacle_tests::link::satellite::Validity;
+use binnacle_tests::records::{
     Spool, batch_log, ensure_acknowledged_is_ashore, ensure_same_at_both_ends,
 };
-use binnacle_tests::satellite::Validity;
+use binnacle_tests::sailing::{PATIENCE, day};
+use binnacle_tests::ship_and_server::{calm, copy_folder};
 use binnacle_tests::{Coast, Pace, Passage, Ship, Voyage, eventually};
 use serde_json::Value;
 use std::path::PathBuf;
@@ -146,7 +146,7 @@ async fn cloned() -> Result<()> {
     for days in [2.0, 3.0, 4.0] {
         coast.until(days).await?;
         coast.all_ashore().await?;
-        binnacle_tests::at_sea::until(&mut other, &twin, day(days)).await?;
+        binnacle_tests::sailing::until(&mut other, &twin, day(days)).await?;
         calm(&twin).await?;
     }
     let alert = clone_alert(&coast).await?;

@@ -1,8 +1,8 @@
 //! The server process, and its API as used by an operator's admin.
 
-use crate::database::{Database, Engine};
-use crate::program::{self, Program};
-use crate::satellite::Certificates;
+use crate::link::satellite::Certificates;
+use crate::process::database::{Database, Engine};
+use crate::process::program::{self, Program};
 use anyhow::{Context, Result, bail, ensure};
 use reqwest::{Client, Method, RequestBuilder, Response, StatusCode};
 use serde_json::{Value, json};
