@@ -7,7 +7,7 @@ as slowly as asked for, and are counted. The ship also has a cable to here, on w
 nothing is lost or counted: her instruments.
 
               the link            the cable
-    shore     10.77.0.1           10.78.0.1
+    server    10.77.0.1           10.78.0.1
     ship      10.77.0.2           10.78.0.2
 
 Prints {"ship": PID} when both are up: whatever `nsenter --net --target PID` runs is
@@ -133,7 +133,7 @@ class Link:
     def command(self, line):
         asked = json.loads(line)
         if asked.pop("tally", False):
-            ways = zip(("to_shore", "to_ship"), self.ways)
+            ways = zip(("to_server", "to_ship"), self.ways)
             tally = {name: {"packets": w.packets, "bytes": w.bytes_sent} for name, w in ways}
             print(json.dumps(tally), flush=True)
         unknown = asked.keys() - self.settings.keys()
@@ -151,7 +151,7 @@ def main():
         os._exit(0)
     there.close()
     ip("link", "set", "lo", "up")
-    shore = tun("satellite")
+    server = tun("satellite")
     bring_up("satellite", "10.77.0.1", "10.77.0.2")
     _, [ship], _, _ = socket.recv_fds(here, 16, 1)
     os.set_blocking(ship, False)
@@ -163,14 +163,14 @@ def main():
         raise SystemExit("link.py: the ship's end did not come up")
     print(json.dumps({"ship": child}), flush=True)
 
-    to_shore, to_ship = Way(ship, shore), Way(shore, ship)
-    link = Link([to_shore, to_ship])
+    to_server, to_ship = Way(ship, server), Way(server, ship)
+    link = Link([to_server, to_ship])
     lines = b""
     while True:
-        readable, _, _ = select.select([0, ship, shore], [], [], link.wait())
+        readable, _, _ = select.select([0, ship, server], [], [], link.wait())
         if ship in readable:
-            link.take(to_shore)
-        if shore in readable:
+            link.take(to_server)
+        if server in readable:
             link.take(to_ship)
         if 0 in readable:
             read = os.read(0, 65536)

@@ -52,7 +52,7 @@ pub async fn corrections(
         anyhow::Ok(())
     };
     match timeout(within, listening).await {
-        Ok(heard) => heard.map(|()| found),
+        Ok(received) => received.map(|()| found),
         Err(_) => bail!("heard {} of {count} corrected headings", found.len()),
     }
 }
@@ -124,8 +124,8 @@ mod tests {
         assert_eq!(ths(&["IITHS", "103.0", "E"]), Some(103.0));
         assert_eq!(ths(&["IITHS", "", "V"]), None);
         let quality = ["PBINQ", "A", "3", "1.0", "0.25"];
-        let heard = correction(reading, Some(103.0), &quality).unwrap();
-        assert_eq!((heard.model_version, heard.compass_deg), (3, 101.5));
+        let received = correction(reading, Some(103.0), &quality).unwrap();
+        assert_eq!((received.model_version, received.compass_deg), (3, 101.5));
         assert_eq!(correction(reading, None, &quality), None);
     }
 

@@ -93,7 +93,7 @@ impl Feed {
         let address = listener.local_addr()?;
         let (pace, paces) = watch::channel(pace);
         let (clock, clock_off_s) = watch::channel(0.0);
-        let (news, progress) = watch::channel(Progress::Waiting);
+        let (sender, progress) = watch::channel(Progress::Waiting);
         let bridge = Bridge {
             listener,
             agent: None,
@@ -101,7 +101,7 @@ impl Feed {
             piece: Vec::with_capacity(2 * PIECE),
             paces,
             clock_off_s,
-            news,
+            sender,
         };
         let task = tokio::spawn(bridge.run());
         Ok(Feed {
@@ -165,7 +165,7 @@ struct Bridge<S> {
     piece: Vec<u8>,
     paces: watch::Receiver<Pace>,
     clock_off_s: watch::Receiver<f64>,
-    news: watch::Sender<Progress>,
+    sender: watch::Sender<Progress>,
 }
 
 impl<S: AsyncRead + Unpin> Bridge<S> {
@@ -180,13 +180,13 @@ impl<S: AsyncRead + Unpin> Bridge<S> {
             let fix = time_of_fix(&self.piece[start..]);
             let off_s = *self.clock_off_s.borrow();
             if off_s != 0.0
-                && let Some(wrong) = dated_anew(&self.piece[start..], off_s)
+                && let Some(wrong) = with_time_shifted(&self.piece[start..], off_s)
             {
                 self.piece.truncate(start);
                 self.piece.extend(wrong);
             }
             if let Some(time) = fix {
-                self.news.send_replace(Progress::At(time));
+                self.sender.send_replace(Progress::At(time));
                 let pace = *self.paces.borrow();
                 match pace {
                     Pace::Live => {
@@ -205,7 +205,7 @@ impl<S: AsyncRead + Unpin> Bridge<S> {
             }
         }
         self.send().await?;
-        self.news.send_replace(Progress::Ended);
+        self.sender.send_replace(Progress::Ended);
         // The instruments fall silent; the connection stays open.
         std::future::pending().await
     }
@@ -249,7 +249,7 @@ fn time_of_fix(line: &[u8]) -> Option<Timestamp> {
 }
 
 /// Returns an RMC or ZDA sentence with its time shifted.
-fn dated_anew(line: &[u8], off_s: f64) -> Option<Vec<u8>> {
+fn with_time_shifted(line: &[u8], off_s: f64) -> Option<Vec<u8>> {
     let text = std::str::from_utf8(line).ok()?;
     let (body, _) = text.strip_prefix('$')?.trim_end().split_once('*')?;
     let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
@@ -291,12 +291,12 @@ mod tests {
     #[test]
     fn a_sentence_is_dated_anew_with_its_checksum() {
         let fix = b"$GPRMC,073015.00,A,4321.10,N,00301.50,W,12.4,085.0,211126,,,A*73\r\n";
-        let day_later = dated_anew(fix, 86_400.0).unwrap();
+        let day_later = with_time_shifted(fix, 86_400.0).unwrap();
         let time = Timestamp::parse("2026-11-22T07:30:15Z").unwrap();
         assert_eq!(time_of_fix(&day_later), Some(time));
-        let zda = dated_anew(b"$GPZDA,073015.00,21,11,2026,,*00\r\n", -86_400.0).unwrap();
+        let zda = with_time_shifted(b"$GPZDA,073015.00,21,11,2026,,*00\r\n", -86_400.0).unwrap();
         assert!(zda.starts_with(b"$GPZDA,073015.00,20,11,2026,,*"));
-        assert_eq!(dated_anew(b"$HCHDG,010.0,,,,*00\r\n", 1.0), None);
+        assert_eq!(with_time_shifted(b"$HCHDG,010.0,,,,*00\r\n", 1.0), None);
     }
 
     #[test]

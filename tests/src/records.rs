@@ -2,7 +2,7 @@
 //! batch log, read directly from their databases.
 
 use crate::process::database::Database;
-use crate::server_process::Shore;
+use crate::server_process::ServerProcess;
 use crate::ship::Ship;
 use anyhow::{Context, Result, ensure};
 use binnacle_magnetics::sample::Sample;
@@ -20,11 +20,11 @@ pub struct Spool {
     /// Number of sealed batches without an acknowledgement.
     pub waiting: i64,
     /// Batches refused by the server, or unreadable: there must be none.
-    pub in_trouble: i64,
+    pub refused: i64,
     /// Samples without an acknowledgement, in batches or not yet.
-    pub samples_aboard: i64,
+    pub unsent_samples: i64,
     /// Windows in those samples.
-    pub windows_aboard: u64,
+    pub unsent_windows: u64,
 }
 
 /// Writes the spool's journal into its file and truncates it, so that the next
@@ -60,7 +60,7 @@ impl Spool {
     ///
     /// # Errors
     /// When there is none, or it cannot be read.
-    pub async fn of(ship: &Ship) -> Result<Spool> {
+    pub async fn read(ship: &Ship) -> Result<Spool> {
         let file = ship.data_dir().join("spool.db");
         let options = SqliteConnectOptions::new().filename(&file).read_only(true);
         let mut db = SqliteConnection::connect_with(&options)
@@ -82,14 +82,14 @@ impl Spool {
         let quarantined: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM quarantine")
             .fetch_one(&mut *db)
             .await?;
-        let samples_aboard: i64 = sqlx::query_scalar(
+        let unsent_samples: i64 = sqlx::query_scalar(
             "SELECT (SELECT COUNT(*) FROM pending_samples)
                   + (SELECT COALESCE(SUM(samples), 0) FROM batches
                      WHERE standing <> 'acknowledged')",
         )
         .fetch_one(&mut *db)
         .await?;
-        let windows_aboard = windows_aboard(&mut db).await?;
+        let unsent_windows = unsent_windows(&mut db).await?;
         let acknowledged = rows
             .into_iter()
             .map(|(stream, seq, samples, crc32)| {
@@ -105,14 +105,14 @@ impl Spool {
         Ok(Spool {
             acknowledged,
             waiting,
-            in_trouble: parked + quarantined,
-            samples_aboard,
-            windows_aboard,
+            refused: parked + quarantined,
+            unsent_samples,
+            unsent_windows,
         })
     }
 }
 
-async fn windows_aboard(db: &mut SqliteConnection) -> Result<u64> {
+async fn unsent_windows(db: &mut SqliteConnection) -> Result<u64> {
     let pending: i64 = sqlx::query_scalar(
         "SELECT COALESCE(SUM(json_extract(sample, '$.windows')), 0) FROM pending_samples",
     )
@@ -155,9 +155,13 @@ pub async fn batch_log(database: &Database, vessel: Uuid) -> Result<Vec<Logged>>
 ///
 /// # Errors
 /// When they differ, or a batch was refused.
-pub async fn ensure_same_at_both_ends(shore: &Shore, vessel: Uuid, spool: &Spool) -> Result<()> {
-    ensure!(spool.in_trouble == 0, "{spool:?}");
-    let logged = logged(shore, vessel).await?;
+pub async fn ensure_records_match(
+    server: &ServerProcess,
+    vessel: Uuid,
+    spool: &Spool,
+) -> Result<()> {
+    ensure!(spool.refused == 0, "{spool:?}");
+    let logged = logged(server, vessel).await?;
     ensure!(
         logged == spool.acknowledged,
         "on shore {logged:?}, on board {spool:?}"
@@ -170,20 +174,20 @@ pub async fn ensure_same_at_both_ends(shore: &Shore, vessel: Uuid, spool: &Spool
 ///
 /// # Errors
 /// When one is missing.
-pub async fn ensure_acknowledged_is_ashore(
-    shore: &Shore,
+pub async fn ensure_acknowledged_is_stored(
+    server: &ServerProcess,
     vessel: Uuid,
     spool: &Spool,
 ) -> Result<()> {
-    let logged = logged(shore, vessel).await?;
+    let logged = logged(server, vessel).await?;
     for batch in &spool.acknowledged {
         ensure!(logged.contains(batch), "{batch:?} is not in {logged:?}");
     }
     Ok(())
 }
 
-async fn logged(shore: &Shore, vessel: Uuid) -> Result<Vec<Acknowledged>> {
-    let log = batch_log(shore.database(), vessel).await?;
+async fn logged(server: &ServerProcess, vessel: Uuid) -> Result<Vec<Acknowledged>> {
+    let log = batch_log(server.database(), vessel).await?;
     let read = |(stream, seq, bytes): Logged| {
         Ok(Acknowledged {
             stream,
@@ -205,9 +209,9 @@ pub fn checksum(frame: &[u8]) -> u32 {
 ///
 /// # Errors
 /// When two different samples share windows.
-pub async fn samples_ashore(shore: &Shore, vessel: Uuid) -> Result<Vec<Sample>> {
+pub async fn stored_samples(server: &ServerProcess, vessel: Uuid) -> Result<Vec<Sample>> {
     let mut samples = Vec::new();
-    for (_, _, bytes) in batch_log(shore.database(), vessel).await? {
+    for (_, _, bytes) in batch_log(server.database(), vessel).await? {
         samples.extend(decode(&bytes)?.samples);
     }
     samples.sort_by_key(|sample| sample.time);

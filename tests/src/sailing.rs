@@ -11,7 +11,7 @@ use std::time::Duration;
 /// Start of this package's scenarios.
 pub const START: &str = "2026-10-01T00:00:00Z";
 /// Time that a busy machine may take for a few days' sailing.
-pub const PATIENCE: Duration = Duration::from_mins(8);
+pub const TIMEOUT: Duration = Duration::from_mins(8);
 
 /// Returns the instant a number of days after the start.
 ///
@@ -26,13 +26,13 @@ pub fn day(day: f64) -> Timestamp {
 ///
 /// # Errors
 /// When the ship does not get there.
-pub async fn until(voyage: &mut Voyage, ship: &Ship, time: Timestamp) -> Result<()> {
+pub async fn sail_until(voyage: &mut Voyage, ship: &Ship, time: Timestamp) -> Result<()> {
     voyage.feed.set_pace(Pace::FastUntil(time))?;
     let there = |progress: &Progress| *progress == Progress::Ended || progress.time() >= Some(time);
-    let reached = voyage.feed.reached(PATIENCE, there).await?;
+    let reached = voyage.feed.reached(TIMEOUT, there).await?;
     // The last sentences of a voyage may come before its end.
     let time = reached.time().unwrap_or(time.plus_seconds(-60.0));
-    eventually("the agent has heard it", PATIENCE, async || {
+    eventually("the agent has heard it", TIMEOUT, async || {
         let status = ship.status().await?;
         let heard = ship_time(&status)? >= Some(time);
         Ok(if heard {
@@ -53,9 +53,9 @@ fn ship_time(status: &Value) -> Result<Option<Timestamp>> {
 ///
 /// # Errors
 /// When a batch keeps waiting.
-pub async fn all_ashore(ship: &Ship) -> Result<Spool> {
-    eventually("all is ashore", PATIENCE, async || {
-        let spool = Spool::of(ship).await?;
+pub async fn wait_until_uploaded(ship: &Ship) -> Result<Spool> {
+    eventually("all is ashore", TIMEOUT, async || {
+        let spool = Spool::read(ship).await?;
         let sent = spool.waiting == 0;
         Ok(if sent {
             Ok(spool)

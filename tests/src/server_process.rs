@@ -23,24 +23,24 @@ const START: Duration = Duration::from_mins(1);
 
 /// A running server with one operator, and an admin signed in.
 #[derive(Debug)]
-pub struct Shore {
+pub struct ServerProcess {
     /// URL such as `http://127.0.0.1:PORT`, the same after a restart.
     pub url: String,
     database: Database,
     folder: PathBuf,
-    server: Option<Program>,
+    process: Option<Program>,
     http: Client,
     tls: Option<Certificates>,
     cookie: String,
 }
 
-impl Shore {
+impl ServerProcess {
     /// Starts a server on a new database.
     ///
     /// # Errors
     /// When it does not start.
-    pub async fn start(engine: Engine, folder: &Path) -> Result<Shore> {
-        Shore::open(engine, folder, Ipv4Addr::LOCALHOST.into(), None).await
+    pub async fn start(engine: Engine, folder: &Path) -> Result<ServerProcess> {
+        ServerProcess::open(engine, folder, Ipv4Addr::LOCALHOST.into(), None).await
     }
 
     /// Starts a server on SQLite at an address, with https.
@@ -51,8 +51,8 @@ impl Shore {
         folder: &Path,
         address: IpAddr,
         tls: &Certificates,
-    ) -> Result<Shore> {
-        Shore::open(Engine::Sqlite, folder, address, Some(tls)).await
+    ) -> Result<ServerProcess> {
+        ServerProcess::open(Engine::Sqlite, folder, address, Some(tls)).await
     }
 
     async fn open(
@@ -60,22 +60,22 @@ impl Shore {
         folder: &Path,
         address: IpAddr,
         tls: Option<&Certificates>,
-    ) -> Result<Shore> {
+    ) -> Result<ServerProcess> {
         let database = Database::create(engine, folder).await?;
-        let mut shore = Shore {
+        let mut server = ServerProcess {
             url: String::new(),
             database,
             folder: folder.to_owned(),
-            server: None,
+            process: None,
             http: http_client(tls)?,
             tls: tls.cloned(),
             cookie: String::new(),
         };
-        shore.admin(&["migrate"], "").await?;
-        shore.create_admin(EMAIL).await?;
-        shore.serve(&format!("{address}:0")).await?;
-        shore.cookie = shore.sign_in(EMAIL).await?;
-        Ok(shore)
+        server.admin(&["migrate"], "").await?;
+        server.create_admin(EMAIL).await?;
+        server.serve(&format!("{address}:0")).await?;
+        server.cookie = server.sign_in(EMAIL).await?;
+        Ok(server)
     }
 
     /// The server's database.
@@ -87,7 +87,7 @@ impl Shore {
     ///
     /// # Errors
     /// When the server refuses.
-    pub async fn stranger(&self) -> Result<String> {
+    pub async fn sign_in_other_operator(&self) -> Result<String> {
         let email = "stranger@elsewhere.example";
         self.create_admin(email).await?;
         self.sign_in(email).await
@@ -126,7 +126,7 @@ impl Shore {
         command
             .args(arguments)
             .env("BINNACLE_DATABASE_URL", self.database.url());
-        program::answer_of(command, &format!("{input}\n")).await
+        program::run_with_input(command, &format!("{input}\n")).await
     }
 
     async fn serve(&mut self, listen: &str) -> Result<()> {
@@ -142,8 +142,8 @@ impl Shore {
             command.arg("--tls-key").arg(&tls.key);
         }
         let log = self.folder.join("server.log");
-        let mut server = Program::start("binnacle-server", command, &log)?;
-        let stdout = server
+        let mut process = Program::start("binnacle-server", command, &log)?;
+        let stdout = process
             .child()
             .stdout
             .take()
@@ -154,12 +154,12 @@ impl Shore {
             .context("the server's first line")??;
         // Keeps the pipe open: the server may write more.
         tokio::spawn(async move { while let Ok(Some(_)) = lines.next_line().await {} });
-        let line = line.with_context(|| format!("the server ended:\n{}", server.log()))?;
+        let line = line.with_context(|| format!("the server ended:\n{}", process.log()))?;
         let url = line
             .strip_prefix("listening on ")
             .with_context(|| line.clone())?;
         url.clone_into(&mut self.url);
-        self.server = Some(server);
+        self.process = Some(process);
         Ok(())
     }
 
@@ -168,7 +168,7 @@ impl Shore {
     /// # Errors
     /// When it had ended by itself, or does not start again.
     pub async fn kill_and_restart(&mut self) -> Result<()> {
-        self.stopped_for(|| Ok(())).await
+        self.restart_after(|| Ok(())).await
     }
 
     /// Stops the server with signal 9, calls `meanwhile`, and starts it on the
@@ -176,9 +176,9 @@ impl Shore {
     ///
     /// # Errors
     /// When it had ended by itself, does not start again, or `meanwhile` fails.
-    pub async fn stopped_for(&mut self, meanwhile: impl FnOnce() -> Result<()>) -> Result<()> {
-        let server = self.server.take().context("the server runs")?;
-        server.kill().await?;
+    pub async fn restart_after(&mut self, meanwhile: impl FnOnce() -> Result<()>) -> Result<()> {
+        let process = self.process.take().context("the server runs")?;
+        process.kill().await?;
         meanwhile()?;
         let (_, listen) = self.url.split_once("://").context("a URL")?;
         let listen = listen.to_owned();
@@ -210,12 +210,12 @@ impl Shore {
     ///
     /// # Errors
     /// When it is not.
-    pub async fn assert_well(&mut self) -> Result<()> {
-        let server = self.server.as_mut().context("the server runs")?;
+    pub async fn assert_healthy(&mut self) -> Result<()> {
+        let process = self.process.as_mut().context("the server runs")?;
         ensure!(
-            server.is_running()?,
+            process.is_running()?,
             "the server has ended:\n{}",
-            server.log()
+            process.log()
         );
         let answer = self
             .http
@@ -231,13 +231,13 @@ impl Shore {
     /// # Errors
     /// When the server had ended by itself.
     pub async fn finish(mut self) -> Result<()> {
-        let server = self.server.take().context("the server runs")?;
+        let process = self.process.take().context("the server runs")?;
         ensure!(
-            !server.log().contains("panicked"),
+            !process.log().contains("panicked"),
             "the server panicked:\n{}",
-            server.log()
+            process.log()
         );
-        server.kill().await?;
+        process.kill().await?;
         self.database.remove().await
     }
 

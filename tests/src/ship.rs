@@ -1,7 +1,7 @@
 //! A ship: an agent process with its own folder, fed over TCP.
 
 use crate::eventually::eventually;
-use crate::link::satellite::Berth;
+use crate::link::satellite::ShipNetwork;
 use crate::process::program::{self, Program};
 use anyhow::{Context, Result, ensure};
 use serde_json::Value;
@@ -12,7 +12,7 @@ use tokio::process::Command;
 use tokio::time::timeout;
 
 /// Settings of an agent that waits for nothing, on a link that costs nothing.
-pub const SWIFT: &str = "poll_s = 2\nretry_min_s = 0.2\nretry_max_s = 1";
+pub const FAST_UPLINK: &str = "poll_s = 2\nretry_min_s = 0.2\nretry_max_s = 1";
 /// Start-up time on a busy machine.
 const START: Duration = Duration::from_secs(30);
 
@@ -22,7 +22,7 @@ pub struct Ship {
     name: String,
     folder: PathBuf,
     agent: Option<Program>,
-    berth: Option<Berth>,
+    ship_network: Option<ShipNetwork>,
 }
 
 impl Ship {
@@ -33,7 +33,7 @@ impl Ship {
     /// # Errors
     /// When the folder cannot be written.
     pub fn new(name: &str, parent: &Path, feed: SocketAddr) -> Result<Ship> {
-        Ship::with_uplink(name, parent, feed, SWIFT)
+        Ship::with_uplink(name, parent, feed, FAST_UPLINK)
     }
 
     /// Creates a ship with other lines in `[uplink]`.
@@ -69,22 +69,22 @@ stale_s = 15
             name: name.to_owned(),
             folder,
             agent: None,
-            berth: None,
+            ship_network: None,
         })
     }
 
     /// Puts the ship at the other end of a satellite link, before any program
     /// runs.
     #[must_use]
-    pub fn at_sea(mut self, berth: Berth) -> Ship {
-        self.berth = Some(berth);
+    pub fn on_network(mut self, ship_network: ShipNetwork) -> Ship {
+        self.ship_network = Some(ship_network);
         self
     }
 
     fn command(&self) -> Result<Command> {
         const AGENT: &str = "binnacle-agent";
-        match self.berth {
-            Some(berth) => berth.command(AGENT),
+        match self.ship_network {
+            Some(ship_network) => ship_network.command(AGENT),
             None => program::command(AGENT),
         }
     }
@@ -113,7 +113,7 @@ stale_s = 15
         command
             .args(["enrol", "--server", server, "--code", code, "--config"])
             .arg(self.config());
-        program::answer_of(command, "").await?;
+        program::run_with_input(command, "").await?;
         Ok(())
     }
 
@@ -167,7 +167,7 @@ stale_s = 15
         command
             .args(["status", "--json", "--config"])
             .arg(self.config());
-        let answer = program::answer_of(command, "").await?;
+        let answer = program::run_with_input(command, "").await?;
         serde_json::from_str(&answer).with_context(|| answer.clone())
     }
 

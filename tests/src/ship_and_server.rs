@@ -4,10 +4,10 @@
 use crate::feed::Pace;
 use crate::link::gateway::Gateway;
 use crate::link::satellite::Certificates;
-use crate::records::{Spool, ensure_acknowledged_is_ashore, samples_ashore};
-use crate::sailing::{PATIENCE, day, until};
-use crate::ship::SWIFT;
-use crate::{Engine, Ship, Shore, Voyage, eventually};
+use crate::records::{Spool, ensure_acknowledged_is_stored, stored_samples};
+use crate::sailing::{TIMEOUT, day, sail_until};
+use crate::ship::FAST_UPLINK;
+use crate::{Engine, ServerProcess, Ship, Voyage, eventually};
 use anyhow::{Context, Result, ensure};
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::Path;
@@ -17,21 +17,21 @@ use tokio::time::Instant;
 use uuid::Uuid;
 
 /// The most that days under faults may add to the memory of the first day.
-const MEMORY_GROWS_KB: u64 = 8_000;
+const MAX_MEMORY_GROWTH_KB: u64 = 8_000;
 /// The most memory of an agent built without optimisation.
-const MEMORY_MOST_KB: u64 = 45_000;
+const MAX_MEMORY_KB: u64 = 45_000;
 /// Windows of the unfinished sample and of the commit under way.
 const OPEN_WINDOWS: f64 = 120.0;
 /// Fraction of windows that a sample leaves out as outliers; a quarter of a
 /// day's batch has 2,000.
 const OUTLIERS: f64 = 0.01;
-const SETTLES: Duration = Duration::from_mins(1);
+const STATUS_TIMEOUT: Duration = Duration::from_mins(1);
 /// Longer than the second at which the agent checks for something to seal.
-const CALM: Duration = Duration::from_millis(2_500);
+const IDLE_TIME: Duration = Duration::from_millis(2_500);
 
 /// Set-up of a ship.
 #[derive(Clone, Copy, Debug)]
-pub struct Passage {
+pub struct Setup {
     /// Scenario of this package.
     pub scenario: &'static str,
     /// Further lines of `[uplink]`.
@@ -42,11 +42,11 @@ pub struct Passage {
     pub name: &'static str,
 }
 
-impl Default for Passage {
-    fn default() -> Passage {
-        Passage {
+impl Default for Setup {
+    fn default() -> Setup {
+        Setup {
             scenario: "biscay.toml",
-            uplink: SWIFT,
+            uplink: FAST_UPLINK,
             tls: false,
             name: "ship",
         }
@@ -55,9 +55,9 @@ impl Default for Passage {
 
 /// A ship and its server.
 #[derive(Debug)]
-pub struct Coast {
+pub struct ShipAndServer {
     /// The server.
-    pub shore: Shore,
+    pub server: ServerProcess,
     /// The gateway between them.
     pub gateway: Gateway,
     /// The ship's id on the server.
@@ -73,13 +73,13 @@ pub struct Coast {
     folder: TempDir,
 }
 
-impl Coast {
+impl ShipAndServer {
     /// Starts everything, with the voyage paused.
     ///
     /// # Errors
     /// When something does not start.
-    pub async fn sail() -> Result<Coast> {
-        Coast::sail_on(Passage::default(), |_| Ok(())).await
+    pub async fn start() -> Result<ShipAndServer> {
+        ShipAndServer::start_with(Setup::default(), |_| Ok(())).await
     }
 
     /// Starts everything with a set-up; `prepare` gets the ship before any
@@ -87,36 +87,36 @@ impl Coast {
     ///
     /// # Errors
     /// When something does not start, or `prepare` fails.
-    pub async fn sail_on(
-        passage: Passage,
+    pub async fn start_with(
+        setup: Setup,
         prepare: impl FnOnce(&Ship) -> Result<()>,
-    ) -> Result<Coast> {
+    ) -> Result<ShipAndServer> {
         const HERE: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
         let folder = tempfile::tempdir()?;
-        let tls = passage
+        let tls = setup
             .tls
             .then(|| Certificates::make(folder.path(), HERE))
             .transpose()?;
-        let shore = match &tls {
-            Some(tls) => Shore::start_with_tls(folder.path(), HERE, tls).await?,
-            None => Shore::start(Engine::Sqlite, folder.path()).await?,
+        let server = match &tls {
+            Some(tls) => ServerProcess::start_with_tls(folder.path(), HERE, tls).await?,
+            None => ServerProcess::start(Engine::Sqlite, folder.path()).await?,
         };
-        let gateway = Gateway::open(&shore.url).await?;
-        let (vessel, code) = shore.create_vessel(passage.name).await?;
+        let gateway = Gateway::open(&server.url).await?;
+        let (vessel, code) = server.create_vessel(setup.name).await?;
         let pace = Pace::FastUntil(day(0.0));
-        let voyage = Voyage::sail(passage.scenario, 11, folder.path(), pace).await?;
+        let voyage = Voyage::sail(setup.scenario, 11, folder.path(), pace).await?;
         let pinned = tls
             .as_ref()
             .map(|tls| format!("pinned_ca = \"{}\"\n", tls.authority.display()));
-        let uplink = format!("{}{}", pinned.unwrap_or_default(), passage.uplink);
+        let uplink = format!("{}{}", pinned.unwrap_or_default(), setup.uplink);
         let feed = voyage.feed.address();
         let mut ship = Ship::with_uplink("ship", folder.path(), feed, &uplink)?;
         prepare(&ship)?;
         ship.enrol(&gateway.url(), &code).await?;
         ship.start()?;
         ship.ready().await?;
-        Ok(Coast {
-            shore,
+        Ok(ShipAndServer {
+            server,
             gateway,
             vessel: vessel.parse()?,
             voyage,
@@ -137,8 +137,8 @@ impl Coast {
     ///
     /// # Errors
     /// When the ship does not get there.
-    pub async fn until(&mut self, days: f64) -> Result<()> {
-        until(&mut self.voyage, &self.ship, day(days)).await?;
+    pub async fn sail_until(&mut self, days: f64) -> Result<()> {
+        sail_until(&mut self.voyage, &self.ship, day(days)).await?;
         if self.memory_kb.is_none() {
             self.memory_kb = Some(self.ship.peak_memory_kb()?);
         }
@@ -149,17 +149,17 @@ impl Coast {
     ///
     /// # Errors
     /// When a batch keeps waiting.
-    pub async fn all_ashore(&self) -> Result<Spool> {
-        calm(&self.ship).await
+    pub async fn wait_until_uploaded(&self) -> Result<Spool> {
+        wait_until_idle(&self.ship).await
     }
 
     /// Waits until a value of `status --json` contains a text, and returns it.
     ///
     /// # Errors
     /// When it does not.
-    pub async fn says(&self, pointer: &str, wanted: &str) -> Result<String> {
+    pub async fn wait_for_status(&self, pointer: &str, wanted: &str) -> Result<String> {
         let what = format!("{pointer} says {wanted:?}");
-        eventually(what, SETTLES, async || {
+        eventually(what, STATUS_TIMEOUT, async || {
             let status = self.ship.status().await?;
             let said = status.pointer(pointer).unwrap_or_default().to_string();
             Ok(if said.contains(wanted) {
@@ -176,10 +176,10 @@ impl Coast {
     ///
     /// # Errors
     /// When a check fails.
-    pub async fn ensure_nothing_went(&self, before: &Spool) -> Result<Spool> {
-        let now = Spool::of(&self.ship).await?;
+    pub async fn ensure_nothing_lost(&self, before: &Spool) -> Result<Spool> {
+        let now = Spool::read(&self.ship).await?;
         ensure!(
-            now.acknowledged == before.acknowledged && now.samples_aboard >= before.samples_aboard,
+            now.acknowledged == before.acknowledged && now.unsent_samples >= before.unsent_samples,
             "{now:?}, before {before:?}"
         );
         Ok(now)
@@ -190,14 +190,14 @@ impl Coast {
     ///
     /// # Errors
     /// When one is missing.
-    pub async fn ensure_every_window_is_there(&self) -> Result<()> {
-        eventually("every window is there", SETTLES, async || {
+    pub async fn ensure_no_window_lost(&self) -> Result<()> {
+        eventually("every window is there", STATUS_TIMEOUT, async || {
             let status = self.ship.status().await?;
             let accepted = &status["windows"]["accepted"];
             let accepted = accepted.as_u64().context("windows.accepted")?;
-            let ashore = samples_ashore(&self.shore, self.vessel).await?;
+            let ashore = stored_samples(&self.server, self.vessel).await?;
             let ashore: u64 = ashore.iter().map(|s| u64::from(s.windows)).sum();
-            let there = ashore + Spool::of(&self.ship).await?.windows_aboard;
+            let there = ashore + Spool::read(&self.ship).await?.unsent_windows;
             let least = accepted as f64 * (1.0 - OUTLIERS) - OPEN_WINDOWS;
             Ok(if there as f64 >= least && there <= accepted {
                 Ok(())
@@ -214,21 +214,21 @@ impl Coast {
     ///
     /// # Errors
     /// When a check fails, or a program failed.
-    pub async fn arrive(mut self) -> Result<()> {
-        let spool = self.all_ashore().await?;
-        ensure_acknowledged_is_ashore(&self.shore, self.vessel, &spool).await?;
-        samples_ashore(&self.shore, self.vessel).await?;
+    pub async fn check_and_stop(mut self) -> Result<()> {
+        let spool = self.wait_until_uploaded().await?;
+        ensure_acknowledged_is_stored(&self.server, self.vessel, &spool).await?;
+        stored_samples(&self.server, self.vessel).await?;
         self.ship.assert_running()?;
         let most_kb = self.ship.peak_memory_kb()?;
         let grown_kb = most_kb.saturating_sub(self.memory_kb.unwrap_or(most_kb));
         println!("the agent took {most_kb} kB, {grown_kb} kB more than after a day");
         ensure!(
-            grown_kb < MEMORY_GROWS_KB && most_kb < MEMORY_MOST_KB,
+            grown_kb < MAX_MEMORY_GROWTH_KB && most_kb < MAX_MEMORY_KB,
             "{most_kb} kB, {grown_kb} kB more than after a day"
         );
         self.ship.kill().await?;
-        self.shore.assert_well().await?;
-        self.shore.finish().await
+        self.server.assert_healthy().await?;
+        self.server.finish().await
     }
 }
 
@@ -236,14 +236,14 @@ impl Coast {
 ///
 /// # Errors
 /// When a batch keeps waiting.
-pub async fn calm(ship: &Ship) -> Result<Spool> {
+pub async fn wait_until_idle(ship: &Ship) -> Result<Spool> {
     let mut last = (Spool::default(), Instant::now());
-    eventually("all is ashore, and calm", PATIENCE, async || {
-        let spool = Spool::of(ship).await?;
+    eventually("all is ashore, and calm", TIMEOUT, async || {
+        let spool = Spool::read(ship).await?;
         if spool.waiting > 0 || spool != last.0 {
             last = (spool.clone(), Instant::now());
         }
-        Ok(if last.1.elapsed() >= CALM {
+        Ok(if last.1.elapsed() >= IDLE_TIME {
             Ok(spool)
         } else {
             Err(format!("{spool:?}"))

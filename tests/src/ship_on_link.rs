@@ -1,10 +1,10 @@
 //! A ship at the far end of a satellite link, with its server.
 
 use crate::feed::Pace;
-use crate::link::satellite::{Certificates, INSTRUMENTS, SHORE, Satellite, Weather};
-use crate::records::{Spool, ensure_same_at_both_ends};
-use crate::sailing::{PATIENCE, all_ashore, day, until};
-use crate::{Ship, Shore, Voyage, eventually};
+use crate::link::satellite::{Certificates, Conditions, INSTRUMENTS, SERVER, Satellite};
+use crate::records::{Spool, ensure_records_match};
+use crate::sailing::{TIMEOUT, day, sail_until, wait_until_uploaded};
+use crate::{ServerProcess, Ship, Voyage, eventually};
 use anyhow::Result;
 use binnacle_magnetics::time::Timestamp;
 use std::path::Path;
@@ -17,11 +17,11 @@ const ROUND_TRIP_MS: f64 = 300.0;
 
 /// A ship on a satellite link, with its server.
 #[derive(Debug)]
-pub struct AtSea {
+pub struct ShipOnLink {
     /// The link, to be changed and read.
     pub satellite: Satellite,
     /// The server.
-    pub shore: Shore,
+    pub server: ServerProcess,
     /// The server's certificates.
     pub tls: Certificates,
     /// The ship's id on the server.
@@ -33,38 +33,38 @@ pub struct AtSea {
     folder: TempDir,
 }
 
-impl AtSea {
+impl ShipOnLink {
     /// Starts everything, with the voyage paused. `uplink` is added to the
     /// agent's settings.
     ///
     /// # Errors
     /// When something does not start.
-    pub async fn sail(scenario: &str, uplink: &str) -> Result<AtSea> {
+    pub async fn start(scenario: &str, uplink: &str) -> Result<ShipOnLink> {
         let folder = tempfile::tempdir()?;
         let mut satellite = Satellite::launch().await?;
         // Set before anything is sent: TCP would remember a better link for a
         // while.
         let round_trip_ms = Some(ROUND_TRIP_MS);
-        let weather = Weather {
+        let conditions = Conditions {
             round_trip_ms,
-            ..Weather::default()
+            ..Conditions::default()
         };
-        satellite.set(weather).await?;
-        let tls = Certificates::make(folder.path(), SHORE)?;
-        let shore = Shore::start_with_tls(folder.path(), SHORE, &tls).await?;
-        let (vessel, code) = shore.create_vessel("ship").await?;
+        satellite.set(conditions).await?;
+        let tls = Certificates::make(folder.path(), SERVER)?;
+        let server = ServerProcess::start_with_tls(folder.path(), SERVER, &tls).await?;
+        let (vessel, code) = server.create_vessel("ship").await?;
         let pace = Pace::FastUntil(day(0.0));
         let voyage = Voyage::sail_at(INSTRUMENTS, scenario, 11, folder.path(), pace).await?;
         let uplink = format!("pinned_ca = \"{}\"\n{uplink}", tls.authority.display());
         let feed = voyage.feed.address();
         let ship = Ship::with_uplink("ship", folder.path(), feed, &uplink)?;
-        let mut ship = ship.at_sea(satellite.berth());
-        ship.enrol(&shore.url, &code).await?;
+        let mut ship = ship.on_network(satellite.ship_network());
+        ship.enrol(&server.url, &code).await?;
         ship.start()?;
         ship.ready().await?;
-        Ok(AtSea {
+        Ok(ShipOnLink {
             satellite,
-            shore,
+            server,
             tls,
             vessel: vessel.parse()?,
             voyage,
@@ -83,25 +83,25 @@ impl AtSea {
     ///
     /// # Errors
     /// When the ship does not get there.
-    pub async fn until(&mut self, time: Timestamp) -> Result<()> {
-        until(&mut self.voyage, &self.ship, time).await
+    pub async fn sail_until(&mut self, time: Timestamp) -> Result<()> {
+        sail_until(&mut self.voyage, &self.ship, time).await
     }
 
     /// Waits until no batch waits in the spool.
     ///
     /// # Errors
     /// When a batch keeps waiting.
-    pub async fn all_ashore(&self) -> Result<Spool> {
-        all_ashore(&self.ship).await
+    pub async fn wait_until_uploaded(&self) -> Result<Spool> {
+        wait_until_uploaded(&self.ship).await
     }
 
     /// Waits until the server has analysed all its samples.
     ///
     /// # Errors
     /// When it does not.
-    pub async fn analysed(&self) -> Result<()> {
-        eventually("all is analysed", PATIENCE, async || {
-            let waiting = self.shore.jobs().await?;
+    pub async fn wait_until_analysed(&self) -> Result<()> {
+        eventually("all is analysed", TIMEOUT, async || {
+            let waiting = self.server.jobs().await?;
             Ok(if waiting == 0 {
                 Ok(())
             } else {
@@ -116,12 +116,12 @@ impl AtSea {
     ///
     /// # Errors
     /// When they do not match, or a program failed.
-    pub async fn arrive(mut self) -> Result<()> {
-        let spool = self.all_ashore().await?;
-        ensure_same_at_both_ends(&self.shore, self.vessel, &spool).await?;
+    pub async fn check_and_stop(mut self) -> Result<()> {
+        let spool = self.wait_until_uploaded().await?;
+        ensure_records_match(&self.server, self.vessel, &spool).await?;
         self.ship.assert_running()?;
         self.ship.kill().await?;
-        self.shore.assert_well().await?;
-        self.shore.finish().await
+        self.server.assert_healthy().await?;
+        self.server.finish().await
     }
 }

@@ -4,14 +4,14 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Context, Result, ensure};
-use binnacle_tests::link::gateway::Manners;
+use binnacle_tests::link::gateway::Behaviour;
 use binnacle_tests::link::satellite::Validity;
 use binnacle_tests::records::{
-    Spool, batch_log, ensure_acknowledged_is_ashore, ensure_same_at_both_ends,
+    Spool, batch_log, ensure_acknowledged_is_stored, ensure_records_match,
 };
-use binnacle_tests::sailing::{PATIENCE, day};
-use binnacle_tests::ship_and_server::{calm, copy_folder};
-use binnacle_tests::{Coast, Pace, Passage, Ship, Voyage, eventually};
+use binnacle_tests::sailing::{TIMEOUT, day};
+use binnacle_tests::ship_and_server::{copy_folder, wait_until_idle};
+use binnacle_tests::{Pace, Setup, Ship, ShipAndServer, Voyage, eventually};
 use serde_json::Value;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -26,25 +26,27 @@ async fn an_answer_that_drips_for_ever_is_given_up() {
 }
 
 async fn dripping_answer() -> Result<()> {
-    let passage = Passage {
+    let setup = Setup {
         uplink: HASTY,
-        ..Passage::default()
+        ..Setup::default()
     };
-    let mut coast = Coast::sail_on(passage, |_| Ok(())).await?;
-    coast.until(1.0).await?;
-    let before = coast.all_ashore().await?;
-    coast.gateway.set(Manners::Drips);
-    coast.until(2.0).await?;
+    let mut system = ShipAndServer::start_with(setup, |_| Ok(())).await?;
+    system.sail_until(1.0).await?;
+    let before = system.wait_until_uploaded().await?;
+    system.gateway.set(Behaviour::Drips);
+    system.sail_until(2.0).await?;
     let began = Instant::now();
-    coast.gateway.met(3, PATIENCE).await?;
+    system.gateway.wait_for_connections(3, TIMEOUT).await?;
     println!("three exchanges were given up in {:?}", began.elapsed());
-    coast.says("/link/problem", "no answer in time").await?;
-    coast.ensure_nothing_went(&before).await?;
-    coast.gateway.set(Manners::Passes);
-    let spool = coast.all_ashore().await?;
-    ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
-    coast.ensure_every_window_is_there().await?;
-    coast.arrive().await
+    system
+        .wait_for_status("/link/problem", "no answer in time")
+        .await?;
+    system.ensure_nothing_lost(&before).await?;
+    system.gateway.set(Behaviour::Passes);
+    let spool = system.wait_until_uploaded().await?;
+    ensure_records_match(&system.server, system.vessel, &spool).await?;
+    system.ensure_no_window_lost().await?;
+    system.check_and_stop().await
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -53,29 +55,29 @@ async fn a_shore_whose_certificate_expired_gets_nothing_until_it_is_renewed() {
 }
 
 async fn expired_certificate() -> Result<()> {
-    let passage = Passage {
+    let setup = Setup {
         tls: true,
-        ..Passage::default()
+        ..Setup::default()
     };
-    let mut coast = Coast::sail_on(passage, |_| Ok(())).await?;
-    coast.until(1.0).await?;
-    let before = coast.all_ashore().await?;
-    let tls = coast.tls.clone().context("the shore speaks TLS")?;
+    let mut system = ShipAndServer::start_with(setup, |_| Ok(())).await?;
+    system.sail_until(1.0).await?;
+    let before = system.wait_until_uploaded().await?;
+    let tls = system.tls.clone().context("the shore speaks TLS")?;
     // A new process cannot resume an old session.
     let expires = || tls.renew(Validity::Past);
-    coast.shore.stopped_for(expires).await?;
-    coast.until(2.0).await?;
-    let said = coast
-        .says("/link/problem", "the shore's certificate has expired")
+    system.server.restart_after(expires).await?;
+    system.sail_until(2.0).await?;
+    let said = system
+        .wait_for_status("/link/problem", "the shore's certificate has expired")
         .await?;
     ensure!(said.contains("clock is wrong"), "{said}");
-    coast.ensure_nothing_went(&before).await?;
+    system.ensure_nothing_lost(&before).await?;
     let renewed = || tls.renew(Validity::Current);
-    coast.shore.stopped_for(renewed).await?;
-    let spool = coast.all_ashore().await?;
-    ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
-    coast.ensure_every_window_is_there().await?;
-    coast.arrive().await
+    system.server.restart_after(renewed).await?;
+    let spool = system.wait_until_uploaded().await?;
+    ensure_records_match(&system.server, system.vessel, &spool).await?;
+    system.ensure_no_window_lost().await?;
+    system.check_and_stop().await
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -84,16 +86,16 @@ async fn a_revoked_agent_keeps_its_samples_and_its_peace_until_it_is_enrolled_ag
 }
 
 async fn revoked() -> Result<()> {
-    let passage = Passage {
+    let setup = Setup {
         uplink: PATIENT,
-        ..Passage::default()
+        ..Setup::default()
     };
-    let mut coast = Coast::sail_on(passage, |_| Ok(())).await?;
-    coast.until(1.0).await?;
-    let before = coast.all_ashore().await?;
-    let vessel = coast.vessel.to_string();
-    let agents = coast
-        .shore
+    let mut system = ShipAndServer::start_with(setup, |_| Ok(())).await?;
+    system.sail_until(1.0).await?;
+    let before = system.wait_until_uploaded().await?;
+    let vessel = system.vessel.to_string();
+    let agents = system
+        .server
         .list(&format!("/vessels/{vessel}/agents"))
         .await?;
     let agent = agents[0]["agent_id"].as_str().context("agent_id")?;
@@ -105,25 +107,25 @@ async fn revoked() -> Result<()> {
         "--agent",
         agent,
     ];
-    coast.shore.admin(&revoke, "").await?;
-    coast.until(2.0).await?;
-    let said = coast
-        .says("/link/problem", "does not know this agent")
+    system.server.admin(&revoke, "").await?;
+    system.sail_until(2.0).await?;
+    let said = system
+        .wait_for_status("/link/problem", "does not know this agent")
         .await?;
     ensure!(said.contains("enrol it again"), "{said}");
-    coast.says("/link/state", "refused").await?;
-    let calls = coast.gateway.count();
+    system.wait_for_status("/link/state", "refused").await?;
+    let calls = system.gateway.count();
     // A day with four more batches, which become one.
-    coast.until(3.0).await?;
-    ensure!(coast.gateway.count() <= calls + 1, "it called again");
-    let aboard = coast.ensure_nothing_went(&before).await?;
-    ensure!(aboard.waiting > 1, "{aboard:?}");
-    let code = coast.shore.enrolment_code(&vessel).await?;
-    coast.ship.enrol(&coast.gateway.url(), &code).await?;
-    let spool = coast.all_ashore().await?;
-    ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
-    coast.ensure_every_window_is_there().await?;
-    coast.arrive().await
+    system.sail_until(3.0).await?;
+    ensure!(system.gateway.count() <= calls + 1, "it called again");
+    let unsent = system.ensure_nothing_lost(&before).await?;
+    ensure!(unsent.waiting > 1, "{unsent:?}");
+    let code = system.server.enrolment_code(&vessel).await?;
+    system.ship.enrol(&system.gateway.url(), &code).await?;
+    let spool = system.wait_until_uploaded().await?;
+    ensure_records_match(&system.server, system.vessel, &spool).await?;
+    system.ensure_no_window_lost().await?;
+    system.check_and_stop().await
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -132,40 +134,40 @@ async fn a_cloned_agent_is_noticed_and_neither_takes_from_the_other() {
 }
 
 async fn cloned() -> Result<()> {
-    let mut coast = Coast::sail().await?;
-    coast.until(1.0).await?;
-    coast.all_ashore().await?;
-    coast.ship.kill().await?;
+    let mut system = ShipAndServer::start().await?;
+    system.sail_until(1.0).await?;
+    system.wait_until_uploaded().await?;
+    system.ship.kill().await?;
     let pace = Pace::FastUntil(day(0.0));
-    let mut other = Voyage::sail("biscay.toml", 12, coast.folder(), pace).await?;
-    let mut twin = Ship::new("twin", coast.folder(), other.feed.address())?;
-    copy_folder(&coast.ship.data_dir(), &twin.data_dir())?;
-    coast.ship.start()?;
+    let mut other = Voyage::sail("biscay.toml", 12, system.folder(), pace).await?;
+    let mut twin = Ship::new("twin", system.folder(), other.feed.address())?;
+    copy_folder(&system.ship.data_dir(), &twin.data_dir())?;
+    system.ship.start()?;
     twin.start()?;
     twin.ready().await?;
     for days in [2.0, 3.0, 4.0] {
-        coast.until(days).await?;
-        coast.all_ashore().await?;
-        binnacle_tests::sailing::until(&mut other, &twin, day(days)).await?;
-        calm(&twin).await?;
+        system.sail_until(days).await?;
+        system.wait_until_uploaded().await?;
+        binnacle_tests::sailing::sail_until(&mut other, &twin, day(days)).await?;
+        wait_until_idle(&twin).await?;
     }
-    let alert = clone_alert(&coast).await?;
+    let alert = clone_alert(&system).await?;
     ensure!(alert["state"] == "raised", "{alert}");
-    for ship in [&coast.ship, &twin] {
-        let spool = calm(ship).await?;
-        ensure_acknowledged_is_ashore(&coast.shore, coast.vessel, &spool).await?;
+    for ship in [&system.ship, &twin] {
+        let spool = wait_until_idle(ship).await?;
+        ensure_acknowledged_is_stored(&system.server, system.vessel, &spool).await?;
     }
     twin.kill().await?;
     // Two ships' samples: their windows must overlap.
-    coast.ship.assert_running()?;
-    coast.ship.kill().await?;
-    coast.shore.assert_well().await?;
-    coast.shore.finish().await
+    system.ship.assert_running()?;
+    system.ship.kill().await?;
+    system.server.assert_healthy().await?;
+    system.server.finish().await
 }
 
-async fn clone_alert(coast: &Coast) -> Result<Value> {
-    eventually("the clone is an alert", PATIENCE, async || {
-        let mut alerts = coast.shore.list("/alerts").await?;
+async fn clone_alert(system: &ShipAndServer) -> Result<Value> {
+    eventually("the clone is an alert", TIMEOUT, async || {
+        let mut alerts = system.server.list("/alerts").await?;
         alerts.retain(|alert| alert["cause"] == "cloned_agent");
         ensure!(alerts.len() < 2, "{alerts:?}");
         Ok(alerts.pop().ok_or("no alert".to_owned()))
@@ -179,17 +181,17 @@ async fn a_shore_restored_from_a_backup_gets_again_what_it_lost() {
 }
 
 async fn restored_shore() -> Result<()> {
-    let mut coast = Coast::sail().await?;
-    coast.until(2.0).await?;
-    coast.all_ashore().await?;
-    let url = coast.shore.database().url();
+    let mut system = ShipAndServer::start().await?;
+    system.sail_until(2.0).await?;
+    system.wait_until_uploaded().await?;
+    let url = system.server.database().url();
     let file = PathBuf::from(url.strip_prefix("sqlite://").context("SQLite")?);
     let files = ["", "-wal", "-shm"].map(|suffix| {
         let mut path = file.clone().into_os_string();
         path.push(suffix);
         PathBuf::from(path)
     });
-    let backup = coast.folder().join("backup");
+    let backup = system.folder().join("backup");
     std::fs::create_dir(&backup)?;
     let kept = |path: &PathBuf| backup.join(path.file_name().unwrap_or_default());
     let save = || {
@@ -198,10 +200,10 @@ async fn restored_shore() -> Result<()> {
         }
         Ok(())
     };
-    coast.shore.stopped_for(save).await?;
-    coast.until(5.0).await?;
-    let lost = coast.all_ashore().await?;
-    ensure_same_at_both_ends(&coast.shore, coast.vessel, &lost).await?;
+    system.server.restart_after(save).await?;
+    system.sail_until(5.0).await?;
+    let lost = system.wait_until_uploaded().await?;
+    ensure_records_match(&system.server, system.vessel, &lost).await?;
     let restore = || {
         for path in &files {
             if path.exists() {
@@ -213,13 +215,17 @@ async fn restored_shore() -> Result<()> {
         }
         Ok(())
     };
-    coast.shore.stopped_for(restore).await?;
-    let there = batch_log(coast.shore.database(), coast.vessel).await?.len();
+    system.server.restart_after(restore).await?;
+    let there = batch_log(system.server.database(), system.vessel)
+        .await?
+        .len();
     ensure!(there < lost.acknowledged.len(), "{there} of {lost:?}");
-    coast.until(6.0).await?;
-    let spool = eventually("the shore has all again", PATIENCE, async || {
-        let spool = Spool::of(&coast.ship).await?;
-        let there = batch_log(coast.shore.database(), coast.vessel).await?.len();
+    system.sail_until(6.0).await?;
+    let spool = eventually("the shore has all again", TIMEOUT, async || {
+        let spool = Spool::read(&system.ship).await?;
+        let there = batch_log(system.server.database(), system.vessel)
+            .await?
+            .len();
         let has_all = spool.waiting == 0 && there > lost.acknowledged.len();
         Ok(if has_all {
             Ok(spool)
@@ -228,7 +234,7 @@ async fn restored_shore() -> Result<()> {
         })
     })
     .await?;
-    ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
-    coast.ensure_every_window_is_there().await?;
-    coast.arrive().await
+    ensure_records_match(&system.server, system.vessel, &spool).await?;
+    system.ensure_no_window_lost().await?;
+    system.check_and_stop().await
 }

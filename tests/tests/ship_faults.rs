@@ -7,12 +7,12 @@ use anyhow::{Context, Result, ensure};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
-use binnacle_tests::link::gateway::Manners;
+use binnacle_tests::link::gateway::Behaviour;
 use binnacle_tests::process::namespace::in_own_mounts;
 use binnacle_tests::process::program::output_of;
-use binnacle_tests::records::{Spool, clear_journal, ensure_same_at_both_ends, samples_ashore};
-use binnacle_tests::sailing::{PATIENCE, day};
-use binnacle_tests::{Coast, Pace, Passage, Progress, eventually};
+use binnacle_tests::records::{Spool, clear_journal, ensure_records_match, stored_samples};
+use binnacle_tests::sailing::{TIMEOUT, day};
+use binnacle_tests::{Pace, Progress, Setup, ShipAndServer, eventually};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Write;
@@ -38,8 +38,8 @@ fn fill(place: &Path, name: &str) -> Result<PathBuf> {
     let path = place.join(name);
     let mut file = File::create(&path)?;
     for size in [65_536, 4_096, 1] {
-        let octets = vec![0; size];
-        while file.write_all(&octets).is_ok() {}
+        let bytes = vec![0; size];
+        while file.write_all(&bytes).is_ok() {}
     }
     Ok(path)
 }
@@ -51,35 +51,39 @@ fn a_full_disk_stops_nothing_and_costs_nothing() {
 
 async fn full_disk() -> Result<()> {
     let disk = |ship: &binnacle_tests::Ship| small_disk(&ship.data_dir(), "24m");
-    let mut coast = Coast::sail_on(Passage::default(), disk).await?;
-    coast.until(1.0).await?;
-    let before = coast.all_ashore().await?;
+    let mut system = ShipAndServer::start_with(Setup::default(), disk).await?;
+    system.sail_until(1.0).await?;
+    let before = system.wait_until_uploaded().await?;
     // First the raw log gives way to the spool; then there is nothing left to
     // free.
-    let state = coast.ship.data_dir();
+    let state = system.ship.data_dir();
     let most = fill(&state, "somebody-elses")?;
-    coast.until(2.0).await?;
-    coast.says("/ring/problem", "No space left").await?;
-    coast.says("/storage_problem", "null").await?;
+    system.sail_until(2.0).await?;
+    system
+        .wait_for_status("/ring/problem", "No space left")
+        .await?;
+    system.wait_for_status("/storage_problem", "null").await?;
     for days in [3.0, 5.0] {
-        clear_journal(&coast.ship).await?;
+        clear_journal(&system.ship).await?;
         let rest = fill(&state, "more")?;
-        coast.until(days).await?;
-        let said = coast.says("/storage_problem", "cannot be stored").await?;
+        system.sail_until(days).await?;
+        let said = system
+            .wait_for_status("/storage_problem", "cannot be stored")
+            .await?;
         ensure!(said.contains("wait in memory"), "{said}");
         std::fs::remove_file(rest)?;
-        coast.until(days + 1.0).await?;
-        coast.says("/storage_problem", "null").await?;
+        system.sail_until(days + 1.0).await?;
+        system.wait_for_status("/storage_problem", "null").await?;
     }
     std::fs::remove_file(most)?;
-    let spool = coast.all_ashore().await?;
+    let spool = system.wait_until_uploaded().await?;
     ensure!(
         spool.acknowledged.starts_with(&before.acknowledged),
         "{spool:?}"
     );
-    ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
-    coast.ensure_every_window_is_there().await?;
-    coast.arrive().await
+    ensure_records_match(&system.server, system.vessel, &spool).await?;
+    system.ensure_no_window_lost().await?;
+    system.check_and_stop().await
 }
 
 #[test]
@@ -90,36 +94,36 @@ fn a_disk_that_became_read_only_is_said_and_what_is_on_it_stays() {
 
 async fn read_only_disk() -> Result<()> {
     let disk = |ship: &binnacle_tests::Ship| small_disk(&ship.data_dir(), "24m");
-    let mut coast = Coast::sail_on(Passage::default(), disk).await?;
-    coast.until(1.0).await?;
-    coast.all_ashore().await?;
-    coast.gateway.set(Manners::Fails);
-    coast.until(2.0).await?;
-    coast.ship.kill().await?;
-    let before = Spool::of(&coast.ship).await?;
+    let mut system = ShipAndServer::start_with(Setup::default(), disk).await?;
+    system.sail_until(1.0).await?;
+    system.wait_until_uploaded().await?;
+    system.gateway.set(Behaviour::Fails);
+    system.sail_until(2.0).await?;
+    system.ship.kill().await?;
+    let before = Spool::read(&system.ship).await?;
     ensure!(before.waiting > 1, "{before:?}");
     // As a system treats a failing disk.
-    let state = coast.ship.data_dir();
-    eventually("nobody writes to the disk", PATIENCE, async || {
+    let state = system.ship.data_dir();
+    eventually("nobody writes to the disk", TIMEOUT, async || {
         Ok(mount(&["-o", "remount,ro"], &state).map_err(|why| why.to_string()))
     })
     .await?;
-    coast.ship.start()?;
-    let log = coast.ship.fails().await?;
+    system.ship.start()?;
+    let log = system.ship.fails().await?;
     ensure!(
         log.to_lowercase().contains("read-only file system"),
         "{log}"
     );
     ensure!(log.contains("state") && !log.contains("panicked"), "{log}");
     mount(&["-o", "remount,rw"], &state)?;
-    coast.ship.start()?;
-    coast.ship.ready().await?;
-    coast.ensure_nothing_went(&before).await?;
-    coast.gateway.set(Manners::Passes);
-    coast.until(3.0).await?;
-    let spool = coast.all_ashore().await?;
-    ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
-    coast.arrive().await
+    system.ship.start()?;
+    system.ship.ready().await?;
+    system.ensure_nothing_lost(&before).await?;
+    system.gateway.set(Behaviour::Passes);
+    system.sail_until(3.0).await?;
+    let spool = system.wait_until_uploaded().await?;
+    ensure_records_match(&system.server, system.vessel, &spool).await?;
+    system.check_and_stop().await
 }
 
 #[test]
@@ -151,31 +155,33 @@ async fn failing_disk() -> Result<()> {
     let folder = tempfile::tempdir()?;
     let image = folder.path().join("disk");
     let disk = |ship: &binnacle_tests::Ship| own_disk(&image, &ship.data_dir());
-    let mut coast = Coast::sail_on(Passage::default(), disk).await?;
-    coast.until(1.0).await?;
-    coast.all_ashore().await?;
-    coast.gateway.set(Manners::Fails);
-    coast.until(2.0).await?;
-    let before = Spool::of(&coast.ship).await?;
+    let mut system = ShipAndServer::start_with(Setup::default(), disk).await?;
+    system.sail_until(1.0).await?;
+    system.wait_until_uploaded().await?;
+    system.gateway.set(Behaviour::Fails);
+    system.sail_until(2.0).await?;
+    let before = Spool::read(&system.ship).await?;
     ensure!(before.waiting > 0, "{before:?}");
     // From here on every write fails, as on a disk that the system has given
     // up.
-    let state = coast.ship.data_dir();
+    let state = system.ship.data_dir();
     mount(&["-o", "remount,abort"], &state)?;
-    coast.until(3.0).await?;
-    let said = coast.says("/storage_problem", "cannot be stored").await?;
+    system.sail_until(3.0).await?;
+    let said = system
+        .wait_for_status("/storage_problem", "cannot be stored")
+        .await?;
     ensure!(said.contains("wait in memory"), "{said}");
-    let config = coast.ship.config();
+    let config = system.ship.config();
     let status = [Path::new("status"), Path::new("--config"), &config];
-    let told = output_of("binnacle-agent", status).await?;
-    let told = String::from_utf8(told.stdout)?;
-    ensure!(told.contains("cannot be stored"), "{told}");
-    coast.ensure_nothing_went(&before).await?;
-    coast.ship.assert_running()?;
-    coast.ship.kill().await?;
-    let told = output_of("binnacle-agent", status).await?;
-    ensure!(told.status.success(), "{told:?}");
-    eventually("nobody uses the disk", PATIENCE, async || {
+    let shown = output_of("binnacle-agent", status).await?;
+    let shown = String::from_utf8(shown.stdout)?;
+    ensure!(shown.contains("cannot be stored"), "{shown}");
+    system.ensure_nothing_lost(&before).await?;
+    system.ship.assert_running()?;
+    system.ship.kill().await?;
+    let shown = output_of("binnacle-agent", status).await?;
+    ensure!(shown.status.success(), "{shown:?}");
+    eventually("nobody uses the disk", TIMEOUT, async || {
         let left = Command::new("umount").arg(&state).output()?;
         Ok(if left.status.success() {
             Ok(())
@@ -187,14 +193,14 @@ async fn failing_disk() -> Result<()> {
     // A repair has an exit code other than 0.
     Command::new("e2fsck").arg("-fy").arg(&image).output()?;
     mount_image(&image, &state)?;
-    coast.ship.start()?;
-    coast.ship.ready().await?;
-    coast.ensure_nothing_went(&before).await?;
-    coast.gateway.set(Manners::Passes);
-    coast.until(4.0).await?;
-    let spool = coast.all_ashore().await?;
-    ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
-    coast.arrive().await
+    system.ship.start()?;
+    system.ship.ready().await?;
+    system.ensure_nothing_lost(&before).await?;
+    system.gateway.set(Behaviour::Passes);
+    system.sail_until(4.0).await?;
+    let spool = system.wait_until_uploaded().await?;
+    ensure_records_match(&system.server, system.vessel, &spool).await?;
+    system.check_and_stop().await
 }
 
 const DAY_S: f64 = 86_400.0;
@@ -206,30 +212,34 @@ async fn no_sample_has_a_wrong_time_whatever_the_receivers_clock_says() {
 }
 
 async fn wrong_clock() -> Result<()> {
-    let mut coast = Coast::sail().await?;
-    coast.until(1.0).await?;
+    let mut system = ShipAndServer::start().await?;
+    system.sail_until(1.0).await?;
     // A quarter of a day each, while the ship is under way.
     let wrong = [(1.0, DAY_S), (2.0, -DAY_S), (3.0, DAY_S)];
     for (from, off_s) in wrong {
-        coast.voyage.feed.set_clock(off_s)?;
-        reach(&mut coast, from + 0.25).await?;
-        let said = coast.says("/clock_problem", "jumped by").await?;
+        system.voyage.feed.set_clock(off_s)?;
+        reach(&mut system, from + 0.25).await?;
+        let said = system
+            .wait_for_status("/clock_problem", "jumped by")
+            .await?;
         ensure!(said.contains("nothing is sampled"), "{said}");
-        coast.voyage.feed.set_clock(0.0)?;
-        coast.until(from + 1.0).await?;
-        coast.says("/clock_problem", "null").await?;
+        system.voyage.feed.set_clock(0.0)?;
+        system.sail_until(from + 1.0).await?;
+        system.wait_for_status("/clock_problem", "null").await?;
     }
     // Here the agent knows the right time.
-    coast.voyage.feed.set_clock(-ROLL_OVER_S)?;
-    coast.until(5.0).await?;
-    coast.says("/clock_problem", "1024 weeks").await?;
-    coast.voyage.feed.set_clock(0.0)?;
-    coast.until(6.0).await?;
-    coast.says("/clock_problem", "null").await?;
-    let spool = coast.all_ashore().await?;
-    ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
-    coast.ensure_every_window_is_there().await?;
-    let samples = samples_ashore(&coast.shore, coast.vessel).await?;
+    system.voyage.feed.set_clock(-ROLL_OVER_S)?;
+    system.sail_until(5.0).await?;
+    system
+        .wait_for_status("/clock_problem", "1024 weeks")
+        .await?;
+    system.voyage.feed.set_clock(0.0)?;
+    system.sail_until(6.0).await?;
+    system.wait_for_status("/clock_problem", "null").await?;
+    let spool = system.wait_until_uploaded().await?;
+    ensure_records_match(&system.server, system.vessel, &spool).await?;
+    system.ensure_no_window_lost().await?;
+    let samples = stored_samples(&system.server, system.vessel).await?;
     for (from, _) in wrong {
         let at = |s: &&Sample| s.time > day(from).plus_seconds(900.0) && s.time < day(from + 0.25);
         let stored: Vec<&Sample> = samples.iter().filter(at).collect();
@@ -241,7 +251,7 @@ async fn wrong_clock() -> Result<()> {
         "none of the day that rolled over"
     );
     ensure_she_sailed(&samples)?;
-    coast.arrive().await
+    system.check_and_stop().await
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -250,27 +260,27 @@ async fn a_receiver_that_is_a_week_wrong_after_a_restart_is_not_believed() {
 }
 
 async fn wrong_from_the_start() -> Result<()> {
-    let mut coast = Coast::sail().await?;
-    coast.says("/link/state", "up").await?;
+    let mut system = ShipAndServer::start().await?;
+    system.wait_for_status("/link/state", "up").await?;
     // A day's voyage that ends now: the computer's clock is the ship's.
-    let now = coast.ship.status().await?["link"]["last_contact"].clone();
+    let now = system.ship.status().await?["link"]["last_contact"].clone();
     let now = Timestamp::parse(now.as_str().context("no word from the shore")?)?;
     let off_s = now.seconds_since(day(1.0));
-    coast.voyage.feed.set_clock(off_s)?;
-    reach(&mut coast, 1.0).await?;
-    coast.all_ashore().await?;
-    coast.ship.stop().await?;
+    system.voyage.feed.set_clock(off_s)?;
+    reach(&mut system, 1.0).await?;
+    system.wait_until_uploaded().await?;
+    system.ship.stop().await?;
     let wrong = [7.0, -7.0, 7_305.0].map(|days| days * DAY_S);
     let mut minutes = 0.0;
     for wrong_s in wrong {
-        coast.voyage.feed.set_clock(off_s + wrong_s)?;
-        coast.ship.start()?;
-        coast.ship.ready().await?;
+        system.voyage.feed.set_clock(off_s + wrong_s)?;
+        system.ship.start()?;
+        system.ship.ready().await?;
         // The first sentences to an agent that has ended are lost.
-        eventually("the agent hears something", PATIENCE, async || {
+        eventually("the agent hears something", TIMEOUT, async || {
             minutes += 0.5;
-            reach(&mut coast, 1.0 + minutes / 1_440.0).await?;
-            let status = coast.ship.status().await?;
+            reach(&mut system, 1.0 + minutes / 1_440.0).await?;
+            let status = system.ship.status().await?;
             let heard = status["inputs"][0]["sentences"]["RMC"].is_number();
             Ok(if heard {
                 Ok(())
@@ -279,17 +289,19 @@ async fn wrong_from_the_start() -> Result<()> {
             })
         })
         .await?;
-        let said = coast.says("/clock_problem", "computer's clock").await?;
+        let said = system
+            .wait_for_status("/clock_problem", "computer's clock")
+            .await?;
         ensure!(said.contains("nothing is sampled"), "{said}");
-        coast.ship.stop().await?;
+        system.ship.stop().await?;
     }
-    coast.voyage.feed.set_clock(off_s)?;
-    coast.ship.start()?;
-    coast.ship.ready().await?;
-    reach(&mut coast, 1.9).await?;
-    coast.says("/clock_problem", "null").await?;
-    coast.all_ashore().await?;
-    let samples = samples_ashore(&coast.shore, coast.vessel).await?;
+    system.voyage.feed.set_clock(off_s)?;
+    system.ship.start()?;
+    system.ship.ready().await?;
+    reach(&mut system, 1.9).await?;
+    system.wait_for_status("/clock_problem", "null").await?;
+    system.wait_until_uploaded().await?;
+    let samples = stored_samples(&system.server, system.vessel).await?;
     let (from, to) = (now.plus_seconds(-DAY_S), now.plus_seconds(DAY_S));
     let strange: Vec<&Sample> = samples
         .iter()
@@ -300,14 +312,14 @@ async fn wrong_from_the_start() -> Result<()> {
         samples.iter().any(|sample| sample.time > now),
         "nothing since"
     );
-    coast.arrive().await
+    system.check_and_stop().await
 }
 
 /// Sails on while the agent's clock stands still.
-async fn reach(coast: &mut Coast, days: f64) -> Result<()> {
-    coast.voyage.feed.set_pace(Pace::FastUntil(day(days)))?;
+async fn reach(system: &mut ShipAndServer, days: f64) -> Result<()> {
+    system.voyage.feed.set_pace(Pace::FastUntil(day(days)))?;
     let there = |progress: &Progress| progress.time() >= Some(day(days));
-    coast.voyage.feed.reached(PATIENCE, there).await?;
+    system.voyage.feed.reached(TIMEOUT, there).await?;
     Ok(())
 }
 
@@ -345,14 +357,14 @@ async fn nothing_from_outside_makes_the_agent_write_outside_its_folder() {
 }
 
 async fn words_that_mean_harm() -> Result<()> {
-    let passage = Passage {
+    let setup = Setup {
         name: "../../../../outside",
-        ..Passage::default()
+        ..Setup::default()
     };
-    let mut coast = Coast::sail_on(passage, |_| Ok(())).await?;
-    coast.until(1.0).await?;
-    coast.all_ashore().await?;
-    let page = coast.ship.page()?;
+    let mut system = ShipAndServer::start_with(setup, |_| Ok(())).await?;
+    system.sail_until(1.0).await?;
+    system.wait_until_uploaded().await?;
+    let page = system.ship.page()?;
     let http = reqwest::Client::builder().no_proxy().build()?;
     for path in ["../../outside", "..%2f..%2foutside", "%2fetc%2foutside"] {
         let url = format!("http://{page}/api/reports/{path}");
@@ -360,10 +372,10 @@ async fn words_that_mean_harm() -> Result<()> {
         let answer = http.put(url).json(&report).send().await?;
         ensure!(!answer.status().is_success(), "{path}: {}", answer.status());
     }
-    coast.until(2.0).await?;
-    coast.all_ashore().await?;
+    system.sail_until(2.0).await?;
+    system.wait_until_uploaded().await?;
     let mut found = BTreeSet::new();
-    list(coast.folder(), coast.folder(), &mut found)?;
+    list(system.folder(), system.folder(), &mut found)?;
     let of_others = [
         "binnacle.db",
         "server.log",
@@ -384,7 +396,7 @@ async fn words_that_mean_harm() -> Result<()> {
         .map(|name| format!("ship/state/{name}"))
         .collect();
     ensure!(found == state, "{found:?}");
-    coast.arrive().await
+    system.check_and_stop().await
 }
 
 fn list(folder: &Path, top: &Path, found: &mut BTreeSet<String>) -> Result<()> {

@@ -10,7 +10,7 @@ use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_tests::records::{Acknowledged, Spool, batch_log, checksum};
 use binnacle_tests::voyage::Place;
-use binnacle_tests::{Engine, Pace, Progress, Ship, Shore, Voyage, autopilot, eventually};
+use binnacle_tests::{Engine, Pace, Progress, ServerProcess, Ship, Voyage, autopilot, eventually};
 use binnacle_wire::decode;
 use serde_json::Value;
 use std::path::Path;
@@ -24,7 +24,7 @@ const AFTER_KILL_S: f64 = 12.0 * 3600.0;
 /// Sailed live at the end, for the autopilot.
 const LIVE_S: f64 = 600.0;
 /// Time for a few days' sailing on a busy machine.
-const PATIENCE: Duration = Duration::from_mins(5);
+const TIMEOUT: Duration = Duration::from_mins(5);
 /// A tenth of a degree in a sentence, and interpolation between rows of the
 /// truth.
 const ROUNDING_DEG: f64 = 0.15;
@@ -84,12 +84,17 @@ fn kills(seed: u64) -> Vec<(f64, Victim)> {
     victims.into_iter().enumerate().map(moment).collect()
 }
 
-async fn set_sail(shore: &Shore, scenario: &str, seed: u64, folder: &Path) -> Result<Vessel> {
-    let (id, code) = shore.create_vessel(scenario).await?;
+async fn set_sail(
+    server: &ServerProcess,
+    scenario: &str,
+    seed: u64,
+    folder: &Path,
+) -> Result<Vessel> {
+    let (id, code) = server.create_vessel(scenario).await?;
     let pace = Pace::FastUntil(day(0.0));
     let voyage = Voyage::sail(&format!("{scenario}.toml"), seed, folder, pace).await?;
     let mut ship = Ship::new(scenario, folder, voyage.feed.address())?;
-    ship.enrol(&shore.url, &code).await?;
+    ship.enrol(&server.url, &code).await?;
     ship.start()?;
     Ok(Vessel {
         id: id.parse()?,
@@ -100,7 +105,7 @@ async fn set_sail(shore: &Shore, scenario: &str, seed: u64, folder: &Path) -> Re
 
 /// Sails to the end of the fast part, with the kills on the way: no ship runs
 /// ahead of them, and all are under way at each kill.
-async fn sail(shore: &mut Shore, vessels: &mut [Vessel], seed: u64) -> Result<()> {
+async fn sail(server: &mut ServerProcess, vessels: &mut [Vessel], seed: u64) -> Result<()> {
     for (when, victim) in kills(seed) {
         let moment = day(when);
         for vessel in &*vessels {
@@ -113,16 +118,16 @@ async fn sail(shore: &mut Shore, vessels: &mut [Vessel], seed: u64) -> Result<()
             0
         };
         let passed = |progress: &Progress| progress.time() >= Some(moment);
-        vessels[whose].voyage.feed.reached(PATIENCE, passed).await?;
+        vessels[whose].voyage.feed.reached(TIMEOUT, passed).await?;
         match victim {
             Victim::Agent(index) => vessels[index].ship.kill_and_restart().await?,
-            Victim::Server => shore.kill_and_restart().await?,
+            Victim::Server => server.kill_and_restart().await?,
         }
     }
     for vessel in vessels {
         vessel.voyage.feed.set_pace(Pace::FastUntil(fast_end()))?;
         let there = |progress: &Progress| progress.time() >= Some(fast_end());
-        vessel.voyage.feed.reached(PATIENCE, there).await?;
+        vessel.voyage.feed.reached(TIMEOUT, there).await?;
         vessel.ship.assert_running()?;
     }
     Ok(())
@@ -130,13 +135,13 @@ async fn sail(shore: &mut Shore, vessels: &mut [Vessel], seed: u64) -> Result<()
 
 /// Waits until the agent has read all sentences and no batch waits.
 async fn settled(vessel: &Vessel, until: Timestamp) -> Result<Spool> {
-    eventually("the agent has sent all", PATIENCE, async || {
+    eventually("the agent has sent all", TIMEOUT, async || {
         let status = vessel.ship.status().await?;
         let time = status["ship_time"]
             .as_str()
             .map(Timestamp::parse)
             .transpose()?;
-        let spool = Spool::of(&vessel.ship).await?;
+        let spool = Spool::read(&vessel.ship).await?;
         let settled = time >= Some(until) && spool.waiting == 0;
         Ok(if settled {
             Ok(spool)
@@ -151,21 +156,21 @@ async fn settled(vessel: &Vessel, until: Timestamp) -> Result<Spool> {
 /// acknowledged must be those of the server, to the checksum. Returns their
 /// samples in order of time.
 async fn assert_every_batch_once(
-    shore: &Shore,
+    server: &ServerProcess,
     vessel: &Vessel,
     spool: &Spool,
 ) -> Result<Vec<Sample>> {
     ensure!(
-        spool.in_trouble == 0,
+        spool.refused == 0,
         "{} batches are in trouble",
-        spool.in_trouble
+        spool.refused
     );
     // The number of batches depends on the waiting times at a busy server.
     let samples: i64 = spool.acknowledged.iter().map(|batch| batch.samples).sum();
     ensure!(samples > LEAST_SAMPLES, "only {samples} samples are ashore");
     let mut sent = Vec::new();
     let mut logged = Vec::new();
-    for (stream, seq, bytes) in batch_log(shore.database(), vessel.id).await? {
+    for (stream, seq, bytes) in batch_log(server.database(), vessel.id).await? {
         let batch = decode(&bytes)?;
         logged.push(Acknowledged {
             stream,
@@ -175,16 +180,16 @@ async fn assert_every_batch_once(
         });
         sent.extend(batch.samples);
     }
-    let aboard = &spool.acknowledged;
+    let unsent = &spool.acknowledged;
     let lacking = |of: &[Acknowledged], other: &[Acknowledged]| -> Vec<Acknowledged> {
         let lacks = |batch: &&Acknowledged| !other.contains(batch);
         of.iter().filter(lacks).cloned().collect()
     };
     ensure!(
-        logged == *aboard,
+        logged == *unsent,
         "only on board {:?}, only on shore {:?}",
-        lacking(aboard, &logged),
-        lacking(&logged, aboard)
+        lacking(unsent, &logged),
+        lacking(&logged, unsent)
     );
     sent.sort_by_key(|sample| sample.time);
     for pair in sent.windows(2) {
@@ -196,11 +201,11 @@ async fn assert_every_batch_once(
 }
 
 /// Waits for a model of all samples.
-async fn final_model(shore: &Shore, vessel: &Vessel, sent: &[Sample]) -> Result<()> {
+async fn final_model(server: &ServerProcess, vessel: &Vessel, sent: &[Sample]) -> Result<()> {
     let last = sent.last().context("there are samples")?.time;
     let path = format!("/vessels/{}/model", vessel.id);
-    eventually("a model of all samples", PATIENCE, async || {
-        let Some(model) = shore.find(&path).await? else {
+    eventually("a model of all samples", TIMEOUT, async || {
+        let Some(model) = server.find(&path).await? else {
             return Ok(Err("there is none".to_owned()));
         };
         let until = model["data_until"].as_str().context("data_until")?;
@@ -215,8 +220,12 @@ async fn final_model(shore: &Shore, vessel: &Vessel, sent: &[Sample]) -> Result<
 }
 
 /// Checks that the API returns the samples sent, each once.
-async fn assert_every_sample_once(shore: &Shore, vessel: &Vessel, sent: &[Sample]) -> Result<()> {
-    let listed = shore
+async fn assert_every_sample_once(
+    server: &ServerProcess,
+    vessel: &Vessel,
+    sent: &[Sample],
+) -> Result<()> {
+    let listed = server
         .list(&format!("/vessels/{}/samples", vessel.id))
         .await?;
     let mut listed: Vec<Sample> = listed
@@ -244,10 +253,14 @@ fn apart_deg(a: f64, b: f64) -> f64 {
 
 /// Checks that the band of the deviation curve at the voyage's end contains the
 /// truth on at least nine headings in ten.
-async fn assert_band_holds_truth(shore: &Shore, vessel: &Vessel, truth: &Place) -> Result<()> {
+async fn assert_band_holds_truth(
+    server: &ServerProcess,
+    vessel: &Vessel,
+    truth: &Place,
+) -> Result<()> {
     let Place { lat, lon, at, .. } = truth;
     let path = format!("/vessels/{}/deviation", vessel.id);
-    let curve = shore
+    let curve = server
         .get(&format!("{path}?lat={lat}&lon={lon}&at={at}&step_deg=10"))
         .await?;
     let variation = curve["variation_deg"].as_f64().context("variation_deg")?;
@@ -283,13 +296,13 @@ fn missed(row: &Value, truth: &Place) -> Option<String> {
 
 /// Sails on for ten minutes and reads the output as an autopilot.
 async fn assert_autopilot_hears_truth(vessel: &mut Vessel, last: Timestamp) -> Result<()> {
-    eventually("the model is on board", PATIENCE, async || {
+    eventually("the model is on board", TIMEOUT, async || {
         let status = vessel.ship.status().await?;
         let until = status["model"]["data_until"].as_str();
         let until = until.map(Timestamp::parse).transpose()?;
         // A nearly identical model is sent once it is three days younger.
-        let aboard = until > Some(last.plus_seconds(-3.0 * 86_400.0));
-        Ok(if aboard {
+        let unsent = until > Some(last.plus_seconds(-3.0 * 86_400.0));
+        Ok(if unsent {
             Ok(())
         } else {
             Err(status.to_string())
@@ -298,14 +311,14 @@ async fn assert_autopilot_hears_truth(vessel: &mut Vessel, last: Timestamp) -> R
     .await?;
     let output = vessel.ship.ready().await?;
     vessel.voyage.feed.set_pace(Pace::Live)?;
-    let heard = autopilot::corrections(output, 20, PATIENCE).await?;
+    let received = autopilot::corrections(output, 20, TIMEOUT).await?;
     vessel
         .voyage
         .feed
-        .reached(PATIENCE, |progress| *progress == Progress::Ended)
+        .reached(TIMEOUT, |progress| *progress == Progress::Ended)
         .await?;
     let truth = vessel.voyage.truth().await?.at_the_end;
-    for correction in heard {
+    for correction in received {
         let deviation = truth.deviation_deg(correction.compass_deg);
         let error = correction.deviation_deg - deviation;
         let band = 1.96 * correction.standard_error_deg;
@@ -339,25 +352,25 @@ async fn whole_way(engine: Engine) -> Result<()> {
 
 async fn with_kills(engine: Engine, seed: u64) -> Result<()> {
     let folder = tempfile::tempdir()?;
-    let mut shore = Shore::start(engine, folder.path()).await?;
+    let mut server = ServerProcess::start(engine, folder.path()).await?;
     let mut vessels = Vec::new();
     for (scenario, seed) in [("biscay", 11), ("agulhas", 12)] {
-        vessels.push(set_sail(&shore, scenario, seed, folder.path()).await?);
+        vessels.push(set_sail(&server, scenario, seed, folder.path()).await?);
     }
-    sail(&mut shore, &mut vessels, seed).await?;
+    sail(&mut server, &mut vessels, seed).await?;
     for vessel in &mut vessels {
         let spool = settled(vessel, fast_end()).await?;
-        let sent = assert_every_batch_once(&shore, vessel, &spool).await?;
-        final_model(&shore, vessel, &sent).await?;
-        assert_every_sample_once(&shore, vessel, &sent).await?;
+        let sent = assert_every_batch_once(&server, vessel, &spool).await?;
+        final_model(&server, vessel, &sent).await?;
+        assert_every_sample_once(&server, vessel, &sent).await?;
         let last = sent.last().context("there are samples")?.time;
         assert_autopilot_hears_truth(vessel, last).await?;
         let truth = vessel.voyage.truth().await?.at_the_end;
-        assert_band_holds_truth(&shore, vessel, &truth).await?;
+        assert_band_holds_truth(&server, vessel, &truth).await?;
         vessel.ship.kill().await?;
     }
-    shore.assert_well().await?;
-    shore.finish().await
+    server.assert_healthy().await?;
+    server.finish().await
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]

@@ -12,7 +12,7 @@ use tokio::time::{interval, timeout};
 
 /// The treatment of connections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Manners {
+pub enum Behaviour {
     /// Passes everything.
     Passes,
     /// Responds with the login page of a harbour's network.
@@ -38,8 +38,8 @@ const REFUSAL: &str = r#"{"title":"no route matched","message":"sign in first"}"
 pub struct Gateway {
     scheme: String,
     address: SocketAddr,
-    manners: watch::Sender<Manners>,
-    met: watch::Receiver<u64>,
+    behaviour: watch::Sender<Behaviour>,
+    ended: watch::Receiver<u64>,
     task: JoinHandle<()>,
 }
 
@@ -48,13 +48,13 @@ impl Gateway {
     ///
     /// # Errors
     /// When there is no port, or the URL has no address.
-    pub async fn open(shore: &str) -> Result<Gateway> {
-        let (scheme, shore) = shore.split_once("://").context("a URL")?;
-        let shore: SocketAddr = shore.parse().context("an address")?;
+    pub async fn open(server: &str) -> Result<Gateway> {
+        let (scheme, server) = server.split_once("://").context("a URL")?;
+        let server: SocketAddr = server.parse().context("an address")?;
         let listener = TcpListener::bind("127.0.0.1:0").await?;
         let address = listener.local_addr()?;
-        let (manners, mut current) = watch::channel(Manners::Passes);
-        let (count, met) = watch::channel(0);
+        let (behaviour, mut current) = watch::channel(Behaviour::Passes);
+        let (count, ended) = watch::channel(0);
         let task = tokio::spawn(async move {
             while let Ok((ship, _)) = listener.accept().await {
                 let now = *current.borrow_and_update();
@@ -64,18 +64,18 @@ impl Gateway {
                     // A change ends open connections, so that none continues
                     // with the old behaviour.
                     tokio::select! {
-                        _ = treat(ship, shore, now) => {}
+                        _ = handle(ship, server, now) => {}
                         _ = changed.changed() => {}
                     }
-                    count.send_modify(|met| *met += 1);
+                    count.send_modify(|ended| *ended += 1);
                 });
             }
         });
         Ok(Gateway {
             scheme: scheme.to_owned(),
             address,
-            manners,
-            met,
+            behaviour,
+            ended,
             task,
         })
     }
@@ -86,25 +86,25 @@ impl Gateway {
     }
 
     /// Changes the behaviour, for open connections too.
-    pub fn set(&mut self, manners: Manners) {
-        self.manners.send_replace(manners);
-        self.met.mark_unchanged();
+    pub fn set(&mut self, behaviour: Behaviour) {
+        self.behaviour.send_replace(behaviour);
+        self.ended.mark_unchanged();
     }
 
     /// Number of connections that have ended.
     pub fn count(&self) -> u64 {
-        *self.met.borrow()
+        *self.ended.borrow()
     }
 
     /// Waits until `more` further connections have ended.
     ///
     /// # Errors
     /// When they do not within the time.
-    pub async fn met(&mut self, more: u64, within: Duration) -> Result<()> {
-        let enough = *self.met.borrow() + more;
-        let waiting = self.met.wait_for(|met| *met >= enough);
+    pub async fn wait_for_connections(&mut self, more: u64, within: Duration) -> Result<()> {
+        let enough = *self.ended.borrow() + more;
+        let waiting = self.ended.wait_for(|ended| *ended >= enough);
         match timeout(within, waiting).await {
-            Ok(met) => met.map(drop).context("the gateway has ended"),
+            Ok(ended) => ended.map(drop).context("the gateway has ended"),
             Err(_) => bail!("the ship did not call {more} times"),
         }
     }
@@ -116,24 +116,24 @@ impl Drop for Gateway {
     }
 }
 
-async fn treat(mut ship: TcpStream, shore: SocketAddr, manners: Manners) -> Result<()> {
-    match manners {
-        Manners::Passes => {
-            let mut shore = TcpStream::connect(shore).await?;
-            copy_bidirectional(&mut ship, &mut shore).await?;
+async fn handle(mut ship: TcpStream, server: SocketAddr, behaviour: Behaviour) -> Result<()> {
+    match behaviour {
+        Behaviour::Passes => {
+            let mut server = TcpStream::connect(server).await?;
+            copy_bidirectional(&mut ship, &mut server).await?;
         }
-        Manners::ShowsPage => answer(ship, "200 OK", PAGE).await?,
-        Manners::Drips => drip(ship).await?,
-        Manners::Refuses(status) => answer(ship, status, REFUSAL).await?,
-        Manners::Fails => answer(ship, "500 Internal Server Error", "oh").await?,
-        Manners::CutsAfter(octets) => {
-            let shore = TcpStream::connect(shore).await?;
+        Behaviour::ShowsPage => respond(ship, "200 OK", PAGE).await?,
+        Behaviour::Drips => drip(ship).await?,
+        Behaviour::Refuses(status) => respond(ship, status, REFUSAL).await?,
+        Behaviour::Fails => respond(ship, "500 Internal Server Error", "oh").await?,
+        Behaviour::CutsAfter(bytes) => {
+            let server = TcpStream::connect(server).await?;
             let (from_ship, mut to_ship) = ship.into_split();
-            let (from_shore, mut to_shore) = shore.into_split();
-            let (mut up, mut down) = (from_ship.take(octets), from_shore.take(octets));
+            let (from_server, mut to_server) = server.into_split();
+            let (mut up, mut down) = (from_ship.take(bytes), from_server.take(bytes));
             // The first direction to use up its bytes ends both.
             tokio::select! {
-                _ = tokio::io::copy(&mut up, &mut to_shore) => {}
+                _ = tokio::io::copy(&mut up, &mut to_server) => {}
                 _ = tokio::io::copy(&mut down, &mut to_ship) => {}
             }
         }
@@ -153,7 +153,7 @@ async fn drip(mut ship: TcpStream) -> Result<()> {
 }
 
 /// Reads the head of a request, responds, and discards the rest.
-async fn answer(mut ship: TcpStream, status: &str, body: &str) -> Result<()> {
+async fn respond(mut ship: TcpStream, status: &str, body: &str) -> Result<()> {
     let mut head = Vec::new();
     while !head.windows(4).any(|end| end == b"\r\n\r\n") {
         if ship.read_buf(&mut head).await? == 0 {
@@ -161,11 +161,11 @@ async fn answer(mut ship: TcpStream, status: &str, body: &str) -> Result<()> {
         }
     }
     let length = body.len();
-    let answer = format!(
+    let response = format!(
         "HTTP/1.1 {status}\r\ncontent-type: text/html\r\nconnection: close\r\n\
          content-length: {length}\r\n\r\n{body}"
     );
-    ship.write_all(answer.as_bytes()).await?;
+    ship.write_all(response.as_bytes()).await?;
     ship.shutdown().await?;
     tokio::io::copy(&mut ship, &mut tokio::io::sink()).await?;
     Ok(())

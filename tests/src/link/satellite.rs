@@ -21,14 +21,14 @@ use tokio::process::{Child, ChildStdin, ChildStdout, Command};
 use tokio::time::timeout;
 
 /// The server's address on the link.
-pub const SHORE: IpAddr = IpAddr::V4(Ipv4Addr::new(10, 77, 0, 1));
+pub const SERVER: IpAddr = IpAddr::V4(Ipv4Addr::new(10, 77, 0, 1));
 /// Address of the ship's instruments.
 pub const INSTRUMENTS: IpAddr = IpAddr::V4(Ipv4Addr::new(10, 78, 0, 1));
 const START: Duration = Duration::from_secs(30);
 
 /// Conditions on the link; absent ones stay unchanged.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Weather {
+pub struct Conditions {
     /// True while packets pass.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub up: Option<bool>,
@@ -47,7 +47,7 @@ pub struct Weather {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub struct Tally {
     /// Sent by the ship.
-    pub to_shore: Count,
+    pub to_server: Count,
     /// Sent by the server.
     pub to_ship: Count,
 }
@@ -64,7 +64,7 @@ pub struct Count {
 impl Tally {
     /// Returns the bytes of both directions.
     pub fn bytes(&self) -> u64 {
-        self.to_shore.bytes + self.to_ship.bytes
+        self.to_server.bytes + self.to_ship.bytes
     }
 }
 
@@ -72,8 +72,8 @@ impl Tally {
 #[derive(Debug)]
 pub struct Satellite {
     // Dropped first: closing its input ends the link.
-    orders: ChildStdin,
-    answers: Lines<BufReader<ChildStdout>>,
+    commands: ChildStdin,
+    responses: Lines<BufReader<ChildStdout>>,
     _link: Child,
     ship: u32,
 }
@@ -99,39 +99,39 @@ impl Satellite {
             .kill_on_drop(true)
             .spawn()
             .context("python3")?;
-        let orders = link.stdin.take().context("standard input was asked for")?;
+        let commands = link.stdin.take().context("standard input was asked for")?;
         let output = link
             .stdout
             .take()
             .context("standard output was asked for")?;
         let mut satellite = Satellite {
-            orders,
-            answers: BufReader::new(output).lines(),
+            commands,
+            responses: BufReader::new(output).lines(),
             _link: link,
             ship: 0,
         };
-        let up: Up = serde_json::from_str(&satellite.answer().await?)?;
+        let up: Up = serde_json::from_str(&satellite.read_response().await?)?;
         satellite.ship = up.ship;
         Ok(satellite)
     }
 
-    async fn answer(&mut self) -> Result<String> {
-        let line = timeout(START, self.answers.next_line()).await;
+    async fn read_response(&mut self) -> Result<String> {
+        let line = timeout(START, self.responses.next_line()).await;
         let line = line.context("the link is silent")??;
         line.context("the link has ended: see its errors above")
     }
 
-    async fn order(&mut self, mut line: String) -> Result<()> {
+    async fn send(&mut self, mut line: String) -> Result<()> {
         line.push('\n');
-        Ok(self.orders.write_all(line.as_bytes()).await?)
+        Ok(self.commands.write_all(line.as_bytes()).await?)
     }
 
     /// Changes the conditions on the link.
     ///
     /// # Errors
     /// When the link has ended.
-    pub async fn set(&mut self, weather: Weather) -> Result<()> {
-        self.order(serde_json::to_string(&weather)?).await?;
+    pub async fn set(&mut self, conditions: Conditions) -> Result<()> {
+        self.send(serde_json::to_string(&conditions)?).await?;
         // A tally shows that the change before it was applied.
         self.tally().await.map(drop)
     }
@@ -141,21 +141,21 @@ impl Satellite {
     /// # Errors
     /// When the link has ended.
     pub async fn tally(&mut self) -> Result<Tally> {
-        self.order(r#"{"tally": true}"#.to_owned()).await?;
-        Ok(serde_json::from_str(&self.answer().await?)?)
+        self.send(r#"{"tally": true}"#.to_owned()).await?;
+        Ok(serde_json::from_str(&self.read_response().await?)?)
     }
 
     /// Returns the ship's network.
-    pub fn berth(&self) -> Berth {
-        Berth(self.ship)
+    pub fn ship_network(&self) -> ShipNetwork {
+        ShipNetwork(self.ship)
     }
 }
 
 /// The ship's network, in which programs on board run.
 #[derive(Clone, Copy, Debug)]
-pub struct Berth(u32);
+pub struct ShipNetwork(u32);
 
-impl Berth {
+impl ShipNetwork {
     /// Returns a command for one of the programs, on board.
     ///
     /// # Errors
@@ -175,7 +175,7 @@ impl Berth {
 /// docs/uplink.md recommends.
 #[derive(Clone, Debug)]
 pub struct Certificates {
-    shore: IpAddr,
+    server: IpAddr,
     /// PEM of the authority's key.
     issuer_key: String,
     /// The authority's certificate.
@@ -200,11 +200,11 @@ impl Certificates {
     ///
     /// # Errors
     /// When the folder cannot be written.
-    pub fn make(folder: &Path, shore: IpAddr) -> Result<Certificates> {
+    pub fn make(folder: &Path, server: IpAddr) -> Result<Certificates> {
         let issuer_key = KeyPair::generate_for(&PKCS_ED25519)?;
         let of_itself = authority()?.self_signed(&issuer_key)?;
         let made = Certificates {
-            shore,
+            server,
             issuer_key: issuer_key.serialize_pem(),
             authority: folder.join("authority.pem"),
             chain: folder.join("chain.pem"),
@@ -222,15 +222,15 @@ impl Certificates {
     pub fn renew(&self, validity: Validity) -> Result<()> {
         let issuer = Issuer::new(authority()?, KeyPair::from_pem(&self.issuer_key)?);
         let key = KeyPair::generate_for(&PKCS_ED25519)?;
-        let mut of_shore = CertificateParams::new([self.shore.to_string()])?;
-        of_shore.distinguished_name = short_name();
+        let mut of_server = CertificateParams::new([self.server.to_string()])?;
+        of_server.distinguished_name = short_name();
         if validity == Validity::Past {
-            of_shore.not_before = date_time_ymd(2019, 1, 1);
-            of_shore.not_after = date_time_ymd(2020, 1, 1);
+            of_server.not_before = date_time_ymd(2019, 1, 1);
+            of_server.not_after = date_time_ymd(2020, 1, 1);
         }
-        let of_shore = of_shore.signed_by(&key, &issuer)?;
+        let of_server = of_server.signed_by(&key, &issuer)?;
         std::fs::write(&self.key, key.serialize_pem())?;
-        std::fs::write(&self.chain, of_shore.pem())?;
+        std::fs::write(&self.chain, of_server.pem())?;
         Ok(())
     }
 }
@@ -255,7 +255,7 @@ fn authority() -> Result<CertificateParams> {
 /// # Errors
 /// When one did not use it.
 pub fn ensure_used(tally: &Tally) -> Result<()> {
-    ensure!(tally.to_shore.packets > 0, "the ship never called");
+    ensure!(tally.to_server.packets > 0, "the ship never called");
     ensure!(tally.to_ship.packets > 0, "the shore never answered");
     Ok(())
 }

@@ -45,7 +45,7 @@ impl Database {
             .execute(AssertSqlSafe(format!("CREATE DATABASE {name}")))
             .await?;
         Ok(Database {
-            url: at(&server, &name)?,
+            url: with_database(&server, &name)?,
             created: Some((server, name)),
         })
     }
@@ -71,7 +71,7 @@ impl Database {
 }
 
 /// Returns the server's URL with another database in its path.
-fn at(server: &str, name: &str) -> Result<String> {
+fn with_database(server: &str, name: &str) -> Result<String> {
     let mut url = reqwest::Url::parse(server).context("BINNACLE_TEST_POSTGRES")?;
     url.set_path(name);
     Ok(url.into())

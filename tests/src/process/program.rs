@@ -68,7 +68,7 @@ pub async fn output_of(
 ///
 /// # Errors
 /// When it cannot be started, or fails.
-pub async fn answer_of(mut command: Command, input: &str) -> Result<String> {
+pub async fn run_with_input(mut command: Command, input: &str) -> Result<String> {
     command
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
