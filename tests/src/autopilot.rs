@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_known_is_no_correction() {
+    fn an_unknown_value_gives_no_correction() {
         assert_eq!(hdg(&["IIHDG", "101.5", "", "", "3.5", "E"]).unwrap(), None);
         assert!(hdg(&["IIHDG", "101.5", "2.0", "X", "3.5", "E"]).is_err());
     }

@@ -289,7 +289,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sentence_is_dated_anew_with_its_checksum() {
+    fn a_sentence_with_its_time_shifted_has_a_right_checksum() {
         let fix = b"$GPRMC,073015.00,A,4321.10,N,00301.50,W,12.4,085.0,211126,,,A*73\r\n";
         let day_later = with_time_shifted(fix, 86_400.0).unwrap();
         let time = Timestamp::parse("2026-11-22T07:30:15Z").unwrap();
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fix_tells_its_time_and_other_sentences_do_not() {
+    fn only_a_fix_has_a_time() {
         let fix = b"$GPRMC,073015.00,A,4321.10,N,00301.50,W,12.4,085.0,211126,,,A*73\r\n";
         let time = Timestamp::parse("2026-11-21T07:30:15Z").unwrap();
         assert_eq!(time_of_fix(fix), Some(time));

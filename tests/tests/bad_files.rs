@@ -129,7 +129,7 @@ async fn fit_names_file_line_and_field() {
 }
 
 #[tokio::test]
-async fn field_names_what_lies_outside() {
+async fn field_names_the_value_out_of_range() {
     let cases = [
         (["--lat", "95", "--lon", "0", "--date", "2026-01-01"], "95"),
         (
@@ -152,7 +152,7 @@ async fn field_names_what_lies_outside() {
 }
 
 #[tokio::test]
-async fn a_log_that_is_no_log_is_refused_by_replay() {
+async fn replay_refuses_a_file_that_is_not_a_log() {
     let folder = tempfile::tempdir().unwrap();
     let cases = [
         ("noise.log", noise(1_000_000)),

@@ -12,11 +12,11 @@ use binnacle_tests::{Engine, Pace, ServerProcess, Setup, ShipAndServer, eventual
 use serde_json::Value;
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn no_wrong_answer_passes_for_an_acknowledgement() {
-    no_wrong_answer().await.unwrap();
+async fn no_wrong_response_counts_as_an_acknowledgement() {
+    no_wrong_response().await.unwrap();
 }
 
-async fn no_wrong_answer() -> Result<()> {
+async fn no_wrong_response() -> Result<()> {
     let mut system = ShipAndServer::start().await?;
     system.sail_until(1.0).await?;
     let mut before = system.wait_until_uploaded().await?;
@@ -135,7 +135,7 @@ async fn torn_tail() -> Result<()> {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn pages_that_are_lost_with_the_power_cost_no_more_than_what_was_on_them() {
+async fn pages_lost_with_the_power_cost_only_their_own_data() {
     lost_pages().await.unwrap();
 }
 
@@ -191,11 +191,11 @@ async fn old_spool() -> Result<()> {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn an_agent_installed_anew_goes_on_in_a_stream_of_its_own() {
-    installed_anew().await.unwrap();
+async fn a_reinstalled_agent_opens_a_stream_of_its_own() {
+    reinstalled().await.unwrap();
 }
 
-async fn installed_anew() -> Result<()> {
+async fn reinstalled() -> Result<()> {
     let mut system = ShipAndServer::start().await?;
     system.sail_until(1.0).await?;
     let first = system.wait_until_uploaded().await?;
@@ -249,7 +249,7 @@ async fn long_silence() -> Result<()> {
 
 /// Checks the gateway's behaviour that the other tests need.
 #[tokio::test]
-async fn a_gateway_passes_and_answers_in_the_shores_place() {
+async fn a_gateway_passes_connections_or_responds_itself() {
     let folder = tempfile::tempdir().unwrap();
     let server = ServerProcess::start(Engine::Sqlite, folder.path())
         .await

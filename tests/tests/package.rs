@@ -11,9 +11,9 @@ use std::process::Command;
 const CONFIG: &str = "etc/binnacle/agent.toml";
 
 #[test]
-fn the_package_is_installed_again_and_again_and_leaves_what_the_agent_has_kept() {
+fn the_package_can_be_reinstalled_and_keeps_the_agents_data() {
     in_own_mounts(
-        "the_package_is_installed_again_and_again_and_leaves_what_the_agent_has_kept",
+        "the_package_can_be_reinstalled_and_keeps_the_agents_data",
         async { installed() },
     );
 }

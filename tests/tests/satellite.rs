@@ -82,20 +82,20 @@ fn per_day(before: &Tally, after: &Tally) -> f64 {
 }
 
 #[test]
-fn four_batches_a_day_cost_few_octets_packets_and_all() {
-    let name = "four_batches_a_day_cost_few_octets_packets_and_all";
+fn four_batches_a_day_cost_few_bytes_packets_and_all() {
+    let name = "four_batches_a_day_cost_few_bytes_packets_and_all";
     in_own_network(name, costs(FOUR_TIMES_A_DAY));
 }
 
 #[test]
-fn a_batch_a_day_costs_few_octets_packets_and_all() {
-    let name = "a_batch_a_day_costs_few_octets_packets_and_all";
+fn a_batch_a_day_costs_few_bytes_packets_and_all() {
+    let name = "a_batch_a_day_costs_few_bytes_packets_and_all";
     in_own_network(name, costs(DAILY));
 }
 
 #[test]
-fn a_batch_an_hour_costs_few_octets_packets_and_all() {
-    let name = "a_batch_an_hour_costs_few_octets_packets_and_all";
+fn a_batch_an_hour_costs_few_bytes_packets_and_all() {
+    let name = "a_batch_an_hour_costs_few_bytes_packets_and_all";
     in_own_network(name, costs(HOURLY));
 }
 
@@ -125,8 +125,8 @@ fn windows() -> Windows {
 }
 
 #[test]
-fn a_link_that_is_up_for_20_s_at_a_time_brings_all_ashore() {
-    let name = "a_link_that_is_up_for_20_s_at_a_time_brings_all_ashore";
+fn a_link_that_is_up_for_20_s_at_a_time_uploads_everything() {
+    let name = "a_link_that_is_up_for_20_s_at_a_time_uploads_everything";
     in_own_network(name, short_windows());
 }
 
@@ -168,9 +168,9 @@ async fn short_windows() -> Result<()> {
 }
 
 #[test]
-fn a_link_of_one_and_a_half_seconds_that_loses_every_fifth_packet_brings_all_ashore() {
+fn a_link_of_one_and_a_half_seconds_that_loses_every_fifth_packet_uploads_everything() {
     in_own_network(
-        "a_link_of_one_and_a_half_seconds_that_loses_every_fifth_packet_brings_all_ashore",
+        "a_link_of_one_and_a_half_seconds_that_loses_every_fifth_packet_uploads_everything",
         async {
             let uplink = "retry_min_s = 0.2\nretry_max_s = 1";
             let mut remote = ShipOnLink::start("biscay.toml", uplink).await?;

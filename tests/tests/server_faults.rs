@@ -21,11 +21,11 @@ const HASTY: &str = "poll_s = 2\nretry_min_s = 0.2\nretry_max_s = 1\nexchange_s 
 const PATIENT: &str = "poll_s = 2\nretry_min_s = 0.2\nretry_max_s = 3600";
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn an_answer_that_drips_for_ever_is_given_up() {
-    dripping_answer().await.unwrap();
+async fn an_endless_slow_response_is_given_up() {
+    slow_response().await.unwrap();
 }
 
-async fn dripping_answer() -> Result<()> {
+async fn slow_response() -> Result<()> {
     let setup = Setup {
         uplink: HASTY,
         ..Setup::default()
@@ -50,7 +50,7 @@ async fn dripping_answer() -> Result<()> {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn a_shore_whose_certificate_expired_gets_nothing_until_it_is_renewed() {
+async fn a_server_with_an_expired_certificate_gets_nothing_until_it_is_renewed() {
     expired_certificate().await.unwrap();
 }
 
@@ -81,7 +81,7 @@ async fn expired_certificate() -> Result<()> {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn a_revoked_agent_keeps_its_samples_and_its_peace_until_it_is_enrolled_again() {
+async fn a_revoked_agent_keeps_its_samples_and_stays_silent_until_it_is_enrolled() {
     revoked().await.unwrap();
 }
 
@@ -176,11 +176,11 @@ async fn clone_alert(system: &ShipAndServer) -> Result<Value> {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn a_shore_restored_from_a_backup_gets_again_what_it_lost() {
-    restored_shore().await.unwrap();
+async fn a_server_restored_from_a_backup_receives_the_lost_batches_again() {
+    restored_server().await.unwrap();
 }
 
-async fn restored_shore() -> Result<()> {
+async fn restored_server() -> Result<()> {
     let mut system = ShipAndServer::start().await?;
     system.sail_until(2.0).await?;
     system.wait_until_uploaded().await?;

@@ -87,8 +87,8 @@ async fn full_disk() -> Result<()> {
 }
 
 #[test]
-fn a_disk_that_became_read_only_is_said_and_what_is_on_it_stays() {
-    let name = "a_disk_that_became_read_only_is_said_and_what_is_on_it_stays";
+fn a_read_only_disk_is_reported_and_keeps_its_data() {
+    let name = "a_read_only_disk_is_reported_and_keeps_its_data";
     in_own_mounts(name, read_only_disk());
 }
 
@@ -127,8 +127,8 @@ async fn read_only_disk() -> Result<()> {
 }
 
 #[test]
-fn a_disk_that_fails_under_a_running_agent_is_said_and_keeps_what_is_on_it() {
-    let name = "a_disk_that_fails_under_a_running_agent_is_said_and_keeps_what_is_on_it";
+fn a_disk_that_fails_under_a_running_agent_is_reported_and_keeps_its_data() {
+    let name = "a_disk_that_fails_under_a_running_agent_is_reported_and_keeps_its_data";
     in_own_mounts(name, failing_disk());
 }
 
@@ -207,7 +207,7 @@ const DAY_S: f64 = 86_400.0;
 const ROLL_OVER_S: f64 = 1_024.0 * 7.0 * DAY_S;
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn no_sample_has_a_wrong_time_whatever_the_receivers_clock_says() {
+async fn no_sample_has_a_wrong_time_with_a_wrong_receiver_clock() {
     wrong_clock().await.unwrap();
 }
 
@@ -353,10 +353,10 @@ fn distance_nm(a: Position, b: Position) -> f64 {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn nothing_from_outside_makes_the_agent_write_outside_its_folder() {
-    words_that_mean_harm().await.unwrap();
+    hostile_input().await.unwrap();
 }
 
-async fn words_that_mean_harm() -> Result<()> {
+async fn hostile_input() -> Result<()> {
     let setup = Setup {
         name: "../../../../outside",
         ..Setup::default()

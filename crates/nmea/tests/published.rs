@@ -302,7 +302,7 @@ fn a_wrong_field_is_refused_by_name() {
 }
 
 #[test]
-fn what_is_not_a_sound_sentence_is_refused_for_its_reason() {
+fn each_bad_line_is_refused_with_its_reason() {
     let good = line("HEHDT,10.0,T");
     let mut long = "HEHDT,10.0,T".to_owned();
     while long.len() < 260 {

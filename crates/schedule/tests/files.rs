@@ -173,7 +173,7 @@ fn a_csv_of_too_many_calls_is_refused_at_the_first_too_many() {
 }
 
 #[test]
-fn what_is_exported_is_no_formula_and_reads_back() {
+fn an_exported_cell_is_no_formula_and_reads_back() {
     let text = format!("{HEADER}=1+1,@v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n");
     let calls = csv_calls(&text);
     let mut out = Vec::new();
@@ -324,7 +324,7 @@ fn a_ships_name_and_a_part_of_a_ports_name_are_no_port() {
 }
 
 #[test]
-fn what_a_calendar_does_not_say_is_refused_with_its_line() {
+fn a_missing_property_is_refused_with_its_line() {
     let said = |start: &str, end: &str, more: &str| {
         ics::read(&calendar(start, end, more), "v", now())
             .unwrap_err()
@@ -347,7 +347,7 @@ fn what_a_calendar_does_not_say_is_refused_with_its_line() {
 }
 
 #[test]
-fn an_event_may_say_how_long_it_lasts_instead_of_when_it_ends() {
+fn an_event_may_have_a_duration_instead_of_an_end() {
     let start = "DTSTART;TZID=Europe/Madrid:20270701T060000";
     let read = |lasts: &str| ics::read(&calendar(start, lasts, "LOCATION:NLRTM"), "v", now());
     let etd = read("DURATION:P1DT12H").unwrap().calls[0].call.etd;
@@ -393,7 +393,7 @@ fn a_cancelled_event_is_no_call() {
 /// Programs that export a ship's calls go on exporting the one that it has
 /// left.
 #[test]
-fn a_row_that_is_over_is_passed_by() {
+fn a_past_row_is_skipped() {
     let over = "c,v,NLRTM,2026-11-01T06:00:00Z,2026-11-20T18:00:00Z,\n";
     let ahead = "d,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n";
     let text = format!("{HEADER}{over}{ahead}");
@@ -407,7 +407,7 @@ fn a_row_that_is_over_is_passed_by() {
 }
 
 #[test]
-fn what_is_over_is_counted_and_no_call() {
+fn a_past_call_is_counted_and_left_out() {
     let past = calendar(
         "DTSTART:20260701T060000Z",
         "DTEND:20260702T060000Z",

@@ -168,7 +168,7 @@ fn a_time_that_clocks_show_twice_is_the_first() {
 }
 
 #[test]
-fn what_is_no_zone_is_refused_in_words() {
+fn an_unknown_zone_is_refused_with_its_name() {
     for wrong in [
         "",
         "Europe/Atlantis",
@@ -205,7 +205,7 @@ mod laws {
         /// A local time leads back to the instant, or to the first one that
         /// shows it.
         #[test]
-        fn an_instant_is_found_again_by_what_clocks_show(
+        fn an_instant_is_found_again_by_its_local_time(
             which in 0_usize..10_000,
             hours in 0_i64..40 * 8766,
         ) {

@@ -180,7 +180,7 @@ fn a_change_of_two_degrees_counts_and_a_smaller_one_does_not() {
 }
 
 #[test]
-fn a_failed_verification_is_urgent_and_says_by_how_much() {
+fn a_failed_verification_is_urgent_and_gives_its_error() {
     let due = due_of(
         json!({"flag": "NO"}),
         json!({"adjusted_on": "2026-11-01", "failed_verification": {"on": "2026-11-10", "worst_error_deg": 2.44}}),
@@ -268,7 +268,7 @@ fn deviation_over_the_limit_is_named_where_no_adjustment_is_on_record() {
 }
 
 #[test]
-fn what_was_over_the_limit_before_the_adjustment_counts_from_the_adjustment() {
+fn an_excess_before_the_adjustment_counts_from_the_adjustment() {
     let over = over_own_limit(
         &json!({"adjusted_on": "2026-11-15", "deviation_limit_deg": 5.0,
         "predicted": [
@@ -284,7 +284,7 @@ fn what_was_over_the_limit_before_the_adjustment_counts_from_the_adjustment() {
 }
 
 #[test]
-fn an_adjustment_that_the_sea_has_not_verified_is_said_to_be_so() {
+fn an_unverified_adjustment_is_marked_as_unverified() {
     let compass = json!({"adjusted_on": "2026-11-21", "awaits_verification": true});
     let due = due_of(json!({"flag": "NO"}), compass);
     assert_eq!((due.on, due.urgency), (day("2028-11-21"), Urgency::Routine));

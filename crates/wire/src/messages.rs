@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn a_downlink_leaves_out_what_did_not_change() {
+    fn a_downlink_omits_unchanged_parts() {
         let bare = json!({"contiguous_seq": 12, "server_time": "2026-11-21T07:00:00.250Z"});
         let downlink = assert_comes_back::<Downlink>(&bare);
         assert_eq!((downlink.model, downlink.settings), (None, None));
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn a_downlink_says_why_the_card_holds_no_more() {
+    fn a_downlink_gives_the_reason_for_withdrawing_the_card() {
         let sent = json!({
             "contiguous_seq": 12, "server_time": "2026-11-21T07:00:00Z",
             "card_withdrawn": { "since": "2026-11-20T00:00:00Z", "reason": "corrector_change" },

@@ -139,7 +139,7 @@ fn hex(bytes: &[u8]) -> String {
 /// One message per line; the last line is the frame. Never changed, like the
 /// frames.
 #[test]
-fn the_vector_is_what_is_written() {
+fn the_written_messages_match_the_vector() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/bursts/day.txt");
     let vector = std::fs::read_to_string(&path).unwrap();
     let frame = unhex(vector.lines().last().unwrap());

@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_city_or_an_airport_is_no_port_and_tells_the_port_of_its_name() {
+    fn a_city_or_an_airport_is_refused_with_the_port_of_its_name() {
         let said = |code: &str| unknown(PortCode::parse(code).unwrap());
         assert_eq!(
             said("CNSHA"),
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn every_place_of_the_table_is_no_port_and_names_one() {
+    fn every_place_of_the_table_is_refused_with_a_port() {
         let places = include_str!("../../data/places.csv").lines().skip(1);
         for (place, port) in places.map(|line| line.split_once(',').unwrap()) {
             assert!(find(PortCode::parse(place).unwrap()).is_none(), "{place}");

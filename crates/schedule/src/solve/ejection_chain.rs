@@ -338,7 +338,7 @@ mod tests {
         #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
         #[test]
-        fn a_need_is_placed_at_the_cost_that_is_given_back_or_nothing_changes(problem in problems()) {
+        fn a_need_is_placed_at_the_returned_cost_or_nothing_changes(problem in problems()) {
             let order = problem.by_need();
             let mut work = WorkLimit::new(1_000_000);
             let begin = greedy(&problem, vec![None; problem.unmet.len()], &order, &mut work);

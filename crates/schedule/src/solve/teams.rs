@@ -233,7 +233,7 @@ mod tests {
         #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
         #[test]
-        fn what_is_found_is_feasible_and_no_dearer_than_the_beginning(problem in problems()) {
+        fn the_result_is_feasible_and_no_more_expensive_than_the_start(problem in problems()) {
             let order = problem.by_need();
             let nothing = vec![None; problem.unmet.len()];
             let mut work = WorkLimit::new(1_000_000);

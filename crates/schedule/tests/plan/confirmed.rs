@@ -47,7 +47,7 @@ fn a_proposed_job_moves_when_that_saves_more_than_moving_costs() {
 }
 
 #[test]
-fn a_firm_that_is_asked_already_is_not_to_be_asked_so_long_ahead_again() {
+fn a_firm_that_was_asked_needs_no_further_notice() {
     let found = |state: &str| {
         let mut input = input(state);
         // Twelve days of three weeks are left: it was asked before they began.
@@ -100,7 +100,7 @@ fn a_due_date_that_moved_before_the_confirmed_day_is_a_cause() {
 }
 
 #[test]
-fn a_confirmed_job_that_became_late_stays_where_there_is_no_other() {
+fn a_confirmed_job_that_became_late_stays_without_an_alternative() {
     let mut input = input("confirmed");
     input["needs"][0]["due"] = json!("2026-11-30");
     let found = schedule(input);

@@ -27,7 +27,7 @@ fn has(whole: &Value, part: &Value) -> bool {
 }
 
 #[test]
-fn the_documented_answer_is_the_answer() {
+fn the_documented_schedule_is_the_real_one() {
     let blocks = blocks();
     let answer = to_value(plan(&read(blocks[0]).unwrap())).unwrap();
     let documented: Value = from_str(blocks[1]).unwrap();

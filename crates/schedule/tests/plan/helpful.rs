@@ -191,7 +191,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn whatever_is_said_to_help_is_enough_and_something_always_is(fleet in a_fleet()) {
+    fn every_remedy_is_enough_and_there_is_always_one(fleet in a_fleet()) {
         let found = solved(&fleet);
         for open in &found.unscheduled {
             prop_assert!(!open.would_help.is_empty(), "{open:?}");

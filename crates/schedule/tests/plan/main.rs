@@ -144,7 +144,7 @@ fn two_compasses_of_a_ship_are_one_job() {
 }
 
 #[test]
-fn what_is_overdue_is_done_at_the_first_call_there_is() {
+fn an_overdue_job_is_done_at_the_first_call() {
     let found = schedule(json!({
         "vessels": [vessel("v")],
         "needs": [need("n", "v", "2026-11-01")],
@@ -183,7 +183,7 @@ fn a_ship_overdue_for_years_is_done_at_the_last_call_of_the_horizon() {
 }
 
 #[test]
-fn what_can_only_be_done_late_is_planned_before_it_is_overdue() {
+fn a_job_that_can_only_be_late_is_planned_before_it_is_overdue() {
     let mut slow = firm("f", 1500);
     slow["lead_time_h"] = json!(96);
     let found = schedule(json!({
@@ -255,7 +255,7 @@ fn the_same_input_gives_the_same_schedule() {
 
 /// An obstacle never makes a plan look cheaper.
 #[test]
-fn what_becomes_impossible_makes_no_plan_cheaper() {
+fn an_obstacle_makes_no_plan_cheaper() {
     // Only late, and both by one team that has a single day for them.
     let input = json!({
         "vessels": [vessel("v"), vessel("w")],
@@ -284,7 +284,7 @@ fn what_becomes_impossible_makes_no_plan_cheaper() {
 }
 
 #[test]
-fn a_no_to_one_call_is_none_to_another() {
+fn a_refusal_of_one_call_leaves_the_others() {
     let mut input = json!({
         "vessels": [vessel("v")],
         "needs": [need("n", "v", "2026-12-20")],

@@ -68,7 +68,7 @@ fn every_sentence_is_read_back_as_it_was_meant() {
 }
 
 #[test]
-fn damaged_sentences_and_noise_come_as_often_as_asked_and_are_never_read() {
+fn damaged_sentences_and_noise_have_the_given_rates_and_are_never_read() {
     let scenario = scenario("wrong_checksum_rate = 0.01\ngarbage_rate = 0.005", "");
     let bytes = sentences(&scenario, 3, 1.0);
     let (mut read, mut checksums, mut other) = (0_u32, 0_u32, 0_u32);

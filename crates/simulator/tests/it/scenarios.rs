@@ -54,7 +54,7 @@ fn an_error_names_file_line_and_field() {
 }
 
 #[test]
-fn what_cannot_be_sailed_is_refused() {
+fn an_impossible_scenario_is_refused() {
     assert!(error("lat = 36.30", "lat = 95").contains("lat: 95 is not within"));
     assert!(
         error("route = \"biscay\"", "route = \"moon\"")
@@ -84,7 +84,7 @@ fn what_cannot_be_sailed_is_refused() {
 }
 
 #[test]
-fn an_event_says_what_it_lacks() {
+fn an_event_error_names_the_missing_field() {
     let with = |event: &str| {
         let satellite = "satellite = { alignment_deg = 0.2, dropouts_per_day = 4 }";
         error(satellite, &format!("{satellite}\nevents = [{event}]"))

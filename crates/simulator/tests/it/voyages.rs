@@ -43,7 +43,7 @@ fn compass_deviation_and_variation_add_up_to_the_true_heading() {
 }
 
 #[test]
-fn the_compass_shows_on_the_average_what_the_truth_says() {
+fn the_compass_agrees_with_the_truth_on_average() {
     let scenario = scenario("", "");
     let mut ship = ship(&scenario, 4);
     let mut errors = Vec::new();
@@ -139,7 +139,7 @@ fn a_voyage_does_not_begin_with_a_turn() {
 }
 
 #[test]
-fn lightning_stays_and_cargo_goes_ashore_again() {
+fn lightning_is_permanent_and_cargo_is_discharged() {
     let events = r#"events = [
         { kind = "cargo", from_day = 1, to_day = 2, b_nt = [900, 0, 0] },
         { kind = "lightning", day = 3, b_nt = [0, 3000, 0], returning = 0.5, return_days = 1 },

@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn each_predictor_does_what_its_name_says() {
+    fn each_predictor_matches_its_description() {
         let values = [(10, 0), (12, 1), (14, 3), (20, 6)];
         assert_eq!(predictions(Predictor::First, &values), [10, 10, 10]);
         assert_eq!(predictions(Predictor::Previous, &values), [10, 12, 14]);
