@@ -53,7 +53,7 @@ pub async fn corrections(
     };
     match timeout(within, listening).await {
         Ok(received) => received.map(|()| found),
-        Err(_) => bail!("heard {} of {count} corrected headings", found.len()),
+        Err(_) => bail!("received {} of {count} corrected headings", found.len()),
     }
 }
 

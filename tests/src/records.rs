@@ -164,7 +164,7 @@ pub async fn ensure_records_match(
     let logged = logged(server, vessel).await?;
     ensure!(
         logged == spool.acknowledged,
-        "on shore {logged:?}, on board {spool:?}"
+        "on the server {logged:?}, on board {spool:?}"
     );
     Ok(())
 }

@@ -32,7 +32,7 @@ pub async fn sail_until(voyage: &mut Voyage, ship: &Ship, time: Timestamp) -> Re
     let reached = voyage.feed.reached(TIMEOUT, there).await?;
     // The last sentences of a voyage may come before its end.
     let time = reached.time().unwrap_or(time.plus_seconds(-60.0));
-    eventually("the agent has heard it", TIMEOUT, async || {
+    eventually("the agent has read all sentences", TIMEOUT, async || {
         let status = ship.status().await?;
         let heard = ship_time(&status)? >= Some(time);
         Ok(if heard {
@@ -54,7 +54,7 @@ fn ship_time(status: &Value) -> Result<Option<Timestamp>> {
 /// # Errors
 /// When a batch keeps waiting.
 pub async fn wait_until_uploaded(ship: &Ship) -> Result<Spool> {
-    eventually("all is ashore", TIMEOUT, async || {
+    eventually("all batches are acknowledged", TIMEOUT, async || {
         let spool = Spool::read(ship).await?;
         let sent = spool.waiting == 0;
         Ok(if sent {

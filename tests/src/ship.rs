@@ -191,8 +191,12 @@ stale_s = 15
     pub async fn fails(&mut self) -> Result<String> {
         let mut agent = self.agent.take().context("the agent runs")?;
         let ended = timeout(START, agent.child().wait()).await;
-        let ended = ended.with_context(|| format!("{} goes on", self.name))??;
-        ensure!(!ended.success(), "the agent of {} was content", self.name);
+        let ended = ended.with_context(|| format!("{} does not end", self.name))??;
+        ensure!(
+            !ended.success(),
+            "the agent of {} ended without a failure",
+            self.name
+        );
         Ok(agent.log())
     }
 
@@ -220,7 +224,7 @@ stale_s = 15
         let id = rustix::process::Pid::from_raw(id.cast_signed()).context("a process")?;
         rustix::process::kill_process(id, rustix::process::Signal::TERM)?;
         let ended = timeout(START, agent.child().wait()).await;
-        let ended = ended.with_context(|| format!("{} goes on", self.name))??;
+        let ended = ended.with_context(|| format!("{} does not end", self.name))??;
         ensure!(ended.success(), "{ended}:\n{}", agent.log());
         agent.done();
         Ok(())

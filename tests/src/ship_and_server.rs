@@ -238,17 +238,21 @@ impl ShipAndServer {
 /// When a batch keeps waiting.
 pub async fn wait_until_idle(ship: &Ship) -> Result<Spool> {
     let mut last = (Spool::default(), Instant::now());
-    eventually("all is ashore, and calm", TIMEOUT, async || {
-        let spool = Spool::read(ship).await?;
-        if spool.waiting > 0 || spool != last.0 {
-            last = (spool.clone(), Instant::now());
-        }
-        Ok(if last.1.elapsed() >= IDLE_TIME {
-            Ok(spool)
-        } else {
-            Err(format!("{spool:?}"))
-        })
-    })
+    eventually(
+        "all batches are acknowledged and the spool is idle",
+        TIMEOUT,
+        async || {
+            let spool = Spool::read(ship).await?;
+            if spool.waiting > 0 || spool != last.0 {
+                last = (spool.clone(), Instant::now());
+            }
+            Ok(if last.1.elapsed() >= IDLE_TIME {
+                Ok(spool)
+            } else {
+                Err(format!("{spool:?}"))
+            })
+        },
+    )
     .await
 }
 

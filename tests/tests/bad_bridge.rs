@@ -62,6 +62,6 @@ async fn noise_and_a_line_of_ten_megabytes_do_not_stop_an_agent() {
     heard.await.expect("the reading after the rubbish");
     ship.assert_running().unwrap();
     let peak = ship.peak_memory_kb().unwrap();
-    assert!(peak < 200_000, "{peak} kB for a line nobody can read");
+    assert!(peak < 200_000, "{peak} kB for an unreadable line");
     ship.kill().await.unwrap();
 }

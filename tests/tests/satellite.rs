@@ -54,13 +54,13 @@ async fn costs(policy: Policy) -> Result<()> {
     let a_day = per_day(&before, &after);
     let spool = remote.wait_until_uploaded().await?;
     println!(
-        "{}: {a_day:.0} octets a day over {} days, {} batches in all",
+        "{}: {a_day:.0} bytes a day over {} days, {} batches in all",
         policy.profile,
         days(),
         spool.acknowledged.len()
     );
     remote.check_and_stop().await?;
-    ensure!(a_day <= policy.bytes_a_day, "{a_day} octets a day");
+    ensure!(a_day <= policy.bytes_a_day, "{a_day} bytes a day");
     Ok(())
 }
 

@@ -62,7 +62,7 @@ async fn expired_certificate() -> Result<()> {
     let mut system = ShipAndServer::start_with(setup, |_| Ok(())).await?;
     system.sail_until(1.0).await?;
     let before = system.wait_until_uploaded().await?;
-    let tls = system.tls.clone().context("the shore speaks TLS")?;
+    let tls = system.tls.clone().context("the server uses TLS")?;
     // A new process cannot resume an old session.
     let expires = || tls.renew(Validity::Past);
     system.server.restart_after(expires).await?;
@@ -221,7 +221,7 @@ async fn restored_server() -> Result<()> {
         .len();
     ensure!(there < lost.acknowledged.len(), "{there} of {lost:?}");
     system.sail_until(6.0).await?;
-    let spool = eventually("the shore has all again", TIMEOUT, async || {
+    let spool = eventually("the server has all batches again", TIMEOUT, async || {
         let spool = Spool::read(&system.ship).await?;
         let there = batch_log(system.server.database(), system.vessel)
             .await?

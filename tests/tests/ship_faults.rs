@@ -264,7 +264,7 @@ async fn wrong_from_the_start() -> Result<()> {
     system.wait_for_status("/link/state", "up").await?;
     // A day's voyage that ends now: the computer's clock is the ship's.
     let now = system.ship.status().await?["link"]["last_contact"].clone();
-    let now = Timestamp::parse(now.as_str().context("no word from the shore")?)?;
+    let now = Timestamp::parse(now.as_str().context("no contact with the server")?)?;
     let off_s = now.seconds_since(day(1.0));
     system.voyage.feed.set_clock(off_s)?;
     reach(&mut system, 1.0).await?;
@@ -277,7 +277,7 @@ async fn wrong_from_the_start() -> Result<()> {
         system.ship.start()?;
         system.ship.ready().await?;
         // The first sentences to an agent that has ended are lost.
-        eventually("the agent hears something", TIMEOUT, async || {
+        eventually("the agent reads a sentence", TIMEOUT, async || {
             minutes += 0.5;
             reach(&mut system, 1.0 + minutes / 1_440.0).await?;
             let status = system.ship.status().await?;

@@ -167,7 +167,10 @@ async fn assert_every_batch_once(
     );
     // The number of batches depends on the waiting times at a busy server.
     let samples: i64 = spool.acknowledged.iter().map(|batch| batch.samples).sum();
-    ensure!(samples > LEAST_SAMPLES, "only {samples} samples are ashore");
+    ensure!(
+        samples > LEAST_SAMPLES,
+        "only {samples} samples are on the server"
+    );
     let mut sent = Vec::new();
     let mut logged = Vec::new();
     for (stream, seq, bytes) in batch_log(server.database(), vessel.id).await? {
@@ -187,7 +190,7 @@ async fn assert_every_batch_once(
     };
     ensure!(
         logged == *unsent,
-        "only on board {:?}, only on shore {:?}",
+        "only on board {:?}, only on the server {:?}",
         lacking(unsent, &logged),
         lacking(&logged, unsent)
     );

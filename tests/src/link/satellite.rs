@@ -117,7 +117,7 @@ impl Satellite {
 
     async fn read_response(&mut self) -> Result<String> {
         let line = timeout(START, self.responses.next_line()).await;
-        let line = line.context("the link is silent")??;
+        let line = line.context("the link does not respond")??;
         line.context("the link has ended: see its errors above")
     }
 
@@ -256,6 +256,6 @@ fn authority() -> Result<CertificateParams> {
 /// When one did not use it.
 pub fn ensure_used(tally: &Tally) -> Result<()> {
     ensure!(tally.to_server.packets > 0, "the ship never called");
-    ensure!(tally.to_ship.packets > 0, "the shore never answered");
+    ensure!(tally.to_ship.packets > 0, "the server never responded");
     Ok(())
 }
