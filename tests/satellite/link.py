@@ -4,7 +4,7 @@
 
 Packets that leave one end of the link arrive at the other as late, as seldom and
 as slowly as asked for, and are counted. The ship also has a cable to here, on which
-nothing is lost or counted: her instruments.
+nothing is lost or counted: its instruments.
 
               the link            the cable
     server    10.77.0.1           10.78.0.1
@@ -99,7 +99,7 @@ class Link:
                 packet = os.read(way.source, 65536)
             except BlockingIOError:
                 return
-            # IPv6 has nobody to talk to here.
+            # IPv6 has no peer here.
             if packet[0] >> 4 == 4:
                 self.send(way, packet)
 

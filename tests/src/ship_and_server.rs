@@ -195,9 +195,9 @@ impl ShipAndServer {
             let status = self.ship.status().await?;
             let accepted = &status["windows"]["accepted"];
             let accepted = accepted.as_u64().context("windows.accepted")?;
-            let ashore = stored_samples(&self.server, self.vessel).await?;
-            let ashore: u64 = ashore.iter().map(|s| u64::from(s.windows)).sum();
-            let there = ashore + Spool::read(&self.ship).await?.unsent_windows;
+            let stored = stored_samples(&self.server, self.vessel).await?;
+            let stored: u64 = stored.iter().map(|s| u64::from(s.windows)).sum();
+            let there = stored + Spool::read(&self.ship).await?.unsent_windows;
             let least = accepted as f64 * (1.0 - OUTLIERS) - OPEN_WINDOWS;
             Ok(if there as f64 >= least && there <= accepted {
                 Ok(())

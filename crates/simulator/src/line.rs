@@ -1,7 +1,7 @@
 //! Network outputs of sentences.
 //!
 //! A TCP output serves one client at a time. In fast mode it waits for a client
-//! and follows its pace. In live mode it waits for nobody, and a slow client
+//! and follows its pace. In live mode it never waits, and a slow client
 //! loses sentences, as on a real bridge.
 
 use anyhow::{Context, Result};

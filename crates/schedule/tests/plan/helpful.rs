@@ -118,7 +118,7 @@ fn apply(input: &mut Value, vessel: &str, thing: &str) {
         };
         calls_at(input, vessel, port, NOW, &until);
     } else {
-        panic!("nobody knows how to do {thing:?}");
+        panic!("unknown remedy {thing:?}");
     }
 }
 

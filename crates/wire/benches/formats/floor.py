@@ -3,7 +3,7 @@
 Each column's integers are coded by a mixture of experts, each a predictor with a
 distribution about its prediction, whose weights follow how well each did so far. The
 sum of −log2 of the mixture's probabilities is the length that an arithmetic coder would
-reach, without headers and without ever starting anew; no decoder is kept from doing the
+reach, without headers and without ever restarting; no decoder is kept from doing the
 same, for every expert sees only what came before, and columns earlier in the order.
 """
 
@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-# Part of the weights that is dealt out anew at each value: experts may change places.
+# Part of the weights that is redistributed at each value: experts may change places.
 SHARE = 0.002
 SCALES = 2.0 ** np.arange(-3, 9, 0.5)
 TIME, LAT, LON, GYRO, SATELLITE, COMPASS, SOG, RATE, SPREAD, WINDOWS = range(1, 11)
@@ -105,7 +105,7 @@ class Best:
 
 
 class Regression:
-    """The next value as a line through what is known, fitted anew with each value."""
+    """The next value as a line through what is known, refitted with each value."""
 
     FORGETS = 0.995
 
@@ -232,7 +232,7 @@ def reckoning(c, column):
 
 
 def by_heading(c, column):
-    """Deviation is a matter of heading: what it was when she last headed there."""
+    """Deviation is a matter of heading: its value at the last visit to that heading."""
     bins = (c[GYRO] * 0.05 // 5 % 72).astype(int)
     kept, curve = {}, Regression(5)
     angle = np.radians(c[GYRO] * 0.05)

@@ -3,7 +3,7 @@
 Run in a network of its own (`unshare --net`): prints JSON, for a connection of its own and
 for one that stays open, [bytes of body, IP bytes both ways] of each request. The server
 is Python's HTTP server with OpenSSL as it comes, TLS 1.3, a chain of two certificates on
-P-256 under a root, as public authorities have it, and the usual response headers; the ship
+P-256 under a root, as public authorities have it, and the usual response headers; the client
 sends the usual ones of an HTTP client and a bearer token of 300 bytes.
 """
 
@@ -19,7 +19,7 @@ import threading
 import time
 from pathlib import Path
 
-SHORE, PORT = "10.77.0.1", 8443
+SERVER, PORT = "10.77.0.1", 8443
 LINK = Path(__file__).parents[4] / "tests/satellite/link.py"
 SIZES = [100, 200, 400, 800, 1_600, 3_200, 6_400, 12_800]
 TIMES = 3
@@ -29,7 +29,7 @@ TOKEN = "t" * 300
 
 
 def certificates(folder):
-    """A root, an authority under it and the shore's certificate, made by openssl."""
+    """A root, an authority under it and the server's certificate, made by openssl."""
     def openssl(*words):
         subprocess.run(["openssl", *words], check=True, cwd=folder, stdin=subprocess.DEVNULL,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -39,7 +39,7 @@ def certificates(folder):
     signed = [("ca", "/C=US/O=Example Trust Services/CN=E7", "root",
                "basicConstraints=critical,CA:TRUE,pathlen:0\n"),
               ("leaf", "/CN=telemetry.example.com", "ca",
-               f"subjectAltName=DNS:telemetry.example.com,IP:{SHORE}\n"
+               f"subjectAltName=DNS:telemetry.example.com,IP:{SERVER}\n"
                "extendedKeyUsage=serverAuth,clientAuth\n"
                "authorityInfoAccess=OCSP;URI:http://e7.o.example.org,"
                "caIssuers;URI:http://e7.i.example.org/\n"
@@ -55,7 +55,7 @@ def certificates(folder):
     (folder / "chain.pem").write_text(chain)
 
 
-class Visit(http.server.BaseHTTPRequestHandler):
+class Handler(http.server.BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
     wbufsize = -1
 
@@ -75,27 +75,27 @@ class Visit(http.server.BaseHTTPRequestHandler):
 def serve(folder):
     tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     tls.load_cert_chain(folder / "chain.pem", folder / "leaf.key")
-    shore = http.server.ThreadingHTTPServer((SHORE, PORT), Visit)
-    shore.daemon_threads = True
-    shore.socket = tls.wrap_socket(shore.socket, server_side=True, do_handshake_on_connect=False)
-    threading.Thread(target=shore.serve_forever, daemon=True).start()
+    server = http.server.ThreadingHTTPServer((SERVER, PORT), Handler)
+    server.daemon_threads = True
+    server.socket = tls.wrap_socket(server.socket, server_side=True, do_handshake_on_connect=False)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
 
 
 def run_client(folder):
-    """The ship: a line of the size of a body and whether to keep the connection."""
+    """The client: each line has the size of a body and whether to keep the connection."""
     tls = ssl.create_default_context(cafile=folder / "root.pem")
     line = None
     for order in sys.stdin:
         size, keep = json.loads(order)
-        line = line or http.client.HTTPSConnection(SHORE, PORT, context=tls)
+        line = line or http.client.HTTPSConnection(SERVER, PORT, context=tls)
         line.request("POST", "/api/v2/write?org=fleet&bucket=compass", os.urandom(size), {
             "User-Agent": "telemetry-agent/1.4.2", "Accept": "*/*",
             "Content-Type": "application/octet-stream", "Content-Encoding": "gzip",
             "Authorization": f"Bearer {TOKEN}"})
-        answer = line.getresponse()
-        answer.read()
-        if answer.status != 200:
-            raise SystemExit(f"the shore answered {answer.status}")
+        response = line.getresponse()
+        response.read()
+        if response.status != 200:
+            raise SystemExit(f"the server responded {response.status}")
         if not keep:
             line.close()
             line = None
