@@ -22,7 +22,7 @@ pub struct Ship {
     name: String,
     folder: PathBuf,
     agent: Option<Program>,
-    ship_network: Option<ShipNetwork>,
+    network: Option<ShipNetwork>,
 }
 
 impl Ship {
@@ -69,22 +69,22 @@ stale_s = 15
             name: name.to_owned(),
             folder,
             agent: None,
-            ship_network: None,
+            network: None,
         })
     }
 
     /// Puts the ship at the other end of a satellite link, before any program
     /// runs.
     #[must_use]
-    pub fn on_network(mut self, ship_network: ShipNetwork) -> Ship {
-        self.ship_network = Some(ship_network);
+    pub fn on_network(mut self, network: ShipNetwork) -> Ship {
+        self.network = Some(network);
         self
     }
 
     fn command(&self) -> Result<Command> {
         const AGENT: &str = "binnacle-agent";
-        match self.ship_network {
-            Some(ship_network) => ship_network.command(AGENT),
+        match self.network {
+            Some(network) => network.command(AGENT),
             None => program::command(AGENT),
         }
     }

@@ -119,7 +119,7 @@ fn rounded() -> Vec<Variant> {
         variants.push(variant(
             format!("compass less reference {step}°"),
             for_each_sample(move |s| {
-                s.compass = with_difference(s, |difference| round(difference, step))
+                s.compass = with_difference(s, |difference| round(difference, step));
             }),
         ));
     }
