@@ -44,6 +44,7 @@ const SEARCHES: usize = 3;
 const EFFORT: usize = 300_000;
 /// The most rounds over all neighbourhoods.
 const ROUNDS: usize = 3;
+
 /// An assignment with its cost and bound.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Solved {

@@ -10,6 +10,7 @@ use super::work_limit::WorkLimit;
 const NEIGHBOURHOOD_EFFORT: usize = 60_000;
 /// Needs of a neighbourhood.
 const NEIGHBOURHOOD_SIZE: usize = 60;
+
 /// Improves all neighbourhoods once.
 pub(super) fn improve(
     problem: &Problem,
