@@ -121,7 +121,7 @@ fn apply_model(
     let model = inputs.model.ok_or("there is no model yet")?;
     // No heading is better than one from magnetism that the vessel no longer has.
     if let Some(withdrawn) = inputs.withdrawn {
-        return Err(withdrawn.in_words());
+        return Err(withdrawn.to_string());
     }
     if inputs.compass_suspected {
         return Err("the open alert suspects the compass: do not steer by it".to_owned());

@@ -5,7 +5,7 @@
 mod common;
 
 use binnacle_wire::batch::StreamId;
-use binnacle_wire::burst::{Ack, Joiner, MESSAGE_OCTETS, StreamTag, write_ack};
+use binnacle_wire::burst::{Ack, Joiner, MESSAGE_BYTES, StreamTag, write_ack};
 use common::agent::Agent;
 use common::bridge::Bridge;
 use common::fetch;
@@ -47,7 +47,7 @@ async fn a_day_goes_ashore_in_three_messages_and_is_forgotten_when_it_is_answere
         loop {
             let mut joiner = Joiner::default();
             let sent = messages(&modem.join("out"));
-            let frame = sent.iter().find_map(|m| joiner.take(m).unwrap());
+            let frame = sent.iter().find_map(|m| joiner.push(m).unwrap());
             if let Some(frame) = frame {
                 return (sent, frame);
             }
@@ -57,14 +57,14 @@ async fn a_day_goes_ashore_in_three_messages_and_is_forgotten_when_it_is_answere
     };
     let (sent, frame) = timeout(PATIENCE, whole).await.expect("a day is out");
     assert!(sent.len() <= 3, "{}", sent.len());
-    assert!(sent.iter().all(|m| m.len() <= MESSAGE_OCTETS));
+    assert!(sent.iter().all(|m| m.len() <= MESSAGE_BYTES));
     let batch = binnacle_wire::decode(&frame).unwrap();
     let (first, last) = (&batch.samples[0], batch.samples.last().unwrap());
     let hours = last.time.seconds_since(first.time) / 3_600.0;
     assert!((23.0..25.0).contains(&hours), "{hours}");
     assert!(batch.samples.len() > 100, "{}", batch.samples.len());
     let ack = write_ack(Ack {
-        stream: StreamTag::of(StreamId(STREAM)),
+        stream: StreamTag::from_stream(StreamId(STREAM)),
         contiguous_seq: 1,
     });
     std::fs::write(modem.join("in").join("answer.tmp"), ack).unwrap();

@@ -1,6 +1,6 @@
-//! Any bytes: nothing panics, memory stays bounded, and what is read is printed
-//! so that it is read back the same. The checksum is put right too, or the
-//! fuzzer would hardly ever come behind it.
+//! Any bytes: nothing panics, memory stays bounded, and every sentence read is
+//! printed so that it reads back the same. The checksum is put right too;
+//! otherwise the fuzzer would hardly ever get past it.
 #![no_main]
 
 use binnacle_nmea::lines::{Line, MAX_LINE_BYTES};

@@ -1,5 +1,5 @@
-//! Any bytes, as they are and with the checksum made right: `decode` answers or
-//! refuses, and what it answers can be written again, to the same meaning.
+//! Any bytes, as they are and with the checksum made right: `decode` accepts or
+//! refuses, and an accepted batch can be written again with the same meaning.
 
 #![no_main]
 
@@ -9,7 +9,7 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
     let _ = decode(bytes);
-    let _ = Joiner::default().take(bytes);
+    let _ = Joiner::default().push(bytes);
     let _ = read_ack(bytes);
     let _ = downlink::decode(bytes);
     let mut sealed = bytes.to_vec();

@@ -4,15 +4,15 @@
 
 Packets that leave one end of the link arrive at the other as late, as seldom and
 as slowly as asked for, and are counted. The ship also has a cable to here, on which
-nothing is lost or counted: her instruments.
+nothing is lost or counted: its instruments.
 
               the link            the cable
-    shore     10.77.0.1           10.78.0.1
+    server    10.77.0.1           10.78.0.1
     ship      10.77.0.2           10.78.0.2
 
 Prints {"ship": PID} when both are up: whatever `nsenter --net --target PID` runs is
 on board. Then takes lines of JSON: settings to change, or {"tally": true}, which is
-answered by a line with the IP packets and octets put on the link so far, lost ones
+which prints a line with the IP packets and bytes put on the link so far, lost ones
 included. The end of its input is the end of the link.
 
     up             whether anything passes at all; what is sent meanwhile is lost
@@ -59,7 +59,7 @@ def bring_up(name, own, other):
     ip("link", "set", name, "up")
 
 
-def go_aboard(parent):
+def enter_ship(parent):
     """The ship's namespace, until the parent is gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if ctypes.CDLL(None, use_errno=True).unshare(CLONE_NEWNET) != 0:
@@ -82,7 +82,7 @@ class Way:
         self.sink = sink
         self.free_at = 0.0
         self.packets = 0
-        self.octets = 0
+        self.bytes_sent = 0
 
 
 class Link:
@@ -99,13 +99,13 @@ class Link:
                 packet = os.read(way.source, 65536)
             except BlockingIOError:
                 return
-            # IPv6 has nobody to talk to here.
+            # IPv6 has no peer here.
             if packet[0] >> 4 == 4:
                 self.send(way, packet)
 
     def send(self, way, packet):
         way.packets += 1
-        way.octets += len(packet)
+        way.bytes_sent += len(packet)
         s = self.settings
         now = time.monotonic()
         takes = 8 * len(packet) / s["bits_per_s"] if s["bits_per_s"] else 0.0
@@ -133,8 +133,8 @@ class Link:
     def command(self, line):
         asked = json.loads(line)
         if asked.pop("tally", False):
-            ways = zip(("to_shore", "to_ship"), self.ways)
-            tally = {name: {"packets": w.packets, "octets": w.octets} for name, w in ways}
+            ways = zip(("to_server", "to_ship"), self.ways)
+            tally = {name: {"packets": w.packets, "bytes": w.bytes_sent} for name, w in ways}
             print(json.dumps(tally), flush=True)
         unknown = asked.keys() - self.settings.keys()
         if unknown:
@@ -147,11 +147,11 @@ def main():
     child = os.fork()
     if child == 0:
         here.close()
-        go_aboard(there)
+        enter_ship(there)
         os._exit(0)
     there.close()
     ip("link", "set", "lo", "up")
-    shore = tun("satellite")
+    server = tun("satellite")
     bring_up("satellite", "10.77.0.1", "10.77.0.2")
     _, [ship], _, _ = socket.recv_fds(here, 16, 1)
     os.set_blocking(ship, False)
@@ -163,14 +163,14 @@ def main():
         raise SystemExit("link.py: the ship's end did not come up")
     print(json.dumps({"ship": child}), flush=True)
 
-    to_shore, to_ship = Way(ship, shore), Way(shore, ship)
-    link = Link([to_shore, to_ship])
+    to_server, to_ship = Way(ship, server), Way(server, ship)
+    link = Link([to_server, to_ship])
     lines = b""
     while True:
-        readable, _, _ = select.select([0, ship, shore], [], [], link.wait())
+        readable, _, _ = select.select([0, ship, server], [], [], link.wait())
         if ship in readable:
-            link.take(to_shore)
-        if shore in readable:
+            link.take(to_server)
+        if server in readable:
             link.take(to_ship)
         if 0 in readable:
             read = os.read(0, 65536)

@@ -1,25 +1,25 @@
-//! Waiting for what another process does.
+//! Waits for another process.
 
 use anyhow::{Result, bail};
 use std::fmt::Display;
 use std::time::Duration;
 use tokio::time::{Instant, MissedTickBehavior, interval};
 
-/// How often is asked.
-const EVERY: Duration = Duration::from_millis(50);
+/// Polling interval.
+const INTERVAL: Duration = Duration::from_millis(50);
 
-/// Asks until there is an answer, or else why there is none yet.
+/// Polls until there is a result.
 ///
 /// # Errors
-/// With `what`, and why not, when there is none `within` the time; or as soon as
-/// asking fails.
+/// With `what` and the last reason, when there is no result `within` the time;
+/// or as soon as polling itself fails.
 pub async fn eventually<T>(
     what: impl Display,
     within: Duration,
     mut ask: impl AsyncFnMut() -> Result<Result<T, String>>,
 ) -> Result<T> {
     let deadline = Instant::now() + within;
-    let mut ticks = interval(EVERY);
+    let mut ticks = interval(INTERVAL);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {
         ticks.tick().await;

@@ -1,7 +1,7 @@
-//! A ship's bridge: sentences over TCP, as fast as the agent takes them.
+//! A ship's bridge: sends sentences over TCP at the agent's pace.
 //!
-//! Time passes on the bridge whether an agent listens or not: what was on the
-//! way to an agent that died is lost, and the next one goes on from there.
+//! Time passes on the bridge with or without an agent. Sentences under way to
+//! an agent that died are lost, and the next one continues from there.
 
 use anyhow::{Context, Result, bail};
 use binnacle_compass::time::Timestamp;
@@ -13,22 +13,22 @@ use tokio::sync::watch;
 use tokio::task::JoinHandle;
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
-/// Sentences are sent in pieces of about so many bytes.
+/// Approximate size of the pieces sent, in bytes.
 const PIECE: usize = 32 * 1024;
-/// How long a ship's second takes once the feed sails on live.
+/// Real time of a ship's second in live mode.
 const LIVE_SECOND: Duration = Duration::from_millis(20);
 
-/// How fast time passes on the bridge.
+/// Pace of time on the bridge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pace {
     /// As fast as the agent reads, up to an instant; then the ship waits.
     FastUntil(Timestamp),
-    /// Fifty seconds in one, to the end.
+    /// At fifty times real time, to the end.
     Live,
 }
 
 impl Pace {
-    /// Whether time may pass beyond an instant.
+    /// True if time may pass beyond an instant.
     fn allows(&self, time: Timestamp) -> bool {
         match self {
             Pace::FastUntil(end) => time < *end,
@@ -37,19 +37,19 @@ impl Pace {
     }
 }
 
-/// How far the bridge has come.
+/// Progress of the bridge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Progress {
     /// Nothing was sent yet.
     Waiting,
-    /// The last fix that was sent.
+    /// Time of the last fix sent.
     At(Timestamp),
-    /// There is nothing more to send.
+    /// Everything was sent.
     Ended,
 }
 
 impl Progress {
-    /// The last fix that was sent.
+    /// Returns the time of the last fix sent.
     pub fn time(&self) -> Option<Timestamp> {
         match self {
             Progress::At(time) => Some(*time),
@@ -69,7 +69,7 @@ pub struct Feed {
 }
 
 impl Feed {
-    /// Listens on a free port for an agent of this machine.
+    /// Listens on a free port for an agent on this machine.
     ///
     /// # Errors
     /// When there is no port.
@@ -93,7 +93,7 @@ impl Feed {
         let address = listener.local_addr()?;
         let (pace, paces) = watch::channel(pace);
         let (clock, clock_off_s) = watch::channel(0.0);
-        let (news, progress) = watch::channel(Progress::Waiting);
+        let (sender, progress) = watch::channel(Progress::Waiting);
         let bridge = Bridge {
             listener,
             agent: None,
@@ -101,7 +101,7 @@ impl Feed {
             piece: Vec::with_capacity(2 * PIECE),
             paces,
             clock_off_s,
-            news,
+            sender,
         };
         let task = tokio::spawn(bridge.run());
         Ok(Feed {
@@ -113,7 +113,7 @@ impl Feed {
         })
     }
 
-    /// Where the agent finds its sentences.
+    /// The address of the sentences.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
@@ -126,8 +126,8 @@ impl Feed {
         self.pace.send(pace).context("the feed has ended")
     }
 
-    /// Lets the receiver's clock be wrong by so much; the pace and the progress stay
-    /// right.
+    /// Sets the error of the receiver's clock; pace and progress use the right
+    /// time.
     ///
     /// # Errors
     /// When the feed has failed.
@@ -135,10 +135,10 @@ impl Feed {
         self.clock.send(off_s).context("the feed has ended")
     }
 
-    /// Waits until the bridge has come so far.
+    /// Waits until the bridge's progress is `enough`.
     ///
     /// # Errors
-    /// When it has not `within` the time, or failed on the way.
+    /// When it is not `within` the time, or the feed failed.
     pub async fn reached(
         &mut self,
         within: Duration,
@@ -165,7 +165,7 @@ struct Bridge<S> {
     piece: Vec<u8>,
     paces: watch::Receiver<Pace>,
     clock_off_s: watch::Receiver<f64>,
-    news: watch::Sender<Progress>,
+    sender: watch::Sender<Progress>,
 }
 
 impl<S: AsyncRead + Unpin> Bridge<S> {
@@ -180,13 +180,13 @@ impl<S: AsyncRead + Unpin> Bridge<S> {
             let fix = time_of_fix(&self.piece[start..]);
             let off_s = *self.clock_off_s.borrow();
             if off_s != 0.0
-                && let Some(wrong) = dated_anew(&self.piece[start..], off_s)
+                && let Some(wrong) = with_time_shifted(&self.piece[start..], off_s)
             {
                 self.piece.truncate(start);
                 self.piece.extend(wrong);
             }
             if let Some(time) = fix {
-                self.news.send_replace(Progress::At(time));
+                self.sender.send_replace(Progress::At(time));
                 let pace = *self.paces.borrow();
                 match pace {
                     Pace::Live => {
@@ -205,12 +205,12 @@ impl<S: AsyncRead + Unpin> Bridge<S> {
             }
         }
         self.send().await?;
-        self.news.send_replace(Progress::Ended);
-        // The instruments fall silent; the line stays open.
+        self.sender.send_replace(Progress::Ended);
+        // The instruments fall silent; the connection stays open.
         std::future::pending().await
     }
 
-    /// Sends the piece to the agent that listens, or waits for one.
+    /// Sends the piece to the connected agent, or waits for one.
     async fn send(&mut self) -> Result<()> {
         while !self.piece.is_empty() {
             let agent = match &mut self.agent {
@@ -220,15 +220,15 @@ impl<S: AsyncRead + Unpin> Bridge<S> {
             if agent.write_all(&self.piece).await.is_err() {
                 self.agent = None;
             }
-            // Heard or lost: the bridge does not say it again.
+            // Read or lost: the bridge does not repeat it.
             self.piece.clear();
         }
         Ok(())
     }
 }
 
-/// When the fix of an RMC sentence was taken. The line is as poor as a ship's:
-/// a sentence with a wrong checksum tells nothing.
+/// Returns the time of the fix in an RMC sentence. A sentence with a wrong
+/// checksum, as on a poor line, is ignored.
 fn time_of_fix(line: &[u8]) -> Option<Timestamp> {
     if line.get(3..7)? != b"RMC," {
         return None;
@@ -248,8 +248,8 @@ fn time_of_fix(line: &[u8]) -> Option<Timestamp> {
     Timestamp::parse(&format!("20{yy}-{mm}-{dd}T{hour}:{minute}:{second}Z")).ok()
 }
 
-/// An RMC or ZDA sentence of another time.
-fn dated_anew(line: &[u8], off_s: f64) -> Option<Vec<u8>> {
+/// Returns an RMC or ZDA sentence with its time shifted.
+fn with_time_shifted(line: &[u8], off_s: f64) -> Option<Vec<u8>> {
     let text = std::str::from_utf8(line).ok()?;
     let (body, _) = text.strip_prefix('$')?.trim_end().split_once('*')?;
     let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
@@ -289,18 +289,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sentence_is_dated_anew_with_its_checksum() {
+    fn a_sentence_with_its_time_shifted_has_a_right_checksum() {
         let fix = b"$GPRMC,073015.00,A,4321.10,N,00301.50,W,12.4,085.0,211126,,,A*73\r\n";
-        let day_later = dated_anew(fix, 86_400.0).unwrap();
+        let day_later = with_time_shifted(fix, 86_400.0).unwrap();
         let time = Timestamp::parse("2026-11-22T07:30:15Z").unwrap();
         assert_eq!(time_of_fix(&day_later), Some(time));
-        let zda = dated_anew(b"$GPZDA,073015.00,21,11,2026,,*00\r\n", -86_400.0).unwrap();
+        let zda = with_time_shifted(b"$GPZDA,073015.00,21,11,2026,,*00\r\n", -86_400.0).unwrap();
         assert!(zda.starts_with(b"$GPZDA,073015.00,20,11,2026,,*"));
-        assert_eq!(dated_anew(b"$HCHDG,010.0,,,,*00\r\n", 1.0), None);
+        assert_eq!(with_time_shifted(b"$HCHDG,010.0,,,,*00\r\n", 1.0), None);
     }
 
     #[test]
-    fn a_fix_tells_its_time_and_other_sentences_do_not() {
+    fn only_a_fix_has_a_time() {
         let fix = b"$GPRMC,073015.00,A,4321.10,N,00301.50,W,12.4,085.0,211126,,,A*73\r\n";
         let time = Timestamp::parse("2026-11-21T07:30:15Z").unwrap();
         assert_eq!(time_of_fix(fix), Some(time));

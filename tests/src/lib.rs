@@ -1,31 +1,29 @@
-//! End-to-end tests of the real programs: what they share.
+//! Shared parts of the end-to-end tests of the real programs.
 //!
-//! The tests start the server, agents and the simulator as users would, as
-//! processes, on loopback ports that the system chooses, and kill them. Nothing
-//! is skipped: a missing program or database fails the test with what to do.
+//! The tests start the server, agents and the simulator as processes, as users
+//! would, on loopback ports chosen by the system, and kill them. No test is
+//! skipped: a missing program or database fails the test with advice.
 
-pub mod at_sea;
-pub mod coast;
-pub mod database;
+pub mod autopilot;
 pub mod eventually;
 pub mod feed;
-pub mod gateway;
-pub mod heard;
-pub mod ledger;
-pub mod namespace;
-pub mod program;
-pub mod satellite;
+pub mod link;
+pub mod process;
+pub mod records;
+pub mod sailing;
+pub mod server_process;
 pub mod ship;
-pub mod shore;
+pub mod ship_and_server;
+pub mod ship_on_link;
 pub mod voyage;
 
-pub use at_sea::AtSea;
-pub use coast::{Coast, Passage};
-pub use database::{Database, Engine};
 pub use eventually::eventually;
 pub use feed::{Feed, Pace, Progress};
-pub use program::{Program, output_of};
-pub use satellite::Satellite;
+pub use link::satellite::Satellite;
+pub use process::database::{Database, Engine};
+pub use process::program::{Program, output_of};
+pub use server_process::ServerProcess;
 pub use ship::Ship;
-pub use shore::Shore;
+pub use ship_and_server::{Setup, ShipAndServer};
+pub use ship_on_link::ShipOnLink;
 pub use voyage::{Truth, Voyage};

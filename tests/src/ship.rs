@@ -1,9 +1,8 @@
 //! A ship: an agent process with its own folder, fed over TCP.
 
-use crate::coast::SWIFT;
 use crate::eventually::eventually;
-use crate::program::{self, Program};
-use crate::satellite::Berth;
+use crate::link::satellite::ShipNetwork;
+use crate::process::program::{self, Program};
 use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 use std::net::SocketAddr;
@@ -12,7 +11,9 @@ use std::time::Duration;
 use tokio::process::Command;
 use tokio::time::timeout;
 
-/// Machines may be busy.
+/// Settings of an agent that waits for nothing, on a link that costs nothing.
+pub const FAST_UPLINK: &str = "poll_s = 2\nretry_min_s = 0.2\nretry_max_s = 1";
+/// Start-up time on a busy machine.
 const START: Duration = Duration::from_secs(30);
 
 /// An agent, running or not.
@@ -21,20 +22,21 @@ pub struct Ship {
     name: String,
     folder: PathBuf,
     agent: Option<Program>,
-    berth: Option<Berth>,
+    network: Option<ShipNetwork>,
 }
 
 impl Ship {
     /// Writes `agent.toml` into a new folder. The agent reads its sentences at
-    /// `feed`, and gives out corrected headings at a port that [`Ship::ready`] tells.
+    /// `feed`, and serves corrected headings at a port that [`Ship::ready`]
+    /// returns.
     ///
     /// # Errors
     /// When the folder cannot be written.
     pub fn new(name: &str, parent: &Path, feed: SocketAddr) -> Result<Ship> {
-        Ship::with_uplink(name, parent, feed, SWIFT)
+        Ship::with_uplink(name, parent, feed, FAST_UPLINK)
     }
 
-    /// The same with other lines in `[uplink]`.
+    /// Creates a ship with other lines in `[uplink]`.
     ///
     /// # Errors
     /// When the folder cannot be written.
@@ -67,21 +69,22 @@ stale_s = 15
             name: name.to_owned(),
             folder,
             agent: None,
-            berth: None,
+            network: None,
         })
     }
 
-    /// Puts the ship at the other end of a satellite link: before anything is run.
+    /// Puts the ship at the other end of a satellite link, before any program
+    /// runs.
     #[must_use]
-    pub fn at_sea(mut self, berth: Berth) -> Ship {
-        self.berth = Some(berth);
+    pub fn on_network(mut self, network: ShipNetwork) -> Ship {
+        self.network = Some(network);
         self
     }
 
     fn command(&self) -> Result<Command> {
         const AGENT: &str = "binnacle-agent";
-        match self.berth {
-            Some(berth) => berth.command(AGENT),
+        match self.network {
+            Some(network) => network.command(AGENT),
             None => program::command(AGENT),
         }
     }
@@ -91,12 +94,12 @@ stale_s = 15
         self.folder.join("agent.toml")
     }
 
-    /// Her folder: what the agent has to itself, and its log.
+    /// The ship's folder, with the agent's data and its log.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Where the agent keeps its spool.
+    /// The folder of the agent's spool.
     pub fn data_dir(&self) -> PathBuf {
         self.folder.join("state")
     }
@@ -110,7 +113,7 @@ stale_s = 15
         command
             .args(["enrol", "--server", server, "--code", code, "--config"])
             .arg(self.config());
-        program::answer_of(command, "").await?;
+        program::run_with_input(command, "").await?;
         Ok(())
     }
 
@@ -131,8 +134,8 @@ stale_s = 15
         Ok(())
     }
 
-    /// Waits until the agent has opened everything; where it gives out corrected
-    /// headings.
+    /// Waits until the agent has opened everything, and returns the address of
+    /// the corrected headings.
     ///
     /// # Errors
     /// When it ends instead, or takes too long.
@@ -146,7 +149,7 @@ stale_s = 15
         .await
     }
 
-    /// Where the local page of an agent that is ready is.
+    /// Returns the address of a ready agent's local page.
     ///
     /// # Errors
     /// When it is not ready.
@@ -155,7 +158,7 @@ stale_s = 15
         address_in(&agent.log(), "page").context("the agent is not ready")
     }
 
-    /// What `status --json` says.
+    /// Returns the output of `status --json`.
     ///
     /// # Errors
     /// When it fails.
@@ -164,14 +167,14 @@ stale_s = 15
         command
             .args(["status", "--json", "--config"])
             .arg(self.config());
-        let answer = program::answer_of(command, "").await?;
+        let answer = program::run_with_input(command, "").await?;
         serde_json::from_str(&answer).with_context(|| answer.clone())
     }
 
-    /// The most memory the agent ever had, in kilobytes.
+    /// Returns the agent's peak memory, in kilobytes.
     ///
     /// # Errors
-    /// When the system does not say.
+    /// When the system does not tell.
     pub fn peak_memory_kb(&mut self) -> Result<u64> {
         let agent = self.agent.as_mut().context("the agent runs")?;
         let id = agent.child().id().context("the agent has ended")?;
@@ -181,15 +184,19 @@ stale_s = 15
         Ok(kb.context("VmHWM in /proc")?.parse()?)
     }
 
-    /// Waits until the agent has ended by itself; its log.
+    /// Waits until the agent has failed by itself, and returns its log.
     ///
     /// # Errors
-    /// When it does not, or did not fail.
+    /// When it does not end, or ends without a failure.
     pub async fn fails(&mut self) -> Result<String> {
         let mut agent = self.agent.take().context("the agent runs")?;
         let ended = timeout(START, agent.child().wait()).await;
-        let ended = ended.with_context(|| format!("{} goes on", self.name))??;
-        ensure!(!ended.success(), "the agent of {} was content", self.name);
+        let ended = ended.with_context(|| format!("{} does not end", self.name))??;
+        ensure!(
+            !ended.success(),
+            "the agent of {} ended without a failure",
+            self.name
+        );
         Ok(agent.log())
     }
 
@@ -210,14 +217,14 @@ stale_s = 15
     /// Asks the agent to end, and waits until it has.
     ///
     /// # Errors
-    /// When it does not, or not well.
+    /// When it does not end, or fails.
     pub async fn stop(&mut self) -> Result<()> {
         let mut agent = self.agent.take().context("the agent runs")?;
         let id = agent.child().id().context("it has ended by itself")?;
         let id = rustix::process::Pid::from_raw(id.cast_signed()).context("a process")?;
         rustix::process::kill_process(id, rustix::process::Signal::TERM)?;
         let ended = timeout(START, agent.child().wait()).await;
-        let ended = ended.with_context(|| format!("{} goes on", self.name))??;
+        let ended = ended.with_context(|| format!("{} does not end", self.name))??;
         ensure!(ended.success(), "{ended}:\n{}", agent.log());
         agent.done();
         Ok(())
@@ -232,10 +239,10 @@ stale_s = 15
         self.start()
     }
 
-    /// Fails unless the agent is up.
+    /// Fails unless the agent runs.
     ///
     /// # Errors
-    /// When it is not.
+    /// When it does not.
     pub fn assert_running(&mut self) -> Result<()> {
         let agent = self.agent.as_mut().context("the agent runs")?;
         ensure!(
@@ -248,7 +255,7 @@ stale_s = 15
     }
 }
 
-/// An address in the line that says that the agent is ready.
+/// Returns an address in the log line of a ready agent.
 fn address_in(log: &str, name: &str) -> Option<SocketAddr> {
     let line = log.lines().find(|line| line.contains(" ready "))?;
     let (_, rest) = line.split_once(&format!("{name}=\""))?;

@@ -1,7 +1,7 @@
-//! A simulated voyage on its way into an agent, and the truth about it.
+//! A simulated voyage that feeds an agent, with its truth.
 
 use crate::feed::{Feed, Pace};
-use crate::program;
+use crate::process::program;
 use anyhow::{Context, Result, ensure};
 use binnacle_compass::time::Timestamp;
 use serde::Deserialize;
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use tokio::process::Child;
 
-/// A simulator that sails, and the bridge that says what it sees.
+/// A running simulator, and the bridge that forwards its sentences.
 #[derive(Debug)]
 pub struct Voyage {
     /// The bridge.
@@ -20,34 +20,34 @@ pub struct Voyage {
     truth: PathBuf,
 }
 
-/// What the simulator says really was, as far as the tests need it.
+/// The part of the simulator's truth that the tests need.
 #[derive(Debug, Deserialize)]
 pub struct Truth {
-    /// All headings, at the voyage's end.
+    /// The deviation on all headings at the voyage's end.
     pub at_the_end: Place,
 }
 
 /// The true deviation at a place.
 #[derive(Debug, Deserialize)]
 pub struct Place {
-    /// Degrees north.
+    /// Latitude, degrees north.
     pub lat: f64,
-    /// Degrees east.
+    /// Longitude, degrees east.
     pub lon: f64,
-    /// When.
+    /// Time.
     pub at: Timestamp,
-    /// Degrees, east positive.
+    /// Variation, degrees, positive to the east.
     pub variation_deg: f64,
-    /// By compass heading, evenly spaced from 0.
+    /// Deviation by compass heading, evenly spaced from 0.
     pub rows: Vec<Row>,
 }
 
 /// The true deviation on a heading.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct Row {
-    /// As the compass shows it.
+    /// Compass reading, degrees.
     pub compass_deg: f64,
-    /// Degrees, east positive.
+    /// Deviation, degrees, positive to the east.
     pub deviation_deg: f64,
 }
 
@@ -61,7 +61,7 @@ impl Voyage {
         Voyage::sail_at(Ipv4Addr::LOCALHOST.into(), scenario, seed, folder, pace).await
     }
 
-    /// The same, with the instruments at an address.
+    /// Sails a scenario with the instruments at an address.
     ///
     /// # Errors
     /// When the simulator cannot be started, or there is no such address.
@@ -100,7 +100,7 @@ impl Voyage {
         })
     }
 
-    /// The truth, when the voyage has ended.
+    /// Returns the truth, once the voyage has ended.
     ///
     /// # Errors
     /// When the simulator failed.
@@ -113,7 +113,7 @@ impl Voyage {
 }
 
 impl Place {
-    /// The true deviation on a heading, between rows along a line.
+    /// Returns the true deviation on a heading, interpolated between rows.
     pub fn deviation_deg(&self, compass_deg: f64) -> f64 {
         let step = 360.0 / self.rows.len() as f64;
         let place = compass_deg.rem_euclid(360.0) / step;

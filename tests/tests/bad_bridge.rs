@@ -1,4 +1,4 @@
-//! A bridge that sends rubbish: the agent counts it and goes on.
+//! A bridge that sends rubbish: the agent counts it and continues.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -14,7 +14,7 @@ fn sentence(body: &str) -> String {
     format!("${body}*{sum:02X}\r\n")
 }
 
-/// A ship on a steady course, second after second.
+/// Sentences of a ship on a steady heading, second by second.
 fn watch(seconds: u32) -> String {
     (0..seconds).fold(String::new(), |mut text, second| {
         let (minute, second) = (second / 60, second % 60);
@@ -62,6 +62,6 @@ async fn noise_and_a_line_of_ten_megabytes_do_not_stop_an_agent() {
     heard.await.expect("the reading after the rubbish");
     ship.assert_running().unwrap();
     let peak = ship.peak_memory_kb().unwrap();
-    assert!(peak < 200_000, "{peak} kB for a line nobody can read");
+    assert!(peak < 200_000, "{peak} kB for an unreadable line");
     ship.kill().await.unwrap();
 }

@@ -1,5 +1,5 @@
-//! Files and arguments that no command can use: exit code 2 and one line that
-//! says where and what, and nothing on standard output that looks whole.
+//! Unusable files and arguments: exit code 2, one line with the place and the
+//! fault, and no output that looks complete.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -37,7 +37,7 @@ fn assert_refused(what: &str, output: &Output, words: &[&str]) {
     }
 }
 
-/// Bytes of every kind, without a system.
+/// Bytes of every kind, without structure.
 fn noise(count: usize) -> Vec<u8> {
     let mut state = 1_u64;
     let mut next = || {
@@ -129,7 +129,7 @@ async fn fit_names_file_line_and_field() {
 }
 
 #[tokio::test]
-async fn field_names_what_lies_outside() {
+async fn field_names_the_value_out_of_range() {
     let cases = [
         (["--lat", "95", "--lon", "0", "--date", "2026-01-01"], "95"),
         (
@@ -152,7 +152,7 @@ async fn field_names_what_lies_outside() {
 }
 
 #[tokio::test]
-async fn a_log_that_is_no_log_is_refused_by_replay() {
+async fn replay_refuses_a_file_that_is_not_a_log() {
     let folder = tempfile::tempdir().unwrap();
     let cases = [
         ("noise.log", noise(1_000_000)),

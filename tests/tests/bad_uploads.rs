@@ -1,4 +1,4 @@
-//! Batches that must not be stored, and what the server says to each.
+//! Batches that must not be stored, and the server's response to each.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -7,7 +7,7 @@ use binnacle_compass::angle::{CompassHeading, TrueHeading};
 use binnacle_compass::position::Position;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
-use binnacle_tests::{Engine, Shore, eventually};
+use binnacle_tests::{Engine, ServerProcess, eventually};
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::encode;
 use binnacle_wire::messages::{EnrolAnswer, EnrolRequest};
@@ -17,8 +17,8 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 use uuid::Uuid;
 
-/// An analysis of a dozen samples, on a busy machine.
-const PATIENCE: Duration = Duration::from_mins(1);
+/// Time for an analysis of a dozen samples on a busy machine.
+const TIMEOUT: Duration = Duration::from_mins(1);
 
 /// An agent without a ship: this test sends its batches.
 struct Agent {
@@ -27,13 +27,13 @@ struct Agent {
     stream: StreamId,
 }
 
-async fn enrol(shore: &Shore, name: &str) -> Result<Agent> {
-    let (vessel, code) = shore.create_vessel(name).await?;
+async fn enrol(server: &ServerProcess, name: &str) -> Result<Agent> {
+    let (vessel, code) = server.create_vessel(name).await?;
     let request = EnrolRequest {
         code,
         agent_version: "0.0.0".to_owned(),
     };
-    let answer = shore
+    let answer = server
         .anonymous(Method::POST, "/agents/enrol")
         .json(&request)
         .send()
@@ -75,9 +75,9 @@ fn frame(stream: StreamId, seq: u64, samples: Vec<Sample>) -> Vec<u8> {
     .unwrap()
 }
 
-/// Sends a frame and gives back the status and the problem.
+/// Sends a frame and returns the status and the problem.
 async fn put(
-    shore: &Shore,
+    server: &ServerProcess,
     token: Option<&str>,
     stream: StreamId,
     seq: u64,
@@ -85,8 +85,8 @@ async fn put(
 ) -> Result<(StatusCode, Value)> {
     let path = format!("/streams/{stream}/batches/{seq}");
     let request = match token {
-        Some(token) => shore.as_agent(Method::PUT, &path, token),
-        None => shore.anonymous(Method::PUT, &path),
+        Some(token) => server.as_agent(Method::PUT, &path, token),
+        None => server.anonymous(Method::PUT, &path),
     };
     let request = request
         .header("content-type", "application/octet-stream")
@@ -110,23 +110,23 @@ async fn put(
     Ok((status, body))
 }
 
-async fn assert_nothing_stored(shore: &mut Shore, agent: &Agent) -> Result<()> {
-    shore.assert_well().await?;
+async fn assert_nothing_stored(server: &mut ServerProcess, agent: &Agent) -> Result<()> {
+    server.assert_healthy().await?;
     let path = format!("/streams/{}/downlink", agent.stream);
-    let downlink = shore
+    let downlink = server
         .as_agent(Method::GET, &path, &agent.token)
         .send()
         .await?;
     let downlink: Value = downlink.error_for_status()?.json().await?;
     ensure!(downlink["contiguous_seq"] == 0, "{downlink}");
-    let stored = shore
+    let stored = server
         .list(&format!("/vessels/{}/samples", agent.vessel))
         .await?;
     ensure!(stored.is_empty(), "{stored:?}");
     Ok(())
 }
 
-/// What is sent in whose name, and the statuses that may answer it.
+/// A request with its credentials, and the statuses allowed in response.
 struct Attempt<'a> {
     name: &'static str,
     token: Option<&'a str>,
@@ -179,11 +179,11 @@ fn attempts<'a>(ours: &'a Agent, other: &'a Agent) -> Vec<Attempt<'a>> {
     ]
 }
 
-/// The real batch, once, again, and changed.
-async fn assert_stored_once(shore: &Shore, ours: &Agent) -> Result<()> {
+/// The real batch, sent once, again, and changed.
+async fn assert_stored_once(server: &ServerProcess, ours: &Agent) -> Result<()> {
     let send = async |samples| {
         let body = frame(ours.stream, 1, samples);
-        put(shore, Some(&ours.token), ours.stream, 1, body).await
+        put(server, Some(&ours.token), ours.stream, 1, body).await
     };
     for _ in 0..2 {
         let (status, answer) = send(samples(12)).await?;
@@ -198,10 +198,10 @@ async fn assert_stored_once(shore: &Shore, ours: &Agent) -> Result<()> {
         status == StatusCode::CONFLICT && kind.ends_with("/stream-forked"),
         "{problem}"
     );
-    // The API lists what the analysis has seen, which comes a moment later.
+    // The API lists analysed samples, which takes a moment.
     let path = format!("/vessels/{}/samples", ours.vessel);
-    let stored = eventually("the samples are analysed", PATIENCE, async || {
-        let stored = shore.list(&path).await?;
+    let stored = eventually("the samples are analysed", TIMEOUT, async || {
+        let stored = server.list(&path).await?;
         Ok(match stored.len() {
             0 => Err("none yet".to_owned()),
             some => Ok(some),
@@ -212,8 +212,8 @@ async fn assert_stored_once(shore: &Shore, ours: &Agent) -> Result<()> {
     Ok(())
 }
 
-async fn assert_strangers_see_nothing(shore: &Shore, vessel: &str) -> Result<()> {
-    let stranger = shore.stranger().await?;
+async fn assert_strangers_see_nothing(server: &ServerProcess, vessel: &str) -> Result<()> {
+    let other_cookie = server.sign_in_other_operator().await?;
     for path in [
         "",
         "/samples",
@@ -223,8 +223,8 @@ async fn assert_strangers_see_nothing(shore: &Shore, vessel: &str) -> Result<()>
         "/coverage",
     ] {
         let path = format!("/vessels/{vessel}{path}");
-        let answer = shore
-            .with_cookie(Method::GET, &path, &stranger)
+        let answer = server
+            .with_cookie(Method::GET, &path, &other_cookie)
             .send()
             .await?;
         ensure!(
@@ -238,9 +238,9 @@ async fn assert_strangers_see_nothing(shore: &Shore, vessel: &str) -> Result<()>
 
 async fn bad_uploads(engine: Engine) -> Result<()> {
     let folder = tempfile::tempdir()?;
-    let mut shore = Shore::start(engine, folder.path()).await?;
-    let ours = enrol(&shore, "Ours").await?;
-    let other = enrol(&shore, "Other").await?;
+    let mut server = ServerProcess::start(engine, folder.path()).await?;
+    let ours = enrol(&server, "Ours").await?;
+    let other = enrol(&server, "Other").await?;
     for attempt in attempts(&ours, &other) {
         let Attempt {
             name,
@@ -250,19 +250,19 @@ async fn bad_uploads(engine: Engine) -> Result<()> {
             body,
             expected,
         } = attempt;
-        let (status, problem) = put(&shore, token, stream, seq, body).await.context(name)?;
+        let (status, problem) = put(&server, token, stream, seq, body).await.context(name)?;
         ensure!(
             expected.contains(&status.as_u16()),
             "{name}: {status} {problem}"
         );
-        assert_nothing_stored(&mut shore, &ours)
+        assert_nothing_stored(&mut server, &ours)
             .await
             .context(name)?;
     }
-    assert_stored_once(&shore, &ours).await?;
-    assert_strangers_see_nothing(&shore, &ours.vessel).await?;
-    shore.assert_well().await?;
-    shore.finish().await
+    assert_stored_once(&server, &ours).await?;
+    assert_strangers_see_nothing(&server, &ours.vessel).await?;
+    server.assert_healthy().await?;
+    server.finish().await
 }
 
 #[tokio::test]

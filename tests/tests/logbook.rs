@@ -1,16 +1,16 @@
-//! What an officer reports on the agent's page stands in the logbook ashore, once,
-//! whoever is killed on the way.
+//! An officer's report from the agent's page reaches the server's logbook once,
+//! whichever process is killed on the way.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
-use binnacle_tests::{Engine, Feed, Pace, Ship, Shore, eventually};
+use binnacle_tests::{Engine, Feed, Pace, ServerProcess, Ship, eventually};
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 use std::io::Cursor;
 use std::net::SocketAddr;
 use std::time::Duration;
 
-const PATIENCE: Duration = Duration::from_mins(1);
+const TIMEOUT: Duration = Duration::from_mins(1);
 const REPORT: &str = "01934f2a-7c00-7000-8000-0000000000b1";
 
 async fn put(page: SocketAddr, report: &Value) -> StatusCode {
@@ -21,11 +21,11 @@ async fn put(page: SocketAddr, report: &Value) -> StatusCode {
     request.send().await.unwrap().status()
 }
 
-/// Waits until an entry stands in the logbook that ended at a time, or goes on.
-async fn logbook(shore: &Shore, vessel: &str, to: &Value) -> Vec<Value> {
+/// Waits for a logbook entry with this end, or an open one.
+async fn logbook(server: &ServerProcess, vessel: &str, to: &Value) -> Vec<Value> {
     let path = format!("/vessels/{vessel}/logbook");
-    eventually("the report is in the logbook", PATIENCE, async || {
-        let entries = shore.list(&path).await?;
+    eventually("the report is in the logbook", TIMEOUT, async || {
+        let entries = server.list(&path).await?;
         let there = entries.iter().any(|entry| entry["to"] == *to);
         Ok(if there {
             Ok(entries)
@@ -39,13 +39,13 @@ async fn logbook(shore: &Shore, vessel: &str, to: &Value) -> Vec<Value> {
 
 async fn an_officers_report_arrives_once(engine: Engine) {
     let folder = tempfile::tempdir().unwrap();
-    let mut shore = Shore::start(engine, folder.path()).await.unwrap();
-    let (vessel, code) = shore.create_vessel("Nao").await.unwrap();
+    let mut server = ServerProcess::start(engine, folder.path()).await.unwrap();
+    let (vessel, code) = server.create_vessel("Nao").await.unwrap();
     let feed = Feed::start(Cursor::new(Vec::new()), Pace::Live)
         .await
         .unwrap();
     let mut ship = Ship::new("nao", folder.path(), feed.address()).unwrap();
-    ship.enrol(&shore.url, &code).await.unwrap();
+    ship.enrol(&server.url, &code).await.unwrap();
     ship.start().unwrap();
     ship.ready().await.unwrap();
 
@@ -56,8 +56,8 @@ async fn an_officers_report_arrives_once(engine: Engine) {
     assert_eq!(put(ship.page().unwrap(), &report).await, StatusCode::OK);
     ship.kill_and_restart().await.unwrap();
     ship.ready().await.unwrap();
-    shore.kill_and_restart().await.unwrap();
-    let entries = logbook(&shore, &vessel, &json!(null)).await;
+    server.kill_and_restart().await.unwrap();
+    let entries = logbook(&server, &vessel, &json!(null)).await;
     assert_eq!(entries.len(), 1);
     assert_eq!(entries[0]["id"], REPORT);
     assert_eq!(entries[0]["author"], "agent");
@@ -72,10 +72,10 @@ async fn an_officers_report_arrives_once(engine: Engine) {
 
     report["to"] = json!("2026-11-20T18:00:00Z");
     assert_eq!(put(ship.page().unwrap(), &report).await, StatusCode::OK);
-    let entries = logbook(&shore, &vessel, &report["to"]).await;
+    let entries = logbook(&server, &vessel, &report["to"]).await;
     assert_eq!((entries.len(), &entries[0]["revision"]), (1, &json!(2)));
     ship.kill().await.unwrap();
-    shore.finish().await.unwrap();
+    server.finish().await.unwrap();
 }
 
 #[tokio::test]

@@ -1,19 +1,19 @@
-//! The agent's Debian package, installed, upgraded, removed and purged by dpkg in a copy of
-//! this system.
+//! The agent's Debian package: installed, upgraded, removed and purged by dpkg
+//! in a copy of this system.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Context, Result, ensure};
-use binnacle_tests::namespace::in_own_mounts;
+use binnacle_tests::process::namespace::in_own_mounts;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const CONFIG: &str = "etc/binnacle/agent.toml";
 
 #[test]
-fn the_package_is_installed_again_and_again_and_leaves_what_the_agent_has_kept() {
+fn the_package_can_be_reinstalled_and_keeps_the_agents_data() {
     in_own_mounts(
-        "the_package_is_installed_again_and_again_and_leaves_what_the_agent_has_kept",
+        "the_package_can_be_reinstalled_and_keeps_the_agents_data",
         async { installed() },
     );
 }
@@ -63,8 +63,8 @@ fn installed() -> Result<()> {
     Ok(())
 }
 
-/// This system, with a layer above it that takes all changes, and a service manager that
-/// only notes what it is asked for.
+/// A copy of this system as an overlay that takes all changes, with a service
+/// manager that only records its calls.
 struct Copy {
     root: PathBuf,
 }
@@ -89,7 +89,8 @@ impl Copy {
         Ok(copy)
     }
 
-    /// The package around a program that does nothing: where it is in the copy.
+    /// Builds the package around a program that does nothing; returns its path
+    /// in the copy.
     fn package(&self) -> Result<String> {
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts/deb");
         let into = self.root.join("packages");
@@ -105,7 +106,7 @@ impl Copy {
         self.run(&format!("dpkg {action} {what}"))
     }
 
-    /// What the service manager was asked for by the last action.
+    /// The calls of the service manager by the last action.
     fn calls(&self) -> Result<Vec<String>> {
         let asked = std::fs::read_to_string(self.root.join("asked"))?;
         Ok(asked.lines().map(str::to_owned).collect())

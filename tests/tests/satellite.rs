@@ -1,37 +1,37 @@
-//! The real programs over a satellite: what it costs, and what it may do to them.
+//! The real programs over a satellite link: data volume and robustness.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Result, ensure};
-use binnacle_tests::AtSea;
-use binnacle_tests::at_sea::day;
-use binnacle_tests::ledger::Spool;
-use binnacle_tests::namespace::in_own_network;
-use binnacle_tests::satellite::{Tally, Weather, ensure_used};
+use binnacle_tests::ShipOnLink;
+use binnacle_tests::link::satellite::{Conditions, Tally, ensure_used};
+use binnacle_tests::process::namespace::in_own_network;
+use binnacle_tests::records::Spool;
+use binnacle_tests::sailing::day;
 use std::time::Duration;
 use tokio::time::interval;
 
-/// How often a ship sends, and the most octets that a day of that may cost.
+/// A sending interval, and the most bytes that a day of it may cost.
 struct Policy {
     profile: &'static str,
     seal_s: u32,
-    octets_a_day: f64,
+    bytes_a_day: f64,
 }
 
 const FOUR_TIMES_A_DAY: Policy = Policy {
     profile: "standard",
     seal_s: 6 * 3600,
-    octets_a_day: 8_000.0,
+    bytes_a_day: 8_000.0,
 };
 const DAILY: Policy = Policy {
     profile: "metered",
     seal_s: 24 * 3600,
-    octets_a_day: 2_700.0,
+    bytes_a_day: 2_700.0,
 };
 const HOURLY: Policy = Policy {
     profile: "vsat",
     seal_s: 3600,
-    octets_a_day: 12_000.0,
+    bytes_a_day: 12_000.0,
 };
 
 /// Days to measure: a few, or a month with `make bench-link`.
@@ -40,63 +40,62 @@ fn days() -> u32 {
     asked.map_or(2, |days| days.parse().expect("a number of days"))
 }
 
-/// Sails for some days as she would, but that time passes faster: she waits wherever
-/// she is when a batch is sealed until it is ashore and analysed, as it would be by the
-/// next one.
+/// Sails for some days in fast time: at each sealed batch the ship waits until
+/// it is uploaded and analysed, as it would be before the next one.
 async fn costs(policy: Policy) -> Result<()> {
     let profile = format!("profile = \"{}\"", policy.profile);
-    let mut at_sea = AtSea::sail("month.toml", &profile).await?;
-    // The first day brings settings and a first model: later ones are like each other.
-    sail_on(&mut at_sea, &policy, 0, 2).await?;
-    let before = at_sea.satellite.tally().await?;
-    sail_on(&mut at_sea, &policy, 2, 2 + days()).await?;
-    let after = at_sea.satellite.tally().await?;
+    let mut remote = ShipOnLink::start("month.toml", &profile).await?;
+    // The first day brings settings and a first model; later days are alike.
+    sail_days(&mut remote, &policy, 0, 2).await?;
+    let before = remote.satellite.tally().await?;
+    sail_days(&mut remote, &policy, 2, 2 + days()).await?;
+    let after = remote.satellite.tally().await?;
     ensure_used(&after)?;
     let a_day = per_day(&before, &after);
-    let spool = at_sea.all_ashore().await?;
+    let spool = remote.wait_until_uploaded().await?;
     println!(
-        "{}: {a_day:.0} octets a day over {} days, {} batches in all",
+        "{}: {a_day:.0} bytes a day over {} days, {} batches in all",
         policy.profile,
         days(),
         spool.acknowledged.len()
     );
-    at_sea.arrive().await?;
-    ensure!(a_day <= policy.octets_a_day, "{a_day} octets a day");
+    remote.check_and_stop().await?;
+    ensure!(a_day <= policy.bytes_a_day, "{a_day} bytes a day");
     Ok(())
 }
 
-async fn sail_on(at_sea: &mut AtSea, policy: &Policy, from: u32, to: u32) -> Result<()> {
-    // The next batch is sealed when a sample is older: no two in one step.
+async fn sail_days(remote: &mut ShipOnLink, policy: &Policy, from: u32, to: u32) -> Result<()> {
+    // The next batch is sealed when a sample is older: not two in one step.
     let step = f64::from(policy.seal_s) / 86_400.0;
     let mut time = f64::from(from);
     while time < f64::from(to) {
         time += step;
-        at_sea.until(day(time)).await?;
-        at_sea.all_ashore().await?;
-        at_sea.analysed().await?;
+        remote.sail_until(day(time)).await?;
+        remote.wait_until_uploaded().await?;
+        remote.wait_until_analysed().await?;
     }
     Ok(())
 }
 
 fn per_day(before: &Tally, after: &Tally) -> f64 {
-    (after.octets() - before.octets()) as f64 / f64::from(days())
+    (after.bytes() - before.bytes()) as f64 / f64::from(days())
 }
 
 #[test]
-fn four_batches_a_day_cost_few_octets_packets_and_all() {
-    let name = "four_batches_a_day_cost_few_octets_packets_and_all";
+fn four_batches_a_day_cost_few_bytes_packets_and_all() {
+    let name = "four_batches_a_day_cost_few_bytes_packets_and_all";
     in_own_network(name, costs(FOUR_TIMES_A_DAY));
 }
 
 #[test]
-fn a_batch_a_day_costs_few_octets_packets_and_all() {
-    let name = "a_batch_a_day_costs_few_octets_packets_and_all";
+fn a_batch_a_day_costs_few_bytes_packets_and_all() {
+    let name = "a_batch_a_day_costs_few_bytes_packets_and_all";
     in_own_network(name, costs(DAILY));
 }
 
 #[test]
-fn a_batch_an_hour_costs_few_octets_packets_and_all() {
-    let name = "a_batch_an_hour_costs_few_octets_packets_and_all";
+fn a_batch_an_hour_costs_few_bytes_packets_and_all() {
+    let name = "a_batch_an_hour_costs_few_bytes_packets_and_all";
     in_own_network(name, costs(HOURLY));
 }
 
@@ -107,10 +106,9 @@ struct Windows {
     round_trip_ms: f64,
 }
 
-/// As they are, with `make soak`; else in a quarter of the time: a window holds as many
-/// requests as the real one. Between two windows there is enough time for the agent to
-/// give up and for its pauses to grow to their longest; the rest of the ten minutes is
-/// left out.
+/// The real times with `make soak`, otherwise a quarter of them: a window still
+/// holds as many requests. Between two windows the agent has time to give up
+/// and to reach its longest backoff; the rest of the ten minutes is left out.
 fn windows() -> Windows {
     if std::env::var_os("BINNACLE_SOAK").is_some() {
         return Windows {
@@ -127,68 +125,68 @@ fn windows() -> Windows {
 }
 
 #[test]
-fn a_link_that_is_up_for_20_s_at_a_time_brings_all_ashore() {
-    let name = "a_link_that_is_up_for_20_s_at_a_time_brings_all_ashore";
+fn a_link_that_is_up_for_20_s_at_a_time_uploads_everything() {
+    let name = "a_link_that_is_up_for_20_s_at_a_time_uploads_everything";
     in_own_network(name, short_windows());
 }
 
 async fn short_windows() -> Result<()> {
-    // As impatient as may be: it has a few windows, not a day of them.
+    // As impatient as possible: it has a few windows, not a day of them.
     let uplink = "retry_min_s = 1\nretry_max_s = 3\nexchange_s = 10";
-    let mut at_sea = AtSea::sail("biscay.toml", uplink).await?;
-    at_sea.until(day(1.0)).await?;
-    at_sea.all_ashore().await?;
+    let mut remote = ShipOnLink::start("biscay.toml", uplink).await?;
+    remote.sail_until(day(1.0)).await?;
+    remote.wait_until_uploaded().await?;
     let link = windows();
-    let weather = |up| Weather {
+    let conditions = |up| Conditions {
         up: Some(up),
         round_trip_ms: Some(link.round_trip_ms),
-        ..Weather::default()
+        ..Conditions::default()
     };
-    at_sea.satellite.set(weather(false)).await?;
-    at_sea.until(day(11.0)).await?;
-    let mut aboard = Spool::of(&at_sea.ship).await?;
-    ensure!(aboard.waiting > 9, "{aboard:?}");
+    remote.satellite.set(conditions(false)).await?;
+    remote.sail_until(day(11.0)).await?;
+    let mut unsent = Spool::read(&remote.ship).await?;
+    ensure!(unsent.waiting > 9, "{unsent:?}");
     let mut windows = 0;
-    while aboard.waiting > 0 {
+    while unsent.waiting > 0 {
         windows += 1;
-        ensure!(windows < 30, "{aboard:?}");
+        ensure!(windows < 30, "{unsent:?}");
         for (is_up, seconds) in [(true, link.up_s), (false, link.down_s)] {
-            at_sea.satellite.set(weather(is_up)).await?;
+            remote.satellite.set(conditions(is_up)).await?;
             let mut over = interval(Duration::from_secs_f64(seconds));
             over.tick().await;
             over.tick().await;
         }
-        let now = Spool::of(&at_sea.ship).await?;
-        let goes_on = now.acknowledged.starts_with(&aboard.acknowledged);
-        ensure!(goes_on, "{now:?}, before {aboard:?}");
+        let now = Spool::read(&remote.ship).await?;
+        let goes_on = now.acknowledged.starts_with(&unsent.acknowledged);
+        ensure!(goes_on, "{now:?}, before {unsent:?}");
         println!("{} wait after {windows} windows", now.waiting);
-        aboard = now;
+        unsent = now;
     }
     ensure!(windows > 1, "one was enough: it proves nothing");
-    at_sea.satellite.set(weather(true)).await?;
-    at_sea.arrive().await
+    remote.satellite.set(conditions(true)).await?;
+    remote.check_and_stop().await
 }
 
 #[test]
-fn a_link_of_one_and_a_half_seconds_that_loses_every_fifth_packet_brings_all_ashore() {
+fn a_link_of_one_and_a_half_seconds_that_loses_every_fifth_packet_uploads_everything() {
     in_own_network(
-        "a_link_of_one_and_a_half_seconds_that_loses_every_fifth_packet_brings_all_ashore",
+        "a_link_of_one_and_a_half_seconds_that_loses_every_fifth_packet_uploads_everything",
         async {
             let uplink = "retry_min_s = 0.2\nretry_max_s = 1";
-            let mut at_sea = AtSea::sail("biscay.toml", uplink).await?;
-            at_sea
+            let mut remote = ShipOnLink::start("biscay.toml", uplink).await?;
+            remote
                 .satellite
-                .set(Weather {
+                .set(Conditions {
                     round_trip_ms: Some(1500.0),
                     loss: Some(0.2),
                     bits_per_s: Some(2400.0),
-                    ..Weather::default()
+                    ..Conditions::default()
                 })
                 .await?;
-            at_sea.until(day(1.0)).await?;
-            at_sea.all_ashore().await?;
-            ensure_used(&at_sea.satellite.tally().await?)?;
-            at_sea.arrive().await
+            remote.sail_until(day(1.0)).await?;
+            remote.wait_until_uploaded().await?;
+            ensure_used(&remote.satellite.tally().await?)?;
+            remote.check_and_stop().await
         },
     );
 }

@@ -1,6 +1,6 @@
-//! The whole way: two ships sail, their agents upload, agents and server are
-//! killed on the way, and in the end nothing is lost, nothing is double, the
-//! models hold the truth, and the autopilot hears it.
+//! The complete path: two ships sail, their agents upload, and agents and
+//! server are killed on the way. In the end nothing is lost or doubled, the
+//! models hold the truth, and the autopilot reads it.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -8,9 +8,9 @@ use anyhow::{Context, Result, ensure};
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
-use binnacle_tests::ledger::{Acknowledged, Spool, batch_log, checksum};
+use binnacle_tests::records::{Acknowledged, Spool, batch_log, checksum};
 use binnacle_tests::voyage::Place;
-use binnacle_tests::{Engine, Pace, Progress, Ship, Shore, Voyage, eventually, heard};
+use binnacle_tests::{Engine, Pace, Progress, ServerProcess, Ship, Voyage, autopilot, eventually};
 use binnacle_wire::decode;
 use serde_json::Value;
 use std::path::Path;
@@ -19,15 +19,16 @@ use uuid::Uuid;
 
 const START: &str = "2026-10-01T00:00:00Z";
 const DAYS: f64 = 12.0;
-/// A ship sails on for so long while another is hit.
+/// Time that a ship sails on while another is killed.
 const AFTER_KILL_S: f64 = 12.0 * 3600.0;
-/// Sailed at the end, for the autopilot.
+/// Sailed live at the end, for the autopilot.
 const LIVE_S: f64 = 600.0;
-/// A few days' sailing may take so long on a busy machine.
-const PATIENCE: Duration = Duration::from_mins(5);
-/// A tenth of a degree in a sentence, and a line between rows of the truth.
+/// Time for a few days' sailing on a busy machine.
+const TIMEOUT: Duration = Duration::from_mins(5);
+/// A tenth of a degree in a sentence, and interpolation between rows of the
+/// truth.
 const ROUNDING_DEG: f64 = 0.15;
-/// Either ship settles more often than this in the days that she sails.
+/// The least number of samples of each ship in these days.
 const LEAST_SAMPLES: i64 = 1_000;
 
 struct Vessel {
@@ -36,7 +37,7 @@ struct Vessel {
     voyage: Voyage,
 }
 
-/// Who is killed.
+/// The process to kill.
 #[derive(Clone, Copy, Debug)]
 enum Victim {
     Agent(usize),
@@ -49,7 +50,7 @@ fn day(day: f64) -> Timestamp {
         .plus_seconds(day * 86_400.0)
 }
 
-/// Where the fast part ends.
+/// End of the fast part.
 fn fast_end() -> Timestamp {
     day(DAYS).plus_seconds(-LIVE_S)
 }
@@ -60,7 +61,7 @@ fn seeds() -> std::ops::Range<u64> {
     3..if soak { 23 } else { 4 }
 }
 
-/// Eight moments in order, by a generator with a known seed.
+/// Eight moments in order, from a seeded generator.
 fn kills(seed: u64) -> Vec<(f64, Victim)> {
     let mut state = seed;
     let mut next = || {
@@ -83,12 +84,17 @@ fn kills(seed: u64) -> Vec<(f64, Victim)> {
     victims.into_iter().enumerate().map(moment).collect()
 }
 
-async fn set_sail(shore: &Shore, scenario: &str, seed: u64, folder: &Path) -> Result<Vessel> {
-    let (id, code) = shore.create_vessel(scenario).await?;
+async fn set_sail(
+    server: &ServerProcess,
+    scenario: &str,
+    seed: u64,
+    folder: &Path,
+) -> Result<Vessel> {
+    let (id, code) = server.create_vessel(scenario).await?;
     let pace = Pace::FastUntil(day(0.0));
     let voyage = Voyage::sail(&format!("{scenario}.toml"), seed, folder, pace).await?;
     let mut ship = Ship::new(scenario, folder, voyage.feed.address())?;
-    ship.enrol(&shore.url, &code).await?;
+    ship.enrol(&server.url, &code).await?;
     ship.start()?;
     Ok(Vessel {
         id: id.parse()?,
@@ -98,8 +104,8 @@ async fn set_sail(shore: &Shore, scenario: &str, seed: u64, folder: &Path) -> Re
 }
 
 /// Sails to the end of the fast part, with the kills on the way: no ship runs
-/// ahead of them, and all are still under way when one comes.
-async fn sail(shore: &mut Shore, vessels: &mut [Vessel], seed: u64) -> Result<()> {
+/// ahead of them, and all are under way at each kill.
+async fn sail(server: &mut ServerProcess, vessels: &mut [Vessel], seed: u64) -> Result<()> {
     for (when, victim) in kills(seed) {
         let moment = day(when);
         for vessel in &*vessels {
@@ -112,30 +118,30 @@ async fn sail(shore: &mut Shore, vessels: &mut [Vessel], seed: u64) -> Result<()
             0
         };
         let passed = |progress: &Progress| progress.time() >= Some(moment);
-        vessels[whose].voyage.feed.reached(PATIENCE, passed).await?;
+        vessels[whose].voyage.feed.reached(TIMEOUT, passed).await?;
         match victim {
             Victim::Agent(index) => vessels[index].ship.kill_and_restart().await?,
-            Victim::Server => shore.kill_and_restart().await?,
+            Victim::Server => server.kill_and_restart().await?,
         }
     }
     for vessel in vessels {
         vessel.voyage.feed.set_pace(Pace::FastUntil(fast_end()))?;
         let there = |progress: &Progress| progress.time() >= Some(fast_end());
-        vessel.voyage.feed.reached(PATIENCE, there).await?;
+        vessel.voyage.feed.reached(TIMEOUT, there).await?;
         vessel.ship.assert_running()?;
     }
     Ok(())
 }
 
-/// Waits until the agent has taken in all that was said and nothing waits.
+/// Waits until the agent has read all sentences and no batch waits.
 async fn settled(vessel: &Vessel, until: Timestamp) -> Result<Spool> {
-    eventually("the agent has sent all", PATIENCE, async || {
+    eventually("the agent has sent all", TIMEOUT, async || {
         let status = vessel.ship.status().await?;
         let time = status["ship_time"]
             .as_str()
             .map(Timestamp::parse)
             .transpose()?;
-        let spool = Spool::of(&vessel.ship).await?;
+        let spool = Spool::read(&vessel.ship).await?;
         let settled = time >= Some(until) && spool.waiting == 0;
         Ok(if settled {
             Ok(spool)
@@ -146,25 +152,28 @@ async fn settled(vessel: &Vessel, until: Timestamp) -> Result<Spool> {
     .await
 }
 
-/// Compares both ends' records: what the agent holds to be acknowledged and
-/// what the shore holds must be the same batches, to the checksum. Gives back
-/// the samples in them, in order of time.
+/// Compares both ends' records: the batches that the agent holds for
+/// acknowledged must be those of the server, to the checksum. Returns their
+/// samples in order of time.
 async fn assert_every_batch_once(
-    shore: &Shore,
+    server: &ServerProcess,
     vessel: &Vessel,
     spool: &Spool,
 ) -> Result<Vec<Sample>> {
     ensure!(
-        spool.in_trouble == 0,
+        spool.refused == 0,
         "{} batches are in trouble",
-        spool.in_trouble
+        spool.refused
     );
-    // How many batches carry them depends on how long a busy server lets them wait.
+    // The number of batches depends on the waiting times at a busy server.
     let samples: i64 = spool.acknowledged.iter().map(|batch| batch.samples).sum();
-    ensure!(samples > LEAST_SAMPLES, "only {samples} samples are ashore");
+    ensure!(
+        samples > LEAST_SAMPLES,
+        "only {samples} samples are on the server"
+    );
     let mut sent = Vec::new();
     let mut logged = Vec::new();
-    for (stream, seq, bytes) in batch_log(shore.database(), vessel.id).await? {
+    for (stream, seq, bytes) in batch_log(server.database(), vessel.id).await? {
         let batch = decode(&bytes)?;
         logged.push(Acknowledged {
             stream,
@@ -174,16 +183,16 @@ async fn assert_every_batch_once(
         });
         sent.extend(batch.samples);
     }
-    let aboard = &spool.acknowledged;
+    let unsent = &spool.acknowledged;
     let lacking = |of: &[Acknowledged], other: &[Acknowledged]| -> Vec<Acknowledged> {
         let lacks = |batch: &&Acknowledged| !other.contains(batch);
         of.iter().filter(lacks).cloned().collect()
     };
     ensure!(
-        logged == *aboard,
-        "only on board {:?}, only on shore {:?}",
-        lacking(aboard, &logged),
-        lacking(&logged, aboard)
+        logged == *unsent,
+        "only on board {:?}, only on the server {:?}",
+        lacking(unsent, &logged),
+        lacking(&logged, unsent)
     );
     sent.sort_by_key(|sample| sample.time);
     for pair in sent.windows(2) {
@@ -195,11 +204,11 @@ async fn assert_every_batch_once(
 }
 
 /// Waits for a model of all samples.
-async fn final_model(shore: &Shore, vessel: &Vessel, sent: &[Sample]) -> Result<()> {
+async fn final_model(server: &ServerProcess, vessel: &Vessel, sent: &[Sample]) -> Result<()> {
     let last = sent.last().context("there are samples")?.time;
     let path = format!("/vessels/{}/model", vessel.id);
-    eventually("a model of all samples", PATIENCE, async || {
-        let Some(model) = shore.find(&path).await? else {
+    eventually("a model of all samples", TIMEOUT, async || {
+        let Some(model) = server.find(&path).await? else {
             return Ok(Err("there is none".to_owned()));
         };
         let until = model["data_until"].as_str().context("data_until")?;
@@ -213,9 +222,13 @@ async fn final_model(shore: &Shore, vessel: &Vessel, sent: &[Sample]) -> Result<
     .await
 }
 
-/// What the API gives out is what was sent, each sample once.
-async fn assert_every_sample_once(shore: &Shore, vessel: &Vessel, sent: &[Sample]) -> Result<()> {
-    let listed = shore
+/// Checks that the API returns the samples sent, each once.
+async fn assert_every_sample_once(
+    server: &ServerProcess,
+    vessel: &Vessel,
+    sent: &[Sample],
+) -> Result<()> {
+    let listed = server
         .list(&format!("/vessels/{}/samples", vessel.id))
         .await?;
     let mut listed: Vec<Sample> = listed
@@ -241,12 +254,16 @@ fn apart_deg(a: f64, b: f64) -> f64 {
     wrap_180(a - b).abs()
 }
 
-/// The band of the deviation curve at the voyage's end holds the truth on at
-/// least nine headings in ten.
-async fn assert_band_holds_truth(shore: &Shore, vessel: &Vessel, truth: &Place) -> Result<()> {
+/// Checks that the band of the deviation curve at the voyage's end contains the
+/// truth on at least nine headings in ten.
+async fn assert_band_holds_truth(
+    server: &ServerProcess,
+    vessel: &Vessel,
+    truth: &Place,
+) -> Result<()> {
     let Place { lat, lon, at, .. } = truth;
     let path = format!("/vessels/{}/deviation", vessel.id);
-    let curve = shore
+    let curve = server
         .get(&format!("{path}?lat={lat}&lon={lon}&at={at}&step_deg=10"))
         .await?;
     let variation = curve["variation_deg"].as_f64().context("variation_deg")?;
@@ -280,15 +297,15 @@ fn missed(row: &Value, truth: &Place) -> Option<String> {
     Some(format!("{row}: {error:+.3} from the truth"))
 }
 
-/// Sails on for ten minutes and listens as an autopilot would.
+/// Sails on for ten minutes and reads the output as an autopilot.
 async fn assert_autopilot_hears_truth(vessel: &mut Vessel, last: Timestamp) -> Result<()> {
-    eventually("the model is on board", PATIENCE, async || {
+    eventually("the model is on board", TIMEOUT, async || {
         let status = vessel.ship.status().await?;
         let until = status["model"]["data_until"].as_str();
         let until = until.map(Timestamp::parse).transpose()?;
-        // One that is hardly another is sent when it is three days younger.
-        let aboard = until > Some(last.plus_seconds(-3.0 * 86_400.0));
-        Ok(if aboard {
+        // A nearly identical model is sent once it is three days younger.
+        let unsent = until > Some(last.plus_seconds(-3.0 * 86_400.0));
+        Ok(if unsent {
             Ok(())
         } else {
             Err(status.to_string())
@@ -297,14 +314,14 @@ async fn assert_autopilot_hears_truth(vessel: &mut Vessel, last: Timestamp) -> R
     .await?;
     let output = vessel.ship.ready().await?;
     vessel.voyage.feed.set_pace(Pace::Live)?;
-    let heard = heard::corrections(output, 20, PATIENCE).await?;
+    let received = autopilot::corrections(output, 20, TIMEOUT).await?;
     vessel
         .voyage
         .feed
-        .reached(PATIENCE, |progress| *progress == Progress::Ended)
+        .reached(TIMEOUT, |progress| *progress == Progress::Ended)
         .await?;
     let truth = vessel.voyage.truth().await?.at_the_end;
-    for correction in heard {
+    for correction in received {
         let deviation = truth.deviation_deg(correction.compass_deg);
         let error = correction.deviation_deg - deviation;
         let band = 1.96 * correction.standard_error_deg;
@@ -338,25 +355,25 @@ async fn whole_way(engine: Engine) -> Result<()> {
 
 async fn with_kills(engine: Engine, seed: u64) -> Result<()> {
     let folder = tempfile::tempdir()?;
-    let mut shore = Shore::start(engine, folder.path()).await?;
+    let mut server = ServerProcess::start(engine, folder.path()).await?;
     let mut vessels = Vec::new();
     for (scenario, seed) in [("biscay", 11), ("agulhas", 12)] {
-        vessels.push(set_sail(&shore, scenario, seed, folder.path()).await?);
+        vessels.push(set_sail(&server, scenario, seed, folder.path()).await?);
     }
-    sail(&mut shore, &mut vessels, seed).await?;
+    sail(&mut server, &mut vessels, seed).await?;
     for vessel in &mut vessels {
         let spool = settled(vessel, fast_end()).await?;
-        let sent = assert_every_batch_once(&shore, vessel, &spool).await?;
-        final_model(&shore, vessel, &sent).await?;
-        assert_every_sample_once(&shore, vessel, &sent).await?;
+        let sent = assert_every_batch_once(&server, vessel, &spool).await?;
+        final_model(&server, vessel, &sent).await?;
+        assert_every_sample_once(&server, vessel, &sent).await?;
         let last = sent.last().context("there are samples")?.time;
         assert_autopilot_hears_truth(vessel, last).await?;
         let truth = vessel.voyage.truth().await?.at_the_end;
-        assert_band_holds_truth(&shore, vessel, &truth).await?;
+        assert_band_holds_truth(&server, vessel, &truth).await?;
         vessel.ship.kill().await?;
     }
-    shore.assert_well().await?;
-    shore.finish().await
+    server.assert_healthy().await?;
+    server.finish().await
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]

@@ -63,7 +63,7 @@ async fn exchange(spool: &Spool, modem: &mut impl Modem) -> anyhow::Result<()> {
     };
     while let Some(message) = modem.receive().await? {
         match read_ack(&message) {
-            Ok(ack) if ack.stream == StreamTag::of(identity.stream) => {
+            Ok(ack) if ack.stream == StreamTag::from_stream(identity.stream) => {
                 let acknowledged = spool
                     .acknowledge_bursts(&identity, ack.contiguous_seq)
                     .await?;

@@ -47,7 +47,7 @@ fn outbox(directory: &Path) -> Vec<Vec<u8>> {
 
 fn seqs(messages: &[Vec<u8>]) -> Vec<u64> {
     let mut joiner = Joiner::default();
-    let frames = messages.iter().filter_map(|m| joiner.take(m).unwrap());
+    let frames = messages.iter().filter_map(|m| joiner.push(m).unwrap());
     let seqs = frames.map(|frame| binnacle_wire::decode(&frame).unwrap().seq);
     seqs.collect()
 }
@@ -59,7 +59,7 @@ fn answer(directory: &Path, name: &str, message: &[u8]) {
 
 fn ack(stream: u128, contiguous_seq: u64) -> Vec<u8> {
     write_ack(Ack {
-        stream: StreamTag::of(identity(stream).stream),
+        stream: StreamTag::from_stream(identity(stream).stream),
         contiguous_seq,
     })
 }
@@ -162,7 +162,7 @@ async fn a_batch_is_thinned_until_it_fits_into_three_messages_and_evidence_is_no
     exchange(&spool, &mut modem).await.unwrap();
     let mut joiner = Joiner::default();
     let sent = outbox(directory.path());
-    let frames = sent.iter().filter_map(|m| joiner.take(m).unwrap());
+    let frames = sent.iter().filter_map(|m| joiner.push(m).unwrap());
     let batches: Vec<_> = frames.map(|f| binnacle_wire::decode(&f).unwrap()).collect();
     let thinned = batches.iter().find(|batch| batch.seq == 1).unwrap();
     assert_eq!(

@@ -173,7 +173,7 @@ impl Uplink {
             .as_ref()
             .filter(|_| *self.publisher.withdrawn.borrow() != withdrawn)
         {
-            tracing::warn!("{}: {}", withdrawn.in_words(), CardWithdrawn::ADVICE);
+            tracing::warn!("{}: {}", withdrawn, CardWithdrawn::ADVICE);
         }
         self.publisher.withdrawn.send_replace(withdrawn);
         if let Some(settings) = downlink.settings {

@@ -1,4 +1,4 @@
-//! How long a sentence takes, in and out. The agent reads some thirteen million
+//! Time per sentence, read and written. The agent reads some thirteen million
 //! of them when a recorded year is replayed.
 
 use binnacle_nmea::{Lines, Sentence, Tally, lines::Line, parse, write};

@@ -3,7 +3,7 @@
 
 use crate::rejected::Rejected;
 
-/// Splits `body*hh` and hands out the body when its checksum is right.
+/// Splits `body*hh` and returns the body when its checksum is right.
 ///
 /// `body` starts after `$`, `!` or `\`.
 pub(crate) fn checked(bytes: &[u8]) -> Result<&[u8], Rejected> {

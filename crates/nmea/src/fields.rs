@@ -87,8 +87,8 @@ impl<'a> Fields<'a> {
 
     /// A magnitude of 0 to 180 degrees followed by E or W, east positive.
     ///
-    /// A value whose side is not told cannot be used and is refused; a side
-    /// without a value says nothing.
+    /// A value without a side is refused. A side without a value counts as
+    /// empty.
     pub(crate) fn east_west(&mut self, field: &'static str) -> Result<Option<f64>, Rejected> {
         let value = self.magnitude(field)?;
         let side = self.text();
@@ -137,7 +137,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// Whether a positioning mode stands for a fix by satellites. Older
+    /// True when the positioning mode is a fix by satellites. Older
     /// sentences have no such field.
     pub(crate) fn mode_is_a_fix(&mut self) -> Result<bool, Rejected> {
         match self.text() {

@@ -1,15 +1,16 @@
-//! NMEA 0183 and IEC 61162-450 sentences, in and out.
+//! NMEA 0183 and IEC 61162-450 sentences, read and written.
 //!
-//! What always holds:
-//! - A field left empty is `None`, never zero; values that a status or mode
-//!   declares not valid are not handed out at all.
-//! - Signs are settled at the parse: east, north, starboard and bow-up are
-//!   positive, and the names say so. No letter E, W, N or S gets past it.
-//! - A sentence without a checksum, or with a wrong one, is counted and never used.
-//! - Numbers keep six decimals (positions a ten-millionth of a minute), so what
-//!   [`write()`] prints, [`parse()`] reads back as the very same value.
-//! - No allocation but in the buffers of the caller, bounded memory for any
-//!   input, and no panic on any bytes.
+//! Invariants:
+//! - An empty field is `None`, never zero. Values that a status or mode
+//!   declares not valid are not returned.
+//! - Signs are settled by the parser: east, north, starboard and bow-up are
+//!   positive, and the names say so. No letter E, W, N or S is passed on.
+//! - A sentence without a checksum, or with a wrong one, is counted and never
+//!   used.
+//! - Numbers keep six decimals (positions a ten-millionth of a minute).
+//!   [`parse()`] reads back exactly the value that [`write()`] printed.
+//! - Nothing is allocated outside the caller's buffers, memory is bounded for
+//!   any input, and no bytes cause a panic.
 //!
 //! ```
 //! use binnacle_nmea::{Data, parse};

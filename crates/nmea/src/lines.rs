@@ -1,18 +1,18 @@
-//! Cuts a stream of bytes into lines, whatever the chunks it comes in.
+//! Splits a stream of bytes into lines, however it is cut into chunks.
 //!
-//! Memory is bounded: of a line longer than [`MAX_LINE_BYTES`] nothing is kept,
-//! and what follows its end is read again. CR, LF and both end a line; empty
-//! lines are not reported.
+//! Memory is bounded: a line longer than [`MAX_LINE_BYTES`] is dropped, and
+//! reading resumes after its end. CR, LF and both end a line; empty lines are
+//! not reported.
 
-/// The longest line: a sentence, TAG blocks and a time before it.
+/// The longest accepted line: a sentence, TAG blocks and a time before it.
 pub const MAX_LINE_BYTES: usize = 1024;
 
-/// What a stream is made of.
+/// One item of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Line<'a> {
     /// A line without its end; not empty.
     Whole(&'a [u8]),
-    /// A line that was too long was skipped.
+    /// Stands for a skipped line that was too long.
     TooLong,
 }
 
@@ -43,7 +43,8 @@ impl Lines {
         self.unfinished.extend_from_slice(rest);
     }
 
-    /// The stream has ended, or a datagram: its last line may lack an end.
+    /// Completes the last line, at the end of a stream or datagram without a
+    /// line end.
     pub fn finish(&mut self, mut each: impl FnMut(Line<'_>)) {
         self.complete(b"", &mut each);
     }

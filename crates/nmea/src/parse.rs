@@ -16,7 +16,7 @@ pub const MAX_SENTENCE_BYTES: usize = 256;
 /// ignored.
 ///
 /// # Errors
-/// The one reason why the line is not used.
+/// The reason why the line is not used.
 pub fn parse(line: &[u8]) -> Result<Sentence, Rejected> {
     let line = line.trim_ascii_end();
     let Some((start, rest)) = line.split_first() else {
@@ -196,7 +196,7 @@ fn vtg(fields: &mut Fields<'_>) -> Result<Option<Vtg>, Rejected> {
     fields.letter_after(cog_deg_magnetic, b'M', "magnetic reference")?;
     let sog_kn = fields.magnitude("speed")?;
     fields.letter_after(sog_kn, b'N', "speed unit")?;
-    // The same speed again, in kilometres an hour.
+    // The speed repeated in kilometres an hour.
     fields.skip(2);
     let vtg = Vtg {
         cog_deg_true,

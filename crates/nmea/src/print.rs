@@ -1,7 +1,7 @@
 //! Prints fields, each with the comma before it unless it says otherwise.
 //!
-//! Numbers are rounded to the decimals that [`crate::fields`] keeps; what is not
-//! finite, or too large to be read back, is printed as an empty field.
+//! Numbers are rounded to the decimals of [`crate::fields`]. A value that is
+//! not finite, or too large to be read back, becomes an empty field.
 
 use crate::fields::{DECIMALS, MINUTE_DECIMALS, UNITS_A_DEGREE};
 use crate::sentence::Position;
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_back_is_left_empty() {
+    fn unreadable_numbers_are_left_empty() {
         for value in [f64::NAN, f64::INFINITY, 1e9, -1e300, 999_999_999.999_999_9] {
             assert_eq!(printed(value), ",");
         }

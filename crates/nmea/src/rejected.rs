@@ -1,8 +1,9 @@
-//! Why a line is not used. Every refusal has one reason, and reasons are counted.
+//! Reasons for refusing a line. Every refusal has one reason, and reasons are
+//! counted.
 
 use crate::sentence::Kind;
 
-/// Why a line was refused.
+/// The reason for refusing a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Rejected {
     /// It starts with none of `$`, `!` and `\`.
@@ -11,13 +12,13 @@ pub enum Rejected {
     /// It holds a byte that is not printable ASCII.
     #[error("not ascii")]
     NotAscii,
-    /// It is longer than any honest sentence.
+    /// It is longer than [`crate::MAX_SENTENCE_BYTES`] allows.
     #[error("too long")]
     TooLong,
     /// It does not end in `*` and two digits.
     #[error("no checksum")]
     NoChecksum,
-    /// Its checksum is not the one its bytes have.
+    /// Its checksum does not match its bytes.
     #[error("wrong checksum")]
     WrongChecksum,
     /// Its TAG block is cut short, has no right checksum or holds a bad value.
@@ -29,7 +30,7 @@ pub enum Rejected {
     /// A whole sentence that this crate does not read.
     #[error("unknown sentence")]
     UnknownSentence,
-    /// A field holds what it must not.
+    /// A field holds a value that its sentence does not allow.
     #[error("{} with bad {field}", kind.name())]
     BadField {
         /// The sentence.
@@ -40,7 +41,7 @@ pub enum Rejected {
 }
 
 impl Rejected {
-    /// The words for each reason, in the order of [`Rejected::index`].
+    /// The text of each reason, in the order of [`Rejected::index`].
     pub const REASONS: [&'static str; 9] = [
         "not a sentence",
         "not ascii",
@@ -53,7 +54,7 @@ impl Rejected {
         "bad field",
     ];
 
-    /// Where the reason stands in [`Rejected::REASONS`].
+    /// The reason's index in [`Rejected::REASONS`].
     pub fn index(self) -> usize {
         match self {
             Rejected::NotASentence => 0,
@@ -68,7 +69,7 @@ impl Rejected {
         }
     }
 
-    /// The reason in words, one for all bad fields.
+    /// The reason as text, one for all bad fields.
     pub fn reason(self) -> &'static str {
         Rejected::REASONS[self.index()]
     }

@@ -1,23 +1,23 @@
-//! What a sentence says, with units and signs settled.
+//! The contents of a sentence, with units and signs settled.
 //!
-//! Angles of direction are degrees in [0, 360); differences are east-positive.
+//! Directions are degrees in [0, 360); differences are positive to the east.
 
 use crate::time::{Date, TimeOfDay, unix_micros};
 
 /// A sentence that was read, or is to be written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sentence {
-    /// Who speaks: `HC` a magnetic compass, `HE` a gyro, `GP` a receiver … Two
+    /// The talker: `HC` a magnetic compass, `HE` a gyro, `GP` a receiver … Two
     /// capital letters or digits.
     pub talker: [u8; 2],
-    /// What is said.
+    /// The sentence's data.
     pub data: Data,
 }
 
-/// The sentences that this crate knows.
+/// The data of the sentences that this crate knows.
 ///
-/// Where a variant holds an `Option`, `None` means that the sentence itself
-/// says its values are not valid.
+/// `None` in a variant with an `Option` means that the sentence declares its
+/// own values not valid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Data {
     /// Heading sensor reading, deviation, variation.
@@ -48,8 +48,8 @@ pub enum Data {
     Hbt(Hbt),
 }
 
-/// HDG: the sensor's reading before deviation, and what it knows of deviation
-/// and variation.
+/// HDG: the sensor's reading before deviation, and its own deviation and
+/// variation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hdg {
     /// The raw reading: no deviation applied.
@@ -60,7 +60,7 @@ pub struct Hdg {
     pub variation_deg_east: Option<f64>,
 }
 
-/// HDM: whether deviation was applied only the installation knows.
+/// HDM. Only the installation knows if deviation was applied.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hdm {
     /// Heading from magnetic north.
@@ -74,17 +74,17 @@ pub struct Hdt {
     pub heading_deg_true: Option<f64>,
 }
 
-/// THS. Ask [`Ths::valid_heading_deg_true`] unless the mode is looked at too.
+/// THS. Use [`Ths::valid_heading_deg_true`] unless the mode is checked too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ths {
     /// Heading from true north, valid or not.
     pub heading_deg_true: Option<f64>,
-    /// Whether to trust it.
+    /// The instrument's own statement of validity.
     pub mode: ThsMode,
 }
 
 impl Ths {
-    /// The heading, when the instrument stands by it (mode A).
+    /// The heading in mode A, the only valid one.
     pub fn valid_heading_deg_true(&self) -> Option<f64> {
         self.heading_deg_true
             .filter(|_| self.mode == ThsMode::Autonomous)
@@ -98,7 +98,7 @@ pub enum ThsMode {
     Autonomous,
     /// E: dead reckoning.
     Estimated,
-    /// M: put in by hand.
+    /// M: entered by hand.
     Manual,
     /// S: a simulator's.
     Simulator,
@@ -165,13 +165,13 @@ pub struct Rmc {
     pub time: Option<TimeOfDay>,
     /// Date of the fix, UTC; two-digit years 80 to 99 lie in the 1900s.
     pub date: Option<Date>,
-    /// Where.
+    /// Position of the fix.
     pub position: Option<Position>,
     /// Speed over the ground.
     pub sog_kn: Option<f64>,
     /// Course over the ground: never a heading.
     pub cog_deg_true: Option<f64>,
-    /// What the receiver thinks of the variation.
+    /// The receiver's own value of the variation.
     pub variation_deg_east: Option<f64>,
 }
 
@@ -187,7 +187,7 @@ impl Rmc {
 pub struct Gga {
     /// Time of the fix, UTC.
     pub time: Option<TimeOfDay>,
-    /// Where.
+    /// Position of the fix.
     pub position: Option<Position>,
     /// 1 to 5: a fix by satellites (2 differential, 4 and 5 real-time kinematic).
     pub quality: u8,
@@ -204,7 +204,7 @@ pub struct Gga {
 /// A valid GLL.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Gll {
-    /// Where.
+    /// Position of the fix.
     pub position: Option<Position>,
     /// Time of the fix, UTC.
     pub time: Option<TimeOfDay>,
@@ -213,9 +213,9 @@ pub struct Gll {
 /// ZDA.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Zda {
-    /// UTC.
+    /// Time of day, UTC.
     pub time: Option<TimeOfDay>,
-    /// UTC; `None` when any part of it is empty.
+    /// Date, UTC; `None` when any part of it is empty.
     pub date: Option<Date>,
 }
 
@@ -237,12 +237,12 @@ pub struct Vtg {
     pub sog_kn: Option<f64>,
 }
 
-/// XDR: of all transducers, roll and pitch (`A,x,D,ROLL` and `A,x,D,PTCH`).
+/// XDR: only roll and pitch are read (`A,x,D,ROLL` and `A,x,D,PTCH`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Xdr {
-    /// Starboard down is positive.
+    /// Roll, positive starboard down.
     pub roll_deg_starboard_down: Option<f64>,
-    /// Bow up is positive.
+    /// Pitch, positive bow up.
     pub pitch_deg_bow_up: Option<f64>,
 }
 
@@ -253,7 +253,7 @@ pub struct Hbt {
     pub interval_s: Option<f64>,
     /// Status A: the equipment works normally.
     pub normal: bool,
-    /// Counts 0 to 9.
+    /// Sequence number, counting 0 to 9.
     pub sequence: Option<u8>,
 }
 
@@ -341,7 +341,7 @@ impl Kind {
 }
 
 impl Data {
-    /// Which sentence this is.
+    /// The kind of this sentence.
     pub fn kind(&self) -> Kind {
         match self {
             Data::Hdg(_) => Kind::Hdg,

@@ -1,5 +1,5 @@
-//! TAG blocks: what stands before a sentence between backslashes, with a
-//! checksum of its own, for example `\s:GP0001,c:1700000000*hh\`.
+//! TAG blocks: parameters before a sentence, between backslashes and with a
+//! checksum of their own, for example `\s:GP0001,c:1700000000*hh\`.
 
 use crate::checksum;
 use crate::parse::parse;
@@ -9,11 +9,11 @@ use crate::sentence::Sentence;
 
 /// TAG blocks longer than this are refused; the standard says 80.
 const MAX_TAG_BYTES: usize = 256;
-/// From this on a `c:` number counts milliseconds, below it seconds: as
+/// The first `c:` number read as milliseconds; smaller ones are seconds. As
 /// milliseconds it lies in 1973, as seconds in the year 5138.
 const FIRST_MILLISECONDS: i64 = 100_000_000_000;
 
-/// What the TAG blocks before a sentence say.
+/// The contents of the TAG blocks before a sentence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tag<'a> {
     /// `s:`, the sender (IEC 61162-450 system function, `HE0001`).
@@ -27,14 +27,14 @@ pub struct Tag<'a> {
 pub struct Tagged<'a> {
     /// All `None` without a TAG block.
     pub tag: Tag<'a>,
-    /// What follows.
+    /// The sentence behind them.
     pub sentence: Sentence,
 }
 
 /// Reads a sentence and any TAG blocks before it.
 ///
 /// # Errors
-/// The one reason why the line is not used. A bad TAG block spoils its line:
+/// The reason why the line is not used. A bad TAG block spoils its whole line:
 /// bytes were lost on the way.
 pub fn parse_tagged(line: &[u8]) -> Result<Tagged<'_>, Rejected> {
     let mut tag = Tag::default();
@@ -55,7 +55,7 @@ pub fn parse_tagged(line: &[u8]) -> Result<Tagged<'_>, Rejected> {
 }
 
 /// Appends a TAG block, checksum included, for a sentence to follow. Clocks are
-/// given to the millisecond; before 1970 there are none.
+/// written to the millisecond; clocks before 1970 become 0.
 pub fn write_tag(tag: &Tag<'_>, out: &mut Vec<u8>) {
     out.push(b'\\');
     let start = out.len();
@@ -75,8 +75,8 @@ pub fn write_tag(tag: &Tag<'_>, out: &mut Vec<u8>) {
     out.push(b'\\');
 }
 
-/// Whole seconds, which every reader knows, or else milliseconds, where those
-/// cannot be taken for seconds.
+/// Whole seconds, which every reader knows; otherwise milliseconds, unless they
+/// could be read as seconds.
 fn clock(micros: i64) -> u64 {
     let millis = micros / 1000;
     let number = if millis % 1000 == 0 || millis < FIRST_MILLISECONDS {
@@ -95,7 +95,7 @@ fn read_block<'a>(block: &'a [u8], tag: &mut Tag<'a>) -> Result<(), Rejected> {
             [b'c', b':', clock @ ..] => {
                 tag.unix_micros = Some(unix_micros(clock).ok_or(Rejected::BadTagBlock)?);
             }
-            // Groups, destinations, line counts and texts say nothing here.
+            // Groups, destinations, line counts and texts are not needed here.
             _ => {}
         }
     }
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn seconds_and_milliseconds_are_told_apart() {
+    fn seconds_and_milliseconds_are_distinguished() {
         for (clock, micros) in [
             ("c:1700000000", 1_700_000_000_000_000),
             ("c:1700000000123", 1_700_000_000_123_000),

@@ -1,5 +1,5 @@
-//! Reads lines and counts what came of each: one count for every line, either
-//! under its kind or under the reason for its refusal.
+//! Reads lines and counts the result of each: every line counts once, under its
+//! kind or under the reason for its refusal.
 
 use crate::rejected::Rejected;
 use crate::sentence::Kind;
@@ -15,9 +15,9 @@ pub struct Tally {
 impl Tally {
     /// Reads a line and counts it.
     ///
-    /// When a line is spoilt but a sentence starts within it (the line end
-    /// before it was lost, or noise came between), that sentence is read too,
-    /// and both are counted.
+    /// A sentence may start within a spoilt line: the line end before it was
+    /// lost, or noise came between. That sentence is read too, and both are
+    /// counted.
     pub fn read<'a>(&mut self, line: &'a [u8]) -> Option<Tagged<'a>> {
         let mut rest = line;
         loop {
@@ -73,11 +73,11 @@ impl Tally {
     }
 }
 
-/// From the next `$` on, which no field may contain.
+/// The rest from the next `$` on, which no field may contain.
 fn next_start(line: &[u8]) -> Option<&[u8]> {
     let beyond = line.get(1..)?;
     let start = beyond.iter().position(|&byte| byte == b'$')?;
-    // A sentence behind a TAG block that was refused is refused with it.
+    // A refused TAG block also spoils the sentence behind it.
     if start > 0 && beyond[start - 1] == b'\\' || line[0] == b'\\' && start == 0 {
         return next_start(&beyond[start..]);
     }

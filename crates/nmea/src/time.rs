@@ -123,7 +123,7 @@ fn days_since_1970(date: Date) -> i64 {
     era * 146_097 + day_of_era - 719_468
 }
 
-/// The inverse, same source.
+/// The inverse of [`days_since_1970`], same source.
 fn date_of_day(days: i64) -> Option<Date> {
     let shifted = days + 719_468;
     let era = shifted.div_euclid(146_097);

@@ -1,4 +1,4 @@
-//! Writes one sentence, checksum and line end included.
+//! Writes one sentence, with checksum and line end.
 
 use crate::checksum;
 use crate::print;
@@ -10,7 +10,7 @@ const KMH_A_KNOT: f64 = 1.852;
 ///
 /// Directions are wrapped, numbers rounded to six decimals; callers that want a
 /// shorter sentence round first. A number that is not finite becomes an empty
-/// field. Beyond what `out` needs to grow, nothing is allocated.
+/// field. Only `out` may grow; nothing else is allocated.
 pub fn write(sentence: &Sentence, out: &mut Vec<u8>) {
     out.push(b'$');
     let start = out.len();
@@ -119,7 +119,7 @@ fn vtg_fields(vtg: &Vtg, out: &mut Vec<u8>) {
     print::text(out, b"A");
 }
 
-/// Knots, then the same in kilometres an hour to one decimal.
+/// Knots, then the same speed in kilometres an hour to one decimal.
 fn speed(out: &mut Vec<u8>, knots: Option<f64>) {
     print::number(out, knots);
     print::text(out, b"N");

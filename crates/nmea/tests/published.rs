@@ -1,10 +1,11 @@
-//! Sentences as manuals and handbooks print them, and what each letter means.
+//! Sentences as printed in manuals and handbooks, and the meaning of each
+//! letter.
 
 use binnacle_nmea::sentence::{Gga, Hbt, Hdg, Position, Rot, Ths, ThsMode, Vhw, Vtg, Xdr};
 use binnacle_nmea::time::{Date, TimeOfDay};
 use binnacle_nmea::{Data, Rejected, Sentence, parse};
 
-/// Adds the checksum to what stands between `$` and `*`.
+/// Adds the checksum to the body between `$` and `*`.
 fn line(body: &str) -> Vec<u8> {
     let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
     format!("${body}*{sum:02X}\r\n").into_bytes()
@@ -29,8 +30,8 @@ fn near(found: Option<Position>, lat: f64, lon: f64) {
     assert!((found.lon_deg_east - lon).abs() < 1e-9, "{found:?}");
 }
 
-/// With the checksums as printed (gpsd's "NMEA Revealed", u-blox and Garmin
-/// manuals), so that these are not our own words back.
+/// The checksums are those printed in the sources (gpsd's "NMEA Revealed",
+/// u-blox and Garmin manuals), not computed by this crate.
 #[test]
 fn printed_sentences_with_their_printed_checksums_are_read() {
     let Data::Rmc(Some(rmc)) =
@@ -301,7 +302,7 @@ fn a_wrong_field_is_refused_by_name() {
 }
 
 #[test]
-fn what_is_not_a_sound_sentence_is_refused_for_its_reason() {
+fn each_bad_line_is_refused_with_its_reason() {
     let good = line("HEHDT,10.0,T");
     let mut long = "HEHDT,10.0,T".to_owned();
     while long.len() < 260 {

@@ -1,4 +1,4 @@
-//! What is printed is read back as the same value, and no bytes make it panic.
+//! Printed sentences are read back unchanged, and no bytes cause a panic.
 
 use binnacle_nmea::sentence::{
     Gga, Gll, Hbt, Hdg, Hdm, Hdt, Position, Rmc, Rot, Ths, ThsMode, Vhw, Vtg, Xdr, Zda,
@@ -151,7 +151,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn what_is_printed_is_read_back_the_same(sentence in sentence()) {
+    fn a_printed_sentence_is_read_back_unchanged(sentence in sentence()) {
         let mut printed = Vec::new();
         write(&sentence, &mut printed);
         prop_assert_eq!(parse(&printed), Ok(sentence), "{}", printed.escape_ascii());
@@ -202,7 +202,7 @@ proptest! {
     /// Noise seldom has a right checksum, so this puts one on, and on what is
     /// near to a sentence.
     #[test]
-    fn what_was_read_is_printed_and_read_again_the_same(
+    fn a_read_sentence_is_printed_and_read_back_unchanged(
         kind in prop::sample::select(Kind::ALL.to_vec()),
         fields in prop::collection::vec(
             prop_oneof![

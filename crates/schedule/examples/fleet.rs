@@ -1,11 +1,14 @@
-//! Schedules a made-up fleet and says how long it took:
-//! `cargo run --release -p binnacle-schedule --example fleet VESSELS CALLS FIRMS SEED PORTS DAYS`.
+//! Schedules a made-up fleet and prints the time it took:
+//! `cargo run --release -p binnacle-schedule --example fleet VESSELS CALLS
+//! FIRMS SEED PORTS DAYS`.
 //!
-//! Ships call at forty large ports, or at the first so many of them, the larger ones more
-//! often, an eighth of the calls for less than a working day; an ETA is good to two hours
-//! tomorrow and to two days in half a year. All calls begin within half a year, or within so
-//! many days, and all is due by then: the fewer, the scarcer the teams. Firms serve three to nine ports with one to three teams, each of which
-//! does one or two jobs a day, and half of the firms are not accepted by every flag.
+//! Ships call at forty large ports, or at the first PORTS of them, and more
+//! often at the larger ones. An eighth of the calls last less than a working
+//! day. An ETA is good to two hours tomorrow and to two days in half a year.
+//! All calls begin, and all needs are due, within half a year or within DAYS:
+//! the fewer, the scarcer the teams. Firms serve three to nine ports with one
+//! to three teams, each of which does one or two jobs a day. Half of the firms
+//! are not accepted by every flag.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // a benchmark, run by hand
 
@@ -26,19 +29,42 @@ const PORTS: [&str; 40] = [
 ];
 const FLAGS: [&str; 6] = ["PA", "MH", "LR", "NO", "MT", "SG"];
 
+/// Size of the fleet, as given on the command line.
+struct Size {
+    vessels: u64,
+    calls: u64,
+    firms: u64,
+    seed: u64,
+    ports: u64,
+    days: u64,
+}
+
 fn main() {
     let mut arguments = std::env::args()
         .skip(1)
         .map(|text| text.parse::<u64>().unwrap());
     let mut next = |default| arguments.next().unwrap_or(default);
-    let (vessels, calls, firms, seed) = (next(200), next(6), next(15), next(1));
-    let ports = next(PORTS.len() as u64);
-    let days = next(180);
-    let text = fleet([vessels, calls, firms], seed, ports, days).to_string();
+    let size = Size {
+        vessels: next(200),
+        calls: next(6),
+        firms: next(15),
+        seed: next(1),
+        ports: next(PORTS.len() as u64),
+        days: next(180),
+    };
+    let text = fleet(&size).to_string();
     let checked = read(&text).unwrap();
     let began = Instant::now();
     let schedule = plan(&checked);
     let took_s = began.elapsed().as_secs_f64();
+    let Size {
+        vessels,
+        calls,
+        firms,
+        seed,
+        ports,
+        days,
+    } = size;
     println!(
         "{vessels} vessels × {calls} calls × {firms} firms, seed {seed}, {ports} ports, {days} days: {} jobs, {} unscheduled, \
          {:.0} euros, gap {:.4} %, optimal {}, {took_s:.2} s",
@@ -50,33 +76,33 @@ fn main() {
     );
 }
 
-fn fleet([vessels, calls, firms]: [u64; 3], seed: u64, ports: u64, days: u64) -> Value {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
+fn fleet(size: &Size) -> Value {
+    let mut random = ChaCha8Rng::seed_from_u64(size.seed);
     let now = Time::parse("2026-11-21T00:00:00Z").unwrap();
     let known: Vec<&str> = PORTS
         .into_iter()
         .filter(|code| {
             binnacle_schedule::ports::find(code.to_string().try_into().unwrap()).is_some()
         })
-        .take(ports as usize)
+        .take(size.ports as usize)
         .collect();
     let mut input = json!({"now": now, "vessels": [], "needs": [], "port_calls": [], "firms": []});
     let mut push = |list: &str, item: Value| input[list].as_array_mut().unwrap().push(item);
-    for vessel in 0..vessels {
+    for vessel in 0..size.vessels {
         let id = format!("v{vessel}");
         push(
             "vessels",
             json!({"id": id, "flag": FLAGS.choose(&mut random).unwrap()}),
         );
         let due = now
-            .plus_hours(24.0 * random.random_range(5.0..days as f64))
+            .plus_hours(24.0 * random.random_range(5.0..size.days as f64))
             .utc_date();
         push(
             "needs",
             json!({"id": format!("n{vessel}"), "vessel": id, "due": due}),
         );
-        let apart_h = days as f64 * 24.0 / calls as f64;
-        for call in 0..calls {
+        let apart_h = size.days as f64 * 24.0 / size.calls as f64;
+        for call in 0..size.calls {
             let begins_h = apart_h * (call as f64 + random.random_range(0.0..0.6));
             let short = random.random_range(0..8) == 0;
             let stay_h = if short {
@@ -97,7 +123,7 @@ fn fleet([vessels, calls, firms]: [u64; 3], seed: u64, ports: u64, days: u64) ->
             );
         }
     }
-    for firm in 0..firms {
+    for firm in 0..size.firms {
         let mut ports: Vec<&str> = Vec::new();
         for _ in 0..random.random_range(3..10) {
             let port = often(&known, &mut random);
@@ -127,7 +153,7 @@ fn fleet([vessels, calls, firms]: [u64; 3], seed: u64, ports: u64, days: u64) ->
     input
 }
 
-/// A port: of two drawn, the larger.
+/// Draws two ports and returns the larger.
 fn often<'a>(ports: &[&'a str], random: &mut ChaCha8Rng) -> &'a str {
     let drawn = random
         .random_range(0..ports.len())

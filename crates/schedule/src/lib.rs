@@ -1,7 +1,7 @@
-//! Who adjusts which ship's compass, where and when.
+//! Scheduling of compass adjustments: the firm, place and day for each ship.
 //!
-//! What always holds: nothing here reads a clock or draws a random number; the same
-//! input gives the same schedule. In reading order:
+//! Invariants: nothing here reads a clock or draws a random number, and the
+//! same input gives the same schedule. In reading order:
 
 pub mod time;
 pub mod zone;

@@ -1,11 +1,10 @@
-//! Instants and sums of money, as they are written.
+//! Instants and sums of money in their JSON form.
 //!
-//! What always holds: an [`Instant`] was written with its time zone, and an [`Eur`] is
+//! Invariants: an [`Instant`] was written with its time zone, and an [`Eur`] is
 //! not negative. Money is counted in cents.
 
-use crate::zone::Zone;
 use binnacle_compass::time::{Timestamp, TimestampError};
-use chrono::{DateTime, FixedOffset, NaiveDate, NaiveTime, TimeDelta};
+use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -15,10 +14,10 @@ use std::fmt;
 pub struct Instant(pub Timestamp);
 
 impl Instant {
-    /// Reads RFC 3339.
+    /// Parses RFC 3339.
     ///
     /// # Errors
-    /// When it is something else, and in so many words when only the zone is missing.
+    /// When it is something else, with an error of its own for a missing zone.
     pub fn parse(text: &str) -> Result<Instant, TimestampError> {
         Timestamp::parse(text).map(Instant)
     }
@@ -28,36 +27,14 @@ impl Instant {
         self.0.seconds_since(earlier.0) / 3600.0
     }
 
-    /// The instant so many hours later.
+    /// The instant `hours` later.
     pub fn plus_hours(self, hours: f64) -> Instant {
         Instant(self.0.plus_seconds(hours * 3600.0))
     }
 
-    /// The date that it is in a zone.
-    pub fn date(self, zone: Zone) -> NaiveDate {
-        zone.local(self).date()
-    }
-
-    /// The date that it is in UTC.
+    /// The date in UTC.
     pub fn utc_date(self) -> NaiveDate {
         self.0.to_chrono().date_naive()
-    }
-
-    /// When clocks of a zone show an hour of a day, of 0 to 24: see [`Zone::instant`] for one
-    /// that they show twice, or skip.
-    pub fn at(day: NaiveDate, hour: f64, zone: Zone) -> Instant {
-        let since_midnight = TimeDelta::seconds((hour * 3600.0).round() as i64);
-        zone.instant(day.and_time(NaiveTime::MIN) + since_midnight)
-    }
-
-    /// The same instant as clocks of a zone show it, with their offset.
-    #[allow(clippy::missing_panics_doc, reason = "no zone is a day from UTC")]
-    pub fn there(self, zone: Zone) -> DateTime<FixedOffset> {
-        let ahead = i32::try_from(zone.ahead_s(self)).ok();
-        let ahead = ahead.and_then(FixedOffset::east_opt);
-        self.0
-            .to_chrono()
-            .with_timezone(&ahead.expect("no zone is a day from UTC"))
     }
 }
 
@@ -85,18 +62,18 @@ impl From<Instant> for String {
 #[serde(try_from = "f64", into = "f64")]
 pub struct Eur(i64);
 
-/// Why a number is no sum of money.
+/// The reason why a number is not a sum of money.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{0} is not within 0 to 1000000 euros")]
 pub struct EurError(f64);
 
 impl Eur {
-    /// So many whole euros, up to 65 535.
+    /// An amount of whole euros, up to 65 535.
     pub const fn whole(euros: u16) -> Eur {
         Eur(euros as i64 * 100)
     }
 
-    /// Cents.
+    /// The amount in cents.
     pub fn cents(self) -> i64 {
         self.0
     }
@@ -126,6 +103,7 @@ pub(crate) fn euros(cents: i64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::zone::Zone;
 
     #[test]
     fn a_date_is_that_of_the_zone() {
@@ -136,7 +114,7 @@ mod tests {
         assert_eq!(evening.date(houston).to_string(), "2026-12-01");
         let morning = Instant::at(evening.date(singapore), 8.0, singapore);
         assert_eq!(morning.to_string(), "2026-12-02T00:00:00Z");
-        let there = evening.there(houston).to_rfc3339();
+        let there = evening.in_zone(houston).to_rfc3339();
         assert_eq!(there, "2026-12-01T14:00:00-06:00");
     }
 

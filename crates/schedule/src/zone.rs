@@ -1,15 +1,15 @@
-//! Legal time: what clocks show at a place, and when.
+//! Legal time: local time at a place.
 //!
-//! The rules are those of the IANA time zone database that the crate jiff brings with it,
-//! never the machine's own: the same input gives the same plan everywhere.
+//! The rules are those of the IANA time zone database in the crate jiff, never
+//! the machine's own: the same input gives the same plan everywhere.
 //!
-//! What always holds: every local time is of one instant. A time that clocks show twice, as
-//! they are put back, is the first of the two; one that they skip, as they are put forward,
-//! is the first instant after it.
+//! Invariants: every local time is one instant. A time that occurs twice, when
+//! clocks are put back, is the first of the two. A time that is skipped, when
+//! clocks are put forward, is the first instant after it.
 
 use crate::time::Instant;
 use binnacle_compass::time::Timestamp;
-use chrono::{Datelike, NaiveDate, NaiveDateTime, NaiveTime, TimeDelta, Timelike};
+use chrono::{Datelike, FixedOffset, NaiveDate, NaiveDateTime, NaiveTime, TimeDelta, Timelike};
 use jiff::civil::DateTime;
 use jiff::tz::{AmbiguousOffset, Offset, TimeZone};
 use serde::{Deserialize, Serialize};
@@ -21,15 +21,15 @@ use std::sync::OnceLock;
 #[serde(try_from = "String", into = "String")]
 pub struct Zone(&'static Known);
 
-/// A name that the database has, and the zone's rules once they were asked for.
+/// A name in the database, and the zone's rules, loaded at first use.
 struct Known {
     name: String,
     rules: OnceLock<TimeZone>,
 }
 
-/// Why something is no time zone.
+/// The reason why a text is not a time zone.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is no time zone like Europe/Madrid")]
+#[error("{0:?} is not a time zone such as Europe/Madrid")]
 pub struct ZoneError(String);
 
 /// All zones, in the order of their names.
@@ -57,10 +57,10 @@ impl Zone {
         Zone::find("UTC").expect("every time zone database has UTC")
     }
 
-    /// The zone of a name.
+    /// Finds the zone of a name.
     ///
     /// # Errors
-    /// When the database has none of it.
+    /// When the database does not have it.
     pub fn find(name: &str) -> Result<Zone, ZoneError> {
         let found = all().binary_search_by(|known| known.name.as_str().cmp(name));
         found
@@ -73,19 +73,19 @@ impl Zone {
         &self.0.name
     }
 
-    /// What clocks show at an instant.
+    /// Returns the local time at an instant.
     pub fn local(self, at: Instant) -> NaiveDateTime {
         let utc = at.0.to_chrono().naive_utc();
         utc + TimeDelta::seconds(self.ahead_s(at))
     }
 
-    /// Seconds that clocks are ahead of UTC at an instant.
+    /// Seconds ahead of UTC at an instant.
     pub fn ahead_s(self, at: Instant) -> i64 {
         i64::from(self.rules().to_offset(stamp(at.0.micros())).seconds())
     }
 
-    /// When clocks show a time: the first time that they do, or the first instant after it
-    /// where they skip it. Years before 1 and after 9999 are held within them.
+    /// Returns the instant of a local time: the first of two, or the first
+    /// instant after a skipped one. Years before 1 and after 9999 are clamped.
     pub fn instant(self, local: NaiveDateTime) -> Instant {
         let rules = self.rules();
         match rules.to_ambiguous_timestamp(civil(local)).offset() {
@@ -103,7 +103,8 @@ impl Zone {
         }
     }
 
-    /// The instant at which a day begins: not at midnight where clocks skip it.
+    /// Returns the instant at which a day begins, which is not midnight where
+    /// clocks skip it.
     pub fn midnight(self, day: NaiveDate) -> Instant {
         self.instant(day.and_time(NaiveTime::MIN))
     }
@@ -115,7 +116,32 @@ impl Zone {
     }
 }
 
-/// Of years in which jiff has instants; others are held within them.
+/// The conversions between instants and local time.
+impl Instant {
+    /// The date in a zone.
+    pub fn date(self, zone: Zone) -> NaiveDate {
+        zone.local(self).date()
+    }
+
+    /// The instant of an hour, 0 to 24, of a day in a zone; [`Zone::instant`]
+    /// describes hours that occur twice or never.
+    pub fn at(day: NaiveDate, hour: f64, zone: Zone) -> Instant {
+        let since_midnight = TimeDelta::seconds((hour * 3600.0).round() as i64);
+        zone.instant(day.and_time(NaiveTime::MIN) + since_midnight)
+    }
+
+    /// The instant with the local time and offset of a zone.
+    #[allow(clippy::missing_panics_doc, reason = "no zone is a day from UTC")]
+    pub fn in_zone(self, zone: Zone) -> chrono::DateTime<FixedOffset> {
+        let ahead = i32::try_from(zone.ahead_s(self)).ok();
+        let ahead = ahead.and_then(FixedOffset::east_opt);
+        self.0
+            .to_chrono()
+            .with_timezone(&ahead.expect("no zone is a day from UTC"))
+    }
+}
+
+/// Clamped to the years in which jiff has instants.
 fn stamp(micros: i64) -> jiff::Timestamp {
     let end = if micros < 0 {
         jiff::Timestamp::MIN
@@ -146,7 +172,7 @@ fn civil(local: NaiveDateTime) -> DateTime {
 fn at_offset(local: NaiveDateTime, offset: Offset) -> Instant {
     let micros = local.and_utc().timestamp_micros();
     let epoch = Timestamp::from_micros(0).expect("1970 is a year of this calendar");
-    // By seconds, so that what lies outside the calendar is held within it.
+    // In seconds, so that values outside the calendar are clamped.
     let seconds = micros.div_euclid(1_000_000) - i64::from(offset.seconds());
     let whole = epoch.plus_seconds(seconds as f64);
     Instant(whole.plus_seconds(micros.rem_euclid(1_000_000) as f64 * 1e-6))

@@ -1,8 +1,9 @@
-//! Port calls from CSV and iCalendar: what is read, and what is refused with its line.
+//! Port calls from CSV and iCalendar: accepted files, and faults with their
+//! lines.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
-use binnacle_schedule::calls::{FileErrors, MOST_NAMED, PortCall, csv, ics};
+use binnacle_schedule::calls::{FileErrors, MAX_LISTED, PortCall, csv, ics};
 use binnacle_schedule::time::Instant;
 use std::io::{BufReader, Read};
 
@@ -62,7 +63,7 @@ fn each_fault_of_a_csv_is_named_with_line_and_column() {
         ),
         (
             "c,v,XXXXX,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,",
-            "line 2: port: XXXXX is no sea port",
+            "line 2: port: XXXXX is not a sea port",
         ),
         (
             "c,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,six",
@@ -94,7 +95,7 @@ fn each_fault_of_a_csv_is_named_with_line_and_column() {
         csv_complaint("port,eta\n"),
         "line 1: etd: the column is missing"
     );
-    assert!(csv_complaint("port,eta,etd,colour\n").starts_with("line 1: colour: is no column"));
+    assert!(csv_complaint("port,eta,etd,colour\n").starts_with("line 1: colour: is not a column"));
 }
 
 #[test]
@@ -120,11 +121,11 @@ fn every_bad_row_of_a_csv_is_named() {
 #[test]
 fn of_many_bad_rows_the_first_are_named_and_the_others_counted() {
     let bad = "c,v,NLRTM,soon,2026-12-02T18:00:00Z,\n";
-    let said = csv_complaint(&format!("{HEADER}{}", bad.repeat(MOST_NAMED + 3)));
-    assert_eq!(said.matches("line ").count(), MOST_NAMED);
+    let said = csv_complaint(&format!("{HEADER}{}", bad.repeat(MAX_LISTED + 3)));
+    assert_eq!(said.matches("line ").count(), MAX_LISTED);
     assert!(said.contains("line 51: eta"), "{said}");
     assert!(said.ends_with("; and 3 more"), "{said}");
-    let said = csv_complaint(&format!("{HEADER}{}", bad.repeat(csv::MOST_CALLS + 5)));
+    let said = csv_complaint(&format!("{HEADER}{}", bad.repeat(csv::MAX_CALLS + 5)));
     assert!(said.ends_with("; and 49951 more"), "{said}");
 }
 
@@ -163,7 +164,7 @@ impl<R: Read> Read for Counted<'_, R> {
 #[test]
 fn a_csv_of_too_many_calls_is_refused_at_the_first_too_many() {
     let row = |at: usize| format!("{at},v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n");
-    let rows: String = (0..csv::MOST_CALLS + 5).map(row).collect();
+    let rows: String = (0..csv::MAX_CALLS + 5).map(row).collect();
     let text = format!("{HEADER}{rows}");
     assert_eq!(
         csv_complaint(&text),
@@ -172,7 +173,7 @@ fn a_csv_of_too_many_calls_is_refused_at_the_first_too_many() {
 }
 
 #[test]
-fn what_is_exported_is_no_formula_and_reads_back() {
+fn an_exported_cell_is_no_formula_and_reads_back() {
     let text = format!("{HEADER}=1+1,@v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n");
     let calls = csv_calls(&text);
     let mut out = Vec::new();
@@ -181,9 +182,9 @@ fn what_is_exported_is_no_formula_and_reads_back() {
     assert!(written.contains("\n'=1+1,'@v,"), "{written}");
     assert_eq!(csv_calls(std::str::from_utf8(&out).unwrap()), calls);
     for harmless in ["", "c1", "'c1", "a=b"] {
-        assert_eq!(csv::harmless(harmless), harmless);
+        assert_eq!(csv::escape_formula(harmless), harmless);
     }
-    assert_eq!(csv::harmless("'=1"), "''=1");
+    assert_eq!(csv::escape_formula("'=1"), "''=1");
 }
 
 /// Madrid as calendars define it.
@@ -221,7 +222,8 @@ fn a_calendars_times_are_taken_in_their_zone_summer_and_winter() {
         eta_of("DTSTART;TZID=\"Europe/Madrid\":20270101T060000"),
         "2027-01-01T05:00:00Z"
     );
-    // The last Sunday of March 2027 is the 28th, that of October 2026 was the 25th.
+    // The last Sunday of March 2027 is the 28th; that of October 2026 was the
+    // 25th.
     assert_eq!(
         eta_of("DTSTART;TZID=Europe/Madrid:20270328T013000"),
         "2027-03-28T00:30:00Z"
@@ -249,7 +251,7 @@ fn a_time_outside_the_calendars_years_is_refused_with_its_line() {
     }
 }
 
-/// The port of a call of which a calendar says `more`, or what is wrong.
+/// The port of a call in a calendar with the lines `more`, or the fault.
 fn port_of(more: &str) -> Result<String, String> {
     let text = calendar("DTSTART:20270701T060000Z", END, more);
     ics::read(&text, "v", now())
@@ -276,7 +278,7 @@ fn a_port_is_found_by_code_or_by_a_name_that_only_one_has() {
     assert!(
         port_of("LOCATION:Nowhere")
             .unwrap_err()
-            .contains("LOCATION: \"Nowhere\" is no port")
+            .contains("LOCATION: \"Nowhere\" is not a known port")
     );
     assert!(
         port_of("LOCATION:Newport")
@@ -301,7 +303,7 @@ fn a_ships_name_and_a_part_of_a_ports_name_are_no_port() {
         "KYGEC"
     );
     assert_eq!(port_of("LOCATION:ES BIO Bilbao").unwrap(), "ESBIO");
-    // Two ports are called so: the summary may say which, and no third one.
+    // Two ports share the name: the summary may choose one, but no third.
     assert_eq!(
         port_of("SUMMARY:Nao\\, NLRTM\r\nLOCATION:Rotterdam").unwrap(),
         "NLRTM"
@@ -322,7 +324,7 @@ fn a_ships_name_and_a_part_of_a_ports_name_are_no_port() {
 }
 
 #[test]
-fn what_a_calendar_does_not_say_is_refused_with_its_line() {
+fn a_missing_property_is_refused_with_its_line() {
     let said = |start: &str, end: &str, more: &str| {
         ics::read(&calendar(start, end, more), "v", now())
             .unwrap_err()
@@ -345,7 +347,7 @@ fn what_a_calendar_does_not_say_is_refused_with_its_line() {
 }
 
 #[test]
-fn an_event_may_say_how_long_it_lasts_instead_of_when_it_ends() {
+fn an_event_may_have_a_duration_instead_of_an_end() {
     let start = "DTSTART;TZID=Europe/Madrid:20270701T060000";
     let read = |lasts: &str| ics::read(&calendar(start, lasts, "LOCATION:NLRTM"), "v", now());
     let etd = read("DURATION:P1DT12H").unwrap().calls[0].call.etd;
@@ -388,9 +390,10 @@ fn a_cancelled_event_is_no_call() {
     assert_eq!(read.cancelled, ["c1@agent"]);
 }
 
-/// What exports a ship's calls goes on with the one that she has left.
+/// Programs that export a ship's calls go on exporting the one that it has
+/// left.
 #[test]
-fn a_row_that_is_over_is_passed_by() {
+fn a_past_row_is_skipped() {
     let over = "c,v,NLRTM,2026-11-01T06:00:00Z,2026-11-20T18:00:00Z,\n";
     let ahead = "d,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n";
     let text = format!("{HEADER}{over}{ahead}");
@@ -404,7 +407,7 @@ fn a_row_that_is_over_is_passed_by() {
 }
 
 #[test]
-fn what_is_over_is_counted_and_no_call() {
+fn a_past_call_is_counted_and_left_out() {
     let past = calendar(
         "DTSTART:20260701T060000Z",
         "DTEND:20260702T060000Z",

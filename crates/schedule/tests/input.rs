@@ -1,4 +1,4 @@
-//! Every kind of bad input is refused with the JSON path of what is wrong.
+//! Every kind of bad input is refused with the JSON path of the fault.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -18,7 +18,7 @@ fn good() -> Value {
     })
 }
 
-/// What is said when the value at a pointer is another.
+/// The error when the value at a pointer is replaced.
 fn complaint(pointer: &str, value: Value) -> String {
     let mut input = good();
     let (parent, field) = pointer.rsplit_once('/').unwrap();
@@ -58,7 +58,7 @@ fn each_fault_is_named_with_its_path() {
         (
             "/port_calls/0/port",
             json!("NLXXX"),
-            "port_calls[0].port: NLXXX is no sea port",
+            "port_calls[0].port: NLXXX is not a sea port",
         ),
         (
             "/port_calls/0/port",
@@ -73,7 +73,7 @@ fn each_fault_is_named_with_its_path() {
         (
             "/port_calls/1/id",
             json!("c1"),
-            "port_calls[1].id: \"c1\" stands there twice",
+            "port_calls[1].id: \"c1\" appears twice",
         ),
         (
             "/port_calls/1/eta",
@@ -160,7 +160,7 @@ fn each_fault_is_named_with_its_path() {
         (
             "/compasses",
             json!([{"id": "n1", "vessel": "v1", "facts": {}}]),
-            "compasses[0].id: \"n1\" stands there twice",
+            "compasses[0].id: \"n1\" appears twice",
         ),
     ];
     for (pointer, value, expected) in cases {

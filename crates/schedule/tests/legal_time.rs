@@ -1,4 +1,5 @@
-//! Ports keep legal time: known days and hours, and the nights on which clocks change.
+//! Ports keep legal time: known days and hours, and the nights on which clocks
+//! change.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -62,7 +63,7 @@ fn a_port_shows_its_countrys_time_in_winter_and_summer() {
         ("GBLON", "+00:00", "+01:00"), // London
     ] {
         let zone = port(code).zone;
-        let offset = |at: &str| instant(at).there(zone).format("%:z").to_string();
+        let offset = |at: &str| instant(at).in_zone(zone).format("%:z").to_string();
         assert_eq!(offset("2026-12-01T00:00:00Z"), december, "{code} {zone}");
         assert_eq!(offset("2027-07-01T00:00:00Z"), july, "{code} {zone}");
     }
@@ -76,7 +77,7 @@ fn islands_at_the_date_line_are_on_their_own_side_of_it() {
     assert_eq!(date(zone("Pacific/Kiritimati")), "2026-12-09");
     assert_eq!(date(zone("Pacific/Pago_Pago")), "2026-12-08");
     assert_eq!(
-        noon.there(zone("Pacific/Chatham")).to_rfc3339(),
+        noon.in_zone(zone("Pacific/Chatham")).to_rfc3339(),
         "2026-12-09T01:45:00+13:45"
     );
 }
@@ -126,7 +127,7 @@ fn a_time_that_clocks_skip_is_the_first_instant_after_it() {
     let beirut = zone("Asia/Beirut");
     let begins = beirut.midnight("2027-03-28".parse().unwrap());
     assert_eq!(
-        begins.there(beirut).to_rfc3339(),
+        begins.in_zone(beirut).to_rfc3339(),
         "2027-03-28T01:00:00+03:00"
     );
     // Samoa had no 30 December 2011 at all.
@@ -167,7 +168,7 @@ fn a_time_that_clocks_show_twice_is_the_first() {
 }
 
 #[test]
-fn what_is_no_zone_is_refused_in_words() {
+fn an_unknown_zone_is_refused_with_its_name() {
     for wrong in [
         "",
         "Europe/Atlantis",
@@ -176,7 +177,7 @@ fn what_is_no_zone_is_refused_in_words() {
         "../etc/passwd",
     ] {
         let refused = Zone::find(wrong).unwrap_err().to_string();
-        assert!(refused.ends_with("is no time zone like Europe/Madrid"));
+        assert!(refused.ends_with("is not a time zone such as Europe/Madrid"));
     }
     assert!(serde_json::from_str::<Zone>("\"Nowhere\"").is_err());
     let madrid: Zone = serde_json::from_str("\"Europe/Madrid\"").unwrap();
@@ -191,7 +192,7 @@ fn the_ends_of_the_calendar_are_no_panic() {
             let there = zone.local(at);
             assert!(zone.instant(there).hours_since(at).abs() < 24.0);
             zone.midnight(at.date(zone));
-            at.there(zone);
+            at.in_zone(zone);
         }
     }
 }
@@ -201,9 +202,10 @@ mod laws {
     use proptest::prelude::*;
 
     proptest! {
-        /// What clocks show leads back to the instant, or to the first that shows it.
+        /// A local time leads back to the instant, or to the first one that
+        /// shows it.
         #[test]
-        fn an_instant_is_found_again_by_what_clocks_show(
+        fn an_instant_is_found_again_by_its_local_time(
             which in 0_usize..10_000,
             hours in 0_i64..40 * 8766,
         ) {

@@ -1,9 +1,9 @@
-//! Due dates by the shipped rules, each worked out by hand.
+//! Due dates by the built-in rules, each worked out by hand.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use binnacle_schedule::needs::{Cause, CauseKind, Compass, Due, Ship, Terms, Urgency, due};
-use binnacle_schedule::rules::shipped;
+use binnacle_schedule::rules::built_in_rules;
 use chrono::NaiveDate;
 use serde_json::{Value, from_value, json};
 
@@ -12,7 +12,7 @@ fn due_of(ship: Value, compass: Value) -> Due {
     let ship: Ship = from_value(ship).unwrap();
     let compass: Compass = from_value(compass).unwrap();
     let today = day("2026-11-21");
-    due(&ship, &compass, shipped(), &Terms::default(), today).unwrap()
+    due(&ship, &compass, built_in_rules(), &Terms::default(), today).unwrap()
 }
 
 fn day(text: &str) -> NaiveDate {
@@ -130,7 +130,7 @@ fn deviation_over_five_degrees_brings_a_marshall_islands_ship_forward() {
     assert_eq!(of("NO", 5.1).on, day("2028-06-01"));
 }
 
-/// Of a day that is past a prediction tells since when.
+/// For a past day, a prediction gives the day since which it holds.
 #[test]
 fn the_two_weeks_run_from_the_day_on_which_the_limit_was_passed() {
     let over = due_of(
@@ -180,7 +180,7 @@ fn a_change_of_two_degrees_counts_and_a_smaller_one_does_not() {
 }
 
 #[test]
-fn a_failed_verification_is_urgent_and_says_by_how_much() {
+fn a_failed_verification_is_urgent_and_gives_its_error() {
     let due = due_of(
         json!({"flag": "NO"}),
         json!({"adjusted_on": "2026-11-01", "failed_verification": {"on": "2026-11-10", "worst_error_deg": 2.44}}),
@@ -268,7 +268,7 @@ fn deviation_over_the_limit_is_named_where_no_adjustment_is_on_record() {
 }
 
 #[test]
-fn what_was_over_the_limit_before_the_adjustment_counts_from_the_adjustment() {
+fn an_excess_before_the_adjustment_counts_from_the_adjustment() {
     let over = over_own_limit(
         &json!({"adjusted_on": "2026-11-15", "deviation_limit_deg": 5.0,
         "predicted": [
@@ -284,7 +284,7 @@ fn what_was_over_the_limit_before_the_adjustment_counts_from_the_adjustment() {
 }
 
 #[test]
-fn an_adjustment_that_the_sea_has_not_verified_is_said_to_be_so() {
+fn an_unverified_adjustment_is_marked_as_unverified() {
     let compass = json!({"adjusted_on": "2026-11-21", "awaits_verification": true});
     let due = due_of(json!({"flag": "NO"}), compass);
     assert_eq!((due.on, due.urgency), (day("2028-11-21"), Urgency::Routine));

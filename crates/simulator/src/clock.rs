@@ -1,8 +1,8 @@
-//! The wall clock: the one place that reads it.
+//! The wall clock, read in one place only.
 
 use binnacle_compass::time::Timestamp;
 
-/// Now.
+/// Returns the current time.
 #[allow(clippy::disallowed_methods, reason = "this is the one clock function")]
 pub(crate) fn now() -> Timestamp {
     let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);

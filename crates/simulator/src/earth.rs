@@ -1,11 +1,11 @@
-//! The earth's field where the ship is, in the one place that asks for it.
+//! The charted earth's field at the ship, computed in one place.
 
 use binnacle_compass::field::{Field, FieldAt, FieldError, FieldModel};
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
 
-/// The coefficients are made anew when they are this old; the field changes by
-/// less than a third of a nanotesla in that time.
+/// Age at which the coefficients are recomputed; the field changes by less than
+/// a third of a nanotesla in that time.
 const DAY_S: f64 = 86_400.0;
 
 /// IGRF-14 at sea level, at the ship's time.
@@ -21,7 +21,8 @@ impl Chart {
         Ok(Chart { drawn: time, field })
     }
 
-    /// The field at a place. Beyond the model's last day its last chart serves.
+    /// Returns the field at a place. After the model's last day, its last
+    /// coefficients are used.
     pub(crate) fn field(&mut self, position: Position, time: Timestamp) -> Field {
         if time.seconds_since(self.drawn) > DAY_S
             && let Ok(newer) = Chart::new(time)

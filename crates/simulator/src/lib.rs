@@ -1,28 +1,21 @@
-//! Ships, voyages and instruments that speak NMEA: for the demonstration, the
-//! tests and the benchmarks.
+//! Simulated ships, voyages and instruments with NMEA output, for the
+//! demonstration, the tests and the benchmarks.
 //!
-//! A ship here is what the estimator is to find out about, so nothing of the
-//! estimator is used: Poisson's equations are solved by the simulator's own
-//! code, and only angles, places, times and the earth's field are shared.
-//! The same scenario and seed give the same bytes.
+//! The estimator is tested on these ships, so none of its code is used. The
+//! simulator solves Poisson's equations with its own code, and shares only
+//! angles, places, times and the earth's field. The same scenario and seed give
+//! the same bytes.
 
 pub mod scenario;
 
+pub mod nmea;
 pub mod ship;
-pub mod talk;
 pub mod truth;
 
 pub mod poisson;
 
-mod calendar;
-mod compass;
 mod earth;
-mod gyro;
-mod motion;
-mod passage;
-mod process;
+mod instruments;
+mod local_field;
+mod navigation;
 mod random;
-mod rhumb;
-mod satellite;
-mod sentences;
-mod variation;

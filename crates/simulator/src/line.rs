@@ -1,8 +1,8 @@
-//! Lines that sentences go out on.
+//! Network outputs of sentences.
 //!
-//! A TCP line serves one client at a time. In a hurry it waits for one and goes
-//! at its pace; live it waits for nobody, and what a client does not take in
-//! time is lost to it, as on a real bridge.
+//! A TCP output serves one client at a time. In fast mode it waits for a client
+//! and follows its pace. In live mode it never waits, and a slow client
+//! loses sentences, as on a real bridge.
 
 use anyhow::{Context, Result};
 use std::net::SocketAddr;
@@ -10,11 +10,12 @@ use std::time::Duration;
 use tokio::io::AsyncWriteExt;
 use tokio::net::{TcpListener, TcpSocket, TcpStream, UdpSocket};
 
-/// What may be under way to a client that dies: some minutes of a voyage.
+/// The most bytes under way to a client that disappears: some minutes of a
+/// voyage.
 const SEND_BUFFER_BYTES: u32 = 64 * 1024;
-/// A live client that takes nothing for so long is given up.
-const LIVE_PATIENCE: Duration = Duration::from_secs(5);
-/// Fits every Ethernet.
+/// Time after which a live client that reads nothing is dropped.
+const LIVE_TIMEOUT: Duration = Duration::from_secs(5);
+/// The largest datagram, which fits every Ethernet.
 const DATAGRAM_BYTES: usize = 1400;
 
 /// A TCP server for one client at a time.
@@ -48,8 +49,8 @@ impl TcpLine {
         Ok(self.listener.local_addr()?)
     }
 
-    /// Waits for a client and sends. What was on its way to a client that went
-    /// away is lost.
+    /// Waits for a client and sends. Bytes under way to a client that
+    /// disconnected are lost.
     pub(crate) async fn send(&mut self, bytes: &[u8]) -> Result<()> {
         if self.client.is_none() {
             self.client = Some(self.listener.accept().await?.0);
@@ -62,7 +63,7 @@ impl TcpLine {
         Ok(())
     }
 
-    /// Sends to the client if there is one, and to nobody otherwise.
+    /// Sends to the client, if there is one.
     pub(crate) async fn send_live(&mut self, bytes: &[u8]) {
         let arrived = tokio::time::timeout(Duration::ZERO, self.listener.accept()).await;
         if let Ok(Ok((newest, _))) = arrived {
@@ -71,7 +72,7 @@ impl TcpLine {
         let Some(client) = &mut self.client else {
             return;
         };
-        let sent = tokio::time::timeout(LIVE_PATIENCE, client.write_all(bytes)).await;
+        let sent = tokio::time::timeout(LIVE_TIMEOUT, client.write_all(bytes)).await;
         if !matches!(sent, Ok(Ok(()))) {
             self.client = None;
         }
@@ -90,8 +91,8 @@ pub(crate) async fn send_datagrams(
             .iter()
             .rposition(|&byte| byte == b'\n')
             .map_or(most.len(), |at| at + 1);
-        // An absent listener shows as an error of the datagram before: on a ship
-        // nobody minds.
+        // A missing listener shows as an error of the previous datagram, and is
+        // ignored, as on a ship.
         let _ = socket.send_to(&bytes[..end], to).await;
         bytes = &bytes[end..];
     }

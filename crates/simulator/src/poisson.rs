@@ -1,9 +1,9 @@
-//! What a ship's iron does to the earth's field, by Poisson's equations in full.
+//! Magnetic field at the compass, by Poisson's equations in full.
 //!
-//! `B = h + χ h + b` in ship axes (x forward, y starboard, z down), all nine
-//! coefficients and all three components of `b`, also when the ship heels. The
-//! card settles along the horizontal part of `B`. This is the simulator's own
-//! code on purpose: what it says must not rest on what the estimator believes.
+//! `B = h + χ h + b` in ship axes (x forward, y starboard, z down), with all
+//! nine coefficients and all three components of `b`, also for a heeled ship.
+//! The card settles along the horizontal part of `B`. The simulator has its own
+//! code on purpose: it must not share errors with the estimator.
 
 use binnacle_compass::angle::wrap_180;
 use serde::Serialize;
@@ -27,8 +27,9 @@ pub struct Field {
 }
 
 impl Magnetism {
-    /// The horizontal field at the compass, nT: forward and starboard in level
-    /// axes, on a magnetic heading, with the starboard side down by `roll_rad`.
+    /// Returns the horizontal field at the compass, nT: forward and starboard
+    /// in level axes, on a magnetic heading, with the starboard side down by
+    /// `roll_rad`.
     pub fn horizontal(&self, field: Field, magnetic_rad: f64, roll_rad: f64) -> [f64; 2] {
         let (sin, cos) = magnetic_rad.sin_cos();
         let (roll_sin, roll_cos) = roll_rad.sin_cos();
@@ -50,16 +51,16 @@ impl Magnetism {
         [at_compass(0), across * roll_cos - down * roll_sin]
     }
 
-    /// Deviation, degrees east, on a magnetic heading in degrees.
+    /// Returns the deviation, degrees east, on a magnetic heading in degrees.
     pub fn deviation_deg(&self, field: Field, magnetic_deg: f64, roll_deg: f64) -> f64 {
         let [forward, starboard] =
             self.horizontal(field, magnetic_deg.to_radians(), roll_deg.to_radians());
         wrap_180(magnetic_deg - (-starboard).atan2(forward).to_degrees())
     }
 
-    /// The magnetic heading, degrees, on which an upright ship's compass shows
-    /// `compass_deg`; it is unique where the deviation is below a right angle
-    /// and the compass follows every turn.
+    /// Returns the magnetic heading, degrees, on which an upright ship's
+    /// compass shows `compass_deg`. It is unique where the deviation is below a
+    /// right angle and the compass follows every turn.
     pub fn magnetic_deg(&self, field: Field, compass_deg: f64) -> f64 {
         let excess = |magnetic: f64| {
             wrap_180(magnetic - self.deviation_deg(field, magnetic, 0.0) - compass_deg)
@@ -76,13 +77,14 @@ impl Magnetism {
         f64::midpoint(low, high)
     }
 
-    /// λ: the mean directive force on the card as a share of the earth's.
+    /// λ: the mean directive force on the card as a fraction of the earth's.
     pub fn lambda(&self) -> f64 {
         1.0 + f64::midpoint(self.chi[0][0], self.chi[1][1])
     }
 
-    /// The least directive force on any heading, as a share of the earth's
-    /// horizontal field: negative or near zero, the compass is of no use there.
+    /// The least directive force on any heading, as a fraction of the earth's
+    /// horizontal field. Where it is negative or near zero, the compass is
+    /// useless.
     pub fn least_directive_force(&self, field: Field) -> f64 {
         (0..72)
             .map(|step| {
@@ -94,7 +96,7 @@ impl Magnetism {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// This magnetism and more of it.
+    /// Adds `share` of another magnetism.
     pub(crate) fn plus(mut self, other: &Magnetism, share: f64) -> Magnetism {
         for axis in 0..3 {
             self.b_nt[axis] += share * other.b_nt[axis];

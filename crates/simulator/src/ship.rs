@@ -1,18 +1,18 @@
-//! One ship at sea: everything together, one step at a time.
+//! One ship at sea, advanced step by step.
 //!
-//! What always holds: the same scenario, seed, ship, start and steps give the
-//! same readings to the bit. Slow things change once a minute of ship time,
-//! quick ones at every step.
+//! Invariant: the same scenario, seed, ship, start and steps give bit-identical
+//! readings. Slow quantities change once a minute of ship time, fast ones at
+//! every step.
 
-use crate::compass::{Compass, Exposure};
-use crate::gyro::Gyro;
-use crate::motion::Motion;
-use crate::passage::{Order, Passage};
+use crate::instruments::compass::{Compass, Exposure};
+use crate::instruments::gyro::Gyro;
+use crate::instruments::satellite::Satellite;
+use crate::local_field::LocalField;
+use crate::navigation::motion::Motion;
+use crate::navigation::passage::{Order, Passage};
 use crate::poisson::{Field, Magnetism};
 use crate::random::Random;
-use crate::satellite::Satellite;
 use crate::scenario::{Event, Scenario, ShipPlan};
-use crate::variation::Surroundings;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::field::FieldError;
 use binnacle_compass::position::Position;
@@ -20,12 +20,12 @@ use binnacle_compass::time::Timestamp;
 
 const MINUTE_S: f64 = 60.0;
 
-/// What the instruments show at one instant, and what is really so.
+/// Readings of the instruments at one instant, with the true values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// When.
+    /// Time of the reading.
     pub time: Timestamp,
-    /// Where.
+    /// Position.
     pub position: Position,
     /// Speed over ground, knots.
     pub sog_kn: f64,
@@ -35,22 +35,22 @@ pub struct Reading {
     pub rate_deg_min: f64,
     /// Roll, degrees, starboard down positive.
     pub roll_deg: f64,
-    /// The magnetic compass, raw, degrees, not wrapped.
+    /// Raw reading of the magnetic compass, degrees, not wrapped.
     pub compass_deg: f64,
-    /// The gyro, degrees, not wrapped.
+    /// Reading of the gyro, degrees, not wrapped.
     pub gyro_deg: f64,
-    /// The satellite compass, degrees, not wrapped.
+    /// Reading of the satellite compass, degrees, not wrapped.
     pub satellite: SatelliteReading,
-    /// Whether she lies alongside.
+    /// True if the ship lies alongside.
     pub alongside: bool,
     /// The true heading.
     pub heading_deg: f64,
 }
 
-/// What the satellite compass says.
+/// Reading of the satellite compass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SatelliteReading {
-    /// She has none.
+    /// The ship has none.
     Absent,
     /// It has lost its satellites.
     Lost,
@@ -58,7 +58,7 @@ pub enum SatelliteReading {
     Heading(f64),
 }
 
-/// A ship under way through a scenario.
+/// A ship under way in a scenario.
 #[derive(Clone, Debug)]
 pub struct Ship {
     plan: ShipPlan,
@@ -69,7 +69,7 @@ pub struct Ship {
     passage: Passage,
     order: Order,
     motion: Motion,
-    surroundings: Surroundings,
+    local_field: LocalField,
     magnetism: Magnetism,
     berth: Berth,
     compass: Compass,
@@ -77,7 +77,8 @@ pub struct Ship {
     satellite: Option<Satellite>,
 }
 
-/// The quay's steel: 0.1 to 1.5 µT at the compass, another at every berth.
+/// Magnetic field of the quay: 0.1 to 1.5 µT at the compass, different at every
+/// berth.
 #[derive(Clone, Debug)]
 struct Berth {
     steel: Option<Magnetism>,
@@ -85,7 +86,7 @@ struct Berth {
 }
 
 impl Ship {
-    /// A ship of the scenario at the start of her voyage.
+    /// Creates a ship of the scenario at the start of its voyage.
     ///
     /// # Errors
     /// When the earth's field is not known for that time.
@@ -96,7 +97,7 @@ impl Ship {
         start: Timestamp,
     ) -> Result<Ship, FieldError> {
         let mut motion = Motion::new(plan, seed);
-        let surroundings = Surroundings::new(scenario, &plan.name, seed, start, motion.position)?;
+        let local_field = LocalField::new(scenario, &plan.name, seed, start, motion.position)?;
         let mut passage = Passage::new(plan, seed);
         let order = passage.step(0.0, motion.position);
         motion.begin(order);
@@ -109,7 +110,7 @@ impl Ship {
             passage,
             order,
             motion,
-            surroundings,
+            local_field,
             magnetism: plan.magnetism,
             berth: Berth {
                 steel: None,
@@ -130,7 +131,7 @@ impl Ship {
         &self.plan
     }
 
-    /// When the voyage began.
+    /// The start of the voyage.
     pub fn start(&self) -> Timestamp {
         self.start
     }
@@ -140,49 +141,50 @@ impl Ship {
         self.start.plus_seconds(self.elapsed_s)
     }
 
-    /// Where she is.
+    /// The ship's position.
     pub fn position(&self) -> Position {
         self.motion.position
     }
 
-    /// Whether she lies alongside.
+    /// True if the ship lies alongside.
     pub fn is_alongside(&self) -> bool {
         self.passage.is_alongside()
     }
 
-    /// Her true heading now, degrees.
+    /// The present true heading, degrees.
     pub fn heading_deg(&self) -> f64 {
         self.motion.heading_deg
     }
 
-    /// Her own magnetism now, without that of a quay.
+    /// The ship's own present magnetism, without that of a quay.
     pub fn magnetism(&self) -> Magnetism {
         self.magnetism
     }
 
-    /// Variation by the chart here and now, degrees east.
+    /// Charted variation here and now, degrees east.
     pub fn charted_variation_deg(&self) -> f64 {
-        self.surroundings.charted.declination().degrees_east()
+        self.local_field.charted.declination().degrees_east()
     }
 
-    /// The field by the chart here and now.
+    /// Charted field here and now.
     pub fn charted_field(&self) -> Field {
         Field {
-            h_nt: self.surroundings.charted.h_nt(),
-            z_nt: self.surroundings.charted.z_nt,
+            h_nt: self.local_field.charted.h_nt(),
+            z_nt: self.local_field.charted.z_nt,
         }
     }
 
-    /// The deviation that a perfect model gives on a compass reading, here and
-    /// now, degrees east: true heading less charted variation less the
-    /// reading, lubber line included, every noise left out.
+    /// Returns the deviation of a perfect model on a compass reading, here and
+    /// now, degrees east: true heading less charted variation less the reading,
+    /// with the lubber line and without noise.
     pub fn deviation_deg(&self, compass_deg: f64) -> f64 {
         let card_deg = compass_deg - self.plan.alignment_deg;
         let magnetic = self.magnetism.magnetic_deg(self.charted_field(), card_deg);
         wrap_180(magnetic - compass_deg)
     }
 
-    /// What the compass would show now without any noise, degrees, not wrapped.
+    /// The compass reading here and now without any noise, degrees, not
+    /// wrapped.
     pub fn quiet_compass_deg(&self) -> f64 {
         let magnetic = self.motion.heading_deg - self.charted_variation_deg();
         let deviation = self
@@ -191,7 +193,7 @@ impl Ship {
         magnetic - deviation + self.plan.alignment_deg
     }
 
-    /// Sails on for `dt` seconds and reads all instruments.
+    /// Advances by `dt` seconds and reads all instruments.
     pub fn step(&mut self, dt: f64) -> Reading {
         self.elapsed_s += dt;
         self.minute_s += dt;
@@ -217,8 +219,8 @@ impl Ship {
             dt,
             &Exposure {
                 magnetism: &at_compass,
-                field: self.surroundings.field,
-                magnetic_deg: motion.heading_deg - self.surroundings.variation_deg,
+                field: self.local_field.field,
+                magnetic_deg: motion.heading_deg - self.local_field.variation_deg,
                 roll_deg: motion.roll_deg,
                 turned_deg: wrap_180(motion.heading_deg - before_deg),
                 sea: motion.sea,
@@ -253,7 +255,7 @@ impl Ship {
         self.order = self.passage.step(elapsed_s, self.motion.position);
         self.motion.step_slow(elapsed_s);
         let run_nm = std::mem::take(&mut self.run_nm);
-        self.surroundings
+        self.local_field
             .step(elapsed_s, run_nm, self.motion.position, time);
         self.magnetism = magnetism_at(&self.plan, day);
         self.gyro.step_slow(elapsed_s, day, &self.motion);
@@ -277,7 +279,7 @@ impl Berth {
     }
 }
 
-/// A ship's magnetism so many days from the start, by her events.
+/// Returns a ship's magnetism `day` days from the start, by its events.
 pub fn magnetism_at(plan: &ShipPlan, day: f64) -> Magnetism {
     plan.events
         .iter()

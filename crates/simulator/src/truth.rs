@@ -1,4 +1,4 @@
-//! What really was: the answers that a model is to be judged by.
+//! The true values for judging a model.
 
 use crate::poisson::Magnetism;
 use crate::scenario::{Anomaly, Event, Scenario, Storm};
@@ -7,13 +7,13 @@ use binnacle_compass::angle::{wrap_180, wrap_360};
 use binnacle_compass::time::Timestamp;
 use serde::Serialize;
 
-/// Headings of the final table, degrees apart.
+/// Interval between headings of the final table, degrees.
 const STEP_DEG: u32 = 10;
 const HOUR_S: f64 = 3600.0;
 
-/// Gathers the truth of one ship's voyage.
+/// Records the truth of one ship's voyage.
 #[derive(Clone, Debug)]
-pub struct Log {
+pub struct TruthRecorder {
     hours: Vec<Hour>,
     next_hour: Timestamp,
 }
@@ -30,12 +30,12 @@ pub struct Truth {
     gyro_constant_deg: f64,
     satellite_alignment_deg: Option<f64>,
     epochs: Vec<Epoch>,
-    events: Vec<Happening>,
+    events: Vec<EventRecord>,
     hours: Vec<Hour>,
     at_the_end: Place,
 }
 
-/// An interval without an event; magnetism is that of its beginning.
+/// An interval without an event, with the magnetism at its beginning.
 #[derive(Clone, Debug, Serialize)]
 struct Epoch {
     from: Timestamp,
@@ -46,7 +46,7 @@ struct Epoch {
     parameters_over_lambda: OverLambda,
 }
 
-/// The seven ratios that headings can tell.
+/// The seven ratios that can be identified from headings.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct OverLambda {
     bx_nt: f64,
@@ -59,7 +59,7 @@ struct OverLambda {
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct Happening {
+struct EventRecord {
     kind: &'static str,
     from: Timestamp,
     to: Option<Timestamp>,
@@ -81,45 +81,45 @@ struct Hour {
     deviation_deg: f64,
 }
 
-/// The whole curve at one place and time.
+/// The deviation curve at one place and time.
 #[derive(Clone, Debug, Serialize)]
 pub struct Place {
-    /// Where.
+    /// Latitude, degrees north.
     pub lat: f64,
-    /// Where.
+    /// Longitude, degrees east.
     pub lon: f64,
-    /// When.
+    /// Time.
     pub at: Timestamp,
-    /// By the chart, degrees east.
+    /// Charted variation, degrees east.
     pub variation_deg: f64,
-    /// By the chart.
+    /// Charted horizontal field, nT.
     pub h_nt: f64,
-    /// By the chart.
+    /// Charted vertical field, nT, positive down.
     pub z_nt: f64,
-    /// Every ten degrees of compass heading.
+    /// The deviation every ten degrees of compass heading.
     pub rows: Vec<Row>,
 }
 
 /// The true deviation on one heading.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Row {
-    /// As the compass shows it.
+    /// Compass reading, degrees.
     pub compass_deg: f64,
     /// True heading less variation less compass reading, degrees east.
     pub deviation_deg: f64,
 }
 
-impl Log {
-    /// An empty log of a voyage about to begin.
-    pub fn new(ship: &Ship) -> Log {
-        Log {
+impl TruthRecorder {
+    /// Creates an empty record of a voyage about to begin.
+    pub fn new(ship: &Ship) -> TruthRecorder {
+        TruthRecorder {
             hours: Vec::new(),
             next_hour: ship.start(),
         }
     }
 
-    /// Notes the ship's state when another hour has passed.
-    pub fn note(&mut self, ship: &Ship) {
+    /// Records the ship's state when another hour has passed.
+    pub fn record(&mut self, ship: &Ship) {
         if ship.time() < self.next_hour {
             return;
         }
@@ -141,7 +141,7 @@ impl Log {
         });
     }
 
-    /// The truth so far.
+    /// Returns the truth so far.
     pub fn truth(&self, scenario: &Scenario, seed: u64, ship: &Ship) -> Truth {
         let plan = ship.plan();
         Truth {
@@ -154,14 +154,14 @@ impl Log {
             gyro_constant_deg: plan.gyro.constant_deg,
             satellite_alignment_deg: plan.satellite.map(|satellite| satellite.alignment_deg),
             epochs: epochs(ship),
-            events: happenings(scenario, ship),
+            events: event_records(scenario, ship),
             hours: self.hours.clone(),
             at_the_end: place(ship),
         }
     }
 }
 
-/// The true deviation on all headings where the ship is now.
+/// Returns the true deviation on all headings at the ship's present place.
 pub fn place(ship: &Ship) -> Place {
     let field = ship.charted_field();
     Place {
@@ -229,7 +229,7 @@ fn over_lambda(magnetism: &Magnetism) -> OverLambda {
     }
 }
 
-fn happenings(scenario: &Scenario, ship: &Ship) -> Vec<Happening> {
+fn event_records(scenario: &Scenario, ship: &Ship) -> Vec<EventRecord> {
     let at = |day: f64| ship.start().plus_seconds(day * 86_400.0);
     let own = ship.plan().events.iter().map(|event| match event {
         Event::Lightning {
@@ -237,7 +237,7 @@ fn happenings(scenario: &Scenario, ship: &Ship) -> Vec<Happening> {
             b_nt,
             returning,
             return_days,
-        } => Happening {
+        } => EventRecord {
             kind: "lightning",
             from: at(*day),
             to: None,
@@ -249,7 +249,7 @@ fn happenings(scenario: &Scenario, ship: &Ship) -> Vec<Happening> {
             from_day,
             to_day,
             magnetism,
-        } => Happening {
+        } => EventRecord {
             kind: "cargo",
             from: at(*from_day),
             to: Some(at(*to_day)),
@@ -260,7 +260,7 @@ fn happenings(scenario: &Scenario, ship: &Ship) -> Vec<Happening> {
             to_day,
             offset_deg,
             drift_deg_per_h,
-        } => Happening {
+        } => EventRecord {
             kind: "gyro_fault",
             from: at(*from_day),
             to: Some(at(*to_day)),
@@ -269,13 +269,13 @@ fn happenings(scenario: &Scenario, ship: &Ship) -> Vec<Happening> {
             }),
         },
     });
-    let storm = |storm: &Storm| Happening {
+    let storm = |storm: &Storm| EventRecord {
         kind: "storm",
         from: at(storm.day),
         to: Some(at(storm.day + storm.hours / 24.0)),
         detail: serde_json::json!({ "strength_nt": storm.strength_nt }),
     };
-    let anomaly = |anomaly: &Anomaly| Happening {
+    let anomaly = |anomaly: &Anomaly| EventRecord {
         kind: "anomaly",
         from: ship.start(),
         to: None,

@@ -1,24 +1,25 @@
-//! `voyage`: one ship's sentences, and the truth beside them.
+//! `voyage`: writes one ship's sentences and their truth.
 
+use crate::atomic_file::{bad_path, finish, partial_path, write_whole};
 use crate::cli::{self, BadInput, VoyageArgs};
 use crate::clock;
 use crate::line::{TcpLine, send_datagrams};
 use anyhow::{Context, Result};
 use binnacle_compass::time::Timestamp;
+use binnacle_simulator::nmea::Talker;
 use binnacle_simulator::ship::Ship;
-use binnacle_simulator::talk::Talker;
-use binnacle_simulator::truth::Log;
+use binnacle_simulator::truth::TruthRecorder;
 use std::fs::File;
 use std::io::Write;
 use std::net::{Ipv4Addr, SocketAddr};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use tokio::net::UdpSocket;
 
 const BUFFER_BYTES: usize = 64 * 1024;
 
-/// Where the sentences go.
+/// Destination of the sentences.
 enum Sink {
     File(File),
     Tcp(TcpLine),
@@ -33,7 +34,7 @@ pub(crate) async fn run(args: &VoyageArgs) -> Result<ExitCode> {
     let seed = args.seed.unwrap_or(scenario.seed);
     let ship = Ship::new(&scenario, plan, seed, start)
         .map_err(|error| BadInput(format!("--start: {error}")))?;
-    let mut log = Log::new(&ship);
+    let mut recorder = TruthRecorder::new(&ship);
     let mut talker = Talker::new(&scenario, ship, seed);
     let until = start.plus_seconds(days * 86_400.0);
     let partial = args.out.as_deref().map(partial_path);
@@ -45,8 +46,8 @@ pub(crate) async fn run(args: &VoyageArgs) -> Result<ExitCode> {
         if args.real_time {
             wait_for(talker.next_time(), ahead_s).await;
         }
-        talker.speak(&mut buffer);
-        log.note(talker.ship());
+        talker.write_group(&mut buffer);
+        recorder.record(talker.ship());
         if args.real_time || buffer.len() >= BUFFER_BYTES {
             bytes += buffer.len();
             sink.send(&buffer).await?;
@@ -59,7 +60,7 @@ pub(crate) async fn run(args: &VoyageArgs) -> Result<ExitCode> {
         finish(partial, out)?;
     }
     if let Some(path) = &args.truth {
-        let truth = log.truth(&scenario, seed, talker.ship());
+        let truth = recorder.truth(&scenario, seed, talker.ship());
         write_whole(path, &serde_json::to_vec(&truth)?)?;
     }
     report(&talker, bytes, began.elapsed())?;
@@ -94,39 +95,7 @@ fn open(args: &VoyageArgs, partial: Option<&Path>) -> Result<Sink> {
     Ok(Sink::Udp(UdpSocket::from_std(socket)?, to))
 }
 
-/// A file gets its name when it is whole; devices and pipes have theirs.
-fn partial_path(out: &Path) -> PathBuf {
-    // What /dev/stdout stands for may be a file, but not one to be renamed to.
-    let is_device = out.starts_with("/dev")
-        || out.starts_with("/proc")
-        || std::fs::metadata(out).is_ok_and(|found| !found.is_file());
-    if is_device {
-        return out.to_owned();
-    }
-    let mut name = out.as_os_str().to_owned();
-    name.push(".partial");
-    PathBuf::from(name)
-}
-
-fn finish(partial: &Path, out: &Path) -> Result<()> {
-    if partial == out {
-        return Ok(());
-    }
-    std::fs::rename(partial, out).map_err(|error| bad_path(out, &error).into())
-}
-
-/// Writes a file that is there wholly or not at all.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let partial = partial_path(path);
-    std::fs::write(&partial, bytes).map_err(|error| bad_path(path, &error))?;
-    finish(&partial, path)
-}
-
-fn bad_path(path: &Path, error: &std::io::Error) -> BadInput {
-    BadInput(format!("{}: {error}", path.display()))
-}
-
-/// Waits until the wall clock, shifted, shows this time.
+/// Waits until the shifted wall clock shows this time.
 async fn wait_for(time: Timestamp, ahead_s: f64) {
     let left_s = time.seconds_since(clock::now()) - ahead_s;
     if left_s > 0.0 {

@@ -1,4 +1,4 @@
-//! How long a batch takes, each way.
+//! Time to encode and decode a batch.
 
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -12,7 +12,7 @@ fn main() {
     divan::main();
 }
 
-/// A quarter of a day, three days, three weeks.
+/// Samples of a quarter of a day, three days and three weeks.
 const SIZES: [usize; 3] = [29, 360, 3000];
 
 #[divan::bench(args = SIZES)]
@@ -31,7 +31,7 @@ fn decode_batch(bencher: Bencher<'_, '_>, samples: usize) {
         .bench(|| decode(divan::black_box(&bytes)));
 }
 
-/// The most that a frame can ask of a decoder: 64 columns of 65,535 samples, all alike.
+/// The costliest frame for a decoder: 64 columns of 65,535 equal samples.
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn refuse_costliest(bencher: Bencher<'_, '_>) {
     let mut frame = b"BN\x01\x02".to_vec();

@@ -11,15 +11,15 @@ import zlib
 KIND, LONGEST = 0xB1, 340
 
 
-def varint(octets):
+def varint(data):
     """The number, and what follows it."""
     value = 0
-    for index, octet in enumerate(octets[:10]):
-        value |= (octet & 0x7F) << (7 * index)
-        if octet < 0x80:
+    for index, byte in enumerate(data[:10]):
+        value |= (byte & 0x7F) << (7 * index)
+        if byte < 0x80:
             if value >> 64:
                 break
-            return value, octets[index + 1:]
+            return value, data[index + 1:]
     raise ValueError("varint")
 
 
@@ -27,7 +27,7 @@ class Joiner:
     def __init__(self):
         self.open = {}
 
-    def take(self, message):
+    def push(self, message):
         """A frame, or nothing yet."""
         if len(message) > LONGEST or len(message) < 3 or message[0] != KIND:
             raise ValueError("kind")
@@ -59,7 +59,7 @@ def main():
     joiner = Joiner()
     for line in sys.stdin:
         try:
-            frame = joiner.take(bytes.fromhex(line))
+            frame = joiner.push(bytes.fromhex(line))
             print(frame.hex() if frame else "waits")
         except ValueError:
             print("refused")

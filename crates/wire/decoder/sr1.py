@@ -28,7 +28,7 @@ MAX_BYTES, MAX_SAMPLES, MAX_COLUMNS = 262_144, 65_535, 64
 
 
 class Refused(Exception):
-    """Why bytes are not a batch, by the kind's name."""
+    """The reason why bytes are not a batch, by the kind's name."""
 
 
 class Bits:
@@ -61,11 +61,11 @@ class Bits:
     def varint(self):
         value = 0
         for group in range(10):
-            octet = self.take(8)
-            value |= (octet & 0x7F) << (7 * group)
+            byte = self.take(8)
+            value |= (byte & 0x7F) << (7 * group)
             if value >= 1 << 64:
                 raise Refused("NumberTooLong")
-            if octet < 0x80:
+            if byte < 0x80:
                 return value
         raise Refused("NumberTooLong")
 
@@ -78,15 +78,15 @@ def clamp(value):
     return max(-LIMIT, min(LIMIT, value))
 
 
-class Foresight:
-    """A predictor at work on one column."""
+class PredictorState:
+    """The state of a predictor in one column."""
 
     def __init__(self, predictor, value, time):
         self.predictor, self.first = predictor, value
         self.last, self.before = (value, time), None
         self.mean, self.greatest = value * 256, value
 
-    def expect(self, time):
+    def predict(self, time):
         value, at = self.last
         if self.predictor == 0:
             return self.first
@@ -101,7 +101,7 @@ class Foresight:
             return clamp(value + rise // (at - self.before[1]))
         return value
 
-    def learn(self, value, time):
+    def update(self, value, time):
         self.before, self.last = self.last, (value, time)
         self.greatest = max(self.greatest, value)
         if 3 <= self.predictor <= 6:
@@ -161,39 +161,39 @@ def read_column(bits, count, times):
     values[rows[0]] = unzigzag(bits.varint())
     if abs(values[rows[0]]) > LIMIT:
         raise Refused("OutOfRange")
-    foresight = Foresight(predictor, values[rows[0]], time(rows[0]))
+    state = PredictorState(predictor, values[rows[0]], time(rows[0]))
     for row, residual in zip(rows[1:], read_residuals(bits, len(rows) - 1)):
-        values[row] = foresight.expect(time(row)) + residual
+        values[row] = state.predict(time(row)) + residual
         if abs(values[row]) > LIMIT:
             raise Refused("OutOfRange")
-        foresight.learn(values[row], time(row))
+        state.update(values[row], time(row))
     return values
 
 
 class Range:
-    """Answers from a dense frame's octets: the digits of a number from 0 up to 1."""
+    """Bits from a dense frame's bytes, which are the digits of a number from 0 up to 1."""
 
     def __init__(self, data):
         self.data, self.taken, self.number, self.range = data, 0, 0, 1 << 32
         for _ in range(4):
-            self.take_octet()
+            self.take_byte()
 
-    def take_octet(self):
+    def take_byte(self):
         if self.taken >= len(self.data) + 4:
             raise Refused("Truncated")
-        octet = self.data[self.taken] if self.taken < len(self.data) else 0
+        byte = self.data[self.taken] if self.taken < len(self.data) else 0
         self.taken += 1
-        self.number = self.number << 8 | octet
+        self.number = self.number << 8 | byte
 
-    def narrow(self, no):
-        yes = self.number >= no
-        if yes:
-            self.number -= no
-        self.range = self.range - no if yes else no
+    def narrow(self, zero_share):
+        bit = self.number >= zero_share
+        if bit:
+            self.number -= zero_share
+        self.range = self.range - zero_share if bit else zero_share
         while self.range < 1 << 24:
-            self.take_octet()
+            self.take_byte()
             self.range <<= 8
-        return int(yes)
+        return int(bit)
 
     def take(self, count):
         value = 0
@@ -201,20 +201,20 @@ class Range:
             value = value << 1 | self.narrow(self.range // 2)
         return value
 
-    def answer(self, odds):
-        yes = self.narrow(self.range // (odds[0] + odds[1]) * odds[0])
-        odds[yes] += 5
-        if odds[0] + odds[1] > 320:
-            odds[0], odds[1] = (odds[0] + 1) // 2, (odds[1] + 1) // 2
-        return yes
+    def modelled_bit(self, model):
+        bit = self.narrow(self.range // (model[0] + model[1]) * model[0])
+        model[bit] += 5
+        if model[0] + model[1] > 320:
+            model[0], model[1] = (model[0] + 1) // 2, (model[1] + 1) // 2
+        return bit
 
     def finish(self):
         if self.taken + 1 < len(self.data) + 4:
             raise Refused("TrailingBits")
 
 
-class Habits:
-    """What a column's residuals are like, so far."""
+class ResidualModels:
+    """Adaptive bit models of a column's residuals."""
 
     def __init__(self):
         self.longer = [[2, 2] for _ in range(55)]
@@ -223,14 +223,14 @@ class Habits:
 
     def residual(self, bits):
         length = 0
-        while length < 55 and bits.answer(self.longer[length]):
+        while length < 55 and bits.modelled_bit(self.longer[length]):
             length += 1
         if length == 0:
             return 0
-        sign = -1 if bits.answer(self.negative) else 1
+        sign = -1 if bits.modelled_bit(self.negative) else 1
         size = 1
         if length > 1:
-            size = 2 + bits.answer(self.second[length])
+            size = 2 + bits.modelled_bit(self.second[length])
             size = size << (length - 2) | bits.take(length - 2)
         return sign * size
 
@@ -238,9 +238,9 @@ class Habits:
 def read_dense_column(bits, count, times):
     presence = [True] * count
     if bits.take(1):
-        odds, before = [[2, 2], [2, 2]], 1
+        model, before = [[2, 2], [2, 2]], 1
         for row in range(count):
-            before = presence[row] = bits.answer(odds[before])
+            before = presence[row] = bits.modelled_bit(model[before])
     rows = [row for row, there in enumerate(presence) if there]
     values = [None] * count
     if not rows:
@@ -253,12 +253,12 @@ def read_dense_column(bits, count, times):
     values[rows[0]] = unzigzag(1 << (length - 1) | bits.take(length - 1) if length else 0)
     if abs(values[rows[0]]) > LIMIT:
         raise Refused("OutOfRange")
-    foresight, habits = Foresight(predictor, values[rows[0]], time(rows[0])), Habits()
+    state, models = PredictorState(predictor, values[rows[0]], time(rows[0])), ResidualModels()
     for row in rows[1:]:
-        values[row] = foresight.expect(time(row)) + habits.residual(bits)
+        values[row] = state.predict(time(row)) + models.residual(bits)
         if abs(values[row]) > LIMIT:
             raise Refused("OutOfRange")
-        foresight.learn(values[row], time(row))
+        state.update(values[row], time(row))
     return values
 
 
@@ -270,9 +270,9 @@ def read_tally(bits):
             length = bits.varint()
             if not 1 <= length <= 64:
                 raise Refused("BadReason")
-            octets = bytes(bits.take(8) for _ in range(length))
+            text = bytes(bits.take(8) for _ in range(length))
             try:
-                name = octets.decode("utf-8")
+                name = text.decode("utf-8")
             except UnicodeDecodeError:
                 raise Refused("BadReason") from None
         elif number is not None and number <= len(REASONS):

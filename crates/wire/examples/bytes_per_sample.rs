@@ -1,4 +1,4 @@
-//! What a sample costs on the link, by the size of the batch.
+//! Bytes per sample on the link, by size of the batch.
 //!
 //! `cargo run -p binnacle-wire --example bytes_per_sample`
 

@@ -1,5 +1,5 @@
-//! What the estimator loses by what a frame rounds, and by samples that are left out:
-//! the tables of BENCHMARKS.md.
+//! Precision that the estimator loses to a frame's rounding and to thinned
+//! samples: the tables of BENCHMARKS.md.
 //!
 //! `cargo run --release -p binnacle-wire --example losses [SHIPS]`, with the number of
 //! ships of each kind. Ships and their errors are those of the estimator's own studies,
@@ -25,29 +25,34 @@ use voyages::{Faults, Variety, predicted, true_deviation};
 
 const HEADINGS: usize = 36;
 const DAYS: f64 = 30.0;
-/// So much of its standard error moves a curve that was tipped to another fit.
+/// A curve that moves by this fraction of its standard error has tipped to
+/// another fit.
 const TIPPED: f64 = 0.25;
 const VARIETIES: [Variety; 3] = [Variety::Rich, Variety::Medium, Variety::Poor];
 
-/// What the analysis says of a ship's deviation where she is at the end, by heading.
+/// The analysed deviation of a ship at its last position, by heading.
 #[derive(Clone, Copy)]
 struct Curve {
     deviations_deg: [f64; HEADINGS],
-    /// Mean variance, without what no heading can tell from the reference's constant.
+    /// Mean variance, without the part inseparable from the reference's
+    /// constant.
     variance: f64,
 }
 
-/// The rows that are analysed of a voyage.
+/// Chooses the rows of a voyage to analyse.
 type Rows = dyn Fn(&Log) -> Vec<Sample> + Sync;
 
-/// A way to them.
-struct Way {
+/// A named choice of rows.
+struct Variant {
     name: String,
     rows: Box<Rows>,
 }
 
-fn way(name: impl Into<String>, rows: impl Fn(&Log) -> Vec<Sample> + Sync + 'static) -> Way {
-    Way {
+fn variant(
+    name: impl Into<String>,
+    rows: impl Fn(&Log) -> Vec<Sample> + Sync + 'static,
+) -> Variant {
+    Variant {
         name: name.into(),
         rows: Box::new(rows),
     }
@@ -70,14 +75,14 @@ fn main() {
     );
 }
 
-/// Samples as each profile sends them: the same in batches of other sizes; and what thinning
-/// leaves of those when the link does not keep up.
-fn thinned() -> Vec<Way> {
-    let mut ways = vec![way("ten minutes' means, unrounded", |log| {
+/// Samples as each profile sends them, in batches of other sizes, and the
+/// remainder after thinning when the link does not keep up.
+fn thinned() -> Vec<Variant> {
+    let mut variants = vec![variant("ten minutes' means, unrounded", |log| {
         log.samples.clone()
     })];
     for (profile, seal_h) in [("vsat", 1), ("standard", 6), ("metered", 24)] {
-        ways.push(way(profile, move |log| framed(&log.samples, seal_h)));
+        variants.push(variant(profile, move |log| framed(&log.samples, seal_h)));
     }
     for (name, seconds, most) in [
         ("thinned to two an hour", 3_600, 2),
@@ -85,15 +90,15 @@ fn thinned() -> Vec<Way> {
         ("to one in six hours", 6 * 3_600, 1),
         ("to one a day", 24 * 3_600, 1),
     ] {
-        ways.push(way(name, move |log| {
+        variants.push(variant(name, move |log| {
             framed(&thin(&log.samples, seconds, most), 24)
         }));
     }
-    ways
+    variants
 }
 
-/// Of each 10° of heading the first few in so many seconds, as the agent thins samples that
-/// have equally many windows.
+/// Keeps the first `most` samples per 10° of heading and time window, as the
+/// agent thins samples with equal numbers of windows.
 fn thin(samples: &[Sample], seconds: i64, most: usize) -> Vec<Sample> {
     let mut kept: BTreeMap<(i64, i64), usize> = BTreeMap::new();
     let samples = samples.iter().filter(|s| {
@@ -106,48 +111,50 @@ fn thin(samples: &[Sample], seconds: i64, most: usize) -> Vec<Sample> {
     samples.copied().collect()
 }
 
-/// Each column rounded alone, in the frame's step and in greater ones; and all, through
-/// frames.
-fn rounded() -> Vec<Way> {
-    let mut ways = Vec::new();
+/// Each column rounded alone, in the frame's step and in coarser ones; then all
+/// columns, through frames.
+fn rounded() -> Vec<Variant> {
+    let mut variants = Vec::new();
     for step in [0.02, 0.05, 0.1, 0.2, 0.5] {
-        ways.push(way(
+        variants.push(variant(
             format!("compass less reference {step}°"),
-            each(move |s| s.compass = less(s, |apart| round(apart, step))),
+            for_each_sample(move |s| {
+                s.compass = with_difference(s, |difference| round(difference, step));
+            }),
         ));
     }
     for step in [0.05, 0.2, 0.5, 1.0] {
-        ways.push(way(
+        variants.push(variant(
             format!("gyro {step}°"),
-            each(move |s| {
-                let apart = less(s, |apart| apart);
+            for_each_sample(move |s| {
+                let difference = with_difference(s, |difference| difference);
                 let gyro = s.gyro.unwrap().degrees();
                 s.gyro = TrueHeading::new(round(gyro, step));
                 let shift = s.gyro.unwrap().degrees() - gyro;
-                s.compass = CompassHeading::new(apart.degrees() + shift).unwrap();
+                s.compass = CompassHeading::new(difference.degrees() + shift).unwrap();
             }),
         ));
     }
     for step in [0.001, 0.01, 0.1] {
-        ways.push(way(
+        variants.push(variant(
             format!("latitude, longitude {step}°"),
-            each(move |s| {
+            for_each_sample(move |s| {
                 let (lat, lon) = (s.position.lat_deg(), s.position.lon_deg());
                 s.position = Position::new(round(lat, step), wrap_180(round(lon, step))).unwrap();
             }),
         ));
     }
     for step in [0.2, 1.0] {
-        ways.push(way(
+        variants.push(variant(
             format!("speed {step} kn"),
-            each(move |s| s.sog_kn = s.sog_kn.map(|sog| round(sog, step))),
+            for_each_sample(move |s| s.sog_kn = s.sog_kn.map(|sog| round(sog, step))),
         ));
     }
-    ways.push(way("all, as frames do", |log| framed(&log.samples, 24)));
-    ways
+    variants.push(variant("all, as frames do", |log| framed(&log.samples, 24)));
+    variants
 }
 
-fn each(change: impl Fn(&mut Sample) + Sync) -> impl Fn(&Log) -> Vec<Sample> + Sync {
+fn for_each_sample(change: impl Fn(&mut Sample) + Sync) -> impl Fn(&Log) -> Vec<Sample> + Sync {
     move |log| {
         let mut samples = log.samples.clone();
         samples.iter_mut().for_each(&change);
@@ -159,13 +166,13 @@ fn round(value: f64, step: f64) -> f64 {
     (value / step).round() * step
 }
 
-/// The compass's heading, its difference from the gyro's changed.
-fn less(s: &Sample, change: impl Fn(f64) -> f64) -> CompassHeading {
+/// The compass heading after `change` of its difference from the gyro.
+fn with_difference(s: &Sample, change: impl Fn(f64) -> f64) -> CompassHeading {
     let gyro = s.gyro.unwrap().degrees();
     CompassHeading::new(gyro + change(wrap_180(s.compass.degrees() - gyro))).unwrap()
 }
 
-/// Through frames of so many hours each, as they go ashore.
+/// Samples after encoding and decoding in frames of `hours` hours each.
 fn framed(samples: &[Sample], hours: i64) -> Vec<Sample> {
     let batches = samples.chunk_by(|a, b| {
         let batch = |s: &Sample| s.time.micros().div_euclid(hours * 3_600_000_000);
@@ -185,42 +192,46 @@ fn framed(samples: &[Sample], hours: i64) -> Vec<Sample> {
     batches.flat_map(through).collect()
 }
 
-/// One voyage by the usual rows and by others.
+/// One voyage, analysed with the usual rows and with others.
 struct Pair {
-    /// Mean squares over headings, of both against the truth and of one against the other.
+    /// Mean squares over headings: both against the truth, and one against the
+    /// other.
     usual_error: f64,
     error: f64,
     change: f64,
-    /// Mean variances that the analysis states.
+    /// Mean variances stated by the analysis.
     usual_variance: f64,
     variance: f64,
 }
 
-/// Analyses each ship by `usual` rows and by each way, and prints how those differ.
-fn compare(usual_name: &str, ships: u64, usual: fn(&Log) -> Vec<Sample>, ways: &[Way]) {
+/// Analyses each ship with the `usual` rows and with each variant, and prints
+/// the differences.
+fn compare(usual_name: &str, ships: u64, usual: fn(&Log) -> Vec<Sample>, variants: &[Variant]) {
     let found = each_ship(ships, |seed| {
         let log = sail(seed);
         let usual = curve(&log, &usual(&log));
         let truth = truth(&log);
         let pair = |other: Curve| {
             usual.map(|usual| Pair {
-                usual_error: apart(&usual.deviations_deg, &truth),
-                error: apart(&other.deviations_deg, &truth),
-                change: apart(&other.deviations_deg, &usual.deviations_deg),
+                usual_error: mean_square_difference(&usual.deviations_deg, &truth),
+                error: mean_square_difference(&other.deviations_deg, &truth),
+                change: mean_square_difference(&other.deviations_deg, &usual.deviations_deg),
                 usual_variance: usual.variance,
                 variance: other.variance,
             })
         };
-        let curves = ways.iter().map(|way| curve(&log, &(way.rows)(&log)));
+        let curves = variants
+            .iter()
+            .map(|variant| curve(&log, &(variant.rows)(&log)));
         curves.map(|curve| curve.and_then(pair)).collect::<Vec<_>>()
     });
     println!("\nagainst {usual_name}, {DAYS} days:");
-    for (number, way) in ways.iter().enumerate() {
+    for (number, variant) in variants.iter().enumerate() {
         let pairs: Vec<&Pair> = found
             .iter()
             .filter_map(|voyage| voyage[number].as_ref())
             .collect();
-        print(&way.name, &pairs);
+        print(&variant.name, &pairs);
     }
 }
 
@@ -229,7 +240,7 @@ fn print(name: &str, pairs: &[&Pair]) {
         let sum = |of: fn(&Pair) -> f64| pairs.iter().map(|p| of(p)).sum::<f64>();
         (sum(|p| p.error) / sum(|p| p.usual_error)).sqrt()
     };
-    // How much the ratio owes to which ships were drawn: each left out in turn.
+    // Jackknife over the ships: the ratio's dependence on the ships drawn.
     let n = pairs.len() as f64;
     let all = ratio(pairs);
     let spread: f64 = (0..pairs.len())
@@ -240,8 +251,8 @@ fn print(name: &str, pairs: &[&Pair]) {
         })
         .sum();
     let error = pairs.iter().map(|p| p.error).sum::<f64>() / n;
-    // A search for levels of noise, or for changes, may be in the balance: then a hair
-    // decides between two fits.
+    // A search for noise levels or changes may be a close decision: a tiny
+    // difference then tips it to another fit.
     let (kept, tipped): (Vec<&Pair>, Vec<&Pair>) = pairs
         .iter()
         .partition(|p| p.change < TIPPED.powi(2) * p.usual_variance);
@@ -261,7 +272,7 @@ fn print(name: &str, pairs: &[&Pair]) {
 }
 
 /// Mean square difference.
-fn apart(a: &[f64; HEADINGS], b: &[f64; HEADINGS]) -> f64 {
+fn mean_square_difference(a: &[f64; HEADINGS], b: &[f64; HEADINGS]) -> f64 {
     a.iter()
         .zip(b)
         .map(|(a, b)| wrap_180(a - b).powi(2))
@@ -283,7 +294,7 @@ fn sail(seed: u64) -> Log {
     sail_log(9_000 + seed, &plan)
 }
 
-/// The true deviation, the gyro's constant counted to it: no heading tells them apart.
+/// The true deviation plus the gyro's constant: no heading can separate them.
 fn truth(log: &Log) -> [f64; HEADINGS] {
     std::array::from_fn(|k| {
         let compass = 10.0 * k as f64;
@@ -292,7 +303,7 @@ fn truth(log: &Log) -> [f64; HEADINGS] {
     })
 }
 
-/// None where the analysis gives no model, or takes the voyage for more than one epoch.
+/// `None` where the analysis gives no model or several epochs.
 fn curve(log: &Log, samples: &[Sample]) -> Option<Curve> {
     let analysis = analyse(samples, &[], &AnalysisSettings::default());
     let [epoch] = &analysis.epochs[..] else {
@@ -309,7 +320,7 @@ fn curve(log: &Log, samples: &[Sample]) -> Option<Curve> {
     })
 }
 
-/// Does a piece of work for ships of each kind, on all cores, results in order.
+/// Runs `work` for ships of each kind on all cores; results in order.
 fn each_ship<T: Send>(ships: u64, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from) as u64;
     let seeds = 3 * ships;

@@ -1,52 +1,53 @@
-//! The alert that a ship raises herself: compass and reference have parted.
+//! The shipboard alert: compass and reference differ by more than the limit.
 //!
-//! What always holds: an alert keeps its id for life, and its revision rises with
-//! each change. Whoever gets revisions in another order keeps the highest.
+//! Invariants: an alert keeps its id for life, and its revision rises with each
+//! change. A receiver of revisions out of order keeps the highest.
 
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-/// What the ship says of her own alert, whole, in each revision.
+/// The vessel's own alert, complete in each revision.
 ///
-/// A departure is the heading that the compass gives by its model less that of the
-/// reference, both true, as the mean of some settled minutes; none where the
-/// reference gave nothing. Times are whole seconds, angles tenths of a degree.
+/// A departure is the true heading from the compass by its model, less the
+/// reference's true heading. It is the mean of some settled minutes, and `None`
+/// where the reference gave no data. Times are whole seconds, angles tenths of
+/// a degree.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShipAlert {
-    /// Made on board.
+    /// Id, made on board.
     pub id: Uuid,
-    /// From 1.
+    /// Revision, from 1.
     pub revision: u32,
-    /// Whether it goes on.
+    /// State of the alert in this revision.
     pub state: ShipAlertState,
-    /// When they parted, by the ship's time.
+    /// Start of the departure, by the ship's time.
     pub since: Timestamp,
-    /// When this revision was made, by the ship's time.
+    /// Time of this revision, by the ship's time.
     pub at: Timestamp,
-    /// The gyro's.
+    /// Departure from the gyro.
     pub gyro_departure_deg: Option<f64>,
-    /// The satellite compass's.
+    /// Departure from the satellite compass.
     pub satellite_departure_deg: Option<f64>,
-    /// A departure beyond this raised it.
+    /// Limit that the departure exceeded.
     pub limit_deg: f64,
-    /// The model that corrected the compass.
+    /// Version of the model that corrected the compass.
     pub model_version: u32,
 }
 
-/// Whether a ship's alert goes on.
+/// State of a shipboard alert.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShipAlertState {
-    /// They are apart.
+    /// The departure lasts.
     Open,
-    /// They agree again.
+    /// Compass and reference agree again.
     Agree,
-    /// Nobody can tell any more: the card was withdrawn, or there is another.
+    /// No longer judged: the card was withdrawn or replaced.
     NotJudged,
 }
 
-/// Which instrument the two others speak against.
+/// The instrument that disagrees with the two others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Suspect {
     /// Gyro and satellite compass agree with each other.
@@ -60,10 +61,10 @@ pub enum Suspect {
 }
 
 impl ShipAlert {
-    /// The departure that both ends speak of: from the gyro, or from the satellite compass
-    /// where the gyro gave nothing, or bears out the compass.
+    /// The departure to report: from the gyro, or from the satellite compass
+    /// where the gyro gave no data or the satellite compass is the suspect.
     pub fn departure_deg(&self) -> f64 {
-        let (first, second) = if self.is_of_satellite() {
+        let (first, second) = if self.reports_satellite() {
             (self.satellite_departure_deg, self.gyro_departure_deg)
         } else {
             (self.gyro_departure_deg, self.satellite_departure_deg)
@@ -71,23 +72,23 @@ impl ShipAlert {
         first.or(second).unwrap_or_default()
     }
 
-    /// What the compass departed from by that.
+    /// The reference of [`ShipAlert::departure_deg`].
     pub fn reference(&self) -> &'static str {
-        if self.is_of_satellite() {
+        if self.reports_satellite() {
             "satellite compass"
         } else {
             "gyro"
         }
     }
 
-    fn is_of_satellite(&self) -> bool {
+    fn reports_satellite(&self) -> bool {
         self.gyro_departure_deg.is_none() || self.suspect() == Suspect::Satellite
     }
 
-    /// What the references say of each other: the two that lie nearest bear each other out, if
-    /// the third is far from both.
+    /// The instrument that the two others contradict: those two must lie near
+    /// each other, and the third far from both.
     pub fn suspect(&self) -> Suspect {
-        let Some([gyro, satellite, between]) = self.sides_deg() else {
+        let Some([gyro, satellite, between]) = self.differences_deg() else {
             return Suspect::Unknown;
         };
         let is_pair = |near: f64, [one, other]: [f64; 2]| {
@@ -108,10 +109,11 @@ impl ShipAlert {
         }
     }
 
-    /// How far compass and gyro, compass and satellite compass, and both references lie apart.
-    fn sides_deg(&self) -> Option<[f64; 3]> {
+    /// Absolute differences: compass and gyro, compass and satellite compass,
+    /// gyro and satellite compass.
+    fn differences_deg(&self) -> Option<[f64; 3]> {
         let (gyro, satellite) = (self.gyro_departure_deg?, self.satellite_departure_deg?);
-        // Headings may be apart either way round.
+        // Differences of headings wrap round the circle.
         let between = (gyro - satellite + 180.0).rem_euclid(360.0) - 180.0;
         Some([gyro, satellite, between].map(f64::abs))
     }
@@ -137,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn two_that_agree_speak_against_the_third() {
+    fn two_that_agree_contradict_the_third() {
         for (gyro, satellite, suspect) in [
             (Some(8.0), Some(7.0), Suspect::Compass),
             (Some(8.0), Some(0.5), Suspect::Gyro),
@@ -158,12 +160,12 @@ mod tests {
 
     #[test]
     fn the_departure_is_from_the_gyro_where_there_is_one() {
-        let said = |gyro, satellite| {
+        let reported = |gyro, satellite| {
             let alert = alert(gyro, satellite);
             (alert.departure_deg(), alert.reference())
         };
-        assert_eq!(said(Some(-6.2), Some(-7.2)), (-6.2, "gyro"));
-        assert_eq!(said(None, Some(-7.2)), (-7.2, "satellite compass"));
-        assert_eq!(said(Some(0.2), Some(-7.2)), (-7.2, "satellite compass"));
+        assert_eq!(reported(Some(-6.2), Some(-7.2)), (-6.2, "gyro"));
+        assert_eq!(reported(None, Some(-7.2)), (-7.2, "satellite compass"));
+        assert_eq!(reported(Some(0.2), Some(-7.2)), (-7.2, "satellite compass"));
     }
 }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use uuid::Uuid;
 
-/// One compass as one agent installation reports it.
+/// Id of a stream: one compass as one agent installation reports it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct StreamId(pub Uuid);
@@ -18,31 +18,33 @@ impl fmt::Display for StreamId {
     }
 }
 
-/// Samples of one stream, and what was refused since the batch before.
+/// Samples of one stream, and the windows counted since the batch before.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Batch {
     /// The stream the samples belong to.
     pub stream: StreamId,
     /// Number within the stream, from 1, without gaps.
     pub seq: u64,
-    /// In order of time; may be empty when only the tally has news.
+    /// Samples in order of time; empty when only the tally changed.
     pub samples: Vec<Sample>,
     /// Ten-second windows since the batch before, by outcome: `accepted` or the
     /// name of the reason for refusal.
     pub tally: BTreeMap<String, u64>,
-    /// What the ship says of alerts of her own.
+    /// Alerts raised on board.
     pub alerts: Vec<ShipAlert>,
-    /// What was left out for want of room or budget.
+    /// Samples removed for lack of disk space or budget.
     pub thinned: Option<Thinned>,
 }
 
-/// Samples that were sealed in a batch and left out again before it was sent. Which
-/// ones was decided by heading, time and length alone, never by how far compass and
-/// reference differed: what is left is as good a picture, of fewer windows.
+/// Samples that were sealed in a batch and removed again before it was sent.
+///
+/// Heading, time and length alone decide which ones, never the difference of
+/// compass and reference. The remaining samples are therefore unbiased, with
+/// fewer windows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Thinned {
-    /// How many samples.
+    /// Number of samples.
     pub samples: u64,
-    /// The windows in them, which the tally counts as accepted.
+    /// Windows in them, which the tally counts as accepted.
     pub windows: u64,
 }

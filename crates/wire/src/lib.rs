@@ -1,11 +1,11 @@
-//! What the agent and the server say to each other.
+//! The protocol between agent and server.
 //!
 //! Samples go up as binary [`batch`]es, immutable once sealed, in the frame of
-//! [`codec`], with the [`reasons`] why windows were refused and the [`alert`]s that
-//! the ship raised herself, cut into [`burst`]s where a link takes no more.
-//! Acknowledgements and models come down as a compact [`downlink`], or to older agents,
-//! like enrolment, [`settings`] and reports for the [`logbook`], as the JSON
-//! [`messages`].
+//! [`codec`]. They carry the [`reasons`] why windows were refused and the
+//! [`alert`]s raised on board. A link with small messages carries them as
+//! [`burst`]s. Acknowledgements and models come down as a compact [`downlink`],
+//! or as JSON to older agents. Enrolment, [`settings`] and reports for the
+//! [`logbook`] are JSON [`messages`].
 
 pub mod alert;
 pub mod batch;

@@ -1,103 +1,106 @@
-//! What people report for the magnetic logbook, on board or ashore.
+//! Reports for the magnetic logbook, from the vessel or from the office.
 //!
-//! What always holds: a report that [`Report::checked`] gave back is one line of a
-//! logbook: it lies in this era and does not begin in the future, ends no earlier than it
-//! begins, and its words are trimmed, few, and without control characters.
+//! Invariants of a report that [`Report::checked`] returned: it does not begin
+//! before GPS time or in the future, and ends no earlier than it begins. Its
+//! texts are trimmed, short, and without control characters.
 
 use binnacle_compass::logbook::{Cargo, LogbookEntry, LogbookError, LogbookKind};
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// Longest name of a hatch or a port, and of a person, in characters.
+/// The longest name of a hatch, port or person, in characters.
 pub const MAX_NAME: usize = 100;
-/// Longest note, in characters.
+/// The longest note, in characters.
 pub const MAX_NOTE: usize = 1000;
 
-/// The first instant of GPS time, 1980-01-06: nothing here is older.
+/// The first instant of GPS time, 1980-01-06: the earliest time of a report.
 const EARLIEST_MICROS: i64 = 315_964_800_000_000;
-/// A reporter's clock, or the time zone in mind, may be wrong by so much.
-const AHEAD_S: f64 = 86_400.0;
-/// Cargo and docks last for weeks or months: an end further ahead is of a year mistaken.
-const LONGEST_AHEAD_S: f64 = 366.0 * 86_400.0;
+/// Tolerance for a reporter's wrong clock or time zone.
+const CLOCK_TOLERANCE_S: f64 = 86_400.0;
+/// Cargo and docks last for weeks or months: an end further ahead has a wrong
+/// year.
+const MAX_END_AHEAD_S: f64 = 366.0 * 86_400.0;
 
 /// One event, as its reporter writes it down.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
-    /// What happened.
+    /// The kind of event.
     pub kind: LogbookKind,
-    /// When it happened, or began.
+    /// Time of the event, or its start.
     pub from: Timestamp,
-    /// When it ended; none for an event or for what still goes on.
+    /// Its end; none for an instant or an event that lasts.
     #[serde(default)]
     pub to: Option<Timestamp>,
-    /// What the magnetic cargo was.
+    /// The kind of magnetic cargo.
     #[serde(default)]
     pub cargo: Option<Cargo>,
-    /// Where the magnetic cargo lies.
+    /// The hatch in which the magnetic cargo lies.
     #[serde(default)]
     pub hatch: Option<String>,
-    /// The port, where there is one.
+    /// The port, if in one.
     #[serde(default)]
     pub port: Option<String>,
-    /// In the reporter's own words.
+    /// The reporter's own words.
     #[serde(default)]
     pub note: String,
 }
 
-/// What is wrong with a report.
+/// The reason for refusing a report.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{field}: {detail}")]
 pub struct ReportError {
     /// The field at fault.
     pub field: &'static str,
-    /// What is wrong with it.
+    /// The fault in it.
     pub detail: String,
 }
 
 impl Report {
-    /// The report with its words trimmed, if it can be one.
+    /// Returns the report with its texts trimmed.
     ///
     /// # Errors
-    /// [`ReportError`] with the first field that cannot be.
+    /// [`ReportError`] with the first bad field.
     pub fn checked(self, now: Timestamp) -> Result<Report, ReportError> {
-        let latest = now.plus_seconds(AHEAD_S);
+        let latest = now.plus_seconds(CLOCK_TOLERANCE_S);
         if self.from.micros() < EARLIEST_MICROS {
             return Err(error("from", format!("{} is before 1980-01-06", self.from)));
         }
         if self.from > latest {
-            return Err(error("from", format!("{} is yet to come", self.from)));
+            return Err(error("from", format!("{} is in the future", self.from)));
         }
         let report = Report {
             hatch: optional("hatch", self.hatch.as_deref())?,
             port: optional("port", self.port.as_deref())?,
-            note: words("note", &self.note, MAX_NOTE)?,
+            note: trimmed("note", &self.note, MAX_NOTE)?,
             ..self
         };
         if report.hatch.is_some() && report.kind != LogbookKind::MagneticCargo {
-            return Err(error("hatch", "only magnetic cargo lies in one"));
+            return Err(error("hatch", "is only allowed for magnetic cargo"));
         }
         match report.entry().checked() {
             Ok(_) => Ok(report),
             Err(LogbookError::EndsBeforeItBegins { from, to }) => {
                 Err(error("to", format!("{to} is before from, {from}")))
             }
-            Err(LogbookError::NotACargo) => Err(error("cargo", "only magnetic cargo is one")),
+            Err(LogbookError::NotACargo) => {
+                Err(error("cargo", "is only allowed for magnetic cargo"))
+            }
         }
     }
 
-    /// The report, if its end is none of a year mistaken. Asked of who writes it down: what was
-    /// kept once is carried on, and may be taken back.
+    /// Returns the report, unless its end is too far ahead. Only a new report
+    /// is checked: one that was stored may still be sent again or withdrawn.
     ///
     /// # Errors
     /// [`ReportError`] when it ends more than a year after `now`.
     pub fn ending_within_a_year(self, now: Timestamp) -> Result<Report, ReportError> {
-        let far = self.to.filter(|to| *to > now.plus_seconds(LONGEST_AHEAD_S));
+        let far = self.to.filter(|to| *to > now.plus_seconds(MAX_END_AHEAD_S));
         far.map_or(Ok(self), |to| {
             Err(error("to", format!("{to} is more than a year ahead")))
         })
     }
 
-    /// What an analysis makes of it: everything but the words.
+    /// The entry for the analysis, without the texts.
     pub fn entry(&self) -> LogbookEntry {
         LogbookEntry {
             from: self.from,
@@ -109,28 +112,28 @@ impl Report {
     }
 }
 
-/// The name of a person who reports, trimmed; empty when none is given.
+/// Returns the reporter's name, trimmed; empty when none is given.
 ///
 /// # Errors
 /// [`ReportError`] when it is too long or has control characters.
 pub fn reporter(name: &str) -> Result<String, ReportError> {
-    let name = words("reporter", name, MAX_NAME)?;
+    let name = trimmed("reporter", name, MAX_NAME)?;
     if name.contains('\n') {
-        return Err(error("reporter", "is more than one line"));
+        return Err(error("reporter", "must be a single line"));
     }
     Ok(name)
 }
 
-/// A name on one line; none when nothing is in it.
+/// Returns a name on one line; `None` when it is empty.
 fn optional(field: &'static str, name: Option<&str>) -> Result<Option<String>, ReportError> {
-    let name = words(field, name.unwrap_or_default(), MAX_NAME)?;
+    let name = trimmed(field, name.unwrap_or_default(), MAX_NAME)?;
     if name.contains('\n') {
-        return Err(error(field, "is more than one line"));
+        return Err(error(field, "must be a single line"));
     }
     Ok(Some(name).filter(|name| !name.is_empty()))
 }
 
-fn words(field: &'static str, text: &str, most: usize) -> Result<String, ReportError> {
+fn trimmed(field: &'static str, text: &str, most: usize) -> Result<String, ReportError> {
     let text = text.trim().replace("\r\n", "\n");
     if text.chars().count() > most {
         return Err(error(field, format!("is longer than {most} characters")));
@@ -166,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn words_are_trimmed_and_empty_ones_are_none() {
+    fn texts_are_trimmed_and_empty_ones_are_none() {
         let changes = json!({ "hatch": " 2 ", "port": "  ", "note": " coils\r\nin the hold " });
         let report = read(&changes).unwrap();
         assert_eq!(report.hatch.as_deref(), Some("2"));
@@ -196,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn an_end_may_be_foreseen_for_a_year() {
+    fn an_end_may_lie_a_year_ahead() {
         let end = Timestamp::parse("2027-11-22T07:00:00Z").unwrap();
         assert_eq!(read(&json!({ "to": end })).unwrap().to, Some(end));
     }

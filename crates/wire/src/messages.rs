@@ -1,5 +1,5 @@
-//! The JSON part of the conversation: enrolment, acknowledgement, downlink, and
-//! what officers report for the logbook.
+//! The JSON messages: enrolment, acknowledgement, downlink, and officers'
+//! reports for the logbook.
 
 use crate::batch::StreamId;
 use crate::logbook::Report;
@@ -7,18 +7,19 @@ pub use crate::settings::Settings;
 use binnacle_compass::model::Model;
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use uuid::Uuid;
 
-/// `POST /api/v1/agents/enrol`: a one-time code, to be exchanged for a token.
+/// `POST /api/v1/agents/enrol`: exchanges a one-time code for a token.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EnrolRequest {
-    /// The code the operator was shown.
+    /// The code shown to the operator.
     pub code: String,
     /// The agent's own version, for the operator's list.
     pub agent_version: String,
 }
 
-/// The answer to an enrolment: everything the agent needs to send.
+/// The response to an enrolment: everything the agent needs to send.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EnrolAnswer {
     /// Bearer token; shown this once.
@@ -29,69 +30,71 @@ pub struct EnrolAnswer {
     pub vessel_name: String,
     /// The compass's name, for the local page.
     pub compass_name: String,
-    /// The shore's clock.
+    /// The server's clock.
     pub server_time: Timestamp,
 }
 
-/// The answer to `POST /api/v1/agents/token`, a token that is not valid yet, and the body
-/// of `PUT /api/v1/agents/token`, which puts it in place of the one that the request came
-/// with. An agent keeps the new one before it sends that, and the old one until it knows.
+/// A token that is not valid yet: the response to `POST /api/v1/agents/token`,
+/// and the body of `PUT /api/v1/agents/token`, which activates it in place of
+/// the request's own token. An agent stores the new token before that `PUT`,
+/// and keeps the old one until it has the response.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NewToken {
     /// Bearer token.
     pub token: String,
 }
 
-impl std::fmt::Debug for NewToken {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Debug for NewToken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("a token (withheld)")
     }
 }
 
-/// `POST /api/v1/streams` with the agent's token: opens a new stream for the
-/// same compass, as an agent does whose spool was lost or restored from an old
-/// copy.
+/// The response to `POST /api/v1/streams` with the agent's token, which opens a
+/// new stream for the same compass. An agent does so when its spool was lost or
+/// restored from an old copy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OpenStreamAnswer {
     /// The new stream.
     pub stream: StreamId,
 }
 
-/// The answer to `PUT /api/v1/streams/{stream}/batches/{seq}`, and to
-/// `GET /api/v1/streams/{stream}/downlink`.
+/// The response to `PUT /api/v1/streams/{stream}/batches/{seq}`, and to `GET
+/// /api/v1/streams/{stream}/downlink`.
 ///
-/// Both take `?model={id}&settings={version}`: what the agent already has. A model that
-/// this version of the program cannot read does not spoil the rest: the shore may be
-/// years ahead of a ship.
+/// Both take `?model={id}&settings={version}`, the agent's current ones. A
+/// model that this version of the program cannot read leaves the rest intact:
+/// the server may be years ahead of an agent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "Received")]
 pub struct Downlink {
-    /// Every batch up to and including this one is durable on shore; 0 for none.
+    /// Every batch up to and including this one is durable on the server; 0 for
+    /// none.
     pub contiguous_seq: u64,
     /// The current model, when it is not the one the agent has.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelDownlink>,
-    /// What is left of a model that came and cannot be read here; never sent.
+    /// The readable part of a model of an unknown form; never sent.
     #[serde(skip)]
     pub unread: Option<UnreadModel>,
-    /// Why the model that the agent has holds no more, while nothing has taken its
-    /// place; when absent, the model holds.
+    /// The reason why the agent's model is withdrawn, until another replaces
+    /// it; absent while the model holds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub card_withdrawn: Option<CardWithdrawn>,
     /// The current settings, when they are not those the agent has.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settings: Option<Settings>,
-    /// The shore's clock.
+    /// The server's clock.
     pub server_time: Timestamp,
 }
 
-/// A downlink as it came.
+/// A downlink before conversion.
 #[derive(Deserialize)]
 #[serde(rename = "Downlink")]
 struct Received {
     contiguous_seq: u64,
     #[serde(default)]
-    model: Option<Sent>,
+    model: Option<ReceivedModel>,
     #[serde(default)]
     card_withdrawn: Option<CardWithdrawn>,
     #[serde(default)]
@@ -101,7 +104,7 @@ struct Received {
 
 #[derive(Deserialize)]
 #[serde(untagged)]
-enum Sent {
+enum ReceivedModel {
     Readable(Box<ModelDownlink>),
     Other(UnreadModel),
 }
@@ -109,8 +112,8 @@ enum Sent {
 impl From<Received> for Downlink {
     fn from(received: Received) -> Downlink {
         let (model, unread) = match received.model {
-            Some(Sent::Readable(model)) => (Some(*model), None),
-            Some(Sent::Other(unread)) => (None, Some(unread)),
+            Some(ReceivedModel::Readable(model)) => (Some(*model), None),
+            Some(ReceivedModel::Other(unread)) => (None, Some(unread)),
             None => (None, None),
         };
         Downlink {
@@ -124,45 +127,47 @@ impl From<Received> for Downlink {
     }
 }
 
-/// What can be told of a model of a form that is not known here.
+/// The readable part of a model of an unknown form.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(default)]
 pub struct UnreadModel {
-    /// Counts the compass's models from 1.
+    /// Number of the model, counting the compass's models from 1.
     pub version: Option<u32>,
-    /// Why no card from before its epoch holds.
+    /// The reason why no card from before its epoch holds.
     pub replaces: Option<CardWithdrawn>,
 }
 
-/// A model as it is sent to the bridge.
+/// A model as sent to the bridge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelDownlink {
     /// The model version's id.
     pub id: Uuid,
-    /// Counts the compass's models from 1.
+    /// Number of the model, counting the compass's models from 1.
     pub version: u32,
     /// The time of the last sample that went into it: its age counts from here.
     pub data_until: Timestamp,
-    /// Why no card from before its epoch holds; none in the first epoch.
+    /// The reason why no card from before its epoch holds; none in the first
+    /// epoch.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub replaces: Option<CardWithdrawn>,
-    /// The fit itself.
+    /// The fit.
     pub model: Model,
 }
 
-/// That models from before hold no more: the ship's magnetism, or the compass, was
-/// altered since.
+/// Statement that earlier models no longer hold: the ship's magnetism or the
+/// compass changed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CardWithdrawn {
-    /// Since when.
+    /// Time of the change.
     pub since: Timestamp,
-    /// What altered it, in a word: a kind of logbook entry, a cause that was found, or
-    /// `ship_as_before`. Words may be added.
+    /// The cause: a kind of logbook entry, a detected cause, or
+    /// `ship_as_before`. More values may be added.
     pub reason: String,
 }
 
 impl CardWithdrawn {
-    /// Of a card that has taken the place of those before: the same as a sentence.
+    /// Returns a sentence, without a full stop, on a card that replaced earlier
+    /// ones.
     pub fn of_older_cards(&self) -> String {
         format!(
             "no card from before {} holds ({})",
@@ -171,46 +176,45 @@ impl CardWithdrawn {
         )
     }
 
-    /// What to do while there is no model.
+    /// Advice while there is no model.
     pub const ADVICE: &str = "steer by gyro or satellite compass, take an azimuth once a watch and \
         on each new course; steady courses on other headings make a new card soonest";
+}
 
-    /// The same as a sentence without a full stop.
-    pub fn in_words(&self) -> String {
-        format!(
-            "the card has not held since {} ({})",
-            self.since,
-            self.reason.replace('_', " ")
-        )
+/// A sentence without a full stop.
+impl fmt::Display for CardWithdrawn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let reason = self.reason.replace('_', " ");
+        write!(f, "the card has not held since {} ({reason})", self.since)
     }
 }
 
-/// `PUT /api/v1/agents/logbook/{id}` with the agent's token: what an officer
-/// reported, whole, under an id made on board.
+/// `PUT /api/v1/agents/logbook/{id}` with the agent's token: an officer's
+/// report, complete, under an id made on board.
 ///
-/// The same again changes nothing, and neither does an older revision that comes
-/// late: it may be sent until it is acknowledged.
+/// It may be sent until it is acknowledged: repeating it, or sending an older
+/// revision late, changes nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LogbookReport {
-    /// From 1; one more each time the officer changes the report.
+    /// Revision, from 1; rises by one with each change by the officer.
     pub revision: u32,
-    /// The officer's name, or nothing.
+    /// The officer's name; may be empty.
     #[serde(default)]
     pub reporter: String,
-    /// Whether the officer takes the report back.
+    /// True when the officer withdraws the report.
     #[serde(default)]
     pub withdrawn: bool,
-    /// What happened.
+    /// The event reported.
     #[serde(flatten)]
     pub report: Report,
 }
 
-/// The answer to a [`LogbookReport`]: it is in the logbook.
+/// The response to a [`LogbookReport`]: it is in the logbook.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LogbookAnswer {
-    /// The latest revision from on board that is there.
+    /// The latest revision in the logbook.
     pub revision: u32,
-    /// Whether the entry counts no more, taken back on board or ashore.
+    /// True when the entry was withdrawn, on board or in the office.
     pub withdrawn: bool,
 }
 
@@ -256,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn a_downlink_leaves_out_what_did_not_change() {
+    fn a_downlink_omits_unchanged_parts() {
         let bare = json!({"contiguous_seq": 12, "server_time": "2026-11-21T07:00:00.250Z"});
         let downlink = assert_comes_back::<Downlink>(&bare);
         assert_eq!((downlink.model, downlink.settings), (None, None));
@@ -335,14 +339,14 @@ mod tests {
     }
 
     #[test]
-    fn a_downlink_says_why_the_card_holds_no_more() {
+    fn a_downlink_gives_the_reason_for_withdrawing_the_card() {
         let sent = json!({
             "contiguous_seq": 12, "server_time": "2026-11-21T07:00:00Z",
             "card_withdrawn": { "since": "2026-11-20T00:00:00Z", "reason": "corrector_change" },
         });
         let withdrawn = assert_comes_back::<Downlink>(&sent).card_withdrawn.unwrap();
         assert_eq!(
-            withdrawn.in_words(),
+            withdrawn.to_string(),
             "the card has not held since 2026-11-20T00:00:00Z (corrector change)"
         );
     }

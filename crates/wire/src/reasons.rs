@@ -1,15 +1,15 @@
-//! The well-known outcomes of a ten-second window, which a batch's tally counts.
+//! The well-known outcomes of a ten-second window, counted in a batch's tally.
 //!
-//! In a frame each has a number, which never changes its meaning. An agent may
-//! count under other names too: they travel as text.
+//! Each has a number in the frame, which never changes its meaning. An agent
+//! may count under other names too: they are sent as text.
 
-/// Went into a sample.
+/// The window went into a sample.
 pub const ACCEPTED: &str = "accepted";
 /// Too slow over ground.
 pub const SLOW: &str = "slow";
 /// The rate of turn was above the limit.
 pub const TURNING: &str = "turning";
-/// Too soon after a turn: the Gaussian error has not died away.
+/// Too soon after a turn: the Gaussian error has not decayed.
 pub const SETTLING: &str = "settling";
 /// The heading swung too far.
 pub const SWINGING: &str = "swinging";
@@ -21,13 +21,13 @@ pub const NO_REFERENCE: &str = "no_reference";
 pub const NO_POSITION: &str = "no_position";
 /// No speed over ground.
 pub const NO_SPEED: &str = "no_speed";
-/// The crew said that the ship lies alongside.
+/// The crew set the hold "lying alongside".
 pub const HOLD_BERTHED: &str = "hold_berthed";
-/// The crew said that magnetic cargo is aboard.
+/// The crew set the hold "magnetic cargo on board".
 pub const HOLD_MAGNETIC_CARGO: &str = "hold_magnetic_cargo";
-/// The crew said that degaussing is under way.
+/// The crew set the hold "degaussing".
 pub const HOLD_DEGAUSSING: &str = "hold_degaussing";
-/// The magnetic field is too flat or the place too near a pole.
+/// The horizontal field is too weak or the place too near a pole.
 pub const HIGH_LATITUDE: &str = "high_latitude";
 /// The clock went backwards or jumped.
 pub const CLOCK: &str = "clock";
@@ -36,7 +36,7 @@ pub const SPARSE: &str = "sparse";
 /// No time stamp fell into the window.
 pub const NO_TIME: &str = "no_time";
 
-/// Number 1 first.
+/// The reasons in the order of their numbers, from 1.
 const KNOWN: [&str; 16] = [
     ACCEPTED,
     SLOW,
@@ -56,13 +56,14 @@ const KNOWN: [&str; 16] = [
     NO_TIME,
 ];
 
-/// The number a reason has in a frame; `None` when it travels by name.
+/// Returns a reason's number in a frame; `None` when it is sent by name.
 pub(crate) fn number(name: &str) -> Option<u64> {
     let index = KNOWN.iter().position(|known| *known == name)?;
     Some(index as u64 + 1)
 }
 
-/// The reason of a number; `None` for 0 and for numbers of later versions.
+/// Returns the reason of a number; `None` for 0 and for numbers of later
+/// versions.
 pub(crate) fn name(number: u64) -> Option<&'static str> {
     let index = usize::try_from(number.checked_sub(1)?).ok()?;
     KNOWN.get(index).copied()

@@ -1,15 +1,15 @@
-//! What the shore decides about how an agent samples and sends.
+//! The server's settings for sampling and sending by an agent.
 
 use serde::{Deserialize, Serialize};
 
-/// How an agent samples and sends.
+/// Sampling and sending of an agent.
 ///
-/// What comes as JSON is always within the ranges of [`Settings::check`]; code
-/// that makes settings of its own asks that itself.
+/// Settings read from JSON are always within the ranges of [`Settings::check`];
+/// code that builds its own must call it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "RawSettings")]
 pub struct Settings {
-    /// Rises with every change; 0 is the agent's built-in default.
+    /// Version, rising with every change; 0 is the agent's built-in default.
     pub version: u32,
     /// Speed over ground below which nothing is sampled, knots.
     pub min_sog_kn: f64,
@@ -17,25 +17,25 @@ pub struct Settings {
     pub max_rate_of_turn_deg_min: f64,
     /// Seconds after a turn in which nothing is sampled (Gaussian error).
     pub settle_s: u32,
-    /// How far heading may swing to either side within 30 s, degrees.
+    /// The greatest swing of the heading to either side within 30 s, degrees.
     pub max_swing_deg: f64,
-    /// The longest stretch that one sample is the mean of, seconds.
+    /// The longest interval averaged in one sample, seconds.
     pub sample_s: u32,
     /// A batch is sealed when its first sample is this old, seconds of ship time.
     pub seal_s: u32,
 }
 
-/// A setting that would make an agent send nothing, everything or nonsense.
+/// A setting out of range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("setting {name} {value} is outside {low} to {high}")]
 pub struct SettingsError {
     /// The field.
     pub name: &'static str,
-    /// What was asked for.
+    /// The value given.
     pub value: f64,
-    /// The least that is accepted.
+    /// The least value that is accepted.
     pub low: f64,
-    /// The most that is accepted.
+    /// The greatest value that is accepted.
     pub high: f64,
 }
 
@@ -56,7 +56,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Refuses what no agent should be told.
+    /// Checks all values against their ranges.
     ///
     /// # Errors
     /// [`SettingsError`] with the first field that is out of range.
@@ -89,7 +89,7 @@ impl Settings {
     }
 }
 
-/// Settings as they come, not yet checked.
+/// Settings as received, not yet checked.
 #[derive(Deserialize)]
 struct RawSettings {
     version: u32,

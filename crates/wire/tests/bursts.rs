@@ -5,7 +5,7 @@
 mod support;
 
 use binnacle_wire::burst::{
-    Ack, BurstError, Joiner, MESSAGE_OCTETS, MOST_OPEN, StreamTag, capacity, read_ack, split,
+    Ack, BurstError, Joiner, MAX_OPEN, MESSAGE_BYTES, StreamTag, capacity, read_ack, split,
     write_ack,
 };
 use binnacle_wire::{decode, encode};
@@ -22,16 +22,16 @@ fn day(seed: u64) -> Vec<u8> {
 
 #[test]
 fn an_ordinary_day_fits_into_three_messages() {
-    // Not one ten minutes of the day is missing; most days have fewer samples.
+    // No ten-minute mean of the day is missing; most days have fewer samples.
     for seed in 0..50 {
         let messages = split(&day(seed)).unwrap();
         assert!(messages.len() <= 3, "seed {seed}: {}", messages.len());
-        assert!(messages.iter().all(|m| m.len() <= MESSAGE_OCTETS));
+        assert!(messages.iter().all(|m| m.len() <= MESSAGE_BYTES));
     }
 }
 
 #[test]
-fn what_the_capacity_promises_fits() {
+fn a_frame_within_the_capacity_fits() {
     for samples in 1..400 {
         let mut sent = batch(u64::MAX >> 12, voyage(3, samples));
         sent.seq = u64::MAX;
@@ -42,7 +42,7 @@ fn what_the_capacity_promises_fits() {
 }
 
 #[test]
-fn days_come_back_whatever_is_repeated_reordered_and_mixed() {
+fn repeated_reordered_and_mixed_days_come_back() {
     let mut dice = Dice(5);
     let frames: Vec<Vec<u8>> = (0..20).map(day).collect();
     let once: Vec<Vec<u8>> = frames.iter().flat_map(|f| split(f).unwrap()).collect();
@@ -51,7 +51,7 @@ fn days_come_back_whatever_is_repeated_reordered_and_mixed() {
         messages.swap(index, dice.next() as usize % (index + 1));
     }
     let mut joiner = Joiner::default();
-    let joined = messages.iter().filter_map(|m| joiner.take(m).unwrap());
+    let joined = messages.iter().filter_map(|m| joiner.push(m).unwrap());
     let mut joined: Vec<Vec<u8>> = joined.collect();
     joined.sort();
     joined.dedup();
@@ -67,21 +67,21 @@ fn a_damaged_message_is_refused_and_the_frame_waits_for_a_whole_one() {
     for bit in 0..messages[0].len() * 8 {
         let mut damaged = messages[0].clone();
         damaged[bit / 8] ^= 1 << (bit % 8);
-        assert!(Joiner::default().take(&damaged).is_err(), "bit {bit}");
+        assert!(Joiner::default().push(&damaged).is_err(), "bit {bit}");
     }
     let mut joiner = Joiner::default();
     let mut damaged = messages[1].clone();
     damaged[100] ^= 4;
-    assert_eq!(joiner.take(&messages[0]), Ok(None));
-    assert_eq!(joiner.take(&damaged), Err(BurstError::Damaged));
-    assert_eq!(joiner.take(&messages[2]), Ok(None));
+    assert_eq!(joiner.push(&messages[0]), Ok(None));
+    assert_eq!(joiner.push(&damaged), Err(BurstError::Damaged));
+    assert_eq!(joiner.push(&messages[2]), Ok(None));
     let incomplete: Vec<_> = joiner.incomplete().collect();
     assert_eq!(incomplete.len(), 1);
     assert_eq!(
         (incomplete[0].1, incomplete[0].2, incomplete[0].3),
         (41, 2, 3)
     );
-    assert_eq!(joiner.take(&messages[1]), Ok(Some(frame)));
+    assert_eq!(joiner.push(&messages[1]), Ok(Some(frame)));
     assert_eq!(joiner.incomplete().count(), 0);
 }
 
@@ -91,22 +91,22 @@ fn parts_of_two_frames_of_one_number_are_never_mixed() {
     let frame = encode(&batch(9, voyage(2, 144))).unwrap();
     let second = split(&frame).unwrap();
     let mut joiner = Joiner::default();
-    joiner.take(&first[0]).unwrap();
-    joiner.take(&first[1]).unwrap();
-    joiner.take(&second[0]).unwrap();
-    joiner.take(&second[1]).unwrap();
-    assert_eq!(joiner.take(&second[2]), Ok(Some(frame)));
+    joiner.push(&first[0]).unwrap();
+    joiner.push(&first[1]).unwrap();
+    joiner.push(&second[0]).unwrap();
+    joiner.push(&second[1]).unwrap();
+    assert_eq!(joiner.push(&second[2]), Ok(Some(frame)));
 }
 
 #[test]
-fn what_never_completes_is_forgotten_in_time() {
+fn the_oldest_incomplete_frames_are_dropped() {
     let mut joiner = Joiner::default();
-    for seq in 0..2 * MOST_OPEN as u64 {
+    for seq in 0..2 * MAX_OPEN as u64 {
         let frame = encode(&batch(seq + 1, voyage(1, 114))).unwrap();
-        joiner.take(&split(&frame).unwrap()[0]).unwrap();
+        joiner.push(&split(&frame).unwrap()[0]).unwrap();
     }
-    assert_eq!(joiner.incomplete().count(), MOST_OPEN);
-    assert!(joiner.incomplete().all(|open| open.1 > MOST_OPEN as u64));
+    assert_eq!(joiner.incomplete().count(), MAX_OPEN);
+    assert!(joiner.incomplete().all(|open| open.1 > MAX_OPEN as u64));
 }
 
 #[test]
@@ -117,42 +117,43 @@ fn too_much_for_sixteen_messages_is_refused() {
 }
 
 #[test]
-fn an_acknowledgement_is_read_with_what_a_later_shore_adds() {
+fn an_acknowledgement_is_read_without_a_later_servers_fields() {
     let ack = Ack {
-        stream: StreamTag::of(batch(1, Vec::new()).stream),
+        stream: StreamTag::from_stream(batch(1, Vec::new()).stream),
         contiguous_seq: 300,
     };
     assert_eq!(read_ack(&write_ack(ack)), Ok(ack));
     assert_eq!(read_ack(&write_ack(ack)[..5]), Err(BurstError::Damaged));
     let part = &split(&day(1)).unwrap()[0];
-    assert_eq!(read_ack(part), Err(BurstError::NotOurs));
+    assert_eq!(read_ack(part), Err(BurstError::UnknownKind));
 }
 
-fn hex(octets: &[u8]) -> String {
+fn hex(bytes: &[u8]) -> String {
     let mut text = String::new();
-    for octet in octets {
-        write!(text, "{octet:02x}").unwrap();
+    for byte in bytes {
+        write!(text, "{byte:02x}").unwrap();
     }
     text
 }
 
-/// One message a line; the last line is the frame. Never changed, as the frames are.
+/// One message per line; the last line is the frame. Never changed, like the
+/// frames.
 #[test]
-fn the_vector_is_what_is_written() {
+fn the_written_messages_match_the_vector() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/bursts/day.txt");
     let vector = std::fs::read_to_string(&path).unwrap();
     let frame = unhex(vector.lines().last().unwrap());
     let ack = Ack {
-        stream: StreamTag::of(batch(1, Vec::new()).stream),
+        stream: StreamTag::from_stream(batch(1, Vec::new()).stream),
         contiguous_seq: 130,
     };
     let mut lines: Vec<String> = split(&frame).unwrap().iter().map(|m| hex(m)).collect();
     lines.push(hex(&write_ack(ack)));
     lines.push(hex(&frame));
     assert_eq!(vector.lines().collect::<Vec<_>>(), lines);
-    // A plain frame, as agents wrote them then: it still means the same.
-    let meant = encode(&batch(130, voyage(2, 114))).unwrap();
-    assert_eq!(decode(&frame), decode(&meant));
+    // A plain frame of earlier agents: it still means the same.
+    let dense = encode(&batch(130, voyage(2, 114))).unwrap();
+    assert_eq!(decode(&frame), decode(&dense));
 }
 
 fn unhex(text: &str) -> Vec<u8> {
@@ -181,9 +182,9 @@ fn the_python_joiner_agrees_on_the_vector_and_on_a_mixed_hundred() {
     }
     for index in (1..mixed.len()).rev() {
         mixed.swap(index, dice.next() as usize % (index + 1));
-        let octets = mixed[index].len();
+        let length = mixed[index].len();
         if dice.next().is_multiple_of(8) {
-            mixed[index][dice.next() as usize % octets] ^= 16;
+            mixed[index][dice.next() as usize % length] ^= 16;
         }
     }
     messages.extend(mixed.iter().map(|message| hex(message)));
@@ -199,34 +200,34 @@ fn the_python_joiner_agrees_on_the_vector_and_on_a_mixed_hundred() {
     let feeder = std::thread::spawn(move || stdin.write_all(lines.as_bytes()));
     let output = python.wait_with_output().unwrap();
     feeder.join().unwrap().unwrap();
-    let answers = String::from_utf8(output.stdout).unwrap();
+    let results = String::from_utf8(output.stdout).unwrap();
     let mut joiner = Joiner::default();
     let wanted = messages.iter().map(|message| {
         let pairs = message.as_bytes().chunks(2);
-        let octet = |pair| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
-        match joiner.take(&pairs.map(octet).collect::<Vec<u8>>()) {
+        let byte = |pair| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
+        match joiner.push(&pairs.map(byte).collect::<Vec<u8>>()) {
             Ok(Some(frame)) => hex(&frame),
             Ok(None) => "waits".to_owned(),
             Err(_) => "refused".to_owned(),
         }
     });
     assert_eq!(
-        answers.lines().collect::<Vec<_>>(),
+        results.lines().collect::<Vec<_>>(),
         wanted.collect::<Vec<_>>()
     );
-    assert!(answers.lines().filter(|line| line.len() > 100).count() > 20);
+    assert!(results.lines().filter(|line| line.len() > 100).count() > 20);
 }
 
 proptest! {
     #[test]
-    fn no_octets_make_the_joiner_panic(octets in prop::collection::vec(any::<u8>(), 0..400)) {
-        let _ = Joiner::default().take(&octets);
-        let _ = read_ack(&octets);
-        // With a check that fits, so that what lies behind it is reached.
+    fn no_bytes_make_the_joiner_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        let _ = Joiner::default().push(&bytes);
+        let _ = read_ack(&bytes);
+        // With a matching check, so that the code behind it is reached.
         for kind in [0xb1_u8, 0xb2] {
-            let crc = crc32fast::hash(&[&[kind][..], &octets[..]].concat()) as u16;
-            let message = [&[kind][..], &crc.to_le_bytes(), &octets[..]].concat();
-            let _ = Joiner::default().take(&message);
+            let crc = crc32fast::hash(&[&[kind][..], &bytes[..]].concat()) as u16;
+            let message = [&[kind][..], &crc.to_le_bytes(), &bytes[..]].concat();
+            let _ = Joiner::default().push(&message);
             let _ = read_ack(&message);
         }
     }

@@ -1,4 +1,4 @@
-//! What holds for every batch and for any bytes.
+//! Properties of every batch and of any bytes.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -17,7 +17,7 @@ use proptest::prelude::*;
 use support::Dice;
 use uuid::Uuid;
 
-/// Room for the floating-point sums of the test itself.
+/// Tolerance for the floating-point sums of the test itself.
 const SLACK: f64 = 1e-9;
 
 fn samples() -> impl Strategy<Value = Vec<Sample>> {
@@ -92,36 +92,40 @@ fn batches() -> impl Strategy<Value = Batch> {
     })
 }
 
-fn close(sent: Option<f64>, came: Option<f64>, half_step: f64) -> bool {
-    match (sent, came) {
+fn close(sent: Option<f64>, decoded: Option<f64>, half_step: f64) -> bool {
+    match (sent, decoded) {
         (None, None) => true,
-        (Some(sent), Some(came)) => (sent - came).abs() <= half_step + SLACK,
+        (Some(sent), Some(decoded)) => (sent - decoded).abs() <= half_step + SLACK,
         _ => false,
     }
 }
 
-fn turned(sent: Option<TrueHeading>, came: Option<TrueHeading>, half_step: f64) -> bool {
-    match (sent, came) {
-        (Some(sent), Some(came)) => {
-            wrap_180(sent.degrees() - came.degrees()).abs() <= half_step + SLACK
+fn turned(sent: Option<TrueHeading>, decoded: Option<TrueHeading>, half_step: f64) -> bool {
+    match (sent, decoded) {
+        (Some(sent), Some(decoded)) => {
+            wrap_180(sent.degrees() - decoded.degrees()).abs() <= half_step + SLACK
         }
-        (sent, came) => sent.is_none() && came.is_none(),
+        (sent, decoded) => sent.is_none() && decoded.is_none(),
     }
 }
 
-fn within_half_a_step(sent: &Sample, came: &Sample) -> bool {
-    let east = wrap_180(sent.position.lon_deg() - came.position.lon_deg());
-    let compass = wrap_180(sent.compass.degrees() - came.compass.degrees());
-    sent.time.seconds_since(came.time).abs() <= 2.5
-        && (sent.position.lat_deg() - came.position.lat_deg()).abs() <= 0.000_5 + SLACK
+fn within_half_a_step(sent: &Sample, decoded: &Sample) -> bool {
+    let east = wrap_180(sent.position.lon_deg() - decoded.position.lon_deg());
+    let compass = wrap_180(sent.compass.degrees() - decoded.compass.degrees());
+    sent.time.seconds_since(decoded.time).abs() <= 2.5
+        && (sent.position.lat_deg() - decoded.position.lat_deg()).abs() <= 0.000_5 + SLACK
         && east.abs() <= 0.000_5 + SLACK
         && compass.abs() <= 0.01 + SLACK
-        && turned(sent.gyro, came.gyro, 0.025)
-        && turned(sent.satellite, came.satellite, 0.025)
-        && close(sent.sog_kn, came.sog_kn, 0.1)
-        && close(sent.rate_of_turn_deg_min, came.rate_of_turn_deg_min, 0.25)
-        && close(sent.spread_deg, came.spread_deg, 0.01)
-        && sent.windows == came.windows
+        && turned(sent.gyro, decoded.gyro, 0.025)
+        && turned(sent.satellite, decoded.satellite, 0.025)
+        && close(sent.sog_kn, decoded.sog_kn, 0.1)
+        && close(
+            sent.rate_of_turn_deg_min,
+            decoded.rate_of_turn_deg_min,
+            0.25,
+        )
+        && close(sent.spread_deg, decoded.spread_deg, 0.01)
+        && sent.windows == decoded.windows
 }
 
 proptest! {
@@ -130,25 +134,25 @@ proptest! {
     #[test]
     fn a_batch_comes_back_within_half_a_step_and_then_to_the_byte(sent in batches()) {
         let bytes = encode(&sent).unwrap();
-        let came = decode(&bytes).unwrap();
-        prop_assert_eq!(encode(&came).unwrap(), bytes);
-        prop_assert_eq!((came.stream, came.seq, &came.tally), (sent.stream, sent.seq, &sent.tally));
-        prop_assert_eq!((&came.alerts, came.thinned), (&sent.alerts, sent.thinned));
+        let decoded = decode(&bytes).unwrap();
+        prop_assert_eq!(encode(&decoded).unwrap(), bytes);
+        prop_assert_eq!((decoded.stream, decoded.seq, &decoded.tally), (sent.stream, sent.seq, &sent.tally));
+        prop_assert_eq!((&decoded.alerts, decoded.thinned), (&sent.alerts, sent.thinned));
         let mut samples = sent.samples;
         samples.sort_by_key(|sample| sample.time);
-        prop_assert_eq!(samples.len(), came.samples.len());
-        for (sent, came) in samples.iter().zip(&came.samples) {
-            prop_assert!(within_half_a_step(sent, came), "{:?} came as {:?}", sent, came);
+        prop_assert_eq!(samples.len(), decoded.samples.len());
+        for (sent, decoded) in samples.iter().zip(&decoded.samples) {
+            prop_assert!(within_half_a_step(sent, decoded), "{:?} decoded as {:?}", sent, decoded);
         }
     }
 
     #[test]
-    fn any_bytes_are_answered_or_refused(
+    fn any_bytes_are_decoded_or_refused(
         body in prop::collection::vec(any::<u8>(), 0..400),
         head in prop_oneof![Just(&b""[..]), Just(&b"BN"[..]), Just(&b"BN\x01\0"[..]), Just(&b"BN\x01\x01"[..]), Just(&b"BN\x01\x02"[..])],
     ) {
-        answer(&with_checksum([head, &body].concat()));
-        answer(&body);
+        decode_and_encode(&with_checksum([head, &body].concat()));
+        decode_and_encode(&body);
     }
 }
 
@@ -158,8 +162,8 @@ fn with_checksum(mut body: Vec<u8>) -> Vec<u8> {
     body
 }
 
-/// Whatever is answered can be sent on.
-fn answer(bytes: &[u8]) -> bool {
+/// Every decoded batch can be encoded again.
+fn decode_and_encode(bytes: &[u8]) -> bool {
     let Ok(batch) = decode(bytes) else {
         return false;
     };
@@ -208,14 +212,14 @@ fn twenty_thousand_mutations_never_panic() {
                 Ok(_) if unchanged => stale += 1,
                 other => panic!("a stale checksum passed: {other:?}"),
             }
-        } else if answer(&with_checksum(body)) {
+        } else if decode_and_encode(&with_checksum(body)) {
             answered += 1;
         } else {
             refused += 1;
         }
     }
     assert_eq!(stale, 10_000);
-    // Both happen often, or the mutations do not reach what they are meant to.
+    // Both must happen often; otherwise the mutations miss their target.
     assert!(
         refused > 2000 && answered > 500,
         "{refused} refused, {answered} answered"
@@ -224,7 +228,8 @@ fn twenty_thousand_mutations_never_panic() {
 
 fn mutate(body: &mut Vec<u8>, dice: &mut Dice) {
     for _ in 0..=dice.next() % 3 {
-        // Behind the version, mostly: what lies before has few ways to be wrong.
+        // Mostly behind the version: the bytes before it have few ways to be
+        // wrong.
         let at = (dice.next() as usize % body.len()).max(dice.next() as usize % 4);
         match dice.next() % 5 {
             0 => body[at] = dice.next() as u8,
@@ -252,7 +257,7 @@ fn a_small_frame_cannot_claim_many_samples() {
 
 #[test]
 fn a_small_dense_frame_cannot_claim_many_samples() {
-    // Few octets may hold many samples that are all alike, and no more than that.
+    // A few bytes may hold many equal samples, and no more than that.
     let alike = support::batch(1, vec![support::voyage(1, 1)[0]; MAX_SAMPLES]);
     let frame = encode(&alike).unwrap();
     assert!(frame.len() < 600, "{}", frame.len());
@@ -270,13 +275,14 @@ fn a_small_dense_frame_cannot_claim_many_samples() {
 }
 
 #[test]
-fn a_frame_of_all_columns_and_samples_ends_with_its_octets() {
+fn a_frame_of_all_columns_and_samples_ends_with_its_bytes() {
     let mut body = b"BN\x01\x02".to_vec();
     body.extend([0x11; 16]);
     body.extend([1, 0, 0xff, 0xff, 3, 64]);
     body.extend((1..=64).flat_map(|id| [id, 0x10]));
     body.resize(MAX_BYTES - 4, 0);
-    // Zeros are values like the one before: few of these octets are needed for all.
+    // Zeros are values like the one before: few of these bytes are needed for
+    // all.
     assert_eq!(decode(&with_checksum(body)), Err(DecodeError::TrailingBits));
 }
 

@@ -1,7 +1,7 @@
-//! The frames that every encoder and decoder must agree on, and the second
-//! decoder, in Python, against them and against many more.
+//! The frames that every encoder and decoder must agree on. The second decoder,
+//! in Python, is checked against them and many more.
 //!
-//! `UPDATE_VECTORS=1` writes those that are missing; none is ever changed.
+//! `UPDATE_VECTORS=1` writes missing ones; none is ever changed.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -20,8 +20,8 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use support::{Dice, batch, voyage};
 
-/// Batches, the vectors that `encode` makes of them, and the plain frames that earlier
-/// agents made: of those without samples there is one kind only.
+/// Batches with the names of their dense vectors and of the plain frames of
+/// earlier agents; batches without samples have one kind only.
 fn written() -> Vec<(&'static str, &'static str, Batch)> {
     let mut references = voyage(3, 40);
     for (row, sample) in references.iter_mut().enumerate() {
@@ -88,7 +88,7 @@ fn noted(seq: u64, samples: Vec<Sample>, revisions: &[u32], thinned: Option<u64>
     }
 }
 
-/// Frames that only a later or a wrong encoder writes.
+/// Frames that only a later or a faulty encoder writes.
 fn edited() -> Vec<(&'static str, Vec<u8>)> {
     let good = unhex(&read("quarter_day.hex"));
     let dense = encode(&batch(7, voyage(2, 29))).unwrap();
@@ -149,7 +149,7 @@ fn dense_unknown_column() -> Vec<u8> {
         .expect("some end is a column")
 }
 
-/// Nothing but ones where the columns are: the first has gaps, and predictor 15.
+/// Ones in place of the columns: the first has gaps, and predictor 15.
 fn dense_unknown_predictor() -> Vec<u8> {
     let mut body = b"BN\x01\x02".to_vec();
     body.extend([0x11; 16]);
@@ -160,28 +160,28 @@ fn dense_unknown_predictor() -> Vec<u8> {
 }
 
 /// No sample, and one note.
-fn with_note(kind: u8, octets: &[u8]) -> Vec<u8> {
+fn with_note(kind: u8, bytes: &[u8]) -> Vec<u8> {
     let mut body = b"BN\x01\x01".to_vec();
     body.extend([0x11; 16]);
     // seq 1; no tally; one note.
-    body.extend([1, 0, 1, kind, octets.len() as u8]);
-    body.extend(octets);
+    body.extend([1, 0, 1, kind, bytes.len() as u8]);
+    body.extend(bytes);
     // No samples, no columns.
     body.extend([0, 0]);
     sealed(body)
 }
 
-/// An alert with something after it that a later agent may say.
+/// An alert with extra bytes at the end, as a later agent may write.
 fn longer_alert() -> Vec<u8> {
     let frame = encode(&noted(1, Vec::new(), &[1], None)).unwrap();
-    // The note's octets: from after the head, seq, tally, count, kind and length.
+    // The note's bytes, behind the head, seq, tally, count, kind and length.
     let from = frame
         .windows(16)
         .position(|id| id == support::alert(1).id.as_bytes());
     let from = from.unwrap();
-    let mut octets = frame[from..frame.len() - 6].to_vec();
-    octets.extend(b"and more");
-    octets
+    let mut bytes = frame[from..frame.len() - 6].to_vec();
+    bytes.extend(b"and more");
+    bytes
 }
 
 /// One sample of five columns and a column 77, which no version has yet.
@@ -191,7 +191,7 @@ fn unknown_column() -> Vec<u8> {
     // seq 1; no tally; one sample; six columns.
     body.extend([1, 0, 1, 6]);
     body.extend([1, 0x50, 2, 0x13, 3, 0x13, 6, 0x22, 10, 0x10, 77, 0x10]);
-    // Each: all there, predictor 0, first value as a zigzag varint.
+    // Each column: all present, predictor 0, first value as a zigzag varint.
     let firsts: [i64; 6] = [358_000_000, 43_350, -3_030, 4_500, 60, -5];
     let mut bits = String::new();
     for first in firsts {
@@ -203,8 +203,8 @@ fn unknown_column() -> Vec<u8> {
         }
         write!(bits, "{code:08b}").unwrap();
     }
-    for octet in bits.as_bytes().chunks(8) {
-        let text = format!("{:0<8}", std::str::from_utf8(octet).unwrap());
+    for byte in bits.as_bytes().chunks(8) {
+        let text = format!("{:0<8}", std::str::from_utf8(byte).unwrap());
         body.push(u8::from_str_radix(&text, 2).unwrap());
     }
     sealed(body)
@@ -260,7 +260,7 @@ fn folder(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// The stored frame and batch of a name.
+/// The stored frame and batch of a vector.
 fn stored(name: &str, bytes: &[u8]) -> (Vec<u8>, Value) {
     let frame = folder("vectors").join(format!("{name}.hex"));
     let meaning = frame.with_extension("json");
@@ -301,7 +301,7 @@ fn frames_are_written_and_read_as_they_always_were() {
 }
 
 #[test]
-fn a_note_of_a_later_agent_is_passed_over() {
+fn a_note_of_a_later_agent_is_skipped() {
     let batch = decode(&with_note(77, b"of a later agent")).unwrap();
     assert_eq!((batch.seq, batch.alerts.len()), (1, 0));
     let batch = decode(&with_note(1, &longer_alert())).unwrap();
@@ -309,7 +309,7 @@ fn a_note_of_a_later_agent_is_passed_over() {
 }
 
 #[test]
-fn a_column_of_a_later_version_is_passed_over() {
+fn a_column_of_a_later_version_is_skipped() {
     let batch = decode(&unknown_column()).unwrap();
     assert_eq!(batch.samples.len(), 1);
     assert_eq!(batch.samples[0].compass.degrees().to_string(), "90");

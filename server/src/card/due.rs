@@ -7,7 +7,7 @@ use super::contents::NextDue;
 use crate::time::Time;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_schedule::needs::{self, Event, Predicted, Side, Terms, due};
-use binnacle_schedule::rules::{EventKind, Flag, Limit, shipped};
+use binnacle_schedule::rules::{EventKind, Flag, Limit, built_in_rules};
 use binnacle_schedule::time::Instant;
 
 /// No state's letters (ISO 3166-1, 8.1.3). A schedule that knows no flag counts every
@@ -55,7 +55,7 @@ pub(super) fn next_due(facts: &Facts<'_>) -> Option<NextDue> {
         ..needs::Compass::default()
     };
     let today = facts.at.day().parse().ok()?;
-    let found = due(&ship, &compass, shipped(), &Terms::default(), today)?;
+    let found = due(&ship, &compass, built_in_rules(), &Terms::default(), today)?;
     Some(NextDue {
         on: found.on.to_string(),
         reason: found.reason,

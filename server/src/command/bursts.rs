@@ -9,7 +9,7 @@ use crate::ids::VesselId;
 use crate::streams;
 use crate::subscriptions::subscribers;
 use anyhow::{Context, Result};
-use binnacle_wire::burst::MESSAGE_OCTETS;
+use binnacle_wire::burst::MESSAGE_BYTES;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -59,7 +59,7 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
 /// One octet more than a message may have, so that what is longer is seen to be.
 fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut octets = Vec::new();
-    let most = MESSAGE_OCTETS as u64 + 1;
+    let most = MESSAGE_BYTES as u64 + 1;
     File::open(path)?.take(most).read_to_end(&mut octets)?;
     Ok(octets)
 }

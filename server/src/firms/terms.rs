@@ -282,7 +282,7 @@ impl Terms {
         for licence in &mut self.licences {
             *licence = text("licences", licence)?;
         }
-        match input::firm_is_sound(&self.firm("", None)) {
+        match input::check_firm(&self.firm("", None)) {
             // That it is of no use is told, not refused.
             Ok(()) | Err(input::FirmError { idle: true, .. }) => Ok(self),
             Err(error) => Err(Error::Invalid {
@@ -321,7 +321,7 @@ impl Terms {
 
     /// Why the schedule leaves the firm out.
     pub fn problems(&self) -> Vec<String> {
-        let error = input::firm_is_sound(&self.firm("", None)).err();
+        let error = input::check_firm(&self.firm("", None)).err();
         let wrong = error.map(|error| format!("{}: {}", error.field, error.detail));
         let none = (self.teams == 0).then(|| "teams: a firm without teams does nothing".to_owned());
         wrong.into_iter().chain(none).collect()

@@ -24,7 +24,7 @@ pub struct NoModel {
 impl fmt::Display for NoModel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(withdrawn) = &self.card_withdrawn {
-            write!(f, "{}: ", withdrawn.in_words())?;
+            write!(f, "{withdrawn}: ")?;
         }
         match &self.refusal {
             Some(refusal) => write!(f, "{refusal}{}", self.left_out),

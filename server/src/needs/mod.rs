@@ -23,7 +23,7 @@ use crate::ids::{CompassId, OperatorId, VesselId};
 use crate::{schedule, vessels};
 use axum::extract::{FromRef, State};
 use binnacle_schedule::needs::{Terms, due};
-use binnacle_schedule::rules::shipped;
+use binnacle_schedule::rules::built_in_rules;
 use chrono::{Datelike, NaiveDate};
 use need::{Filter, NeedList};
 use utoipa_axum::router::OpenApiRouter;
@@ -100,7 +100,7 @@ async fn listed(
 
 /// The need of a compass; none when no rule binds its ship and nothing is wrong.
 pub fn need(facts: &Facts, terms: &Terms, today: NaiveDate) -> Option<Need> {
-    let due = due(&facts.ship, &facts.compass, shipped(), terms, today)?;
+    let due = due(&facts.ship, &facts.compass, built_in_rules(), terms, today)?;
     Some(Need::new(facts, due))
 }
 

@@ -3,7 +3,7 @@
 use super::schema::{CauseKindSchema, SideSchema, UrgencySchema};
 use crate::ids::{CompassId, VesselId};
 use binnacle_schedule::needs::{CauseKind, Due, Side, Urgency};
-use binnacle_schedule::rules::{Rule, shipped};
+use binnacle_schedule::rules::{Rule, built_in_rules};
 use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
@@ -144,7 +144,7 @@ impl Need {
 }
 
 fn cited(id: &str) -> Option<RuleCited> {
-    let rule: &Rule = shipped().iter().find(|rule| rule.id == id)?;
+    let rule: &Rule = built_in_rules().iter().find(|rule| rule.id == id)?;
     Some(RuleCited {
         id: rule.id.clone(),
         document: rule.citation.document.clone(),

@@ -69,7 +69,7 @@ pub async fn import(
             message: name.clone(),
             problem,
         };
-        let frame = match joiner.take(octets) {
+        let frame = match joiner.push(octets) {
             Ok(Some(frame)) => frame,
             Ok(None) => continue,
             Err(error) => {
@@ -129,7 +129,7 @@ async fn answer(db: &Db, vessel: VesselId, stream: Uuid) -> Result<Vec<u8>> {
     )?
     .ok_or(Error::NotFound("stream"))?;
     Ok(write_ack(Ack {
-        stream: StreamTag::of(binnacle_wire::batch::StreamId(stream)),
+        stream: StreamTag::from_stream(binnacle_wire::batch::StreamId(stream)),
         contiguous_seq: contiguous_seq.unsigned_abs(),
     }))
 }

@@ -143,14 +143,14 @@ fn zone_of(port: &str) -> Zone {
 }
 
 fn local(at: Time, zone: Zone) -> String {
-    let there = Instant(at.0).there(zone);
+    let there = Instant(at.0).in_zone(zone);
     there.to_rfc3339_opts(SecondsFormat::Secs, false)
 }
 
 /// In UTC and in the port's time.
 fn both(at: Time, zone: Zone) -> String {
-    let there = Instant(at.0).there(zone).format("%Y-%m-%d %H:%M");
-    let offset = Instant(at.0).there(zone).format("%:z");
+    let there = Instant(at.0).in_zone(zone).format("%Y-%m-%d %H:%M");
+    let offset = Instant(at.0).in_zone(zone).format("%:z");
     format!("{} ({there} port's time, UTC{offset})", at.to_the_minute())
 }
 

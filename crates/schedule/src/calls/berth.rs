@@ -1,4 +1,4 @@
-//! How a ship lies alongside: known, or learnt from earlier calls.
+//! A ship's heading alongside, given or learnt from earlier calls.
 
 use crate::ports::PortCode;
 use serde::{Deserialize, Serialize};
@@ -8,38 +8,38 @@ use serde::{Deserialize, Serialize};
 pub struct BerthHeading {
     /// Degrees, true.
     pub heading_deg: f64,
-    /// How it is known.
+    /// Source of the heading.
     pub source: HeadingSource,
 }
 
-/// How a heading alongside is known.
+/// The source of a heading alongside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HeadingSource {
-    /// It was given for this call.
+    /// Given for this call.
     Given,
-    /// From earlier calls at the same berth.
+    /// Mean of earlier calls at the same berth.
     Berth,
-    /// From earlier calls at the same port.
+    /// Mean of earlier calls at the same port.
     Port,
 }
 
-/// A heading that was observed at an earlier call of any ship.
+/// A heading observed at an earlier call of any ship.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Observed {
     /// The port.
     pub port: PortCode,
-    /// The berth, where it is known.
+    /// The berth, if known.
     #[serde(default)]
     pub berth: Option<String>,
     /// Degrees, true.
     pub heading_deg: f64,
 }
 
-/// The heading of a call: what is given, or the mean of the same berth, or of the same
-/// port. Ships lie either way along a quay, and berths of a port differ: where the
-/// headings do not agree to about ±25°, none is given.
+/// Returns the given heading of a call, or the mean at the same berth or port.
+/// Ships lie either way along a quay, and berths of a port differ: `None` where
+/// the headings do not agree to about ±25°.
 pub fn berth_heading(call: &super::PortCall, earlier: &[Observed]) -> Option<BerthHeading> {
     if let Some(heading_deg) = call.berth_heading_deg {
         return Some(BerthHeading {
@@ -64,7 +64,8 @@ pub fn berth_heading(call: &super::PortCall, earlier: &[Observed]) -> Option<Ber
     }
 }
 
-/// The mean direction, where the directions agree (resultant length 0.9 or more).
+/// The mean direction, where the directions agree (resultant length 0.9 or
+/// more).
 fn mean(headings: impl Iterator<Item = f64>) -> Option<f64> {
     let (mut north, mut east, mut count) = (0.0, 0.0, 0.0);
     for heading in headings {

@@ -1,26 +1,27 @@
-//! Port calls as CSV, in and out.
+//! Reads and writes port calls as CSV.
 //!
-//! The first line names the columns: `id`, `vessel`, `port`, `eta`, `etd`, and if wanted
-//! `berth`, `eta_uncertainty_h`, `etd_uncertainty_h`, `berth_heading_deg`. A file for one
-//! ship needs no `vessel`, and a call without `id` is named after its port and ETA. Fields
-//! are separated by commas, or by semicolons, as spreadsheets of much of Europe write them,
-//! with a comma in figures then. Calls that are over are no calls, and told.
+//! The first line names the columns: `id`, `vessel`, `port`, `eta`, `etd`, and
+//! optionally `berth`, `eta_uncertainty_h`, `etd_uncertainty_h`,
+//! `berth_heading_deg`. A file for one ship needs no `vessel`, and a call
+//! without `id` is named after its port and ETA. Fields are separated by
+//! commas, or by semicolons with decimal commas, as spreadsheets of much of
+//! Europe write them. Past calls are left out and counted.
 //!
-//! What always holds: memory is bounded by a line and by the calls that were read,
-//! however large the file; all that is wrong is said with its line and column; what is
-//! written opens in a spreadsheet without being taken for a formula, and reads back.
+//! Invariants: memory is bounded by one line and the calls read, however large
+//! the file. Every fault is reported with its line and column. A written file
+//! opens in a spreadsheet without formulas, and reads back unchanged.
 
-use super::faults::{FileError, FileErrors};
+use super::file_error::{FileError, FileErrors};
 use super::{Located, PortCall};
 use crate::ports::{self, PortCode};
 use crate::time::Instant;
 use std::collections::BTreeMap;
 use std::io::{BufRead, Read, Write};
 
-/// No line is longer, in bytes.
-const LONGEST_LINE: u64 = 4096;
-/// No file has more calls.
-pub const MOST_CALLS: usize = 50_000;
+/// The longest line, in bytes.
+const MAX_LINE_BYTES: u64 = 4096;
+/// The most calls of a file.
+pub const MAX_CALLS: usize = 50_000;
 
 const COLUMNS: [&str; 9] = [
     "id",
@@ -34,21 +35,23 @@ const COLUMNS: [&str; 9] = [
     "berth_heading_deg",
 ];
 
-/// What a file says.
+/// The contents of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rows {
     /// The calls that are not over.
     pub calls: Vec<Located>,
-    /// Calls that are over: what exports them goes on to, and they are passed by.
+    /// Number of past calls, which exporting programs keep for a while; they
+    /// are left out.
     pub over: usize,
 }
 
-/// Reads a file's calls; `vessel` is the ship of rows that name none. Every row is looked at,
-/// and what is wrong with any goes into `faults`, beside what others find wrong with the file.
+/// Reads a file's calls; `vessel` is the ship of rows that name none. Every row
+/// is read, and each fault is added to `faults`, beside other faults of the
+/// file.
 ///
 /// # Errors
-/// [`FileError`] where nothing can be said of what follows: the first line names no columns, a
-/// line is no text or too long, or there are too many rows.
+/// [`FileError`] where reading cannot go on: the first line names no columns, a
+/// line is not text or too long, or there are too many rows.
 pub fn read(
     mut file: impl BufRead,
     vessel: Option<&str>,
@@ -68,11 +71,11 @@ pub fn read(
             header = Some(columns(cells(&text, separator, line)?, line)?);
             continue;
         };
-        if taken == MOST_CALLS {
+        if taken == MAX_CALLS {
             return Err(FileError::new(
                 line,
                 "row",
-                format!("more than {MOST_CALLS} calls"),
+                format!("more than {MAX_CALLS} calls"),
             ));
         }
         let read = cells(&text, separator, line)
@@ -82,7 +85,7 @@ pub fn read(
                 Some(call) => must_be_new(&mut ids, &call, line).map(|()| Some(call)),
                 None => Ok(None),
             });
-        // Those that are over are passed by, however many.
+        // Past calls are left out, however many.
         taken += usize::from(!matches!(read, Ok(None)));
         match read {
             Ok(Some(call)) => rows.calls.push(Located { line, call }),
@@ -96,7 +99,7 @@ pub fn read(
     Ok(rows)
 }
 
-/// A call that may be one; none of one that is over.
+/// The call, checked; `None` for a past one.
 fn current(call: PortCall, now: Instant, line: usize) -> Result<Option<PortCall>, FileError> {
     if call.eta < call.etd && call.etd <= now {
         return Ok(None);
@@ -106,7 +109,7 @@ fn current(call: PortCall, now: Instant, line: usize) -> Result<Option<PortCall>
     Ok(Some(call))
 }
 
-/// Whether this is the first call of its ship that has its id.
+/// Checks that the call's id is new for its ship.
 pub(super) fn must_be_new(
     ids: &mut BTreeMap<(String, String), usize>,
     call: &PortCall,
@@ -121,10 +124,10 @@ pub(super) fn must_be_new(
     }
 }
 
-/// Writes calls, with the line of columns.
+/// Writes calls, after the line of column names.
 ///
 /// # Errors
-/// When the writer does not take them.
+/// When the writer fails.
 pub fn write(calls: &[PortCall], out: impl Write) -> std::io::Result<()> {
     let mut out = csv::Writer::from_writer(out);
     out.write_record(COLUMNS)?;
@@ -143,30 +146,30 @@ pub fn write(calls: &[PortCall], out: impl Write) -> std::io::Result<()> {
             call.etd_uncertainty_h.to_string(),
             heading,
         ];
-        out.write_record(cells.map(|cell| harmless(&cell)))?;
+        out.write_record(cells.map(|cell| escape_formula(&cell)))?;
     }
     out.flush()
 }
 
-/// What a spreadsheet takes for a formula begins so.
-fn formula(text: &str) -> bool {
+/// True where a spreadsheet would read a formula.
+fn is_formula(text: &str) -> bool {
     text.starts_with(['=', '+', '-', '@', '\t', '\r'])
 }
 
-/// A cell that no spreadsheet takes for a formula.
-pub fn harmless(text: &str) -> String {
+/// A cell that no spreadsheet reads as a formula.
+pub fn escape_formula(text: &str) -> String {
     let apostrophes = text.trim_start_matches('\'');
-    if formula(apostrophes) {
+    if is_formula(apostrophes) {
         format!("'{text}")
     } else {
         text.to_owned()
     }
 }
 
-/// A cell as it was before [`harmless`].
-fn as_it_was(text: &str) -> &str {
+/// The cell before [`escape_formula`].
+fn unescape_formula(text: &str) -> &str {
     match text.strip_prefix('\'') {
-        Some(rest) if formula(rest.trim_start_matches('\'')) => rest,
+        Some(rest) if is_formula(rest.trim_start_matches('\'')) => rest,
         _ => text,
     }
 }
@@ -176,14 +179,14 @@ fn next_line(file: &mut impl BufRead, line: usize) -> Result<Option<String>, Fil
     let mut bytes = Vec::new();
     let read = file
         .by_ref()
-        .take(LONGEST_LINE + 1)
+        .take(MAX_LINE_BYTES + 1)
         .read_until(b'\n', &mut bytes);
     read.map_err(|error| failed(error.to_string()))?;
     if bytes.is_empty() {
         return Ok(None);
     }
-    if bytes.len() as u64 > LONGEST_LINE {
-        return Err(failed(format!("is longer than {LONGEST_LINE} bytes")));
+    if bytes.len() as u64 > MAX_LINE_BYTES {
+        return Err(failed(format!("is longer than {MAX_LINE_BYTES} bytes")));
     }
     let text = String::from_utf8(bytes).map_err(|_| failed("is not UTF-8 text".to_owned()))?;
     let text = if line == 1 {
@@ -194,12 +197,12 @@ fn next_line(file: &mut impl BufRead, line: usize) -> Result<Option<String>, Fil
     Ok(Some(text.to_owned()))
 }
 
-/// What separates the fields of a file whose first line this is: no column's name has
-/// either of them.
+/// Finds the separator of a file by its first line: column names contain
+/// neither.
 fn separator_of(header: &str, line: usize) -> Result<char, FileError> {
     match (header.contains(','), header.contains(';')) {
         (true, true) => {
-            let what = "has both commas and semicolons between its fields; write one of them";
+            let what = "has both commas and semicolons between its fields; use only one of them";
             Err(FileError::new(line, "row", what))
         }
         (false, true) => Ok(';'),
@@ -207,7 +210,8 @@ fn separator_of(header: &str, line: usize) -> Result<char, FileError> {
     }
 }
 
-/// A line's cells (RFC 4180, but for line ends within quotes), without blanks around.
+/// Splits a line into cells, trimmed (RFC 4180, but for line ends within
+/// quotes).
 fn cells(text: &str, separator: char, line: usize) -> Result<Vec<String>, FileError> {
     let mut cells = vec![String::new()];
     let mut quoted = false;
@@ -234,11 +238,11 @@ fn cells(text: &str, separator: char, line: usize) -> Result<Vec<String>, FileEr
 fn columns(header: Vec<String>, line: usize) -> Result<Vec<String>, FileError> {
     for (at, name) in header.iter().enumerate() {
         if !COLUMNS.contains(&name.as_str()) {
-            let what = format!("is no column; known are {}", COLUMNS.join(", "));
+            let what = format!("is not a column; known columns are {}", COLUMNS.join(", "));
             return Err(FileError::new(line, name, what));
         }
         if header[..at].contains(name) {
-            return Err(FileError::new(line, name, "stands there twice"));
+            return Err(FileError::new(line, name, "appears twice"));
         }
     }
     for needed in ["port", "eta", "etd"] {
@@ -266,13 +270,13 @@ fn row(
     }
     let cell = |name: &str| {
         let at = header.iter().position(|column| column == name)?;
-        Some(as_it_was(&cells[at])).filter(|text| !text.is_empty())
+        Some(unescape_formula(&cells[at])).filter(|text| !text.is_empty())
     };
     let needed = |name: &str| cell(name).ok_or_else(|| FileError::new(line, name, "is empty"));
     let instant = |name: &str| {
         Instant::parse(needed(name)?).map_err(|error| FileError::new(line, name, error.to_string()))
     };
-    // Where a semicolon separates fields, a comma may stand for the point.
+    // Where semicolons separate fields, a comma may be the decimal point.
     let read = |text: &str| match separator {
         ';' => text.replace(',', ".").parse::<f64>(),
         _ => text.parse::<f64>(),

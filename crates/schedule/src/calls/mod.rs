@@ -1,53 +1,53 @@
-//! Port calls: when a ship is where, and how sure that is.
+//! Port calls: their places, times and uncertainties.
 //!
-//! What always holds: a call that [`PortCall::checked`] let pass ends after it begins,
-//! within [`LONGEST_STAY_DAYS`], and is not over; its uncertainties are hours within
-//! reason.
+//! Invariants of a call that passed [`PortCall::checked`]: it ends after it
+//! begins, within [`MAX_STAY_DAYS`], and is not over; its uncertainties are
+//! hours in a credible range.
 
 mod berth;
 pub mod csv;
-mod faults;
+mod file_error;
 pub mod ics;
 
 pub use berth::{BerthHeading, HeadingSource, Observed, berth_heading};
-pub use faults::{FileError, FileErrors, MOST_NAMED};
+pub use file_error::{FileError, FileErrors, MAX_LISTED};
 
 use crate::ports::PortCode;
 use crate::time::Instant;
 use serde::{Deserialize, Serialize};
 
-/// A ship that stays longer is laid up, and her call is not one.
-pub const LONGEST_STAY_DAYS: f64 = 120.0;
-/// No call is so many days ahead.
-const MOST_DAYS_AHEAD: f64 = 730.0;
+/// The longest stay of a call; a ship that stays longer is laid up.
+pub const MAX_STAY_DAYS: f64 = 120.0;
+/// The most days that a call may lie ahead.
+const MAX_DAYS_AHEAD: f64 = 730.0;
 
 /// A ship's call at a port.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PortCall {
-    /// Its name.
+    /// Id in this file.
     pub id: String,
-    /// What people call it, if not that.
+    /// Name for people, if other than the id.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// The ship.
     pub vessel: String,
     /// The port.
     pub port: PortCode,
-    /// The berth, where it is known.
+    /// The berth, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub berth: Option<String>,
-    /// When she is expected alongside.
+    /// Expected time of arrival alongside.
     pub eta: Instant,
-    /// She comes within so many hours of that, nineteen times in twenty.
+    /// Half-width of the 95 % interval of the arrival, hours.
     #[serde(default)]
     pub eta_uncertainty_h: f64,
-    /// When she is expected to leave.
+    /// Expected time of departure.
     pub etd: Instant,
-    /// She leaves within so many hours of that, nineteen times in twenty.
+    /// Half-width of the 95 % interval of the departure, hours.
     #[serde(default)]
     pub etd_uncertainty_h: f64,
-    /// Her heading alongside, where it is known.
+    /// The ship's heading alongside, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub berth_heading_deg: Option<f64>,
 }
@@ -61,21 +61,21 @@ pub struct Located {
     pub call: PortCall,
 }
 
-/// What is wrong with a call.
+/// The reason for refusing a call.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{field}: {detail}")]
 pub struct CallError {
     /// The field at fault.
     pub field: &'static str,
-    /// What is wrong with it.
+    /// The fault in it.
     pub detail: String,
 }
 
 impl PortCall {
-    /// Looks at what can be said of one call alone.
+    /// Checks what can be checked of one call alone.
     ///
     /// # Errors
-    /// [`CallError`] with the first field that cannot be.
+    /// [`CallError`] with the first bad field.
     pub fn checked(&self, now: Instant) -> Result<(), CallError> {
         let wrong = |field, detail| Err(CallError { field, detail });
         if self.etd <= self.eta {
@@ -84,13 +84,10 @@ impl PortCall {
                 format!("{} is not after eta, {}", self.etd, self.eta),
             );
         }
-        if self.etd.hours_since(self.eta) > LONGEST_STAY_DAYS * 24.0 {
+        if self.etd.hours_since(self.eta) > MAX_STAY_DAYS * 24.0 {
             return wrong(
                 "etd",
-                format!(
-                    "{} is more than {LONGEST_STAY_DAYS} days after eta",
-                    self.etd
-                ),
+                format!("{} is more than {MAX_STAY_DAYS} days after eta", self.etd),
             );
         }
         if self.etd <= now {
@@ -113,29 +110,31 @@ impl PortCall {
         }
     }
 
-    /// Refuses a call that nobody plans for yet: the year is misread.
+    /// Refuses a call further ahead than anybody plans: its year is wrong.
     ///
     /// # Errors
-    /// [`CallError`], of its ETA.
+    /// [`CallError`] of its ETA.
     pub fn must_be_near(&self, now: Instant) -> Result<(), CallError> {
-        if self.eta.hours_since(now) <= MOST_DAYS_AHEAD * 24.0 {
+        if self.eta.hours_since(now) <= MAX_DAYS_AHEAD * 24.0 {
             return Ok(());
         }
         Err(CallError {
             field: "eta",
-            detail: format!("{} is more than {MOST_DAYS_AHEAD} days ahead", self.eta),
+            detail: format!("{} is more than {MAX_DAYS_AHEAD} days ahead", self.eta),
         })
     }
 
-    /// Its name for people.
-    pub fn called(&self) -> &str {
+    /// Returns the name for people.
+    pub fn display_name(&self) -> &str {
         self.name.as_deref().unwrap_or(&self.id)
     }
 
-    /// The chance that she is not alongside for `job_h` hours between two instants.
+    /// Returns the probability that the ship is not alongside for `job_h` hours
+    /// between two instants.
     ///
-    /// Arrival and departure are taken as normal and independent, and the three ways to
-    /// fail (she comes too late, leaves too early, stays too short) as if they were too.
+    /// Arrival and departure are taken as normal and independent. The three
+    /// failures (too late an arrival, too early a departure, too short a stay)
+    /// are treated as independent too.
     pub fn chance_of_missing(&self, begins: Instant, ends: Instant, job_h: f64) -> f64 {
         let (arrival, departure) = (self.eta_uncertainty_h / 1.96, self.etd_uncertainty_h / 1.96);
         let in_time = below(ends.hours_since(self.eta) - job_h, arrival);
@@ -148,13 +147,14 @@ impl PortCall {
     }
 }
 
-/// The first two calls of one ship that overlap, by their places: the one that begins
-/// later, and the one that has not ended then.
+/// Finds the first two calls of one ship that overlap: the indices of the later
+/// one, and of the one that has not ended by then.
 pub fn overlap(calls: &[PortCall]) -> Option<(usize, usize)> {
     overlaps(calls).into_iter().next()
 }
 
-/// All calls of one ship that begin before the one before has ended, with that one.
+/// Finds all calls of one ship that begin before an earlier one has ended, with
+/// that one.
 pub fn overlaps(calls: &[PortCall]) -> Vec<(usize, usize)> {
     let mut order: Vec<usize> = (0..calls.len()).collect();
     order.sort_by_key(|at| (&calls[*at].vessel, calls[*at].eta, *at));
@@ -165,8 +165,8 @@ pub fn overlaps(calls: &[PortCall]) -> Vec<(usize, usize)> {
     overlapping.collect()
 }
 
-/// The chance that a normal error of this size is below a margin; at no error at all,
-/// whether the margin is one.
+/// The probability that a normal error of this size is below a margin; 1 or 0
+/// without an error.
 fn below(margin: f64, sigma: f64) -> f64 {
     if sigma <= 0.0 {
         return f64::from(u8::from(margin >= 0.0));
@@ -176,8 +176,8 @@ fn below(margin: f64, sigma: f64) -> f64 {
     if z >= 0.0 { 1.0 - tail } else { tail }
 }
 
-/// Half the complementary error function of what is not negative (Abramowitz and Stegun
-/// 1964, 7.1.26: within 1.5e-7).
+/// Half the complementary error function of a non-negative number (Abramowitz
+/// and Stegun 1964, 7.1.26: within 1.5e-7).
 fn half_erfc(x: f64) -> f64 {
     let t = 1.0 / (1.0 + 0.327_591_1 * x);
     let series = 0.254_829_592
@@ -210,7 +210,8 @@ mod tests {
 
     #[test]
     fn at_the_bounds_of_the_uncertainty_one_call_in_forty_is_missed() {
-        // Latest start 15:00, nine hours after an ETA good to nine hours: 2.5 %.
+        // Latest start 15:00, nine hours after an ETA good to nine hours: 2.5
+        // %.
         let (begins, ends) = (at("2026-12-01T08:00:00Z"), at("2026-12-01T18:00:00Z"));
         let missed = call(9.0).chance_of_missing(begins, ends, 3.0);
         assert!((missed - 0.025).abs() < 1e-4, "{missed}");

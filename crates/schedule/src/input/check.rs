@@ -1,29 +1,29 @@
-//! Whether an input hangs together.
+//! Checks the consistency of an input.
 
-use super::{Checked, Input, InputError, firm_is_sound};
+use super::{Checked, Input, InputError, check_firm};
 use crate::calls::overlap;
 use crate::ports;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// No list is longer.
-const MOST: usize = 50_000;
-/// The most ways to do all jobs, as [`ways`] counts them: each takes about 250 bytes and a
-/// microsecond before any is weighed against another.
-const MOST_WAYS: u64 = 3_000_000;
+/// The longest list.
+const MAX_LIST: usize = 50_000;
+/// The most candidates of all jobs, as [`candidates`] counts them. Each takes about 250
+/// bytes and a microsecond before the search begins.
+const MAX_CANDIDATES: u64 = 3_000_000;
 
 type Result<T> = std::result::Result<T, InputError>;
 
-/// Looks whether an input is too large to be planned, whatever it says.
+/// Refuses an input that is too large to plan.
 ///
 /// # Errors
-/// The first list that is too long, or how many ways there are to do all jobs.
+/// The first list that is too long, or the number of candidates.
 pub fn must_fit(input: &Input) -> Result<()> {
     lists(input)?;
-    match ways(input) {
-        ways if ways > MOST_WAYS => Err(InputError::new(
+    match candidates(input) {
+        count if count > MAX_CANDIDATES => Err(InputError::new(
             "port_calls",
             format!(
-                "{ways} pairs of a need and a firm's day in a call are more than {MOST_WAYS}: \
+                "{count} pairs of a need and a firm's day in a call are more than {MAX_CANDIDATES}: \
                  plan for fewer ships, with fewer firms or with shorter calls"
             ),
         )),
@@ -31,9 +31,9 @@ pub fn must_fit(input: &Input) -> Result<()> {
     }
 }
 
-/// How many ways there are to do all jobs at most: each need on each day of its ship's calls by
-/// each firm of the port.
-fn ways(input: &Input) -> u64 {
+/// An upper bound of the candidates of all jobs: each need on each day of its
+/// ship's calls by each firm of the port.
+fn candidates(input: &Input) -> u64 {
     let (mut needs, mut firms) = (BTreeMap::new(), BTreeMap::new());
     let of_needs = input.needs.iter().map(|need| &need.vessel);
     for vessel in of_needs.chain(input.compasses.iter().map(|compass| &compass.vessel)) {
@@ -46,8 +46,8 @@ fn ways(input: &Input) -> u64 {
         let days = (call.etd.utc_date() - call.eta.utc_date()).num_days() + 1;
         let of = |known: Option<&u64>| known.copied().unwrap_or(0);
         let days = u64::try_from(days).unwrap_or(0);
-        let ways = days.saturating_mul(of(needs.get(call.vessel.as_str())));
-        sum.saturating_add(ways.saturating_mul(of(firms.get(&call.port))))
+        let candidates = days.saturating_mul(of(needs.get(call.vessel.as_str())));
+        sum.saturating_add(candidates.saturating_mul(of(firms.get(&call.port))))
     })
 }
 
@@ -87,7 +87,7 @@ pub(super) fn check(input: Input) -> Result<Checked> {
     must_fit(&input)?;
     let firms = names("firms", input.firms.iter().map(|firm| firm.id.as_str()))?;
     for (at, firm) in input.firms.iter().enumerate() {
-        firm_is_sound(firm).map_err(|error| {
+        check_firm(firm).map_err(|error| {
             InputError::new(format!("firms[{at}].{}", error.field), error.detail)
         })?;
     }
@@ -97,7 +97,7 @@ pub(super) fn check(input: Input) -> Result<Checked> {
         if job.needs.is_empty() {
             return Err(InputError::new(
                 format!("former[{at}].needs"),
-                "a job meets at least one need",
+                "a job must meet at least one need",
             ));
         }
         for (of, need) in job.needs.iter().enumerate() {
@@ -110,7 +110,7 @@ pub(super) fn check(input: Input) -> Result<Checked> {
                 ));
             }
         }
-        // A call may have been cancelled since; its name must still be one.
+        // A call may have been cancelled since; its id must still be given.
         if job.call.is_empty() && !calls.contains("") {
             return Err(InputError::new(format!("former[{at}].call"), "is empty"));
         }
@@ -143,10 +143,10 @@ fn lists(input: &Input) -> Result<()> {
         ("declined", input.declined.len()),
     ];
     for (list, length) in lengths {
-        if length > MOST {
+        if length > MAX_LIST {
             return Err(InputError::new(
                 list,
-                format!("{length} are more than {MOST}"),
+                format!("{length} entries exceed the limit of {MAX_LIST}"),
             ));
         }
     }
@@ -183,7 +183,7 @@ fn one_more<'a>(names: &mut BTreeSet<&'a str>, path: &str, id: &'a str) -> Resul
     if !names.insert(id) {
         return Err(InputError::new(
             format!("{path}.id"),
-            format!("{id:?} stands there twice"),
+            format!("{id:?} appears twice"),
         ));
     }
     Ok(())

@@ -6,13 +6,13 @@ use crate::time::Eur;
 use chrono::{Datelike, NaiveDate, Weekday};
 use serde::{Deserialize, Serialize};
 
-/// A firm: where it works, for whom, when, and for how much.
+/// A firm: its ports, customers, working hours and prices.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Firm {
-    /// Its name in this file.
+    /// Id in this file.
     pub id: String,
-    /// Its name.
+    /// Name for people.
     #[serde(default)]
     pub name: Option<String>,
     /// The ports it serves.
@@ -20,47 +20,47 @@ pub struct Firm {
     /// Licences that it holds.
     #[serde(default)]
     pub licences: Vec<String>,
-    /// Flags that accept its adjusters; all, where it is empty.
+    /// Flags that accept its adjusters; empty for all.
     #[serde(default)]
     pub flags: Vec<Flag>,
     /// Teams on a working day.
     #[serde(default = "one")]
     pub teams: u32,
-    /// Jobs that a team does on one day in one port.
+    /// Jobs per team and day in one port.
     #[serde(default = "one")]
     pub jobs_a_team_day: u32,
-    /// Teams that work elsewhere, and are not there to plan with.
+    /// Teams that are booked elsewhere, and cannot be planned.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub taken: Vec<Taken>,
-    /// Days of the week on which it works.
+    /// Working days of the week.
     #[serde(default = "working_week")]
     pub working_days: Vec<Weekday>,
-    /// Days on which it does not work.
+    /// Days on which it is closed.
     #[serde(default)]
     pub closed: Vec<NaiveDate>,
-    /// The hour at which its day begins, in the port's time.
+    /// Hour at which its day begins, in the port's time.
     #[serde(default = "eight")]
     pub first_hour: f64,
-    /// The hour at which its day ends.
+    /// Hour at which its day ends.
     #[serde(default = "eighteen")]
     pub last_hour: f64,
-    /// The fee for a job.
+    /// Fee for a job.
     pub fee_eur: Eur,
-    /// For each compass after the first on the same job.
+    /// Fee for each further compass on the same job.
     #[serde(default)]
     pub extra_compass_eur: Eur,
-    /// Hours from being asked to the beginning of the job.
+    /// Hours of notice before the job begins.
     #[serde(default)]
     pub lead_time_h: f64,
 }
 
-/// Teams that work elsewhere on a day.
+/// Teams that are booked elsewhere on a day.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Taken {
     /// The day, in the port's time.
     pub day: NaiveDate,
-    /// How many.
+    /// Number of teams.
     pub teams: u32,
 }
 
@@ -68,38 +68,38 @@ pub struct Taken {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ServedPort {
-    /// The port.
+    /// Cost of sending a team there for a day.
     pub port: PortCode,
-    /// What it costs to send a team there for a day.
+    /// Cost of sending a team there for a day.
     #[serde(default)]
     pub travel_eur: Eur,
 }
 
 impl Firm {
-    /// Whether it works on a day.
+    /// True on a working day.
     pub fn works(&self, day: NaiveDate) -> bool {
         self.working_days.contains(&day.weekday()) && !self.closed.contains(&day)
     }
 
-    /// How many of its teams there are to plan with on a day.
+    /// Number of teams available on a day.
     pub fn teams_on(&self, day: NaiveDate) -> u32 {
         let taken = self.taken.iter().filter(|taken| taken.day == day);
         taken.fold(self.teams, |left, taken| left.saturating_sub(taken.teams))
     }
 
-    /// Whether a flag accepts its adjusters; one that is not known may not.
+    /// True if a flag accepts its adjusters; an unknown flag may not.
     pub fn is_accepted_by(&self, flag: Option<Flag>) -> bool {
         self.flags.is_empty() || flag.is_some_and(|flag| self.flags.contains(&flag))
     }
 
-    /// What a team's day in a port costs, if the firm serves it.
+    /// Cost of a team's day in a port, if the firm serves it.
     pub fn travel(&self, port: PortCode) -> Option<Eur> {
         let served = self.ports.iter().find(|served| served.port == port)?;
         Some(served.travel_eur)
     }
 
-    /// Its name for people.
-    pub fn called(&self) -> &str {
+    /// Returns the name for people.
+    pub fn display_name(&self) -> &str {
         self.name.as_deref().unwrap_or(&self.id)
     }
 }

@@ -1,19 +1,22 @@
-//! What a schedule is made from, as JSON.
+//! The input of a schedule, as JSON.
 //!
-//! What always holds: a [`Checked`] input is not too large and hangs together: names are unique and what they
-//! refer to is there, calls of a ship do not overlap and are not over, every firm has
-//! days on which it works. What is wrong is said with its JSON path.
+//! Invariants of a [`Checked`] input: it is not too large, and it is
+//! consistent. Names are unique, references resolve, a ship's calls do not
+//! overlap and are not over, and every firm has working days. Faults are
+//! reported with their JSON path.
 
 mod check;
+mod error;
 mod firm;
+mod firm_check;
 mod read;
-mod sound;
 mod weights;
 
 pub use check::must_fit;
+pub use error::InputError;
 pub use firm::{Firm, ServedPort, Taken};
-pub use read::{InputError, read};
-pub use sound::{FirmError, firm_is_sound};
+pub use firm_check::{FirmError, check_firm};
+pub use read::read;
 pub use weights::{JOB_H, Weights};
 
 use crate::calls::PortCall;
@@ -23,37 +26,37 @@ use crate::time::Instant;
 use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
 
-/// Everything that a schedule is made from.
+/// The whole input of a schedule.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Input {
-    /// The instant as of which to plan.
+    /// Instant of the plan.
     pub now: Instant,
     /// Days ahead to plan for; a compass that is due later is left out.
     #[serde(default = "horizon")]
     pub horizon_days: u32,
     /// The ships.
     pub vessels: Vec<Vessel>,
-    /// Compasses of which it is known when they are due.
+    /// Compasses with known due dates.
     #[serde(default)]
     pub needs: Vec<Need>,
-    /// Compasses of which it is to be found out.
+    /// Compasses whose due dates follow from the rules.
     #[serde(default)]
     pub compasses: Vec<CompassFacts>,
     /// The ships' calls.
     pub port_calls: Vec<PortCall>,
     /// The firms.
     pub firms: Vec<Firm>,
-    /// The jobs of the plan before this one, and how far they got.
+    /// Jobs of the previous plan, with their progress.
     #[serde(default)]
     pub former: Vec<FormerJob>,
-    /// Firms that said no.
+    /// Refusals by firms.
     #[serde(default)]
     pub declined: Vec<Declined>,
-    /// What counts how much.
+    /// Cost weights of the schedule.
     #[serde(default)]
     pub weights: Weights,
-    /// The terms by which compasses are due.
+    /// Terms that set due dates where rules give none.
     #[serde(default)]
     pub terms: Terms,
 }
@@ -62,50 +65,50 @@ fn horizon() -> u32 {
     180
 }
 
-/// A ship; what rules ask about as [`Ship`] has it.
+/// A ship; [`Ship`] explains the facts that rules ask about.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Vessel {
-    /// Her name in this file.
+    /// Id in this file.
     pub id: String,
-    /// Her name.
+    /// Name for people.
     #[serde(default)]
     pub name: Option<String>,
-    /// A licence that her operator asks of an adjuster.
+    /// Licence that the operator requires of an adjuster.
     #[serde(default)]
     pub licence: Option<String>,
-    /// Her flag; every flag's rules bind her when it is not known.
+    /// Flag; when unknown, every flag's rules apply.
     #[serde(default)]
     pub flag: Option<Flag>,
-    /// Her gross tonnage.
+    /// Gross tonnage.
     #[serde(default)]
     pub gross_tonnage: Option<u32>,
-    /// Her trade.
+    /// Trade.
     #[serde(default)]
     pub trade: Option<Trade>,
-    /// Whether the deviation book is kept.
+    /// State of the deviation book.
     #[serde(default)]
     pub deviation_record: Option<DeviationRecord>,
-    /// Transits that are planned.
+    /// Planned transits.
     #[serde(default)]
     pub transits: Vec<Transit>,
 }
 
 impl Vessel {
-    /// Her name for people.
-    pub fn called(&self) -> &str {
+    /// Returns the name for people.
+    pub fn display_name(&self) -> &str {
         self.name.as_deref().unwrap_or(&self.id)
     }
 
-    /// Her flag for people.
-    pub(crate) fn flag_in_words(&self) -> String {
+    /// The flag as text.
+    pub(crate) fn describe_flag(&self) -> String {
         match self.flag {
             Some(flag) => format!("flag {}", flag.letters()),
             None => "a flag that is not known".to_owned(),
         }
     }
 
-    /// What rules ask about.
+    /// The facts that rules ask about.
     pub fn ship(&self) -> Ship {
         Ship {
             flag: self.flag,
@@ -121,77 +124,77 @@ impl Vessel {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Need {
-    /// Its name in this file: a compass has one need at a time.
+    /// Id in this file: a compass has one need at a time.
     pub id: String,
     /// The ship.
     pub vessel: String,
     /// The last day on which it may be adjusted.
     pub due: NaiveDate,
-    /// How much it presses; by the due date, where it is not said.
+    /// Urgency; follows from the due date, if absent.
     #[serde(default)]
     pub urgency: Option<Urgency>,
-    /// Why it is due.
+    /// Reason why it is due.
     #[serde(default)]
     pub reason: Option<String>,
 }
 
-/// A compass, and what is known of it.
+/// A compass and the known facts about it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CompassFacts {
-    /// Its name in this file, unlike that of any need.
+    /// Id in this file, different from that of any need.
     pub id: String,
     /// The ship.
     pub vessel: String,
-    /// What rules ask about.
+    /// The facts that rules ask about.
     pub facts: Compass,
 }
 
-/// A job of the plan before.
+/// A job of the previous plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FormerJob {
     /// The needs that it meets.
     pub needs: Vec<String>,
-    /// At which call.
+    /// The call.
     pub call: String,
-    /// By which firm.
+    /// The firm.
     pub firm: String,
-    /// On which day.
+    /// The day.
     pub day: NaiveDate,
-    /// How far it got.
+    /// Progress of the job.
     pub state: JobState,
 }
 
-/// How far a job got.
+/// Progress of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JobState {
-    /// Planned, and nobody was asked.
+    /// Planned; no firm has been asked.
     Proposed,
-    /// The firm was asked.
+    /// Offered to the firm.
     Offered,
-    /// The firm accepted.
+    /// Accepted by the firm.
     Confirmed,
 }
 
-/// A firm's no.
+/// A refusal by a firm.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Declined {
-    /// To this need.
+    /// The need.
     pub need: String,
-    /// By this firm.
+    /// The firm.
     pub firm: String,
-    /// On this day; on any, where none is said.
+    /// The day; any day, if absent.
     #[serde(default)]
     pub day: Option<NaiveDate>,
-    /// At this call; at any, where none is said.
+    /// The call; any call, if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub call: Option<String>,
 }
 
-/// An input that hangs together.
+/// A consistent input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checked(Input);
 

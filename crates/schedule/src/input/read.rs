@@ -1,30 +1,12 @@
-//! Reading an input from its text.
+//! Reads an input from its text.
 
+use super::error::InputError;
 use super::{Checked, Input, check};
-
-/// What is wrong with an input, and where.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{path}: {detail}")]
-pub struct InputError {
-    /// The JSON path, as `port_calls[3].eta`.
-    pub path: String,
-    /// What is wrong there.
-    pub detail: String,
-}
-
-impl InputError {
-    pub(super) fn new(path: impl Into<String>, detail: impl Into<String>) -> InputError {
-        InputError {
-            path: path.into(),
-            detail: detail.into(),
-        }
-    }
-}
 
 /// Reads and checks an input.
 ///
 /// # Errors
-/// The first thing that is wrong.
+/// The first fault.
 pub fn read(text: &str) -> Result<Checked, InputError> {
     let mut json = serde_json::Deserializer::from_str(text);
     let input: Input = serde_path_to_error::deserialize(&mut json).map_err(|error| {

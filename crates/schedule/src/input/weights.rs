@@ -1,57 +1,60 @@
-//! What counts how much: the operator's own figures, in euros.
+//! Cost weights of the schedule: the operator's own figures, in euros.
 
 use crate::needs::Urgency;
 use crate::time::Eur;
 use serde::{Deserialize, Serialize};
 
-/// Hours that a job takes on board where nobody says otherwise.
+/// Default hours of a job on board.
 pub const JOB_H: f64 = 3.0;
 
-/// A figure for each urgency.
+/// A weight for each urgency.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ByUrgency {
     /// For routine needs.
     pub routine: Eur,
-    /// For what is due soon.
+    /// For needs due soon.
     pub soon: Eur,
-    /// For what is urgent.
+    /// For urgent needs.
     pub urgent: Eur,
-    /// For what is overdue.
+    /// For overdue needs.
     pub overdue: Eur,
 }
 
-/// What counts how much.
+/// Cost weights of the schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Weights {
-    /// A need that is not met, beside all the waiting to the end of the horizon;
-    /// and one that is met late, where nobody has said how late it may be.
+    /// Cost of an unmet need, in addition to waiting until the end of the
+    /// horizon. A late one costs this too, unless `late_days` is set.
     pub unmet_eur: ByUrgency,
-    /// A job at which the ship turns out not to be there, beside waiting for the next.
+    /// Cost of a job that misses its ship, in addition to waiting for the next
+    /// call.
     pub missed_eur: ByUrgency,
-    /// Each day that a need waits.
+    /// Cost of each day that a need waits.
     pub waiting_eur_day: ByUrgency,
-    /// Each day after the due date that is still to come.
+    /// Cost of each day to come after the due date.
     pub late_eur_day: Eur,
-    /// Each day of an interval that is given away by adjusting before the due date.
+    /// Cost of each day of the interval lost by adjusting before the due date.
     pub early_eur_day: Eur,
-    /// Another firm, call or day than was proposed.
+    /// Cost of another firm, call or day than was proposed.
     pub changed_eur: Eur,
-    /// Another than was offered.
+    /// Cost of another than was offered.
     pub withdrawn_eur: Eur,
-    /// Days after the due date on which a job may be planned, and no later, though it could
-    /// be done in time at more cost. Where it is not said, a job is planned late only where
-    /// it is that or not at all. What is overdue may be planned on any day.
+    /// Days after the due date on which a job may still be planned, even if it
+    /// could be done in time at more cost. Without it, a job is planned late
+    /// only if it cannot be done in time. An overdue job may be planned on any
+    /// day.
     pub late_days: Option<u32>,
-    /// Hours that a job takes on board.
+    /// Hours of a job on board.
     pub job_h: f64,
-    /// Needs of one ship that are due within so many days of the first are one job.
+    /// Days within which a ship's needs, counted from the first due date, form
+    /// one job.
     pub join_days: u32,
 }
 
 impl ByUrgency {
-    /// The figure for an urgency.
+    /// The weight of an urgency.
     pub fn of(&self, urgency: Urgency) -> Eur {
         match urgency {
             Urgency::Routine => self.routine,

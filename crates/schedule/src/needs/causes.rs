@@ -1,14 +1,48 @@
-//! Each cause of a due date.
+//! The causes of due dates.
 
-use super::{Cause, CauseKind, Compass, Event, Predicted, Ship, Side, Terms};
+use super::facts::{Compass, Event, Predicted, Ship, Side, Terms};
 use crate::rules::{Applies, DeviationRecord, Limit, Requirement, Rule};
 use chrono::{Days, NaiveDate};
+use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
-/// Said before the interval that begins with an adjustment which may yet fail.
+/// Kind of cause of a due date.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CauseKind {
+    /// No adjustment is on record.
+    NeverAdjusted,
+    /// A rule's interval ends.
+    Interval,
+    /// A rule asks for an adjustment after an event.
+    Event,
+    /// Predicted deviation exceeds a rule's limit, or the vessel's own.
+    OverLimit,
+    /// A transit requires a newer table or a smaller deviation.
+    Transit,
+    /// The ship's magnetism changed.
+    Change,
+    /// The last adjustment failed its verification at sea.
+    FailedVerification,
+}
+
+/// One cause, with its own due date.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Cause {
+    /// Kind of cause.
+    pub kind: CauseKind,
+    /// Its own due date.
+    pub due: NaiveDate,
+    /// Reason as text.
+    pub reason: String,
+    /// Id of the rule, if it is one.
+    pub rule: Option<String>,
+}
+
+/// Prefix of an interval that begins with an unverified adjustment.
 const NOT_VERIFIED: &str = "adjusted, not yet verified at sea: ";
 
-/// All causes, those of rules in the rules' order.
+/// Finds all causes, those of rules in the rules' order.
 pub(super) fn find(
     ship: &Ship,
     compass: &Compass,
@@ -86,8 +120,8 @@ pub(super) fn find(
     causes
 }
 
-/// Over the limit that the ship's operator has set, where no rule that binds her sets as
-/// strict a one.
+/// The cause of exceeding the operator's own limit, where no applicable rule
+/// sets as strict a one.
 fn over_own_limit(
     ship: &Ship,
     compass: &Compass,
@@ -116,8 +150,8 @@ fn over_own_limit(
     })
 }
 
-/// Whether a rule binds a ship. What is not known of her is taken to be as the rule has
-/// it: to adjust too early costs a fee, to adjust too late a detention.
+/// True if a rule applies to a ship. An unknown fact is taken to match the
+/// rule: an early adjustment costs a fee, a late one a detention.
 fn binds(applies: &Applies, ship: &Ship) -> bool {
     let kept = ship.deviation_record.unwrap_or(DeviationRecord::NotKept);
     (applies.flags.is_empty() || ship.flag.is_none_or(|flag| applies.flags.contains(&flag)))
@@ -134,10 +168,10 @@ fn binds(applies: &Applies, ship: &Ship) -> bool {
             .is_none_or(|canal| ship.transits.iter().any(|transit| transit.canal == canal))
 }
 
-type Found = (CauseKind, NaiveDate, String);
+type DatedReason = (CauseKind, NaiveDate, String);
 
-/// By instants where both are known, else by days: what an adjustment of the same day was for
-/// is over by it.
+/// Events since the last adjustment. Instants decide where both are known,
+/// otherwise days: an adjustment settles an event of the same day.
 fn since_adjusted(compass: &Compass) -> impl Iterator<Item = &Event> {
     let day = compass.adjusted_on.unwrap_or(NaiveDate::MIN);
     let is_since = move |event: &&Event| match (event.at, compass.adjusted_at) {
@@ -147,15 +181,15 @@ fn since_adjusted(compass: &Compass) -> impl Iterator<Item = &Event> {
     compass.events.iter().filter(is_since)
 }
 
-/// The first day on which the prediction is over a limit, or since which the deviation has
-/// been: since the last adjustment at the earliest, for what was before it is over.
+/// The first day on which the prediction exceeds a limit, or since which the
+/// deviation has, counted from the last adjustment at the earliest.
 fn over(
     compass: &Compass,
     limit: Limit,
     words: &str,
     terms: &Terms,
     today: NaiveDate,
-) -> Option<Found> {
+) -> Option<DatedReason> {
     let limit_deg = limit.degrees();
     let over = || {
         let all = compass.predicted.iter();
@@ -205,12 +239,12 @@ fn at_transit(
     on: NaiveDate,
     below: Limit,
     too_old: impl Fn(NaiveDate) -> bool,
-) -> Option<Found> {
+) -> Option<DatedReason> {
     let found = |words| Some((CauseKind::Transit, on, words));
     match compass.adjusted_on {
         None => {
             return found(format!(
-                "the transit of {on} asks for a deviation table, and none is on record"
+                "the transit of {on} requires a deviation table, and none is on record"
             ));
         }
         Some(day) if too_old(day) => {
@@ -220,7 +254,7 @@ fn at_transit(
         }
         Some(_) => {}
     }
-    // What holds at the transit is the last prediction before it.
+    // The last prediction before the transit holds at the transit.
     let then = compass
         .predicted
         .iter()
@@ -230,7 +264,7 @@ fn at_transit(
         return None;
     }
     found(format!(
-        "{} predicted at the transit of {on}, which asks for less than {}°",
+        "{} predicted at the transit of {on}, which requires less than {}°",
         worst(then),
         below.degrees()
     ))

@@ -1,9 +1,10 @@
-//! From needs to jobs: what is due on one ship at about one time is one job.
+//! Groups needs into jobs: needs of one ship that are due at about the same
+//! time are one job.
 
 use crate::calls::PortCall;
 use crate::input::{Checked, FormerJob, Input, JobState, Vessel};
 use crate::needs::{Urgency, due};
-use crate::rules::shipped;
+use crate::rules::built_in_rules;
 use chrono::{Days, NaiveDate};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,7 +20,7 @@ pub(super) struct DueNeed {
 /// Needs that are met together.
 pub(super) struct Job<'a> {
     pub(super) vessel: &'a Vessel,
-    /// The first that is due speaks for all.
+    /// The needs; the first due date counts for all.
     pub(super) needs: Vec<DueNeed>,
     /// The ship's calls, in order of time.
     pub(super) calls: Vec<&'a PortCall>,
@@ -39,7 +40,7 @@ impl Job<'_> {
             .unwrap_or(Urgency::Routine)
     }
 
-    /// Whether it is late already, however soon it is done.
+    /// True if the job is late already, however soon it is done.
     pub(super) fn is_overdue(&self, today: NaiveDate) -> bool {
         self.due() < today || self.urgency() == Urgency::Overdue
     }
@@ -48,14 +49,16 @@ impl Job<'_> {
         self.needs.iter().map(|need| need.id.clone()).collect()
     }
 
-    /// Whether the former plan has it so.
-    pub(super) fn was(&self, call: &str, firm: &str, day: NaiveDate) -> bool {
+    /// True if the previous plan has the job at this call, by this firm, on
+    /// this day.
+    pub(super) fn was_planned(&self, call: &str, firm: &str, day: NaiveDate) -> bool {
         self.former
             .is_some_and(|former| former.call == call && former.firm == firm && former.day == day)
     }
 }
 
-/// The jobs of the horizon, the first due first, and the needs that are due later.
+/// Returns the jobs of the horizon, the first due first, and the needs that are
+/// due later.
 pub(super) fn jobs(checked: &Checked) -> (Vec<Job<'_>>, Vec<DueNeed>) {
     let input = checked.get();
     let today = input.now.utc_date();
@@ -108,8 +111,9 @@ pub(super) fn jobs(checked: &Checked) -> (Vec<Job<'_>>, Vec<DueNeed>) {
     (jobs, later)
 }
 
-/// The first need and those that go with it: what a firm confirmed together stays
-/// together, and what is not confirmed joins what is due soon after.
+/// Takes the first need and those that go with it. Needs that a firm confirmed
+/// together stay together; an unconfirmed need is joined by those due soon
+/// after.
 fn take_group<'a>(
     open: &mut Vec<DueNeed>,
     confirmed: impl Fn(&str) -> Option<&'a FormerJob>,
@@ -135,7 +139,8 @@ fn take_group<'a>(
     group
 }
 
-/// All needs with their ships: those given, and those found by the rules.
+/// Returns all needs with their ships: those given, and those found by the
+/// rules.
 fn needs(input: &Input, today: NaiveDate) -> Vec<(&str, DueNeed)> {
     let given = input.needs.iter().map(|need| {
         let urgency = need
@@ -160,7 +165,7 @@ fn needs(input: &Input, today: NaiveDate) -> Vec<(&str, DueNeed)> {
         .collect();
     let found = input.compasses.iter().filter_map(|compass| {
         let ship = ships[compass.vessel.as_str()].ship();
-        let due = due(&ship, &compass.facts, shipped(), &input.terms, today)?;
+        let due = due(&ship, &compass.facts, built_in_rules(), &input.terms, today)?;
         let need = DueNeed {
             id: compass.id.clone(),
             due: due.on,

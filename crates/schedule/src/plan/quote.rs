@@ -1,4 +1,5 @@
-//! What one firm on one day of one call would cost a job, or what stands against it.
+//! The cost of a job by one firm on one day of one call, or the obstacles to
+//! it.
 
 use super::jobs::Job;
 use crate::calls::PortCall;
@@ -8,10 +9,10 @@ use crate::ports::{self, Port};
 use crate::time::Instant;
 use chrono::{Days, NaiveDate};
 
-/// No more days are counted, so that sums of money stay sums.
-const MOST_DAYS: i64 = 3650;
+/// The most days counted, so that sums of money cannot overflow.
+const MAX_DAYS: i64 = 3650;
 
-/// One thing that stands against it.
+/// An obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Obstacle {
     /// The flag does not accept the firm's adjusters.
@@ -20,17 +21,17 @@ pub(super) enum Obstacle {
     Licence,
     /// The firm does not work that day.
     NotWorking,
-    /// The firm needs to be asked earlier.
+    /// The firm needs more notice.
     LeadTime,
     /// The ship is not alongside long enough in the firm's hours.
     Stay,
     /// The day is after the due date.
     AfterDue,
-    /// The firm said no.
+    /// The firm declined.
     Declined,
 }
 
-/// What it would cost, in cents, and when.
+/// The costs in cents, and the time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Quote {
     pub(super) from: Instant,
@@ -46,18 +47,18 @@ pub(super) struct Quote {
 }
 
 impl Quote {
-    /// All but the travel, which jobs may share.
+    /// All costs but the travel, which jobs may share.
     pub(super) fn cost(&self) -> i64 {
         self.fee + self.risk + self.waiting + self.late + self.early + self.changed
     }
 }
 
-/// The port of a call of a checked input.
+/// Returns the port of a call of a checked input.
 pub(super) fn port_of(call: &PortCall) -> &'static Port {
     ports::find(call.port).expect("the ports of a checked input are in the table")
 }
 
-/// The days of a call, from today on, in the port's time.
+/// Returns the days of a call, from today on, in the port's time.
 pub(super) fn days(call: &PortCall, now: Instant) -> impl Iterator<Item = NaiveDate> + use<> {
     let zone = port_of(call).zone;
     let first = call.eta.date(zone).max(now.date(zone));
@@ -66,7 +67,7 @@ pub(super) fn days(call: &PortCall, now: Instant) -> impl Iterator<Item = NaiveD
         .take_while(move |day| *day <= last)
 }
 
-/// A quote, or everything that stands against it.
+/// Returns a quote, or all obstacles.
 pub(super) fn quote(
     input: &Input,
     job: &Job<'_>,
@@ -79,12 +80,12 @@ pub(super) fn quote(
     let today = input.now.date(zone);
     let former = job
         .former
-        .filter(|_| job.was(&call.id, &firm.id, day))
+        .filter(|_| job.was_planned(&call.id, &firm.id, day))
         .map(|former| former.state);
     let confirmed = former == Some(JobState::Confirmed);
     let opens = Instant::at(day, firm.first_hour, zone);
     let closes = Instant::at(day, firm.last_hour, zone);
-    // A firm that is asked, or has said yes, was asked in time.
+    // Notice counts only before a firm is asked.
     let ready = match former {
         Some(JobState::Offered | JobState::Confirmed) => input.now,
         Some(JobState::Proposed) | None => input.now.plus_hours(firm.lead_time_h),
@@ -93,10 +94,10 @@ pub(super) fn quote(
     let (from, to) = (begins.max(call.eta), closes.min(call.etd));
     let late_days = (day - job.due()).num_days().max(0);
 
-    let mut against = Vec::new();
+    let mut obstacles = Vec::new();
     let mut unless = |fine: bool, obstacle| {
         if !fine {
-            against.push(obstacle);
+            obstacles.push(obstacle);
         }
     };
     unless(firm.is_accepted_by(job.vessel.flag), Obstacle::Flag);
@@ -116,21 +117,25 @@ pub(super) fn quote(
     let in_cap = |most: u32| late_days <= i64::from(most);
     let allowed = overdue || confirmed || weights.late_days.is_none_or(in_cap);
     unless(allowed, Obstacle::AfterDue);
-    unless(!declined(input, job, call, firm, day), Obstacle::Declined);
-    if !against.is_empty() {
-        return Err(against);
+    unless(
+        !has_declined(input, job, call, firm, day),
+        Obstacle::Declined,
+    );
+    if !obstacles.is_empty() {
+        return Err(obstacles);
     }
 
     let urgency = job.urgency();
     let chance_of_missing = call.chance_of_missing(begins, closes, weights.job_h);
-    let waits = (day - today).num_days().clamp(0, MOST_DAYS);
+    let waits = (day - today).num_days().clamp(0, MAX_DAYS);
     let early_days = match urgency {
-        Urgency::Routine | Urgency::Soon => (job.due() - day).num_days().clamp(0, MOST_DAYS),
+        Urgency::Routine | Urgency::Soon => (job.due() - day).num_days().clamp(0, MAX_DAYS),
         Urgency::Urgent | Urgency::Overdue => 0,
     };
-    // What is late already is so whatever is done: only days to come count.
-    let late_to_come = (day - job.due().max(today)).num_days().clamp(0, MOST_DAYS);
-    // To be late at all weighs as much as to leave undone what could be done in time.
+    // Past lateness cannot be changed: only days to come count.
+    let late_to_come = (day - job.due().max(today)).num_days().clamp(0, MAX_DAYS);
+    // Being late at all costs as much as leaving undone a job that could be
+    // done in time.
     let at_all = late_days > 0 && !overdue && weights.late_days.is_none();
     let late_at_all = i64::from(at_all) * weights.unmet_eur.of(urgency).cents();
     let more = job.needs.iter().skip(1);
@@ -145,18 +150,18 @@ pub(super) fn quote(
         waiting: waits * weights.waiting_eur_day.of(urgency).cents(),
         late: late_to_come * weights.late_eur_day.cents() + late_at_all,
         early: early_days * weights.early_eur_day.cents(),
-        changed: changed(input, job, call, firm, day),
+        changed: change_cost(input, job, call, firm, day),
     })
 }
 
-/// What it costs at most that a job waits, but for a fee: to the end of the horizon, late then
-/// and at the price of a ship that is missed. What is not done costs that much whatever stood
-/// against it, so that no plan gets cheaper by what becomes impossible.
-pub(super) fn waits_at_most(input: &Input, job: &Job<'_>) -> i64 {
+/// The most that waiting can cost a job, without a fee: to the end of the
+/// horizon, then late, and with a missed ship. An undone job costs this much
+/// whatever the obstacles, so that no new obstacle makes a plan cheaper.
+pub(super) fn max_waiting_cost(input: &Input, job: &Job<'_>) -> i64 {
     let (weights, urgency) = (&input.weights, job.urgency());
     let today = input.now.utc_date();
     let ends = today + Days::new(input.horizon_days.into());
-    let days = |from: NaiveDate, to: NaiveDate| (to - from).num_days().clamp(0, MOST_DAYS);
+    let days = |from: NaiveDate, to: NaiveDate| (to - from).num_days().clamp(0, MAX_DAYS);
     let early = match urgency {
         Urgency::Routine | Urgency::Soon => days(today, job.due()),
         Urgency::Urgent | Urgency::Overdue => 0,
@@ -167,29 +172,38 @@ pub(super) fn waits_at_most(input: &Input, job: &Job<'_>) -> i64 {
     let waiting = days(today, ends) * weights.waiting_eur_day.of(urgency).cents();
     let changed = job
         .former
-        .map_or(0, |former| departing(input, former.state));
-    // None is early and late at once.
+        .map_or(0, |former| departure_cost(input, former.state));
+    // A day is either early or late.
     let waits = (early * weights.early_eur_day.cents()).max(waiting + late);
     waits + weights.missed_eur.of(urgency).cents() + changed
 }
 
-/// What it costs to depart from the former plan.
-fn changed(input: &Input, job: &Job<'_>, call: &PortCall, firm: &Firm, day: NaiveDate) -> i64 {
+/// Cost of departing from the previous plan.
+fn change_cost(input: &Input, job: &Job<'_>, call: &PortCall, firm: &Firm, day: NaiveDate) -> i64 {
     match job.former {
-        Some(former) if !job.was(&call.id, &firm.id, day) => departing(input, former.state),
+        Some(former) if !job.was_planned(&call.id, &firm.id, day) => {
+            departure_cost(input, former.state)
+        }
         _ => 0,
     }
 }
 
-fn departing(input: &Input, from: JobState) -> i64 {
+fn departure_cost(input: &Input, from: JobState) -> i64 {
     match from {
         JobState::Proposed => input.weights.changed_eur.cents(),
-        // A confirmed job that moves has its cause, and none of these is it.
+        // A confirmed job that moves has a cause, and none of these costs
+        // applies.
         JobState::Offered | JobState::Confirmed => input.weights.withdrawn_eur.cents(),
     }
 }
 
-fn declined(input: &Input, job: &Job<'_>, call: &PortCall, firm: &Firm, day: NaiveDate) -> bool {
+fn has_declined(
+    input: &Input,
+    job: &Job<'_>,
+    call: &PortCall,
+    firm: &Firm,
+    day: NaiveDate,
+) -> bool {
     input.declined.iter().any(|declined| {
         declined.firm == firm.id
             && declined.day.is_none_or(|only| only == day)

@@ -1,4 +1,4 @@
-//! A schedule, as it is answered in JSON.
+//! The schedule as JSON.
 
 use crate::calls::BerthHeading;
 use crate::input::JobState;
@@ -8,24 +8,24 @@ use crate::time::Instant;
 use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
 
-/// Who does what where and when, how good that is, and what could not be done.
+/// Jobs with their costs, and the needs that could not be scheduled.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Schedule {
-    /// What the plan costs by the weights, all that is unmet included.
+    /// Cost of the plan by the weights, with all unmet needs.
     pub cost_eur: f64,
-    /// What no plan can cost less than.
+    /// Lower bound of the cost of any plan.
     pub bound_eur: f64,
-    /// How far the cost is above the bound, in per cent of the cost.
+    /// Gap between cost and bound, in per cent of the cost.
     pub gap_percent: f64,
-    /// Whether no plan is better.
+    /// True if no plan is better.
     pub proven_optimal: bool,
-    /// Fees and travel that are really paid.
+    /// Fees and travel that are actually paid.
     pub paid_eur: f64,
     /// The jobs, in order of the day.
     pub jobs: Vec<PlannedJob>,
-    /// What could not be scheduled, or only late.
+    /// Needs that could not be scheduled, or only late.
     pub unscheduled: Vec<Unscheduled>,
-    /// What became of the former plan's jobs, and what is new.
+    /// Changes from the previous plan.
     pub changes: Vec<Change>,
     /// Needs that are due after the horizon.
     pub later: Vec<Later>,
@@ -38,115 +38,115 @@ pub struct PlannedJob {
     pub needs: Vec<String>,
     /// The ship.
     pub vessel: String,
-    /// At which call.
+    /// The call.
     pub call: String,
-    /// In which port.
+    /// The port.
     pub port: PortCode,
     /// The port's name.
     pub port_name: &'static str,
-    /// By which firm.
+    /// The firm.
     pub firm: String,
-    /// On which day, in the port's time.
+    /// The day, in the port's time.
     pub day: NaiveDate,
-    /// From when the ship is alongside and the firm at work.
+    /// Beginning: the ship is alongside and the firm at work.
     pub from: Instant,
-    /// Until when.
+    /// End.
     pub to: Instant,
-    /// The ship's heading alongside, where it is known.
+    /// The ship's heading alongside, if known.
     pub berth_heading: Option<BerthHeading>,
-    /// How far it got already.
+    /// Progress of the job.
     pub state: JobState,
-    /// The last day on which it would be in time.
+    /// The last day in time.
     pub due: NaiveDate,
-    /// How much it presses.
+    /// Urgency.
     pub urgency: Urgency,
-    /// Why it is due.
+    /// Reason why it is due.
     pub reason: String,
     /// Days after the due date.
     pub late_days: i64,
-    /// The chance that the ship is not there.
+    /// Probability that the ship is not there.
     pub chance_of_missing: f64,
     /// The firm's fee.
     pub fee_eur: f64,
-    /// Its part of the team's travel.
+    /// Its share of the team's travel.
     pub travel_eur: f64,
-    /// What else it was weighed by.
+    /// Weighted costs.
     pub weighed: Weighed,
 }
 
-/// What a job was weighed by beside what is paid, in euros.
+/// Weighted costs of a job beyond what is paid, in euros.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Weighed {
-    /// The chance of missing the ship.
+    /// Risk of missing the ship.
     pub risk_eur: f64,
-    /// The days until then.
+    /// Days of waiting.
     pub waiting_eur: f64,
-    /// The days after the due date that are still to come, and being late at all.
+    /// Days to come after the due date, and lateness itself.
     pub late_eur: f64,
-    /// The days before it.
+    /// Days before the due date.
     pub early_eur: f64,
-    /// Departing from the former plan.
+    /// Departure from the previous plan.
     pub changed_eur: f64,
 }
 
-/// What could not be scheduled, or only late.
+/// Needs that could not be scheduled, or only late.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Unscheduled {
     /// The needs.
     pub needs: Vec<String>,
     /// The ship.
     pub vessel: String,
-    /// When it is due.
+    /// Due date.
     pub due: NaiveDate,
-    /// How much it presses.
+    /// Urgency.
     pub urgency: Urgency,
-    /// Why it is due.
+    /// Reason why it is due.
     pub reason: String,
-    /// Whether it is in the plan, after the due date.
+    /// True if it is planned, but after the due date.
     pub planned_late: bool,
-    /// Why it could not be.
+    /// Reasons why it could not be scheduled.
     pub because: Vec<String>,
-    /// What would have made it possible, the nearest first.
+    /// Changes that would have made it possible, the nearest first.
     pub would_help: Vec<String>,
 }
 
-/// What became of a job of the former plan, or that there is a new one.
+/// A change of a job from the previous plan.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Change {
     /// The needs.
     pub needs: Vec<String>,
-    /// What became of it.
+    /// Kind of change.
     pub what: ChangeKind,
-    /// Where it was.
+    /// Previous place.
     pub from: Option<Place>,
-    /// Where it is now.
+    /// Present place.
     pub to: Option<Place>,
-    /// Why.
+    /// Reason.
     pub why: String,
 }
 
-/// What became of a job.
+/// Kind of change of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChangeKind {
-    /// It stands as it was.
+    /// It stays unchanged.
     Kept,
     /// Another call, firm or day.
     Moved,
-    /// It was not in the former plan.
+    /// It was not in the previous plan.
     New,
-    /// It is not in the plan any more.
+    /// It is no longer in the plan.
     Dropped,
 }
 
-/// Where and when a job is.
+/// Place and day of a job.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Place {
-    /// At which call.
+    /// The call.
     pub call: String,
-    /// By which firm.
+    /// The firm.
     pub firm: String,
-    /// On which day.
+    /// The day.
     pub day: NaiveDate,
 }
 
@@ -155,8 +155,8 @@ pub struct Place {
 pub struct Later {
     /// The need.
     pub need: String,
-    /// When it is due.
+    /// Due date.
     pub due: NaiveDate,
-    /// Why.
+    /// Reason.
     pub reason: String,
 }

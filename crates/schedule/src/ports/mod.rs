@@ -1,15 +1,16 @@
-//! Sea ports by UN/LOCODE, with where they are.
+//! Sea ports by UN/LOCODE, with their positions.
 //!
-//! `data/ports.csv` is made by `scripts/ports.py` from UNECE's code list (its issue
-//! 2023-1; function 1, port), as it is published for everyone's use; where UNECE gives
-//! no position, from the list "sea-ports" 0.0.9 (MIT licence, © marchah). Positions are
-//! rounded to a hundredth of a degree: good for distances, not for navigation, and a few are
-//! far off in UNECE's list. Zones are by country and subdivision, from zone.tab of the IANA
-//! time zone database 2026f (public domain). `data/places.csv` is made by `scripts/places.py`
-//! from the same list.
+//! `data/ports.csv` is made by `scripts/ports.py` from UNECE's code list (its
+//! issue 2023-1; function 1, port), as it is published for everyone's use;
+//! where UNECE gives no position, from the list "sea-ports" 0.0.9 (MIT licence,
+//! © marchah). Positions are rounded to a hundredth of a degree: good for
+//! distances, not for navigation, and a few are far off in UNECE's list. Zones
+//! are by country and subdivision, from zone.tab of the IANA time zone database
+//! 2026f (public domain). `data/places.csv` is made by `scripts/places.py` from
+//! the same list.
 //!
-//! What always holds: a [`PortCode`] is two capital letters and three capital letters or
-//! digits; the table is sorted by it and names each once.
+//! Invariants: a [`PortCode`] is two capital letters and three capital letters
+//! or digits; the table is sorted by it and contains each once.
 
 use crate::zone::Zone;
 use binnacle_compass::position::Position;
@@ -22,7 +23,7 @@ use std::sync::OnceLock;
 #[serde(try_from = "String", into = "String")]
 pub struct PortCode([u8; 5]);
 
-/// Why something is not a UN/LOCODE.
+/// The reason why a text is not a UN/LOCODE.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:?} is not a UN/LOCODE of five letters and digits, as NLRTM")]
 pub struct PortCodeError(String);
@@ -36,7 +37,7 @@ pub struct Port {
     pub name: &'static str,
     /// Its name without accents.
     pub plain_name: &'static str,
-    /// About where it is.
+    /// Its approximate position.
     pub position: Position,
     /// Its legal time.
     pub zone: Zone,
@@ -55,22 +56,23 @@ pub fn all() -> &'static [Port] {
     })
 }
 
-/// The port of a code.
+/// Finds the port of a code.
 pub fn find(code: PortCode) -> Option<&'static Port> {
     let ports = all();
     let at = ports.binary_search_by_key(&code, |port| port.code).ok()?;
     Some(&ports[at])
 }
 
-/// The legal time at a port; UTC where the table has none of its code.
+/// Returns the legal time at a port; UTC where the table does not have its
+/// code.
 pub fn zone(code: PortCode) -> Zone {
     find(code).map_or_else(Zone::utc, |port| port.zone)
 }
 
-/// What is wrong with a code that no port of the table has, and the one that may be meant:
-/// cities and airports have codes of their own.
+/// Explains why a code is not a port of the table, and suggests the port that
+/// may be meant: cities and airports have codes of their own.
 pub fn unknown(code: PortCode) -> String {
-    let wrong = format!("{code} is no sea port of the UN/LOCODE table");
+    let wrong = format!("{code} is not a sea port in the UN/LOCODE table");
     let places = include_str!("../../data/places.csv").lines().skip(1);
     let mut places = places.filter_map(|line| line.split_once(','));
     let text = code.to_string();
@@ -82,8 +84,8 @@ pub fn unknown(code: PortCode) -> String {
     }
 }
 
-/// Ports whose code or name begins with a text, then those whose name has it
-/// elsewhere; at most `most`.
+/// Finds ports whose code or name begins with a text, then those whose name
+/// contains it elsewhere; at most `most`.
 pub fn search(text: &str, most: usize) -> Vec<&'static Port> {
     let text = text.trim().to_lowercase();
     if text.is_empty() {
@@ -105,10 +107,11 @@ pub fn search(text: &str, most: usize) -> Vec<&'static Port> {
 }
 
 impl PortCode {
-    /// Reads a code, in either case and with or without the space behind the country.
+    /// Parses a code, in either case and with or without the space behind the
+    /// country.
     ///
     /// # Errors
-    /// When it is not one.
+    /// When it is not a code.
     pub fn parse(text: &str) -> Result<PortCode, PortCodeError> {
         let wrong = || PortCodeError(text.chars().take(20).collect());
         let letters: Vec<u8> = text
@@ -205,18 +208,21 @@ mod tests {
     }
 
     #[test]
-    fn a_city_or_an_airport_is_no_port_and_tells_the_port_of_its_name() {
+    fn a_city_or_an_airport_is_refused_with_the_port_of_its_name() {
         let said = |code: &str| unknown(PortCode::parse(code).unwrap());
         assert_eq!(
             said("CNSHA"),
-            "CNSHA is no sea port of the UN/LOCODE table; the sea port Shanghai is CNSGH"
+            "CNSHA is not a sea port in the UN/LOCODE table; the sea port Shanghai is CNSGH"
         );
         assert!(said("CNNGB").ends_with("the sea port Ningbo is CNNBO"));
-        assert_eq!(said("XXXXX"), "XXXXX is no sea port of the UN/LOCODE table");
+        assert_eq!(
+            said("XXXXX"),
+            "XXXXX is not a sea port in the UN/LOCODE table"
+        );
     }
 
     #[test]
-    fn every_place_of_the_table_is_no_port_and_names_one() {
+    fn every_place_of_the_table_is_refused_with_a_port() {
         let places = include_str!("../../data/places.csv").lines().skip(1);
         for (place, port) in places.map(|line| line.split_once(',').unwrap()) {
             assert!(find(PortCode::parse(place).unwrap()).is_none(), "{place}");

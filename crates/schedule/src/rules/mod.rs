@@ -1,70 +1,71 @@
-//! The rules that say when a compass must be adjusted: data, each with its source.
+//! The rules for adjusting compasses: data, each with its source.
 //!
-//! What always holds: a [`Rule`] is one that can be applied: its numbers are positive
-//! and within reason, its flags are two capital letters, and a transit's rule names the
-//! canal. [`shipped()`] are those of `data/rules.json`, which tests read whole.
+//! Invariants of a [`Rule`]: its numbers are positive and in a credible range,
+//! its flags are two capital letters, and a transit's rule names the canal.
+//! [`built_in_rules()`] returns the rules of `data/rules.json`, which tests read
+//! completely.
 
-mod shipped;
-mod words;
+mod built_in;
+mod display;
 
-pub use shipped::shipped;
+pub use built_in::built_in_rules;
 
 use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
 
-/// One requirement, whom it binds, and where it is written.
+/// One requirement, with its scope and source.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rule {
-    /// A name that stays when the words change.
+    /// Id that stays when the text changes.
     pub id: String,
-    /// Whom it binds.
+    /// Scope of the rule.
     pub applies: Applies,
-    /// What it asks for.
+    /// Requirement.
     pub requires: Requirement,
-    /// The first day on which it holds; none where the source gives none.
+    /// First day on which it applies; none where the source gives none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effective_from: Option<NaiveDate>,
-    /// Where it is written.
+    /// Source.
     pub citation: Citation,
 }
 
-/// Whom a rule binds: every condition that is given must hold.
+/// Scope of a rule: every given condition must hold.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Applies {
-    /// Ships of these flags; of all, where it is empty.
+    /// Flags of the ships; empty for all.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub flags: Vec<Flag>,
-    /// Ships of these trades; of all, where it is empty.
+    /// Trades of the ships; empty for all.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trades: Vec<Trade>,
-    /// Ships of so much gross tonnage or more.
+    /// Least gross tonnage.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min_gross_tonnage: Option<u32>,
-    /// Ships whose record of observed deviations is, or is not, kept.
+    /// State of the record of observed deviations.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deviation_record: Option<DeviationRecord>,
-    /// Ships that transit this canal.
+    /// Canal that the ships transit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub canal: Option<Canal>,
 }
 
-/// What a rule asks for.
+/// Requirement of a rule.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Requirement {
-    /// An adjustment no longer ago than this.
+    /// An adjustment within this interval.
     Interval {
         /// Months.
         months: Months,
     },
-    /// An adjustment after each of these.
+    /// An adjustment after each of these events.
     AfterEvent {
         /// The events.
         events: Vec<EventKind>,
     },
-    /// An adjustment when the deviation on any heading is larger than this.
+    /// An adjustment when the deviation on any heading exceeds this limit.
     Deviation {
         /// Degrees, either way.
         adjust_above_deg: Limit,
@@ -73,40 +74,40 @@ pub enum Requirement {
     Transit {
         /// Months.
         table_within_months: Months,
-        /// Degrees, either way; this much is already too much.
+        /// Degrees, either way; a deviation of exactly this is too much.
         below_deg: Limit,
     },
 }
 
-/// Where a rule is written, and whether it was read there.
+/// Source of a rule, and how it was read.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Citation {
     /// Issuer and name.
     pub document: String,
-    /// Where in it.
+    /// Section in it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub section: Option<String>,
-    /// How the project knows it.
+    /// First-hand or second-hand reading.
     pub read: Read,
 }
 
-/// How the project knows a rule's words.
+/// The project's reading of a rule's text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Read {
     /// The document itself was read, from its issuer.
     FirstHand,
-    /// A copy elsewhere was read, or a document that tells of it.
+    /// A copy elsewhere was read, or a document that quotes it.
     SecondHand,
 }
 
-/// A state, as ISO 3166 writes it: two capital letters.
+/// A flag state by ISO 3166: two capital letters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Flag([u8; 2]);
 
-/// What a ship carries for her living.
+/// A ship's trade.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs, reason = "the words say it")]
@@ -122,13 +123,13 @@ pub enum Trade {
     Other,
 }
 
-/// Whether the compass deviation book is kept.
+/// State of the compass deviation book.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DeviationRecord {
-    /// As it should be.
+    /// Kept as required.
     Kept,
-    /// Not, or with gaps.
+    /// Not kept, or with gaps.
     NotKept,
 }
 
@@ -140,7 +141,7 @@ pub enum Canal {
     Panama,
 }
 
-/// What may befall a ship or her compass.
+/// An event of a ship or compass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EventKind {
@@ -154,7 +155,7 @@ pub enum EventKind {
     ElectricalChange,
 }
 
-/// One month to ten years.
+/// A number of months, from one month to ten years.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "u32", into = "u32")]
 pub struct Months(u32);
@@ -164,16 +165,16 @@ pub struct Months(u32);
 #[serde(try_from = "f64", into = "f64")]
 pub struct Limit(f64);
 
-/// Why something is not what a rule is made of.
+/// The reason why a value cannot be part of a rule.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RuleError {
     /// A flag that is not two letters.
     #[error("{0:?} is not a flag of two capital letters, as PA")]
     Flag(String),
-    /// Months out of reason.
+    /// Months out of range.
     #[error("{0} months are not within 1 to 120")]
     Months(u32),
-    /// A limit out of reason.
+    /// A limit out of range.
     #[error("{0}° is not above 0 and up to 90")]
     Limit(f64),
 }
@@ -203,12 +204,13 @@ impl From<Flag> for String {
 }
 
 impl Months {
-    /// How many.
+    /// Number of months.
     pub fn get(self) -> u32 {
         self.0
     }
 
-    /// The same day so many months later, or the last day of a shorter month.
+    /// Returns the same day that many months later, or the last day of a
+    /// shorter month.
     pub fn after(self, day: NaiveDate) -> NaiveDate {
         day.checked_add_months(chrono::Months::new(self.0))
             .unwrap_or(NaiveDate::MAX)

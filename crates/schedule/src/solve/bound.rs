@@ -1,26 +1,29 @@
-//! The bound at whole prices of the needs, and what each choice costs beyond it.
+//! Lagrangian lower bound at integer prices, with the reduced cost of each
+//! choice.
 
 use super::problem::Problem;
 
-/// Beyond every cost, and far from overflowing.
-const NEVER: i64 = 1 << 60;
+/// Larger than every cost, and far from overflow.
+const INFINITE: i64 = 1 << 60;
 
 /// A lower bound, and each choice's reduced cost against it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Bound {
     /// No assignment costs less.
     pub(super) cost: i64,
-    /// An assignment with this choice costs at least so much more than the bound.
+    /// Least excess over the bound of any assignment with this choice.
     pub(super) reduced: Vec<i64>,
-    /// What one more job's place on each visit is worth at these prices; it guides search
-    /// and proves nothing.
+    /// Value of one more job on each visit at these prices; it guides the
+    /// search and proves nothing.
     pub(super) worth: Vec<i64>,
-    /// One that leaves this need unmet, too.
+    /// Least excess over the bound of any assignment that leaves this need
+    /// unmet.
     pub(super) reduced_unmet: Vec<i64>,
 }
 
-/// Each day's teams take the best loads; a choice takes the place of the last of them.
-pub(super) fn add_up(problem: &Problem, prices: &[i64]) -> Bound {
+/// Computes the bound: each day's teams take the best loads, and a choice
+/// replaces the last of them.
+pub(super) fn compute(problem: &Problem, prices: &[i64]) -> Bound {
     let mut cost: i64 = prices.iter().sum();
     let mut reduced = vec![0; problem.choices.len()];
     let mut worth = vec![0; problem.visits.len()];
@@ -42,13 +45,14 @@ pub(super) fn add_up(problem: &Problem, prices: &[i64]) -> Bound {
         loads.sort_unstable();
         cost += loads.iter().take(teams).sum::<i64>();
         let last = match teams {
-            0 => -NEVER,
+            0 => -INFINITE,
             teams => loads.get(teams - 1).copied().unwrap_or(0),
         };
         for (&index, gains) in visits.iter().zip(&gains) {
             let visit = problem.visits[index];
             worth[index] = (visit.travel - last) / i64::from(visit.jobs_a_team);
-            // With itself a choice has the best of the others, as many as a team does beside.
+            // With a choice go the best of the others, as many as a team has
+            // capacity for.
             let beside = visit.jobs_a_team as usize - 1;
             let best: i64 = gains.iter().take(beside).sum();
             let next = gains.get(beside).copied().unwrap_or(0);
@@ -75,7 +79,7 @@ pub(super) fn add_up(problem: &Problem, prices: &[i64]) -> Bound {
     }
 }
 
-/// What is worth its price on a visit, the best first.
+/// Gains of the choices worth their price on a visit, the best first.
 fn worthwhile(choices: &[usize], gain: impl Fn(usize) -> i64) -> Vec<i64> {
     let mut gains: Vec<i64> = choices
         .iter()

@@ -1,56 +1,58 @@
-//! The assignment as numbers only: who is who does not matter here.
+//! The assignment problem in numbers only, without names.
 //!
-//! A [`Problem`] has every index within its list, no negative cost, and for each visit
-//! room for at least one job: whoever makes it sees to that. Costs are whole cents, so
-//! that sums are exact and a bound can be rounded.
+//! Callers ensure that a [`Problem`] has every index within its list, no
+//! negative cost, and capacity for at least one job on each visit. Costs are
+//! whole cents, so that sums are exact and a bound can be rounded.
 
 use std::collections::BTreeMap;
 
-/// One way to meet one need: on one visit, at a cost of its own.
+/// One way to meet one need: a visit and a cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Choice {
-    /// Whose need, by index.
+    /// Index of the need.
     pub need: usize,
-    /// On which visit, by index.
+    /// Index of the visit.
     pub visit: usize,
-    /// What it costs beside the visit's travel.
+    /// Cost without the visit's travel.
     pub cost: i64,
 }
 
 /// A firm's presence in one port on one day.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Visit {
-    /// Of which firm and day, by index.
+    /// Index of the firm and day.
     pub firm_day: usize,
-    /// What it costs to send one team.
+    /// Cost of sending one team.
     pub travel: i64,
-    /// How many jobs one team does there that day.
+    /// Jobs per team and day there.
     pub jobs_a_team: u32,
 }
 
-/// At most one choice for each need, within the teams of each firm and day.
+/// The problem: at most one choice for each need, within the teams of each firm
+/// and day.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Problem {
-    /// For each need, what it costs to leave it unmet.
+    /// Cost of leaving each need unmet.
     pub unmet: Vec<i64>,
-    /// All ways to meet needs.
+    /// All choices.
     pub choices: Vec<Choice>,
     /// All visits that a choice may ask for.
     pub visits: Vec<Visit>,
-    /// For each firm and day, the teams that it has.
+    /// Number of teams for each firm and day.
     pub teams: Vec<u32>,
 }
 
-/// For each need the choice that was made, by index, or none.
+/// The index of the choice for each need, or none.
 pub type Assignment = Vec<Option<usize>>;
 
 impl Problem {
-    /// What an assignment costs; `None` when it asks for more teams than there are.
+    /// Returns the cost of an assignment; `None` when it needs more teams than
+    /// there are.
     pub fn cost(&self, assignment: &[Option<usize>]) -> Option<i64> {
         self.cost_of(assignment.iter().copied().enumerate())
     }
 
-    /// What some needs cost with these choices, were there no others.
+    /// Cost of some needs with these choices, as if there were no others.
     pub(super) fn cost_of(
         &self,
         choices: impl Iterator<Item = (usize, Option<usize>)>,
@@ -78,7 +80,7 @@ impl Problem {
         within.then_some(cost)
     }
 
-    /// The indices of each need's choices, the cheapest first.
+    /// Indices of each need's choices, the cheapest first.
     pub(super) fn by_need(&self) -> Vec<Vec<usize>> {
         let mut of = vec![Vec::new(); self.unmet.len()];
         for (index, choice) in self.choices.iter().enumerate() {
@@ -90,7 +92,7 @@ impl Problem {
         of
     }
 
-    /// The indices of each visit's choices.
+    /// Indices of each visit's choices.
     pub(super) fn by_visit(&self) -> Vec<Vec<usize>> {
         let mut of = vec![Vec::new(); self.visits.len()];
         for (index, choice) in self.choices.iter().enumerate() {
@@ -99,7 +101,7 @@ impl Problem {
         of
     }
 
-    /// The indices of each firm's day's visits.
+    /// Indices of each firm's day's visits.
     pub(super) fn by_day(&self) -> Vec<Vec<usize>> {
         let mut of = vec![Vec::new(); self.teams.len()];
         for (index, visit) in self.visits.iter().enumerate() {
@@ -109,9 +111,9 @@ impl Problem {
     }
 }
 
-/// Small problems for the tests beside.
+/// Small problems for tests.
 #[cfg(test)]
-pub(super) mod made_up {
+pub(super) mod test_problems {
     use super::{Choice, Problem, Visit};
     use proptest::collection::vec;
     use proptest::prelude::*;

@@ -1,26 +1,28 @@
-//! Whole teams sent elsewhere.
+//! Redirects whole teams.
 //!
-//! Where a team has several jobs a day no chain of single needs calls it away. So each
-//! visit in turn is sent one team more, one that is free or another visit's of that day;
-//! it takes the jobs that are best there, and those that it had are placed anew by chains.
+//! Where a team has several jobs a day, no chain of single needs can redirect
+//! it. So each visit in turn gets one more team, either a free one or another
+//! visit's of that day. The team takes the best jobs there, and chains place
+//! its former jobs again.
 
 use super::bound::Bound;
-use super::chain::{Chains, Reach};
+use super::ejection_chain::{Chains, Reach};
 use super::problem::{Assignment, Problem};
-use super::search::State;
-use super::work::Work;
+use super::state::State;
+use super::work_limit::WorkLimit;
 use std::collections::BTreeSet;
 
-/// Rounds over all needs and all visits, at most.
+/// The most rounds over all needs and all visits.
 const ROUNDS: usize = 12;
 
-/// Improves an assignment by chains and by teams until neither makes it cheaper.
+/// Improves an assignment by chains and by teams until neither makes it
+/// cheaper.
 pub(super) fn improve(
     problem: &Problem,
     begin: Assignment,
     order: &[Vec<usize>],
     bound: &Bound,
-    work: &mut Work,
+    work: &mut WorkLimit,
 ) -> Assignment {
     let mut teams = Teams {
         chains: Chains::new(problem, order, &bound.worth, work),
@@ -49,13 +51,14 @@ struct Teams<'a> {
 }
 
 impl Teams<'_> {
-    /// Whether any need found a cheaper place; none when no work is left.
+    /// Returns true if any need found a cheaper place; false when no work is
+    /// left.
     fn chains_from_all(&mut self, reach: Reach) -> bool {
         let mut moved = false;
         let mut needs: Vec<usize> = (0..self.order.len()).collect();
         if reach == Reach::Far {
-            needs.retain(|need| self.misfit(*need) > 0);
-            needs.sort_by_key(|need| (std::cmp::Reverse(self.misfit(*need)), *need));
+            needs.retain(|need| self.excess_cost(*need) > 0);
+            needs.sort_by_key(|need| (std::cmp::Reverse(self.excess_cost(*need)), *need));
         }
         for need in needs {
             if self.chains.work.is_spent() {
@@ -67,7 +70,7 @@ impl Teams<'_> {
         moved
     }
 
-    /// Whether any visit was sent one more team; none when no work is left.
+    /// Returns true if any visit got one more team; false when no work is left.
     fn send_to_all(&mut self) -> bool {
         let mut sent = false;
         for visit in 0..self.of_visit.len() {
@@ -83,14 +86,14 @@ impl Teams<'_> {
     fn send_one_more(&mut self, visit: usize) -> bool {
         let problem = self.state.problem;
         let day = problem.visits[visit].firm_day;
-        let wishes = self.wishes(visit);
+        let wanted = self.wanted(visit);
         if self.state.sent[day] < problem.teams[day] {
-            return self.send(visit, &wishes, &[]);
+            return self.send(visit, &wanted, &[]);
         }
         let others = self.state.visits_of[day].clone();
         others.into_iter().any(|other| {
-            let called_away = self.last_load(other);
-            other != visit && !called_away.is_empty() && self.send(visit, &wishes, &called_away)
+            let redirected = self.last_load(other);
+            other != visit && !redirected.is_empty() && self.send(visit, &wanted, &redirected)
         })
     }
 
@@ -101,49 +104,49 @@ impl Teams<'_> {
             return Vec::new();
         }
         let mut needs = self.state.at_visit[visit].clone();
-        needs.sort_by_key(|need| (self.misfit(*need), *need));
+        needs.sort_by_key(|need| (self.excess_cost(*need), *need));
         let load = (jobs - 1) % self.state.problem.visits[visit].jobs_a_team + 1;
         needs.split_off(needs.len() - load as usize)
     }
 
-    /// What a need's choice costs beyond the bound.
-    fn misfit(&self, need: usize) -> i64 {
+    /// Excess of a need's choice over the bound.
+    fn excess_cost(&self, need: usize) -> i64 {
         self.state.chosen[need].map_or(self.bound.reduced_unmet[need], |choice| {
             self.bound.reduced[choice]
         })
     }
 
-    /// Sends a team to a visit and places anew what it had elsewhere, where all that is
-    /// cheaper.
-    fn send(&mut self, visit: usize, wishes: &[usize], called_away: &[usize]) -> bool {
+    /// Sends a team to a visit and places its former jobs again, if that is
+    /// cheaper in total.
+    fn send(&mut self, visit: usize, wanted: &[usize], redirected: &[usize]) -> bool {
         let problem = self.state.problem;
         let mark = self.state.mark();
-        self.chains.work.spend(wishes.len() + called_away.len());
-        let (mut cost, mut room) = (0, 0);
-        for &need in called_away {
+        self.chains.work.spend(wanted.len() + redirected.len());
+        let (mut cost, mut capacity) = (0, 0);
+        for &need in redirected {
             cost -= self.state.take(need);
         }
-        for &choice in wishes {
+        for &choice in wanted {
             let need = problem.choices[choice].need;
-            if !called_away.contains(&need) {
-                room = room.max(self.chains.worth_of_place(&self.state, need));
+            if !redirected.contains(&need) {
+                capacity = capacity.max(self.chains.worth_of_place(&self.state, need));
                 cost -= self.state.take(need);
             }
             cost += self.state.put(need, choice);
         }
-        let mut waiting = called_away.to_vec();
+        let mut waiting = redirected.to_vec();
         waiting.retain(|need| self.state.chosen[*need].is_none());
         let day = problem.visits[visit].firm_day;
         let fits = self.state.sent[day] <= problem.teams[day];
-        if fits && self.place_anew(&waiting, cost, room) {
+        if fits && self.place_again(&waiting, cost, capacity) {
             return true;
         }
-        self.state.go_back(mark);
+        self.state.undo_to(mark);
         false
     }
 
-    /// The choices that gain most on a visit, as many as a team does there.
-    fn wishes(&mut self, visit: usize) -> Vec<usize> {
+    /// The choices that gain most on a visit, up to the capacity of a team.
+    fn wanted(&mut self, visit: usize) -> Vec<usize> {
         let problem = self.state.problem;
         let mut gains: Vec<(i64, usize)> = Vec::new();
         self.chains.work.spend(self.of_visit[visit].len());
@@ -157,23 +160,23 @@ impl Teams<'_> {
         }
         gains.sort_unstable();
         let most = problem.visits[visit].jobs_a_team as usize;
-        // Two choices of one need on a visit: the cheaper.
+        // Of two choices of one need on a visit, the cheaper.
         let mut needs = BTreeSet::new();
-        let wishes = gains.into_iter().map(|(_, choice)| choice);
-        wishes
+        let wanted = gains.into_iter().map(|(_, choice)| choice);
+        wanted
             .filter(|choice| needs.insert(problem.choices[*choice].need))
             .take(most)
             .collect()
     }
 
-    /// Places needs one after the other; whether `cost` with what they cost is less than
-    /// nothing then.
-    fn place_anew(&mut self, waiting: &[usize], mut cost: i64, room: i64) -> bool {
+    /// Places needs one after the other; true if `cost` plus their costs is
+    /// negative.
+    fn place_again(&mut self, waiting: &[usize], mut cost: i64, capacity: i64) -> bool {
         let mut left: i64 = waiting.iter().map(|need| self.alone(*need)).sum();
         for &need in waiting {
             left -= self.alone(need);
             let limit = -cost - left;
-            match self.chains.place(&mut self.state, need, limit, room) {
+            match self.chains.place(&mut self.state, need, limit, capacity) {
                 Some(placed) => cost += placed,
                 None => return false,
             }
@@ -181,7 +184,7 @@ impl Teams<'_> {
         cost < 0
     }
 
-    /// What a need costs where it has the first choice of all teams.
+    /// Cost of a need with the first choice of all teams.
     fn alone(&self, need: usize) -> i64 {
         let problem = self.state.problem;
         let cheapest = self.order[need].first();
@@ -193,9 +196,9 @@ impl Teams<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::prices::Prices;
-    use crate::solve::problem::made_up::problems;
-    use crate::solve::search::greedy;
+    use crate::solve::lagrangian::Prices;
+    use crate::solve::problem::test_problems::problems;
+    use crate::solve::state::greedy;
     use crate::solve::{Choice, Visit, bound};
     use proptest::prelude::*;
 
@@ -221,8 +224,8 @@ mod tests {
         };
         let begin = vec![Some(0), Some(1), None];
         let order = problem.by_need();
-        let bound = bound::add_up(&problem, &[5_000, 5_000, 9_000]);
-        let found = improve(&problem, begin, &order, &bound, &mut Work::new(10_000));
+        let bound = bound::compute(&problem, &[5_000, 5_000, 9_000]);
+        let found = improve(&problem, begin, &order, &bound, &mut WorkLimit::new(10_000));
         assert_eq!(found, [Some(3), Some(4), Some(2)]);
     }
 
@@ -230,10 +233,10 @@ mod tests {
         #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
         #[test]
-        fn what_is_found_is_feasible_and_no_dearer_than_the_beginning(problem in problems()) {
+        fn the_result_is_feasible_and_no_more_expensive_than_the_start(problem in problems()) {
             let order = problem.by_need();
             let nothing = vec![None; problem.unmet.len()];
-            let mut work = Work::new(1_000_000);
+            let mut work = WorkLimit::new(1_000_000);
             for begin in [nothing.clone(), greedy(&problem, nothing, &order, &mut work)] {
                 let before = problem.cost(&begin).unwrap();
                 let mut prices = Prices::new(&problem);

@@ -1,4 +1,5 @@
-//! A confirmed job moves only for cause; what is only proposed, for a better plan.
+//! A confirmed job moves only for cause; a proposed one moves for a better
+//! plan.
 
 use crate::{call, firm, need, schedule, vessel};
 use binnacle_schedule::input::JobState;
@@ -46,10 +47,10 @@ fn a_proposed_job_moves_when_that_saves_more_than_moving_costs() {
 }
 
 #[test]
-fn a_firm_that_is_asked_already_is_not_to_be_asked_so_long_ahead_again() {
+fn a_firm_that_was_asked_needs_no_further_notice() {
     let found = |state: &str| {
         let mut input = input(state);
-        // Of three weeks twelve days are left: it was asked before they began.
+        // Twelve days of three weeks are left: it was asked before they began.
         input["firms"][0]["lead_time_h"] = json!(21 * 24);
         input["firms"].as_array_mut().unwrap().truncate(1);
         input["port_calls"].as_array_mut().unwrap().truncate(1);
@@ -58,7 +59,7 @@ fn a_firm_that_is_asked_already_is_not_to_be_asked_so_long_ahead_again() {
     for state in ["offered", "confirmed"] {
         assert_eq!(found(state), ChangeKind::Kept, "{state}");
     }
-    // What is only proposed would have to be asked for now.
+    // A proposed job would have to be asked for now.
     assert_eq!(found("proposed"), ChangeKind::Dropped);
 }
 
@@ -99,7 +100,7 @@ fn a_due_date_that_moved_before_the_confirmed_day_is_a_cause() {
 }
 
 #[test]
-fn a_confirmed_job_that_became_late_stays_where_there_is_no_other() {
+fn a_confirmed_job_that_became_late_stays_without_an_alternative() {
     let mut input = input("confirmed");
     input["needs"][0]["due"] = json!("2026-11-30");
     let found = schedule(input);
@@ -113,7 +114,7 @@ fn a_confirmed_job_that_became_late_stays_where_there_is_no_other() {
     assert!(
         found.changes[0]
             .why
-            .ends_with("and nothing better is to be had"),
+            .ends_with("and nothing better is available"),
         "{}",
         found.changes[0].why
     );

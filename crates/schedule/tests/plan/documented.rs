@@ -1,4 +1,4 @@
-//! What docs/schedule.md shows is what comes out.
+//! The examples of docs/schedule.md are real results.
 
 use binnacle_schedule::input::read;
 use binnacle_schedule::plan::plan;
@@ -12,7 +12,7 @@ fn blocks() -> Vec<&'static str> {
         .collect()
 }
 
-/// Whether all that one value has, another has too.
+/// True if one value contains everything of another.
 fn has(whole: &Value, part: &Value) -> bool {
     match (whole, part) {
         (Value::Object(whole), Value::Object(part)) => part
@@ -27,7 +27,7 @@ fn has(whole: &Value, part: &Value) -> bool {
 }
 
 #[test]
-fn the_documented_answer_is_the_answer() {
+fn the_documented_schedule_is_the_real_one() {
     let blocks = blocks();
     let answer = to_value(plan(&read(blocks[0]).unwrap())).unwrap();
     let documented: Value = from_str(blocks[1]).unwrap();

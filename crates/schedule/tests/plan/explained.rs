@@ -1,4 +1,4 @@
-//! What could not be scheduled says why, and what would help.
+//! Unscheduled jobs state their reasons and remedies.
 
 use crate::{call, firm, need, schedule, vessel};
 use binnacle_schedule::plan::Unscheduled;
@@ -28,7 +28,7 @@ fn a_ship_without_calls_wants_one_in_a_port_that_is_served() {
 }
 
 #[test]
-fn what_is_overdue_or_due_today_is_wanted_as_soon_as_can_be_and_by_no_day_gone_by() {
+fn an_overdue_job_needs_a_call_as_soon_as_possible() {
     for due in ["2026-03-20", "2026-11-21"] {
         let found = unscheduled(|input| {
             input["needs"][0]["due"] = json!(due);
@@ -36,17 +36,18 @@ fn what_is_overdue_or_due_today_is_wanted_as_soon_as_can_be_and_by_no_day_gone_b
         });
         assert_eq!(
             found.would_help,
-            ["as soon as she can call at a port that a firm serves: NLRTM"]
+            ["a call as soon as possible at a port that a firm serves: NLRTM"]
         );
     }
     let today = unscheduled(|input| {
         input["needs"][0]["due"] = json!("2026-11-21");
         input["weights"] = json!({"late_days": 0});
     });
-    // Nobody comes on a Saturday, and after it she is late wherever she calls.
+    // No firm works on a Saturday, and after it the ship is late wherever it
+    // calls.
     assert_eq!(
         today.would_help,
-        ["an extension to 2026-12-01, asked of flag NO where its rules know one"]
+        ["an extension to 2026-12-01, from flag NO, where its rules allow one"]
     );
 }
 
@@ -74,13 +75,13 @@ fn a_flag_that_does_not_accept_the_firm_is_named() {
 }
 
 #[test]
-fn a_licence_that_is_asked_for_is_named() {
+fn a_missing_licence_is_named() {
     let found = unscheduled(|input| input["vessels"][0]["licence"] = json!("MCA"));
     assert_eq!(found.because[0], "f at Rotterdam lacks licence MCA");
 }
 
 #[test]
-fn what_can_only_be_late_is_planned_and_wants_an_earlier_call_or_an_extension() {
+fn a_late_job_is_planned_and_needs_an_earlier_call_or_an_extension() {
     let found = unscheduled(|input| input["needs"][0]["due"] = json!("2026-11-30"));
     assert!(found.planned_late);
     assert_eq!(
@@ -95,13 +96,13 @@ fn what_can_only_be_late_is_planned_and_wants_an_earlier_call_or_an_extension() 
         found.would_help,
         [
             "a call by 2026-11-30 at a port that a firm serves: NLRTM",
-            "an extension to 2026-12-01, asked of flag NO where its rules know one"
+            "an extension to 2026-12-01, from flag NO, where its rules allow one"
         ]
     );
 }
 
 #[test]
-fn who_allows_no_late_days_is_told_what_would_help_instead() {
+fn without_late_days_the_remedies_are_listed_instead() {
     let found = unscheduled(|input| {
         input["needs"][0]["due"] = json!("2026-11-30");
         input["weights"] = json!({"late_days": 0});
@@ -112,7 +113,7 @@ fn who_allows_no_late_days_is_told_what_would_help_instead() {
         [
             "a call by 2026-11-30 at Rotterdam: f could come",
             "a call by 2026-11-30 at a port that a firm serves: NLRTM",
-            "an extension to 2026-12-01, asked of flag NO where its rules know one"
+            "an extension to 2026-12-01, from flag NO, where its rules allow one"
         ]
     );
 }
@@ -131,11 +132,11 @@ fn a_weekend_call_wants_the_firm_to_work_then() {
 }
 
 #[test]
-fn a_firm_that_must_be_asked_earlier_is_named_with_its_hours() {
+fn a_firm_that_needs_more_notice_is_named_with_its_hours() {
     let found = unscheduled(|input| input["firms"][0]["lead_time_h"] = json!(300));
     assert_eq!(
         found.because[0],
-        "f wants to be asked 300 h ahead, too long for 2026-12-01"
+        "f needs 300 h notice, too long for 2026-12-01"
     );
 }
 
@@ -185,7 +186,7 @@ fn a_team_that_works_elsewhere_is_not_planned_with() {
 }
 
 #[test]
-fn a_firm_that_costs_more_than_it_is_worth_is_said_to() {
+fn a_firm_that_costs_more_than_an_unmet_need_is_named() {
     let found = unscheduled(|input| {
         let little = json!({"routine": 100, "soon": 100, "urgent": 100, "overdue": 100});
         input["weights"] = json!({"unmet_eur": little, "missed_eur": little, "late_eur_day": 0});

@@ -1,4 +1,4 @@
-//! What is said to help does: each line, applied, has the job planned.
+//! Remedies work: with any one of them applied, the job is planned.
 
 use binnacle_schedule::input::read;
 use binnacle_schedule::plan::{Schedule, plan};
@@ -11,7 +11,7 @@ fn solved(input: &Value) -> Schedule {
     plan(&read(&input.to_string()).unwrap())
 }
 
-/// Whether a need is met, in time where that is asked.
+/// True if a need is met, in time if `in_time` is set.
 fn is_met(schedule: &Schedule, need: &str, in_time: bool) -> bool {
     schedule
         .jobs
@@ -24,7 +24,7 @@ fn firm_of<'a>(input: &'a mut Value, id: &str) -> &'a mut Value {
     firms.iter_mut().find(|firm| firm["id"] == id).unwrap()
 }
 
-/// The words between two others.
+/// The text between two others.
 fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {
     let (_, rest) = text.split_once(before)?;
     Some(rest.split_once(after)?.0)
@@ -39,14 +39,14 @@ fn port_named(name: &str) -> &'static str {
     }
 }
 
-/// Her calls are one, at a port, from a day to another.
+/// Replaces the ship's calls by one at a port.
 fn calls_at(input: &mut Value, vessel: &str, port: &str, from: &str, to: &str) {
     let calls = input["port_calls"].as_array_mut().unwrap();
     calls.retain(|call| call["vessel"] != vessel);
     calls.push(json!({"id": "anew", "vessel": vessel, "port": port, "eta": from, "etd": to}));
 }
 
-/// Does one thing that a line says.
+/// Applies one change of a line.
 fn apply(input: &mut Value, vessel: &str, thing: &str) {
     if thing.contains("more team") {
         let (count, firm) = (
@@ -105,7 +105,7 @@ fn apply(input: &mut Value, vessel: &str, thing: &str) {
         firms.push(json!({"id": "new", "fee_eur": 0, "ports": [{"port": port}],
                           "licences": ["MCA"], "closed": [],
                           "working_days": ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"]}));
-    } else if thing.starts_with("a call by ") || thing.starts_with("as soon as ") {
+    } else if thing.starts_with("a call by ") || thing.starts_with("a call as soon as ") {
         let port = if let Some((_, codes)) = thing.split_once("serves: ") {
             codes.split(',').next().unwrap()
         } else {
@@ -118,7 +118,7 @@ fn apply(input: &mut Value, vessel: &str, thing: &str) {
         };
         calls_at(input, vessel, port, NOW, &until);
     } else {
-        panic!("nobody knows how to do {thing:?}");
+        panic!("unknown remedy {thing:?}");
     }
 }
 
@@ -191,7 +191,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn whatever_is_said_to_help_is_enough_and_something_always_is(fleet in a_fleet()) {
+    fn every_remedy_is_enough_and_there_is_always_one(fleet in a_fleet()) {
         let found = solved(&fleet);
         for open in &found.unscheduled {
             prop_assert!(!open.would_help.is_empty(), "{open:?}");
@@ -204,7 +204,8 @@ proptest! {
                     apply(&mut helped, &open.vessel, thing);
                 }
                 let then = solved(&helped);
-                // What opens a way for one ship may open it for another, which takes it.
+                // A way that opens for one ship may open for another, which
+                // takes it.
                 let is_done = is_met(&then, &open.needs[0], open.planned_late)
                     || then.jobs.len() > found.jobs.len();
                 prop_assert!(is_done, "{line:?} of {open:?} leaves {:?}", then.unscheduled);

@@ -17,7 +17,7 @@ pub(crate) fn schedule(mut input: Value) -> Schedule {
     plan(&read(&input.to_string()).unwrap())
 }
 
-/// A call in Rotterdam, whose ship's time is UTC, alongside from midnight to midnight.
+/// A call in Rotterdam from midnight to midnight UTC.
 pub(crate) fn call(id: &str, vessel: &str, from: &str, to: &str) -> Value {
     json!({"id": id, "vessel": vessel, "port": "NLRTM",
            "eta": format!("{from}T00:00:00Z"), "etd": format!("{to}T00:00:00Z")})
@@ -35,7 +35,7 @@ pub(crate) fn firm(id: &str, fee_eur: u32) -> Value {
     json!({"id": id, "ports": [{"port": "NLRTM", "travel_eur": 100}], "fee_eur": fee_eur})
 }
 
-/// Who goes where on which day.
+/// Vessel, firm and day of each job.
 fn jobs(schedule: &Schedule) -> Vec<(String, String, String)> {
     let jobs = schedule.jobs.iter();
     jobs.map(|job| (job.vessel.clone(), job.firm.clone(), job.day.to_string()))
@@ -144,7 +144,7 @@ fn two_compasses_of_a_ship_are_one_job() {
 }
 
 #[test]
-fn what_is_overdue_is_done_at_the_first_call_there_is() {
+fn an_overdue_job_is_done_at_the_first_call() {
     let found = schedule(json!({
         "vessels": [vessel("v")],
         "needs": [need("n", "v", "2026-11-01")],
@@ -178,12 +178,12 @@ fn a_ship_overdue_for_years_is_done_at_the_last_call_of_the_horizon() {
         "firms": [firm("f", 1500)],
     }));
     assert_eq!(jobs(&found), [job("v", "f", "2027-05-17")]);
-    // Only the 177 days to come are weighed.
+    // Only the 177 days to come count.
     assert!((found.jobs[0].weighed.late_eur - 177.0 * 500.0).abs() < 1e-9);
 }
 
 #[test]
-fn what_can_only_be_done_late_is_planned_before_it_is_overdue() {
+fn a_job_that_can_only_be_late_is_planned_before_it_is_overdue() {
     let mut slow = firm("f", 1500);
     slow["lead_time_h"] = json!(96);
     let found = schedule(json!({
@@ -212,7 +212,7 @@ fn no_job_is_late_for_the_sake_of_money() {
         jobs(&schedule(input.clone())),
         [job("v", "dear", "2026-12-01")]
     );
-    // Unless somebody has said how late it may be.
+    // Unless the weights allow lateness.
     let mut late = input;
     late["weights"] = json!({"late_days": 1});
     assert_eq!(jobs(&schedule(late)), [job("v", "cheap", "2026-12-02")]);
@@ -253,9 +253,9 @@ fn the_same_input_gives_the_same_schedule() {
     assert_eq!(schedule(input.clone()), schedule(input));
 }
 
-/// Who has to choose a firm is told that a plan got cheaper only where it did.
+/// An obstacle never makes a plan look cheaper.
 #[test]
-fn what_becomes_impossible_makes_no_plan_cheaper() {
+fn an_obstacle_makes_no_plan_cheaper() {
     // Only late, and both by one team that has a single day for them.
     let input = json!({
         "vessels": [vessel("v"), vessel("w")],
@@ -284,7 +284,7 @@ fn what_becomes_impossible_makes_no_plan_cheaper() {
 }
 
 #[test]
-fn a_no_to_one_call_is_none_to_another() {
+fn a_refusal_of_one_call_leaves_the_others() {
     let mut input = json!({
         "vessels": [vessel("v")],
         "needs": [need("n", "v", "2026-12-20")],

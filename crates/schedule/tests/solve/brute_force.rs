@@ -1,8 +1,8 @@
-//! Every assignment, one by one.
+//! Enumerates all assignments.
 
 use binnacle_schedule::solve::Problem;
 
-/// The least that any feasible assignment costs.
+/// The least cost of any feasible assignment.
 pub(crate) fn least_cost(problem: &Problem) -> i64 {
     let mut assignment = vec![None; problem.unmet.len()];
     from(problem, 0, &mut assignment).expect("leaving all unmet is feasible")

@@ -1,4 +1,5 @@
-//! Minimum-cost flow by successive shortest paths: exact where a team does one job.
+//! Minimum-cost flow by successive shortest paths: exact where a team does one
+//! job.
 
 use binnacle_schedule::solve::Problem;
 
@@ -8,7 +9,7 @@ struct Edge {
     cost: i64,
 }
 
-/// Edges come in pairs: an edge, and after it the way back.
+/// A network in which each edge is followed by its reverse.
 struct Network {
     edges: Vec<Edge>,
     from: Vec<Vec<usize>>,
@@ -26,7 +27,7 @@ impl Network {
         });
     }
 
-    /// Sends one unit by the cheapest way there is (Bellman and Ford).
+    /// Sends one unit by the cheapest path (Bellman and Ford).
     fn send_one(&mut self, source: usize, sink: usize) -> Option<i64> {
         let mut cost = vec![i64::MAX; self.from.len()];
         let mut by = vec![usize::MAX; self.from.len()];
@@ -58,7 +59,7 @@ impl Network {
     }
 }
 
-/// Source → needs → firm-days → sink, and from each need a way past them.
+/// Source → needs → firm-days → sink, and an edge past them for each need.
 pub(crate) fn least_cost(problem: &Problem) -> i64 {
     let needs = problem.unmet.len();
     let (source, sink) = (needs + problem.teams.len(), needs + problem.teams.len() + 1);

@@ -1,5 +1,5 @@
-//! The solver against two ways to the same answer that share no code with it: every
-//! assignment there is, and, where a team does one job a day, minimum-cost flow.
+//! The solver against two independent methods: enumeration of all assignments
+//! and, where a team does one job a day, minimum-cost flow.
 
 mod brute_force;
 mod flow;
@@ -75,7 +75,7 @@ proptest! {
     }
 }
 
-/// Four times as many ships as their teams can do, each with ten places to go.
+/// Four times as many ships as their teams can serve, each with ten choices.
 fn crowded() -> Problem {
     let ways = (0..600_u32).flat_map(|ship| (0..10_u32).map(move |way| (ship, way)));
     Problem {
@@ -130,7 +130,8 @@ fn two_ships_in_one_port_share_a_teams_travel() {
         jobs_a_team: 2,
     };
     let choice = |need, visit, cost| Choice { need, visit, cost };
-    // Apart each would go on its own cheaper day: 100 + 500, twice. Together, 300 + 500.
+    // Apart, each would go on its own cheaper day: 100 + 500, twice. Together,
+    // 300 + 500.
     let problem = Problem {
         unmet: vec![10_000, 10_000],
         visits: vec![visit(0), visit(1)],
@@ -142,7 +143,8 @@ fn two_ships_in_one_port_share_a_teams_travel() {
     assert_eq!((solved.cost, solved.bound), (800, 800));
 }
 
-/// To give up one of them alone saves nothing, for the other's team goes all the same.
+/// Giving up one of them alone saves nothing: the other's team travels all the
+/// same.
 #[test]
 fn two_needs_that_are_not_worth_their_teams_travel_are_left_unmet_together() {
     let visit = Visit {

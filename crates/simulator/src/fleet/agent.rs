@@ -1,8 +1,8 @@
-//! The real agents: installed, watched, and stopped in good order.
+//! The real agents: installs, watches and stops them.
 
-use super::config::{Ports, agent_toml};
-use super::sailing::Sailing;
-use super::shore::Shore;
+use super::agent_config::{Ports, agent_toml};
+use super::server_api::ServerApi;
+use super::simulated_ship::SimulatedShip;
 use crate::cli::BadInput;
 use anyhow::{Context, Result, bail, ensure};
 use rustix::process::{Pid, Signal, kill_process};
@@ -16,52 +16,52 @@ use tokio::process::{Child, Command};
 use tokio::sync::watch;
 use tokio::task::JoinSet;
 
-/// An agent that has ended by itself is started again, as a service manager
-/// would, but not for ever.
+/// The most restarts of an agent that ended by itself, as by a service manager.
 const RESTARTS: u32 = 20;
 const RESTART_AFTER: Duration = Duration::from_secs(1);
-/// To finish and close its spool.
-const TIME_TO_END: Duration = Duration::from_secs(10);
+/// Time for an agent to finish and close its spool.
+const STOP_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// A vessel on shore, and her agent's installation on board.
+/// A vessel on the server, and its agent's installation.
 pub(super) struct Vessel {
     pub(super) name: String,
     pub(super) id: String,
-    /// The agent's local page.
+    /// Address of the agent's local page.
     pub(super) page: SocketAddr,
     program: PathBuf,
     folder: PathBuf,
 }
 
-/// The agents that run.
+/// The running agents.
 #[derive(Default)]
 pub(super) struct Agents {
     watchers: JoinSet<Result<()>>,
     stop: watch::Sender<bool>,
 }
 
-/// Enters the ship on shore, writes her agent's configuration and enrols it.
+/// Creates the vessel on the server, writes the agent's configuration and
+/// enrols it.
 pub(super) async fn install(
-    shore: &Shore,
-    ship: &Sailing,
+    api: &ServerApi,
+    ship: &SimulatedShip,
     program: &Path,
     folder: &Path,
 ) -> Result<Vessel> {
     if folder.join("state").exists() {
-        let problem = "an agent of an earlier run is there; give another --work-dir";
+        let problem = "contains an agent of an earlier run; choose another --work-dir";
         return Err(BadInput(format!("{}: {problem}", folder.display())).into());
     }
     std::fs::create_dir_all(folder)
         .map_err(|error| BadInput(format!("{}: {error}", folder.display())))?;
     let ports = Ports::choose(ship.address()?)?;
     std::fs::write(folder.join("agent.toml"), agent_toml(ship.plan(), ports))?;
-    let id = shore.create_vessel(ship.plan()).await?;
-    let code = shore.create_enrolment_code(&id).await?;
+    let id = api.create_vessel(ship.plan()).await?;
+    let code = api.create_enrolment_code(&id).await?;
     let enrolment = Command::new(program)
         .args([
             "enrol",
             "--server",
-            shore.server(),
+            api.server(),
             "--code",
             &code,
             "--config",
@@ -103,7 +103,7 @@ impl Agents {
         Ok(())
     }
 
-    /// Ends when an agent cannot be kept running.
+    /// Returns when an agent cannot be kept running.
     pub(super) async fn failed(&mut self) -> anyhow::Error {
         loop {
             match self.watchers.join_next().await {
@@ -114,7 +114,7 @@ impl Agents {
         }
     }
 
-    /// Asks all of them to end, and waits until they have.
+    /// Asks all agents to end, and waits for them.
     pub(super) async fn stop(&mut self) {
         self.stop.send_replace(true);
         while self.watchers.join_next().await.is_some() {}
@@ -131,7 +131,7 @@ async fn watch(
     for _ in 0..RESTARTS {
         let status = tokio::select! {
             status = child.wait() => status?,
-            () = stop_asked(&mut stop) => return end(child).await,
+            () = wait_for_stop(&mut stop) => return end(child).await,
         };
         writeln!(
             std::io::stderr(),
@@ -139,7 +139,7 @@ async fn watch(
         )?;
         tokio::select! {
             () = tokio::time::sleep(RESTART_AFTER) => {}
-            () = stop_asked(&mut stop) => return Ok(()),
+            () = wait_for_stop(&mut stop) => return Ok(()),
         }
         child = spawn(&mut command, &log)?;
     }
@@ -150,8 +150,8 @@ async fn watch(
     )
 }
 
-/// Ends when all agents are to end; so they are when nobody is left to ask.
-async fn stop_asked(stop: &mut watch::Receiver<bool>) {
+/// Returns when all agents are to end, or when the sender is gone.
+async fn wait_for_stop(stop: &mut watch::Receiver<bool>) {
     stop.wait_for(|stop| *stop).await.ok();
 }
 
@@ -165,14 +165,14 @@ fn spawn(command: &mut Command, log: &Path) -> Result<Child> {
     command.spawn().context("cannot start the agent")
 }
 
-/// Politely first.
+/// Ends an agent with SIGTERM, and kills it only after a timeout.
 async fn end(mut child: Child) -> Result<()> {
     let id = child.id().and_then(|id| Pid::from_raw(id.cast_signed()));
     if let Some(id) = id {
-        // It may have ended in between, which is as well.
+        // It may have ended in the meantime.
         kill_process(id, Signal::TERM).ok();
     }
-    if tokio::time::timeout(TIME_TO_END, child.wait())
+    if tokio::time::timeout(STOP_TIMEOUT, child.wait())
         .await
         .is_err()
     {

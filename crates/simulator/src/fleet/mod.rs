@@ -1,48 +1,40 @@
-//! `fleet`: many ships with real agents against a real server.
+//! `fleet`: many ships with real agents and a real server.
 //!
-//! The past is sailed as fast as the agents take it; then the server's models
-//! are compared with the truth; then, if asked, the ships sail on in real time.
-//! Whatever way this ends, every agent that was started has been stopped.
+//! The past is sailed as fast as the agents can read it. Then the server's
+//! models are compared with the truth. If asked, the ships then sail on in real
+//! time. However the run ends, every started agent is stopped.
 
 mod agent;
-mod config;
+mod agent_config;
+mod comparison;
 mod progress;
-mod sailing;
-mod shore;
-mod verdict;
+mod run;
+mod server_api;
+mod simulated_ship;
 
+use crate::atomic_file::write_whole;
 use crate::cli::{self, BadInput, FleetArgs};
 use crate::clock;
-use crate::voyage::write_whole;
 use agent::Agents;
 use anyhow::{Context, Result};
 use binnacle_compass::time::Timestamp;
-use binnacle_simulator::scenario::Scenario;
+use comparison::Comparison;
 use progress::Progress;
-use sailing::Sailing;
-use shore::Shore;
+use run::Run;
+use server_api::ServerApi;
+use simulated_ship::SimulatedShip;
 use std::io::{Read, Write};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::task::JoinSet;
-use verdict::Verdict;
 
-/// As shells have it for a program that a signal ended.
-const STOPPED: u8 = 130;
-/// Ships catch up with the clock if the past ended no longer ago than this;
-/// otherwise they sail on from where they are.
+/// Exit code of a program ended by a signal, as shells have it.
+const INTERRUPTED: u8 = 130;
+/// The longest gap between the end of the past and now that ships catch up;
+/// after a longer one they continue from where they are.
 const CATCH_UP_S: f64 = 86_400.0;
-
-/// What all parts need to know of the run.
-struct Run<'a> {
-    args: &'a FleetArgs,
-    scenario: Scenario,
-    seed: u64,
-    from: Timestamp,
-    until: Timestamp,
-}
 
 pub(crate) async fn run(args: &FleetArgs) -> Result<ExitCode> {
     let scenario = cli::read_scenario(&args.scenario)?;
@@ -57,46 +49,46 @@ pub(crate) async fn run(args: &FleetArgs) -> Result<ExitCode> {
     };
     let fleet = run.launch()?;
     let mut agents = Agents::default();
-    let mut verdict = None;
+    let mut holds = None;
     let ended = tokio::select! {
-        ended = run.sail(fleet, &mut agents, &mut verdict) => ended,
-        stopped = stop_asked() => stopped,
+        ended = run.sail(fleet, &mut agents, &mut holds) => ended,
+        stopped = wait_for_signal() => stopped,
     };
     agents.stop().await;
     ended?;
-    Ok(match verdict {
+    Ok(match holds {
         Some(true) => ExitCode::SUCCESS,
         Some(false) => ExitCode::FAILURE,
         None if args.serve_only => ExitCode::SUCCESS,
-        None => ExitCode::from(STOPPED),
+        None => ExitCode::from(INTERRUPTED),
     })
 }
 
 impl Run<'_> {
-    /// Every ship at her berth, listening for a client.
-    fn launch(&self) -> Result<Vec<Sailing>> {
+    /// Starts every ship at its berth, listening for a client.
+    fn launch(&self) -> Result<Vec<SimulatedShip>> {
         let ships = self.scenario.ships.iter();
         ships
-            .map(|plan| Sailing::new(&self.scenario, plan, self.seed, self.from))
+            .map(|plan| SimulatedShip::new(&self.scenario, plan, self.seed, self.from))
             .collect()
     }
 
     async fn sail(
         &self,
-        fleet: Vec<Sailing>,
+        fleet: Vec<SimulatedShip>,
         agents: &mut Agents,
-        verdict: &mut Option<bool>,
+        holds: &mut Option<bool>,
     ) -> Result<()> {
         let progress = Arc::new(Progress::new(fleet.len(), self.from, self.until));
         if self.args.serve_only {
             return self.serve(fleet, &progress).await;
         }
-        let shore = self.sign_in().await?;
+        let api = self.sign_in().await?;
         let mut vessels = Vec::new();
         for ship in &fleet {
-            let folder = self.work_dir()?.join(config::slug(ship.name()));
+            let folder = self.work_dir()?.join(agent_config::slug(ship.name()));
             let program = self.args.agent.as_deref().context("--agent is required")?;
-            vessels.push(agent::install(&shore, ship, program, &folder).await?);
+            vessels.push(agent::install(&api, ship, program, &folder).await?);
         }
         for vessel in &vessels {
             agents.start(vessel)?;
@@ -104,12 +96,12 @@ impl Run<'_> {
         let ids: Vec<String> = vessels.iter().map(|vessel| vessel.id.clone()).collect();
         let past = async {
             let fleet = self
-                .sail_past(fleet, &progress, progress.show(&shore, &ids))
+                .sail_past(fleet, &progress, progress.show(&api, &ids))
                 .await?;
             self.write_truths(&fleet)?;
-            let judged = verdict::judge(self, &shore, &vessels, &fleet).await?;
-            self.write_report(&judged)?;
-            *verdict = Some(judged.holds());
+            let comparison = comparison::compare_fleet(self, &api, &vessels, &fleet).await?;
+            self.write_report(&comparison)?;
+            *holds = Some(comparison.holds());
             if self.args.live {
                 self.sail_live(fleet).await?;
             }
@@ -121,13 +113,13 @@ impl Run<'_> {
         }
     }
 
-    /// Serves the sentences for agents that somebody else runs.
-    async fn serve(&self, fleet: Vec<Sailing>, progress: &Arc<Progress>) -> Result<()> {
+    /// Serves the sentences for agents that are run elsewhere.
+    async fn serve(&self, fleet: Vec<SimulatedShip>, progress: &Arc<Progress>) -> Result<()> {
         let ships = fleet
             .iter()
             .map(|ship| Ok(serde_json::json!({"name": ship.name(), "address": ship.address()?})))
             .collect::<Result<Vec<_>>>()?;
-        say(&serde_json::json!({"from": self.from, "until": self.until, "ships": ships}))?;
+        print_json(&serde_json::json!({"from": self.from, "until": self.until, "ships": ships}))?;
         let fleet = self
             .sail_past(fleet, progress, std::future::pending())
             .await?;
@@ -135,28 +127,28 @@ impl Run<'_> {
             let truths: Vec<_> = fleet.iter().map(|ship| ship.truth(self)).collect();
             write_whole(path, &serde_json::to_vec(&truths)?)?;
         }
-        say(&serde_json::json!({"sailed": true}))?;
+        print_json(&serde_json::json!({"sailed": true}))?;
         if self.args.live {
             return self.sail_live(fleet).await;
         }
-        // The lines stay open until somebody has had enough.
+        // The connections stay open until the program is stopped.
         std::future::pending::<()>().await;
         drop(fleet);
         Ok(())
     }
 
-    /// Sails all ships to the end of the past, each at her agent's pace.
+    /// Sails all ships to the end of the past, each at its agent's pace.
     async fn sail_past(
         &self,
-        fleet: Vec<Sailing>,
+        fleet: Vec<SimulatedShip>,
         progress: &Arc<Progress>,
         shown: impl Future<Output = ()>,
-    ) -> Result<Vec<Sailing>> {
+    ) -> Result<Vec<SimulatedShip>> {
         let mut tasks = JoinSet::new();
         for (index, mut ship) in fleet.into_iter().enumerate() {
             let (until, progress) = (self.until, Arc::clone(progress));
             tasks.spawn(async move {
-                ship.sail_to(until, |time| progress.note(index, time))
+                ship.sail_to(until, |time| progress.set_time(index, time))
                     .await?;
                 anyhow::Ok((index, ship))
             });
@@ -177,7 +169,7 @@ impl Run<'_> {
         Ok(arrived.into_iter().map(|(_, ship)| ship).collect())
     }
 
-    async fn sail_live(&self, fleet: Vec<Sailing>) -> Result<()> {
+    async fn sail_live(&self, fleet: Vec<SimulatedShip>) -> Result<()> {
         let behind_s = clock::now().seconds_since(self.until);
         let shift_s = if (0.0..CATCH_UP_S).contains(&behind_s) {
             0.0
@@ -199,7 +191,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    async fn sign_in(&self) -> Result<Shore> {
+    async fn sign_in(&self) -> Result<ServerApi> {
         let server = self
             .args
             .server
@@ -215,7 +207,7 @@ impl Run<'_> {
                 BadInput("a password is needed: --password-stdin or BINNACLE_PASSWORD".to_owned())
             })?
         };
-        Shore::sign_in(server, email, &password).await
+        ServerApi::sign_in(server, email, &password).await
     }
 
     fn work_dir(&self) -> Result<&Path> {
@@ -225,29 +217,29 @@ impl Run<'_> {
             .context("--work-dir is required")
     }
 
-    fn write_truths(&self, fleet: &[Sailing]) -> Result<()> {
+    fn write_truths(&self, fleet: &[SimulatedShip]) -> Result<()> {
         for ship in fleet {
             let path = self
                 .work_dir()?
-                .join(config::slug(ship.name()))
+                .join(agent_config::slug(ship.name()))
                 .join("truth.json");
             write_whole(&path, &serde_json::to_vec(&ship.truth(self))?)?;
         }
         Ok(())
     }
 
-    fn write_report(&self, verdict: &Verdict) -> Result<()> {
+    fn write_report(&self, comparison: &Comparison) -> Result<()> {
         let mut out = std::io::stdout().lock();
-        out.write_all(verdict.table().as_bytes())?;
+        out.write_all(comparison.table().as_bytes())?;
         out.flush()?;
         match &self.args.report {
-            Some(path) => write_whole(path, &serde_json::to_vec_pretty(verdict)?),
+            Some(path) => write_whole(path, &serde_json::to_vec_pretty(comparison)?),
             None => Ok(()),
         }
     }
 }
 
-fn say(line: &serde_json::Value) -> Result<()> {
+fn print_json(line: &serde_json::Value) -> Result<()> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "{line}")?;
     out.flush()?;
@@ -258,8 +250,8 @@ fn whole_second(time: Timestamp) -> Timestamp {
     time.plus_seconds(-(time.micros().rem_euclid(1_000_000) as f64) * 1e-6)
 }
 
-/// Ends when somebody wants the program to end.
-async fn stop_asked() -> Result<()> {
+/// Returns when a signal asks the program to end.
+async fn wait_for_signal() -> Result<()> {
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;
     let mut hangup = signal(SignalKind::hangup())?;

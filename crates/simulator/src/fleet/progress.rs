@@ -1,16 +1,16 @@
-//! How far the fleet has come, for those who wait.
+//! Shows the progress of the fleet.
 
-use super::shore::{Shore, Uploads};
+use super::server_api::{ServerApi, Uploads};
 use binnacle_compass::time::Timestamp;
 use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::{Duration, Instant};
 
-const EVERY: Duration = Duration::from_secs(2);
-/// A log wants fewer lines than a terminal.
-const EVERY_IN_A_LOG: Duration = Duration::from_secs(10);
+const INTERVAL: Duration = Duration::from_secs(2);
+/// A log needs fewer lines than a terminal.
+const LOG_INTERVAL: Duration = Duration::from_secs(10);
 
-/// Every ship's time.
+/// The time of each ship.
 #[derive(Debug)]
 pub(super) struct Progress {
     from: Timestamp,
@@ -30,19 +30,19 @@ impl Progress {
         }
     }
 
-    pub(super) fn note(&self, ship: usize, time: Timestamp) {
+    pub(super) fn set_time(&self, ship: usize, time: Timestamp) {
         self.times[ship].store(time.micros(), Ordering::Relaxed);
     }
 
-    /// Shows a line now and then, for ever.
-    pub(super) async fn show(&self, shore: &Shore, vessels: &[String]) {
+    /// Prints a line at intervals, forever.
+    pub(super) async fn show(&self, api: &ServerApi, vessels: &[String]) {
         let terminal = std::io::stderr().is_terminal();
-        let mut ticks = tokio::time::interval(if terminal { EVERY } else { EVERY_IN_A_LOG });
+        let mut ticks = tokio::time::interval(if terminal { INTERVAL } else { LOG_INTERVAL });
         loop {
             ticks.tick().await;
             let mut uploads = Uploads::default();
             for vessel in vessels {
-                let found = shore.uploads(vessel).await.unwrap_or_default();
+                let found = api.uploads(vessel).await.unwrap_or_default();
                 uploads.batches += found.batches;
                 uploads.samples += found.samples;
             }
@@ -87,7 +87,7 @@ impl Progress {
 
 fn print(terminal: bool, line: &str) {
     let mut out = std::io::stderr().lock();
-    // Nobody left to show it to is no reason to stop.
+    // A closed standard error is no reason to stop.
     if terminal {
         write!(out, "\r{line}\x1b[K").ok();
     } else {

@@ -1,7 +1,7 @@
-//! From what stands in the file to what can be sailed.
+//! Converts the raw scenario of a file to a checked one.
 
 use super::error::Source;
-use super::event::LATEST_DAY;
+use super::event::MAX_DAY;
 use super::raw::{RawAnomaly, RawPoint, RawScenario, RawShip, RawStorm};
 use super::ship::{Routes, ship};
 use super::values::Checked;
@@ -22,7 +22,7 @@ pub(super) fn scenario(source: &Source<'_>, raw: &RawScenario) -> Checked<Scenar
         name: raw.name.clone(),
         seed: raw.seed.unwrap_or(1),
         start,
-        days: source.or("days", raw.days.as_ref(), 30.0, 0.01..=LATEST_DAY)?,
+        days: source.or("days", raw.days.as_ref(), 30.0, 0.01..=MAX_DAY)?,
         timing: timing(source, raw)?,
         faults: faults(source, raw)?,
         storms: raw
@@ -73,7 +73,7 @@ fn faults(source: &Source<'_>, raw: &RawScenario) -> Checked<LineFaults> {
 
 fn storm(source: &Source<'_>, raw: &RawStorm) -> Checked<Storm> {
     Ok(Storm {
-        day: source.number("day", &raw.day, 0.0..=LATEST_DAY)?,
+        day: source.number("day", &raw.day, 0.0..=MAX_DAY)?,
         hours: source.number("hours", &raw.hours, 0.1..=240.0)?,
         strength_nt: source.number("strength_nt", &raw.strength_nt, 0.0..=5_000.0)?,
     })
@@ -99,7 +99,7 @@ fn route(
         .map(|raw| point(source, raw))
         .collect::<Checked<Vec<_>>>()?;
     let [first, .., last] = points.as_slice() else {
-        return Err(source.error(raw.span(), field, "a route needs two points or more"));
+        return Err(source.error(raw.span(), field, "a route needs at least two points"));
     };
     if first.port.is_none() || last.port.is_none() {
         return Err(source.error(
@@ -131,12 +131,16 @@ fn ships(
     for raw in raw.get_ref() {
         let next = ship(source, raw, routes, start)?;
         if ships.iter().any(|ship| ship.name == next.name) {
-            return Err(source.error(raw.name.span(), "name", "another ship has this name"));
+            return Err(source.error(
+                raw.name.span(),
+                "name",
+                "the name is already taken by another ship",
+            ));
         }
         ships.push(next);
     }
     if ships.is_empty() {
-        return Err(source.error(raw.span(), "ships", "there is no ship"));
+        return Err(source.error(raw.span(), "ships", "at least one ship is required"));
     }
     Ok(ships)
 }

@@ -1,33 +1,33 @@
-//! What is wrong with a scenario, and on which line.
+//! Faults of a scenario, with their lines.
 
 use std::ops::Range;
 
-/// Why a file is not a scenario.
+/// The reason why a file is not a scenario.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScenarioError {
     /// The file cannot be read.
     #[error("{file}: {error}")]
     Unreadable {
-        /// Which.
+        /// The file.
         file: String,
-        /// What the system says.
+        /// The system's error.
         error: String,
     },
     /// A field is missing, unknown or out of range.
     #[error("{file}:{line}: {field}: {problem}")]
     Field {
-        /// Which file.
+        /// The file.
         file: String,
-        /// Counted from 1.
+        /// The line, counted from 1.
         line: usize,
-        /// The key, or what is known of it.
+        /// The key, or the known part of it.
         field: String,
-        /// What is wrong with it.
+        /// The fault.
         problem: String,
     },
 }
 
-/// A scenario's text, to find lines in.
+/// A scenario's text, for finding lines.
 pub(super) struct Source<'a> {
     pub(super) file: &'a str,
     pub(super) text: &'a str,
@@ -63,7 +63,7 @@ impl Source<'_> {
         before.filter(|&&byte| byte == b'\n').count() + 1
     }
 
-    /// What stands left of the equals sign nearest before the offset.
+    /// The text left of the nearest equals sign before the offset.
     fn key_at(&self, offset: usize) -> String {
         let line = self.text.lines().nth(self.line(offset) - 1).unwrap_or("");
         let key = line.split('=').next().unwrap_or("").trim();

@@ -1,4 +1,4 @@
-//! What befalls a ship, from what stands in the file.
+//! Reads a ship's events.
 
 use super::Event;
 use super::error::Source;
@@ -7,8 +7,8 @@ use super::values::{Checked, PERMANENT_NT};
 use crate::poisson::Magnetism;
 use std::ops::Range;
 
-/// Ten years.
-pub(super) const LATEST_DAY: f64 = 3650.0;
+/// The last day of a scenario, after ten years.
+pub(super) const MAX_DAY: f64 = 3650.0;
 
 pub(super) fn event(source: &Source<'_>, span: Range<usize>, raw: &RawEvent) -> Checked<Event> {
     let b_nt = match &raw.b_nt {
@@ -49,7 +49,7 @@ pub(super) fn event(source: &Source<'_>, span: Range<usize>, raw: &RawEvent) -> 
         other => Err(source.error(
             raw.kind.span(),
             "kind",
-            format!("{other:?} is none of lightning, cargo, gyro_fault"),
+            format!("{other:?} is not one of lightning, cargo, gyro_fault"),
         )),
     }
 }
@@ -66,7 +66,7 @@ impl EventReader<'_> {
             let problem = format!("missing in an event of kind {:?}", self.raw.kind.get_ref());
             return Err(self.source.error(self.span.clone(), field, problem));
         };
-        self.source.number(field, value, 0.0..=LATEST_DAY)
+        self.source.number(field, value, 0.0..=MAX_DAY)
     }
 
     fn span_of_days(&self) -> Checked<(f64, f64)> {

@@ -1,4 +1,4 @@
-//! A scenario as it stands in the file, every value with its place in it.
+//! The raw scenario of a file, with the position of every value.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -104,7 +104,8 @@ pub(super) struct RawSatellite {
     pub(super) dropouts_per_day: Option<Number>,
 }
 
-/// One struct for every kind: a tagged enum would lose the places of its values.
+/// One struct for all kinds: a tagged enum would lose the positions of its
+/// values.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawEvent {

@@ -1,4 +1,4 @@
-//! A ship's plan, from what stands in the file.
+//! Converts a ship's part of the file to its plan.
 
 use super::error::Source;
 use super::event::event;
@@ -14,9 +14,9 @@ use std::sync::Arc;
 
 pub(super) type Routes = BTreeMap<String, Arc<[RoutePoint]>>;
 
-/// A card that is pulled north by less than this share of the earth's force on
-/// some heading is of no use there.
-const LEAST_DIRECTIVE_FORCE: f64 = 0.2;
+/// The least directive force, as a fraction of the earth's, with which a
+/// compass can still be used.
+const MIN_DIRECTIVE_FORCE: f64 = 0.2;
 
 pub(super) fn ship(
     source: &Source<'_>,
@@ -39,7 +39,7 @@ pub(super) fn ship(
         b_nt: source.vector("magnetism.b_nt", &iron.b_nt, PERMANENT_NT)?,
         chi: source.matrix("magnetism.chi", &iron.chi)?,
     };
-    waters.can_be_steered_in(&magnetism, raw.magnetism.span(), "magnetism")?;
+    waters.check_directive_force(&magnetism, raw.magnetism.span(), "magnetism")?;
     let gaussian = raw.gaussian_error_deg.as_ref();
     Ok(ShipPlan {
         name: name.to_owned(),
@@ -137,13 +137,13 @@ fn events(
                 chi: [[0.0; 3]; 3],
             },
         };
-        waters.can_be_steered_in(&magnetism.plus(&more, 1.0), raw.span(), "events")?;
+        waters.check_directive_force(&magnetism.plus(&more, 1.0), raw.span(), "events")?;
         events.push(event);
     }
     Ok(events)
 }
 
-/// Where a ship is going to sail.
+/// The waters of a ship's route.
 struct Waters<'a> {
     source: &'a Source<'a>,
     route: &'a [RoutePoint],
@@ -151,8 +151,9 @@ struct Waters<'a> {
 }
 
 impl Waters<'_> {
-    /// Refuses a magnetism whose compass would point nowhere on some heading.
-    fn can_be_steered_in(
+    /// Refuses a magnetism that leaves the compass without directive force on
+    /// some heading.
+    fn check_directive_force(
         &self,
         magnetism: &Magnetism,
         span: Range<usize>,
@@ -166,11 +167,11 @@ impl Waters<'_> {
                 z_nt: earth.z_nt,
             };
             let force = magnetism.least_directive_force(here);
-            if force < LEAST_DIRECTIVE_FORCE {
+            if force < MIN_DIRECTIVE_FORCE {
                 let (lat, lon) = (point.position.lat_deg(), point.position.lon_deg());
                 let problem = format!(
                     "at {lat}, {lon} the force on the card falls to {force:.2} of the earth's, \
-                     less than {LEAST_DIRECTIVE_FORCE}"
+                     less than {MIN_DIRECTIVE_FORCE}"
                 );
                 return Err(self.source.error(span, field, problem));
             }

@@ -1,4 +1,4 @@
-//! Single values, checked where they stand.
+//! Checks single values.
 
 use super::ScenarioError;
 use super::error::Source;
@@ -8,15 +8,15 @@ use std::ops::RangeInclusive;
 
 pub(super) type Checked<T> = Result<T, ScenarioError>;
 
-/// Permanent magnetism, nT.
+/// Limits of permanent magnetism, nT.
 pub(super) const PERMANENT_NT: RangeInclusive<f64> = -60_000.0..=60_000.0;
-/// Soft iron.
+/// Limits of the soft-iron coefficients.
 const INDUCED: RangeInclusive<f64> = -0.8..=0.8;
-/// Polar waters are left out: a rhumb line and a magnetic compass end there.
+/// Polar waters are excluded: a rhumb line and a magnetic compass end there.
 const LATITUDES: RangeInclusive<f64> = -78.0..=78.0;
 
 impl Source<'_> {
-    /// A number within a range; NaN and infinity lie in none.
+    /// Returns a number within a range, which NaN and infinity are not.
     pub(super) fn number(
         &self,
         field: &str,
@@ -31,7 +31,7 @@ impl Source<'_> {
         Err(self.error(value.span(), field, problem))
     }
 
-    /// A number that may be left out.
+    /// Returns an optional number within a range, or the default.
     pub(super) fn or(
         &self,
         field: &str,

@@ -1,4 +1,4 @@
-//! Whether the program keeps its word as a program.
+//! The program's commands, outputs and exit codes.
 
 use std::io::{BufRead, BufReader, Read};
 use std::net::TcpStream;
@@ -111,7 +111,7 @@ fn a_ship_waits_for_her_client_and_sails_on_for_the_next() {
         let address = address(1);
         move || reaches_the_end(&mut TcpStream::connect(address).unwrap())
     });
-    // The first client takes a little and is gone.
+    // The first client reads a little and disconnects.
     let mut client = TcpStream::connect(address(0)).unwrap();
     let mut bytes = vec![0; 10_000];
     client.read_exact(&mut bytes).unwrap();
@@ -124,7 +124,7 @@ fn a_ship_waits_for_her_client_and_sails_on_for_the_next() {
     assert_eq!(last["sailed"], true);
 }
 
-/// Reads until a position of the last minute has come.
+/// Reads until a position of the last minute arrives.
 fn reaches_the_end(client: &mut TcpStream) -> bool {
     let mut lines = BufReader::new(client).split(b'\n');
     lines.any(|line| {

@@ -1,11 +1,11 @@
-//! Whether what goes over the line is what instruments send.
+//! The sentences on the line are those of real instruments.
 
 use crate::support::{scenario, sentences, ship};
 use binnacle_compass::angle::wrap_180;
 use binnacle_nmea::sentence::Data;
 use binnacle_nmea::{Rejected, parse};
+use binnacle_simulator::nmea::Talker;
 use binnacle_simulator::ship::SatelliteReading;
-use binnacle_simulator::talk::Talker;
 
 const CLEAN: &str = "wrong_checksum_rate = 0\ngarbage_rate = 0";
 
@@ -27,7 +27,7 @@ fn every_sentence_is_read_back_as_it_was_meant() {
     let mut out = Vec::new();
     for _ in 0..50_000 {
         out.clear();
-        let meant = talker.speak(&mut out);
+        let meant = talker.write_group(&mut out);
         for line in lines(&out) {
             let text = String::from_utf8_lossy(line);
             let sentence = parse(line).unwrap_or_else(|error| panic!("{text}: {error:?}"));
@@ -68,7 +68,7 @@ fn every_sentence_is_read_back_as_it_was_meant() {
 }
 
 #[test]
-fn damaged_sentences_and_noise_come_as_often_as_asked_and_are_never_read() {
+fn damaged_sentences_and_noise_have_the_given_rates_and_are_never_read() {
     let scenario = scenario("wrong_checksum_rate = 0.01\ngarbage_rate = 0.005", "");
     let bytes = sentences(&scenario, 3, 1.0);
     let (mut read, mut checksums, mut other) = (0_u32, 0_u32, 0_u32);
@@ -95,7 +95,7 @@ fn in_port_the_instruments_speak_once_a_minute() {
     let mut steps = std::collections::BTreeSet::new();
     for _ in 0..20_000 {
         let (before, alongside) = (talker.ship().time(), talker.ship().is_alongside());
-        talker.speak(&mut out);
+        talker.write_group(&mut out);
         let step = talker.ship().time().seconds_since(before).round() as u32;
         steps.insert((alongside, step));
     }

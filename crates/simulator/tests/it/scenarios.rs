@@ -1,4 +1,4 @@
-//! Whether what is wrong in a scenario is named.
+//! Faults of a scenario are named.
 
 use binnacle_simulator::scenario::Scenario;
 use std::path::Path;
@@ -54,7 +54,7 @@ fn an_error_names_file_line_and_field() {
 }
 
 #[test]
-fn what_cannot_be_sailed_is_refused() {
+fn an_impossible_scenario_is_refused() {
     assert!(error("lat = 36.30", "lat = 95").contains("lat: 95 is not within"));
     assert!(
         error("route = \"biscay\"", "route = \"moon\"")
@@ -62,7 +62,7 @@ fn what_cannot_be_sailed_is_refused() {
     );
     assert!(
         error("name = \"Noordzee\"", "name = \"Estrella del Sur\"")
-            .contains("another ship has this name")
+            .contains("already taken by another ship")
     );
     assert!(
         error(
@@ -84,12 +84,12 @@ fn what_cannot_be_sailed_is_refused() {
 }
 
 #[test]
-fn an_event_says_what_it_lacks() {
+fn an_event_error_names_the_missing_field() {
     let with = |event: &str| {
         let satellite = "satellite = { alignment_deg = 0.2, dropouts_per_day = 4 }";
         error(satellite, &format!("{satellite}\nevents = [{event}]"))
     };
-    assert!(with("{ kind = \"meteor\" }").contains("kind: \"meteor\" is none of"));
+    assert!(with("{ kind = \"meteor\" }").contains("kind: \"meteor\" is not one of"));
     assert!(with("{ kind = \"lightning\" }").contains("day: missing"));
     assert!(
         with("{ kind = \"cargo\", from_day = 3, to_day = 2 }").contains("to_day: 2 is not after")

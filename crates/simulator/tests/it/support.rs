@@ -1,11 +1,11 @@
 //! Small scenarios and voyages for the tests.
 
+use binnacle_simulator::nmea::Talker;
 use binnacle_simulator::scenario::Scenario;
 use binnacle_simulator::ship::{Reading, Ship};
-use binnacle_simulator::talk::Talker;
 
-/// A day and a half from port to port along 45° N with a usual ship; `more`
-/// goes into the ship, `around` before everything.
+/// A scenario of a day and a half from port to port along 45° N with a usual
+/// ship; `more` is added to the ship, `around` before everything.
 pub(crate) fn scenario(around: &str, more: &str) -> Scenario {
     let text = format!(
         r#"
@@ -37,18 +37,19 @@ pub(crate) fn ship(scenario: &Scenario, seed: u64) -> Ship {
     Ship::new(scenario, &scenario.ships[0], seed, scenario.start).expect("the date is known")
 }
 
-/// What the first ship sends in so many days.
+/// The first ship's sentences in `days` days.
 pub(crate) fn sentences(scenario: &Scenario, seed: u64, days: f64) -> Vec<u8> {
     let mut talker = Talker::new(scenario, ship(scenario, seed), seed);
     let until = scenario.start.plus_seconds(days * 86_400.0);
     let mut out = Vec::new();
     while talker.next_time() <= until {
-        talker.speak(&mut out);
+        talker.write_group(&mut out);
     }
     out
 }
 
-/// Sails so many days and shows every reading, with the ship as she then is.
+/// Sails `days` days and passes every reading to `each`, with the ship at that
+/// time.
 pub(crate) fn sail(ship: &mut Ship, days: f64, mut each: impl FnMut(&Ship, &Reading)) {
     let until = ship.time().plus_seconds(days * 86_400.0);
     while ship.time() < until {

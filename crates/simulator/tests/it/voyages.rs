@@ -1,10 +1,10 @@
-//! Whether ships do what the scenario says.
+//! Ships behave as the scenario says.
 
 use crate::support::{sail, scenario, sentences, ship};
 use binnacle_compass::angle::{CompassHeading, Deviation, Variation, wrap_180};
 use binnacle_simulator::scenario::Scenario;
 use binnacle_simulator::ship::SatelliteReading;
-use binnacle_simulator::truth::{Log, place};
+use binnacle_simulator::truth::{TruthRecorder, place};
 use std::path::Path;
 
 fn mean(values: &[f64]) -> f64 {
@@ -43,7 +43,7 @@ fn compass_deviation_and_variation_add_up_to_the_true_heading() {
 }
 
 #[test]
-fn the_compass_shows_on_the_average_what_the_truth_says() {
+fn the_compass_agrees_with_the_truth_on_average() {
     let scenario = scenario("", "");
     let mut ship = ship(&scenario, 4);
     let mut errors = Vec::new();
@@ -81,7 +81,7 @@ fn the_instruments_are_no_better_than_described() {
             minute.clear();
         }
     });
-    // From minute to minute only what is quick differs.
+    // From minute to minute only fast quantities differ.
     let steps: Vec<f64> = minutes.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let quick = sd(&steps) / 2f64.sqrt();
     assert!(
@@ -139,19 +139,19 @@ fn a_voyage_does_not_begin_with_a_turn() {
 }
 
 #[test]
-fn lightning_stays_and_cargo_goes_ashore_again() {
+fn lightning_is_permanent_and_cargo_is_discharged() {
     let events = r#"events = [
         { kind = "cargo", from_day = 1, to_day = 2, b_nt = [900, 0, 0] },
         { kind = "lightning", day = 3, b_nt = [0, 3000, 0], returning = 0.5, return_days = 1 },
     ]"#;
     let scenario = scenario("", events);
     let mut ship = ship(&scenario, 1);
-    let mut log = Log::new(&ship);
+    let mut recorder = TruthRecorder::new(&ship);
     let mut at_noon = Vec::new();
     for _ in 0..6 {
-        sail(&mut ship, 0.5, |ship, _| log.note(ship));
+        sail(&mut ship, 0.5, |ship, _| recorder.record(ship));
         at_noon.push(ship.magnetism().b_nt);
-        sail(&mut ship, 0.5, |ship, _| log.note(ship));
+        sail(&mut ship, 0.5, |ship, _| recorder.record(ship));
     }
     let forward: Vec<f64> = at_noon.iter().map(|b| b[0]).collect();
     assert!((forward[0] - 2000.0).abs() < 1e-9 && (forward[1] - 2900.0).abs() < 1e-9);
@@ -168,7 +168,7 @@ fn lightning_stays_and_cargo_goes_ashore_again() {
         "half returns: {}",
         starboard[5]
     );
-    let truth = serde_json::to_value(log.truth(&scenario, 1, &ship)).unwrap();
+    let truth = serde_json::to_value(recorder.truth(&scenario, 1, &ship)).unwrap();
     assert_eq!(truth["epochs"].as_array().unwrap().len(), 4);
     assert_eq!(truth["events"].as_array().unwrap().len(), 2);
     assert!(truth["hours"].as_array().unwrap().len() >= 143);
@@ -240,7 +240,7 @@ fn every_ship_of_the_demonstration_steers_most_headings() {
         let mut ship = binnacle_simulator::ship::Ship::new(&scenario, plan, 1, start).unwrap();
         let mut minutes = [0_u32; 24];
         let mut alongside = 0;
-        // Coarse steps will do to see where she goes.
+        // Coarse steps are enough to see the route.
         for _ in 0..60 * 86_400 / 30 {
             let reading = ship.step(30.0);
             if reading.alongside {
@@ -269,7 +269,7 @@ fn the_truth_at_the_end_is_a_whole_curve() {
     for row in &place.rows {
         assert!((row.deviation_deg - ship.deviation_deg(row.compass_deg)).abs() < 1e-12);
     }
-    // A = alignment with the sign of a reading that is too great, nearly.
+    // A is nearly the alignment, with the sign of a reading that is too great.
     let rows: Vec<f64> = place.rows.iter().map(|row| row.deviation_deg).collect();
     assert!((mean(&rows) + 0.5).abs() < 0.2, "{}", mean(&rows));
 }

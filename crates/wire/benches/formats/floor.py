@@ -1,9 +1,9 @@
-"""How few bits the columns of a voyage could take: an upper bound of their entropy.
+"""An upper bound of the entropy of a voyage's columns, in bits.
 
 Each column's integers are coded by a mixture of experts, each a predictor with a
 distribution about its prediction, whose weights follow how well each did so far. The
 sum of −log2 of the mixture's probabilities is the length that an arithmetic coder would
-reach, without headers and without ever starting anew; no decoder is kept from doing the
+reach, without headers and without ever restarting; no decoder is kept from doing the
 same, for every expert sees only what came before, and columns earlier in the order.
 """
 
@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-# Part of the weights that is dealt out anew at each value: experts may change places.
+# Part of the weights that is redistributed at each value: experts may change places.
 SHARE = 0.002
 SCALES = 2.0 ** np.arange(-3, 9, 0.5)
 TIME, LAT, LON, GYRO, SATELLITE, COMPASS, SOG, RATE, SPREAD, WINDOWS = range(1, 11)
@@ -20,7 +20,7 @@ NAMES = {
     SATELLITE: "satellite less gyro", COMPASS: "compass less reference", SOG: "speed",
     RATE: "rate of turn", SPREAD: "spread", WINDOWS: "windows",
 }
-# Later ones may be foretold from earlier ones.
+# Later ones may be predicted from earlier ones.
 ORDER = (WINDOWS, TIME, GYRO, SOG, LAT, LON, COMPASS, SATELLITE, RATE, SPREAD)
 
 
@@ -54,7 +54,7 @@ class Mixture:
         self.weights /= self.weights.size
 
     def bits(self, predictions, value):
-        """What the value costs; learns from it."""
+        """Bits of the value; updates the weights."""
         low = (value - 0.5 - predictions)[:, None] / SCALES
         high = (value + 0.5 - predictions)[:, None] / SCALES
         chances = np.stack([shape(high) - shape(low) for shape in SHAPES], axis=1)
@@ -67,8 +67,8 @@ class Mixture:
 
 
 class Frequencies:
-    """How often each number came before, where it lies off an anchor: some columns have
-    favourites that no smooth distribution knows."""
+    """Counts of each number so far, as an offset from an anchor: some columns have
+    favourites that no smooth distribution has."""
 
     FIRM = 8.0
 
@@ -79,7 +79,7 @@ class Frequencies:
         seen = self.counts.get(number, 0.0)
         return (seen + self.FIRM * otherwise) / (self.all + self.FIRM)
 
-    def learn(self, number):
+    def update(self, number):
         self.counts[number] = self.counts.get(number, 0.0) + 1
         self.all += 1
 
@@ -100,12 +100,12 @@ class Best:
         total = likely.sum()
         self.weights = likely / total * (1 - SHARE) + SHARE / len(likely)
         for frequencies, number in zip(self.frequencies, numbers):
-            frequencies.learn(number)
+            frequencies.update(number)
         return -math.log2(total)
 
 
 class Regression:
-    """The next value as a line through what is known, fitted anew with each value."""
+    """The next value as a line through what is known, refitted with each value."""
 
     FORGETS = 0.995
 
@@ -113,10 +113,10 @@ class Regression:
         self.p = np.eye(count) * 1e3
         self.w = np.zeros(count)
 
-    def expect(self, x):
+    def predict(self, x):
         return float(self.w @ x)
 
-    def learn(self, x, value):
+    def update(self, x, value):
         gain = self.p @ x / (self.FORGETS + x @ self.p @ x)
         self.w += gain * (value - self.w @ x)
         self.p = (self.p - np.outer(gain, x @ self.p)) / self.FORGETS
@@ -132,11 +132,11 @@ class Past:
         self.last, self.before, self.mean = value, value, np.full(len(self.SHARES), float(value))
         self.all, self.count = float(value), 1
 
-    def expect(self):
+    def predict(self):
         mean = self.all / self.count
         return [self.last, 2 * self.last - self.before, (self.last + mean) / 2, mean, *self.mean]
 
-    def learn(self, value):
+    def update(self, value):
         self.before, self.last = self.last, value
         self.mean += (value - self.mean) * self.SHARES
         self.all += value
@@ -158,23 +158,23 @@ def column_bits(values, hints, features):
                       past.last - past.before, *features(row)])
         if mixture is None:
             regression = Regression(len(x))
-        told = hints(row)
-        foretold = [*past.expect(), *told, past.last + regression.expect(x)]
-        anchors = [0, past.last, *told]
+        hinted = hints(row)
+        predicted = [*past.predict(), *hinted, past.last + regression.predict(x)]
+        anchors = [0, past.last, *hinted]
         if mixture is None:
-            mixture = Best(len(foretold), len(anchors))
-        total += mixture.bits(np.array(foretold), anchors, value)
-        regression.learn(x, value - past.last)
-        past.learn(value)
+            mixture = Best(len(predicted), len(anchors))
+        total += mixture.bits(np.array(predicted), anchors, value)
+        regression.update(x, value - past.last)
+        past.update(value)
     return total
 
 
 def floor_bits(columns):
     """Bits by column, of columns that are whole, in their steps (FORMAT.md)."""
-    return {c: column_bits(columns[c], *foresight(columns, c)) for c in ORDER if c in columns}
+    return {c: column_bits(columns[c], *hints_and_features(columns, c)) for c in ORDER if c in columns}
 
 
-def foresight(columns, column):
+def hints_and_features(columns, column):
     """What is known of a column's next value from the columns before it."""
     c = {name: np.array([v or 0.0 for v in values]) for name, values in columns.items()}
     none = lambda row: []
@@ -232,7 +232,7 @@ def reckoning(c, column):
 
 
 def by_heading(c, column):
-    """Deviation is a matter of heading: what it was when she last headed there."""
+    """Deviation is a matter of heading: its value at the last visit to that heading."""
     bins = (c[GYRO] * 0.05 // 5 % 72).astype(int)
     kept, curve = {}, Regression(5)
     angle = np.radians(c[GYRO] * 0.05)
@@ -242,10 +242,10 @@ def by_heading(c, column):
 
     def hints(row):
         # Taken in here, once a row: rows come in their order.
-        curve.learn(harmonics[:, row - 1], c[column][row - 1])
+        curve.update(harmonics[:, row - 1], c[column][row - 1])
         before = kept.get(bins[row - 1], c[column][row - 1])
         kept[bins[row - 1]] = before + (c[column][row - 1] - before) / 4
-        there = curve.expect(harmonics[:, row])
-        step = there - curve.expect(harmonics[:, row - 1])
+        there = curve.predict(harmonics[:, row])
+        step = there - curve.predict(harmonics[:, row - 1])
         return [kept.get(bins[row], c[column][row - 1]), there, c[column][row - 1] + step]
     return hints, lambda row: list((harmonics[1:, row] - harmonics[1:, row - 1]) * 100)

@@ -12,13 +12,13 @@ import sys
 from pathlib import Path
 
 from floor import NAMES, ORDER, floor_bits
-from rivals import forms, integers
+from other_formats import forms, integers
 from spool import sail
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "decoder"))
 import sr1  # noqa: E402
 
-# Of our own, whole days at sea on the link (`make bench-link`).
+# Full days at sea on the link (`make bench-link`).
 PROFILES = {"vsat": "every hour", "standard": "four a day", "metered": "daily"}
 COLUMNS = dict(zip(("time", "lat", "lon", "gyro", "satellite", "compass", "sog", "rate",
                     "spread", "windows"), range(1, 11)))
@@ -26,7 +26,7 @@ CIRCLES = {"lon": 360_000, "gyro": 7_200, "satellite": 7_200, "compass": 18_000}
 
 
 def every_ten_minutes(batches):
-    """Each sample alone, as it is finished; what else was counted goes with the last."""
+    """Each sample alone, as it is finished; the last one carries the other counts."""
     alone = []
     for batch in batches:
         rest = {k: v for k, v in batch["tally"].items() if k != "accepted"}
@@ -39,7 +39,7 @@ def every_ten_minutes(batches):
 
 
 def between(measured, size):
-    """What a body costs on the link, by a line between the sizes that were measured."""
+    """Bytes of a body on the link, interpolated between the measured sizes."""
     for (low, a), (high, b) in zip(measured, measured[1:]):
         if size <= high or high == measured[-1][0]:
             return a + (b - a) * (size - low) / (high - low)
@@ -91,26 +91,26 @@ def main():
     counted = ", ".join(f"{len(batches[p])} batches {words}" for p, words in cadences.items())
     samples = sum(len(b["samples"]) for b in batches["metered"])
     print(f"{days:g} days, {samples} samples; {counted}\n")
-    print("Payload, octets a vessel-day:\n")
+    print("Payload, bytes a vessel-day:\n")
     table(["form", *cadences.values()], [
         [name, *(f"{sum(of[p]) / days:,.0f}" if p in of else "" for p in cadences)]
         for name, of in sizes.items()])
     for how, words in (("own", "on a connection of its own"), ("open", "on one that stays open")):
-        print(f"Over stock HTTPS, each request {words}, IP octets a vessel-day:\n")
+        print(f"Over stock HTTPS, each request {words}, IP bytes a vessel-day:\n")
         table(["form", *cadences.values()], [
             [name, *(f"{sum(between(https[how], s) for s in of[p]) / days:,.0f}" if p in of else ""
                      for p in cadences)]
             for name, of in sizes.items()])
-        size, octets = https[how][1]
-        print(f"({octets - size:,.0f} octets beside a body of {size}.)\n")
+        size, on_link = https[how][1]
+        print(f"({on_link - size:,.0f} bytes beside a body of {size}.)\n")
 
     columns = whole_columns(batches["metered"])
     floor = floor_bits(columns)
     total = sum(floor.values()) / 8
-    print(f"Entropy, at most, in bits a sample; {total / samples:.2f} octets in all:\n")
+    print(f"Entropy, at most, in bits a sample; {total / samples:.2f} bytes in all:\n")
     table(["column", "bits"], [
         [NAMES[c], f"{floor[c] / samples:.2f}"] for c in ORDER if c in floor])
-    table(["batches", "octets a sample, whole frames", "over the entropy"], [
+    table(["batches", "bytes a sample, whole frames", "over the entropy"], [
         [words, f"{sum(sizes['Binnacle'][p]) / count(batches[p]):.2f}",
          f"{sum(sizes['Binnacle'][p]) / count(batches[p]) / (total / samples):.2f}"]
         for p, words in PROFILES.items()])

@@ -1,10 +1,10 @@
-"""What a request over stock HTTPS costs on the link, packets and all, by its body's size.
+"""Bytes of a request over stock HTTPS on the link, packet headers included, by body size.
 
 Run in a network of its own (`unshare --net`): prints JSON, for a connection of its own and
-for one that stays open, [octets of body, IP octets both ways] of each request. The shore
+for one that stays open, [bytes of body, IP bytes both ways] of each request. The server
 is Python's HTTP server with OpenSSL as it comes, TLS 1.3, a chain of two certificates on
-P-256 under a root, as public authorities have it, and the answer's usual headers; the ship
-sends the usual ones of an HTTP client and a bearer token of 300 octets.
+P-256 under a root, as public authorities have it, and the usual response headers; the client
+sends the usual ones of an HTTP client and a bearer token of 300 bytes.
 """
 
 import http.client
@@ -19,7 +19,7 @@ import threading
 import time
 from pathlib import Path
 
-SHORE, PORT = "10.77.0.1", 8443
+SERVER, PORT = "10.77.0.1", 8443
 LINK = Path(__file__).parents[4] / "tests/satellite/link.py"
 SIZES = [100, 200, 400, 800, 1_600, 3_200, 6_400, 12_800]
 TIMES = 3
@@ -29,7 +29,7 @@ TOKEN = "t" * 300
 
 
 def certificates(folder):
-    """A root, an authority under it and the shore's certificate, made by openssl."""
+    """A root, an authority under it and the server's certificate, made by openssl."""
     def openssl(*words):
         subprocess.run(["openssl", *words], check=True, cwd=folder, stdin=subprocess.DEVNULL,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -39,7 +39,7 @@ def certificates(folder):
     signed = [("ca", "/C=US/O=Example Trust Services/CN=E7", "root",
                "basicConstraints=critical,CA:TRUE,pathlen:0\n"),
               ("leaf", "/CN=telemetry.example.com", "ca",
-               f"subjectAltName=DNS:telemetry.example.com,IP:{SHORE}\n"
+               f"subjectAltName=DNS:telemetry.example.com,IP:{SERVER}\n"
                "extendedKeyUsage=serverAuth,clientAuth\n"
                "authorityInfoAccess=OCSP;URI:http://e7.o.example.org,"
                "caIssuers;URI:http://e7.i.example.org/\n"
@@ -55,7 +55,7 @@ def certificates(folder):
     (folder / "chain.pem").write_text(chain)
 
 
-class Visit(http.server.BaseHTTPRequestHandler):
+class Handler(http.server.BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
     wbufsize = -1
 
@@ -75,27 +75,27 @@ class Visit(http.server.BaseHTTPRequestHandler):
 def serve(folder):
     tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     tls.load_cert_chain(folder / "chain.pem", folder / "leaf.key")
-    shore = http.server.ThreadingHTTPServer((SHORE, PORT), Visit)
-    shore.daemon_threads = True
-    shore.socket = tls.wrap_socket(shore.socket, server_side=True, do_handshake_on_connect=False)
-    threading.Thread(target=shore.serve_forever, daemon=True).start()
+    server = http.server.ThreadingHTTPServer((SERVER, PORT), Handler)
+    server.daemon_threads = True
+    server.socket = tls.wrap_socket(server.socket, server_side=True, do_handshake_on_connect=False)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
 
 
-def aboard(folder):
-    """The ship: a line of the size of a body and whether to keep the connection."""
+def run_client(folder):
+    """The client: each line has the size of a body and whether to keep the connection."""
     tls = ssl.create_default_context(cafile=folder / "root.pem")
     line = None
     for order in sys.stdin:
         size, keep = json.loads(order)
-        line = line or http.client.HTTPSConnection(SHORE, PORT, context=tls)
+        line = line or http.client.HTTPSConnection(SERVER, PORT, context=tls)
         line.request("POST", "/api/v2/write?org=fleet&bucket=compass", os.urandom(size), {
             "User-Agent": "telemetry-agent/1.4.2", "Accept": "*/*",
             "Content-Type": "application/octet-stream", "Content-Encoding": "gzip",
             "Authorization": f"Bearer {TOKEN}"})
-        answer = line.getresponse()
-        answer.read()
-        if answer.status != 200:
-            raise SystemExit(f"the shore answered {answer.status}")
+        response = line.getresponse()
+        response.read()
+        if response.status != 200:
+            raise SystemExit(f"the server responded {response.status}")
         if not keep:
             line.close()
             line = None
@@ -113,24 +113,24 @@ def main():
         link.stdin.write(json.dumps(what) + "\n")
         link.stdin.flush()
 
-    def octets():
+    def bytes_on_link():
         time.sleep(SETTLE_S)
         order(tally=True)
-        return sum(way["octets"] for way in json.loads(link.stdout.readline()).values())
+        return sum(way["bytes"] for way in json.loads(link.stdout.readline()).values())
 
     order(round_trip_ms=300)
     serve(folder)
     client = subprocess.Popen(
-        ["nsenter", "--net", "--target", ship, "--", sys.executable, __file__, "aboard", folder],
+        ["nsenter", "--net", "--target", ship, "--", sys.executable, __file__, "client", folder],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def request(size, keep):
-        before = octets()
+        before = bytes_on_link()
         client.stdin.write(json.dumps([size, keep]) + "\n")
         client.stdin.flush()
         if client.stdout.readline() != "done\n":
             raise SystemExit("the ship's client ended")
-        return octets() - before
+        return bytes_on_link() - before
 
     def mean(size, keep):
         return sum(request(size, keep) for _ in range(TIMES)) / TIMES
@@ -146,7 +146,7 @@ def main():
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["aboard"]:
-        aboard(Path(sys.argv[2]))
+    if sys.argv[1:2] == ["client"]:
+        run_client(Path(sys.argv[2]))
     else:
         main()

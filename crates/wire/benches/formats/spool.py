@@ -11,22 +11,22 @@ from pathlib import Path
 
 STREAM = "01934f2a-7c00-7000-8000-00000000002a"
 NOW = "2026-11-21T07:00:00Z"
-# Nothing came for so long: the voyage is over, and all that was sealed is here.
+# Seconds without a request after which the voyage is over and every batch was sent.
 QUIET_S = 5.0
 # Sentences go to the agent no faster than this: it seals by the ship's clock when it has
 # read what has come, and must not read an hour at once.
-OCTETS_A_SECOND = 2_000_000
+BYTES_A_SECOND = 2_000_000
 PIECE = 2_048
 
 
-class Shore(http.server.ThreadingHTTPServer):
-    """Takes whatever comes, and has nothing to say."""
+class Server(http.server.ThreadingHTTPServer):
+    """Accepts every batch, and acknowledges it."""
 
     daemon_threads = True
 
     def __init__(self):
-        super().__init__(("127.0.0.1", 0), Visit)
-        self.batches, self.heard = {}, time.monotonic()
+        super().__init__(("127.0.0.1", 0), Handler)
+        self.batches, self.last_request = {}, time.monotonic()
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
     def contiguous(self):
@@ -36,11 +36,11 @@ class Shore(http.server.ThreadingHTTPServer):
         return seq
 
 
-class Visit(http.server.BaseHTTPRequestHandler):
+class Handler(http.server.BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
 
-    def reply(self, answer):
-        body = json.dumps(answer).encode()
+    def reply(self, content):
+        body = json.dumps(content).encode()
         self.send_response(200)
         self.send_header("content-length", str(len(body)))
         self.end_headers()
@@ -57,7 +57,7 @@ class Visit(http.server.BaseHTTPRequestHandler):
     def do_PUT(self):
         seq = int(self.path.split("?")[0].rsplit("/", 1)[1])
         self.server.batches[seq] = self.body()
-        self.server.heard = time.monotonic()
+        self.server.last_request = time.monotonic()
         self.do_GET()
 
     def do_GET(self):
@@ -92,19 +92,19 @@ def play(bridge, line):
     while piece := bridge.read(PIECE):
         line.sendall(piece)
         sent += len(piece)
-        ahead = began + sent / OCTETS_A_SECOND - time.monotonic()
+        ahead = began + sent / BYTES_A_SECOND - time.monotonic()
         if ahead > 0:
             time.sleep(ahead)
 
 
 def sail(programs, scenario, profile, days):
     """The frames of a voyage, in order: simulator, TCP, agent, HTTP, all real."""
-    shore, feed = Shore(), socket.create_server(("127.0.0.1", 0))
+    server, feed = Server(), socket.create_server(("127.0.0.1", 0))
     with tempfile.TemporaryDirectory() as folder:
         settings, log = Path(folder) / "agent.toml", Path(folder) / "log"
         settings.write_text(config(profile, f"127.0.0.1:{feed.getsockname()[1]}"))
         agent = [programs / "binnacle-agent"]
-        url = f"http://127.0.0.1:{shore.server_port}"
+        url = f"http://127.0.0.1:{server.server_port}"
         with open(log, "w", encoding="utf-8") as words:
             enrol = ["enrol", "--config", settings, "--server", url, "--code", "C"]
             subprocess.run([*agent, *enrol], check=True, stdout=words, stderr=words)
@@ -117,8 +117,8 @@ def sail(programs, scenario, profile, days):
             line, _ = feed.accept()
             with line:
                 play(bridge.stdout, line)
-                shore.heard = time.monotonic()
-                while time.monotonic() - shore.heard < QUIET_S:
+                server.last_request = time.monotonic()
+                while time.monotonic() - server.last_request < QUIET_S:
                     time.sleep(0.2)
             if running.poll() is not None or bridge.wait() != 0:
                 raise SystemExit(f"a program failed: {log.read_text()}")
@@ -126,8 +126,8 @@ def sail(programs, scenario, profile, days):
             for program in (running, bridge):
                 program.kill()
                 program.wait()
-            shore.shutdown()
+            server.shutdown()
             feed.close()
-    if shore.contiguous() != len(shore.batches) or not shore.batches:
-        raise SystemExit(f"{len(shore.batches)} batches came, not all of them")
-    return [shore.batches[seq] for seq in sorted(shore.batches)]
+    if server.contiguous() != len(server.batches) or not server.batches:
+        raise SystemExit(f"{len(server.batches)} batches arrived, not all of them")
+    return [server.batches[seq] for seq in sorted(server.batches)]

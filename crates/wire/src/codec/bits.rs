@@ -1,7 +1,8 @@
-//! Bits, the most significant first, and the three ways to write an integer in
+//! Bit streams, the most significant bit first, and the three integer codes in
 //! them.
 //!
-//! A reader never looks beyond its bytes: it says [`DecodeError::Truncated`].
+//! A reader never reads beyond its bytes; it returns
+//! [`DecodeError::Truncated`].
 
 use super::error::DecodeError;
 
@@ -9,12 +10,12 @@ use super::error::DecodeError;
 #[derive(Debug, Default)]
 pub(crate) struct BitWriter {
     bytes: Vec<u8>,
-    /// Bits used of the last byte; 0 when it is full or there is none.
+    /// Bits used in the last byte; 0 when it is full or there is none.
     used: u32,
 }
 
 impl BitWriter {
-    /// The lowest `count` bits of `value`; `count` is at most 64.
+    /// Appends the lowest `count` bits of `value`; `count` is at most 64.
     pub(crate) fn bits(&mut self, value: u64, count: u32) {
         for shift in (0..count).rev() {
             let bit = (value >> shift & 1) as u8;
@@ -28,15 +29,15 @@ impl BitWriter {
         }
     }
 
-    /// Whole bytes.
-    pub(crate) fn octets(&mut self, octets: &[u8]) {
-        for octet in octets {
-            self.bits(u64::from(*octet), 8);
+    /// Appends whole bytes.
+    pub(crate) fn bytes(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.bits(u64::from(*byte), 8);
         }
     }
 
-    /// Elias's gamma code of `value`, which is at least 1. Frames are not written with it
-    /// any more.
+    /// Appends Elias's gamma code of `value`, which is at least 1. Only frames
+    /// of earlier agents use it.
     #[cfg(test)]
     pub(crate) fn gamma(&mut self, value: u64) {
         let below = value.ilog2();
@@ -44,7 +45,8 @@ impl BitWriter {
         self.bits(value, below + 1);
     }
 
-    /// Seven bits at a time, the lowest first, each group led by whether more follow.
+    /// Appends seven bits at a time, the lowest first; the high bit of each
+    /// byte says if more follow.
     pub(crate) fn varint(&mut self, mut value: u64) {
         while value > 0x7f {
             self.bits(value & 0x7f | 0x80, 8);
@@ -53,13 +55,13 @@ impl BitWriter {
         self.bits(value, 8);
     }
 
-    /// What was written.
+    /// Returns the bytes written.
     pub(crate) fn into_bytes(self) -> Vec<u8> {
         self.bytes
     }
 }
 
-/// Reads what [`BitWriter`] wrote.
+/// Reads the bits of a [`BitWriter`].
 #[derive(Debug)]
 pub(crate) struct BitReader<'a> {
     bytes: &'a [u8],
@@ -72,12 +74,12 @@ impl<'a> BitReader<'a> {
         BitReader { bytes, at: 0 }
     }
 
-    /// Bits that are left.
+    /// Number of bits left.
     pub(crate) fn left(&self) -> usize {
         self.bytes.len() * 8 - self.at
     }
 
-    /// One bit.
+    /// Reads one bit.
     pub(crate) fn bit(&mut self) -> Result<bool, DecodeError> {
         let byte = self.bytes.get(self.at / 8).ok_or(DecodeError::Truncated)?;
         let bit = byte >> (7 - self.at % 8) & 1;
@@ -85,7 +87,7 @@ impl<'a> BitReader<'a> {
         Ok(bit == 1)
     }
 
-    /// An unsigned number of `count` bits, at most 64.
+    /// Reads an unsigned number of `count` bits, at most 64.
     pub(crate) fn bits(&mut self, count: u32) -> Result<u64, DecodeError> {
         let mut value = 0;
         for _ in 0..count {
@@ -94,7 +96,7 @@ impl<'a> BitReader<'a> {
         Ok(value)
     }
 
-    /// Elias's gamma code.
+    /// Reads Elias's gamma code.
     pub(crate) fn gamma(&mut self) -> Result<u64, DecodeError> {
         let mut below = 0;
         while !self.bit()? {
@@ -106,13 +108,13 @@ impl<'a> BitReader<'a> {
         Ok(1 << below | self.bits(below)?)
     }
 
-    /// Seven bits at a time, the lowest first.
+    /// Reads seven bits at a time, the lowest first.
     pub(crate) fn varint(&mut self) -> Result<u64, DecodeError> {
         let mut value = 0;
         for shift in (0..64).step_by(7) {
             let group = self.bits(8)?;
             let seven = group & 0x7f;
-            // The tenth group has room for one bit only.
+            // The tenth group has space for one bit only.
             if shift == 63 && seven > 1 {
                 return Err(DecodeError::NumberTooLong);
             }
@@ -124,15 +126,15 @@ impl<'a> BitReader<'a> {
         Err(DecodeError::NumberTooLong)
     }
 
-    /// Whole bytes.
-    pub(crate) fn octets(&mut self, count: usize) -> Result<Vec<u8>, DecodeError> {
+    /// Reads whole bytes.
+    pub(crate) fn bytes(&mut self, count: usize) -> Result<Vec<u8>, DecodeError> {
         if self.left() / 8 < count {
             return Err(DecodeError::Truncated);
         }
         (0..count).map(|_| Ok(self.bits(8)? as u8)).collect()
     }
 
-    /// The octets that are left, from a whole one on.
+    /// The remaining bytes, from the next byte boundary on.
     pub(crate) fn rest(&self) -> &'a [u8] {
         self.bytes.get(self.at.div_ceil(8)..).unwrap_or_default()
     }
@@ -147,12 +149,12 @@ impl<'a> BitReader<'a> {
     }
 }
 
-/// 0, −1, 1, −2 … as 0, 1, 2, 3 …
+/// Maps 0, −1, 1, −2 … to 0, 1, 2, 3 ….
 pub(crate) fn zigzag(value: i64) -> u64 {
     (value << 1 ^ value >> 63).cast_unsigned()
 }
 
-/// 0, 1, 2, 3 … as 0, −1, 1, −2 …
+/// Maps 0, 1, 2, 3 … to 0, −1, 1, −2 ….
 pub(crate) fn unzigzag(code: u64) -> i64 {
     (code >> 1).cast_signed() ^ -(code & 1).cast_signed()
 }

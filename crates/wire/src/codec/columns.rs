@@ -1,8 +1,8 @@
-//! Samples as columns of integers, and back.
+//! Converts samples to columns of integers, and back.
 //!
-//! A column holds one integer a sample, or none where the sample lacks the
+//! A column holds one integer per sample, or none where the sample lacks the
 //! value. Directions are unwound first: a column never jumps by more than half
-//! a circle, and only the way back wraps them.
+//! a circle. Decoding wraps them again.
 
 use super::error::{DecodeError, EncodeError};
 use super::step::{Decimal, Step};
@@ -23,13 +23,13 @@ const RATE_OF_TURN: u64 = 8;
 const SPREAD: u64 = 9;
 const WINDOWS: u64 = 10;
 
-/// The last id that this version gives a meaning.
+/// The last id that this version knows.
 pub(super) const LAST_KNOWN: u64 = WINDOWS;
 
 /// Columns that every sample has: time, latitude, longitude, compass, windows.
 pub(super) const REQUIRED: usize = 5;
 
-/// Seconds since 1970: the grid that middles of ten-second windows lie on.
+/// Seconds since 1970, on the grid of the middles of ten-second windows.
 const TIME_STEP: Step = Step::new(5, 0);
 /// 111 m: a field model changes by less than 0.005° over that.
 const PLACE_STEP: Step = Step::new(1, 3);
@@ -41,7 +41,7 @@ const RATE_OF_TURN_STEP: Step = Step::new(5, 1);
 const SPREAD_STEP: Step = Step::new(2, 2);
 const WINDOWS_STEP: Step = Step::new(1, 0);
 
-/// 1980-01-06, when GPS time begins, and 2100-01-01, in seconds since 1970.
+/// Seconds since 1970 at 1980-01-06, when GPS time begins, and at 2100-01-01.
 const TIME_RANGE_S: (f64, f64) = (315_964_800.0, 4_102_444_800.0);
 const SOG_RANGE_KN: (f64, f64) = (0.0, 200.0);
 const RATE_OF_TURN_RANGE: (f64, f64) = (-3600.0, 3600.0);
@@ -53,17 +53,17 @@ const WINDOWS_RANGE: (f64, f64) = (1.0, 65_535.0);
 pub(super) struct Column {
     pub(super) id: u64,
     pub(super) step: Step,
-    /// One a sample.
+    /// One value per sample.
     pub(super) values: Vec<Option<i64>>,
 }
 
-/// Refuses a sample that no frame can carry, naming the field.
+/// Refuses a sample that no frame can carry, and names the field.
 ///
-/// An agent asks this before it keeps a sample, so that a sealed batch can
-/// always be written.
+/// An agent checks a sample before it stores it, so that a sealed batch can
+/// always be encoded.
 ///
 /// # Errors
-/// [`EncodeError::OutOfRange`], with `row` as it was given.
+/// [`EncodeError::OutOfRange`], with the given `row`.
 pub fn check(sample: &Sample, row: usize) -> Result<(), EncodeError> {
     let fields = [
         ("time", Some(seconds(sample.time)), TIME_RANGE_S),
@@ -95,7 +95,8 @@ fn seconds(time: Timestamp) -> f64 {
     time.micros() as f64 * 1e-6
 }
 
-/// The columns of samples that passed [`check`], without those that no sample has.
+/// Returns the columns of samples that passed [`check`], without the columns
+/// that no sample has.
 pub(super) fn from_samples(samples: &[Sample]) -> Vec<Column> {
     let mut columns = vec![
         column(TIME, TIME_STEP, samples, |s| Some(seconds(s.time))),
@@ -147,7 +148,8 @@ fn direction(
         .expect("the steps of directions divide the circle");
     let mut last = None;
     for value in column.values.iter_mut().flatten() {
-        // The first lies within half a circle of north, later ones of the last.
+        // The first lies within half a circle of north, each later one within
+        // half a circle of the one before.
         let near = last.unwrap_or(0);
         *value = near + wrap_half(*value - near, circle);
         last = Some(*value);
@@ -155,12 +157,12 @@ fn direction(
     column
 }
 
-/// From −circle/2 up to but not circle/2.
+/// Wraps steps into [−circle/2, circle/2).
 fn wrap_half(steps: i64, circle: i64) -> i64 {
     (steps + circle / 2).rem_euclid(circle) - circle / 2
 }
 
-/// The gyro as the decoder will see it.
+/// The gyro heading as it will be decoded.
 fn gyro_base(sample: &Sample) -> Decimal {
     sample.gyro.map_or(Decimal::ZERO, |gyro| {
         REFERENCE_STEP.exact(REFERENCE_STEP.count(gyro.degrees()))
@@ -172,7 +174,7 @@ fn satellite_less_gyro(sample: &Sample) -> Option<f64> {
     Some(wrap_180(satellite - gyro_base(sample).value()))
 }
 
-/// Against the gyro, or without one against the satellite compass.
+/// Compass less gyro, or without one, less satellite compass.
 fn compass_less_reference(sample: &Sample) -> f64 {
     let base = match sample.satellite {
         Some(satellite) if sample.gyro.is_none() => {
@@ -183,7 +185,7 @@ fn compass_less_reference(sample: &Sample) -> f64 {
     wrap_180(sample.compass.degrees() - base.value())
 }
 
-/// The samples of `count` rows, which every column has.
+/// Returns the samples of `count` rows; every column has that many values.
 pub(super) fn to_samples(columns: &[Column], count: usize) -> Result<Vec<Sample>, DecodeError> {
     for column in columns {
         let turns = matches!(column.id, LON | GYRO | SATELLITE | COMPASS);
@@ -202,7 +204,7 @@ pub(super) fn to_samples(columns: &[Column], count: usize) -> Result<Vec<Sample>
     Ok(samples)
 }
 
-/// One sample's values.
+/// The values of one sample.
 struct Row<'a> {
     columns: &'a [Column],
     row: usize,

@@ -1,64 +1,65 @@
-//! A column in a dense frame: which samples have it, the predictor, the first value and
-//! the residuals, in range-coded answers whose odds each column learns anew.
+//! A column in a dense frame: presence, predictor, first value and residuals.
+//! All are range-coded with adaptive bit models, which start afresh in each
+//! column.
 
 use super::bits::{unzigzag, zigzag};
 use super::error::DecodeError;
-use super::predict::{Foresight, Predictor};
-use super::range::{Odds, RangeReader, RangeWriter};
-use super::stack::bounded;
+use super::plain::bounded;
+use super::predict::{Predictor, PredictorState};
+use super::range::{BitModel, RangeReader, RangeWriter};
 
 const PREDICTOR_BITS: u32 = 4;
-/// Bits of the first value's length.
+/// Bits of the first value's length field.
 const FIRST_LENGTH_BITS: u32 = 6;
 /// Residuals lie within ±2⁵⁴: their lengths are 0 to 55.
 const LONGEST: usize = 55;
 
-/// What a column has learned of its residuals.
+/// Adaptive bit models of a column's residuals.
 #[derive(Clone, Debug)]
-struct Habits {
-    /// Whether the length is greater than this.
-    longer: [Odds; LONGEST],
-    negative: Odds,
-    /// The bit after the highest, by length.
-    second: [Odds; LONGEST + 1],
+struct ResidualModels {
+    /// Models of "longer than this index?".
+    longer: [BitModel; LONGEST],
+    negative: BitModel,
+    /// Models of the bit after the highest, by length.
+    second: [BitModel; LONGEST + 1],
 }
 
-impl Habits {
-    const NONE: Habits = Habits {
-        longer: [Odds::EVEN; LONGEST],
-        negative: Odds::EVEN,
-        second: [Odds::EVEN; LONGEST + 1],
+impl ResidualModels {
+    const INITIAL: ResidualModels = ResidualModels {
+        longer: [BitModel::INITIAL; LONGEST],
+        negative: BitModel::INITIAL,
+        second: [BitModel::INITIAL; LONGEST + 1],
     };
 
     fn write(&mut self, writer: &mut RangeWriter, residual: i64) {
         let size = residual.unsigned_abs();
         let length = (u64::BITS - size.leading_zeros()) as usize;
-        for (at, odds) in self.longer.iter_mut().enumerate().take(length + 1) {
-            writer.answer(odds, length > at);
+        for (at, model) in self.longer.iter_mut().enumerate().take(length + 1) {
+            writer.modelled_bit(model, length > at);
         }
         if length == 0 {
             return;
         }
-        writer.answer(&mut self.negative, residual < 0);
+        writer.modelled_bit(&mut self.negative, residual < 0);
         if length > 1 {
             let second = size >> (length - 2) & 1;
-            writer.answer(&mut self.second[length], second == 1);
+            writer.modelled_bit(&mut self.second[length], second == 1);
             writer.bits(size, length as u32 - 2);
         }
     }
 
     fn read(&mut self, reader: &mut RangeReader<'_>) -> Result<i64, DecodeError> {
         let mut length = 0;
-        while length < LONGEST && reader.answer(&mut self.longer[length])? {
+        while length < LONGEST && reader.modelled_bit(&mut self.longer[length])? {
             length += 1;
         }
         if length == 0 {
             return Ok(0);
         }
-        let is_negative = reader.answer(&mut self.negative)?;
+        let is_negative = reader.modelled_bit(&mut self.negative)?;
         let mut size = 1;
         if length > 1 {
-            size = size << 1 | u64::from(reader.answer(&mut self.second[length])?);
+            size = size << 1 | u64::from(reader.modelled_bit(&mut self.second[length])?);
             size = size << (length - 2) | reader.bits(length as u32 - 2)?;
         }
         let size = size.cast_signed();
@@ -88,35 +89,35 @@ pub(super) fn write(writer: &mut RangeWriter, values: &[Option<i64>], times: Opt
     let length = u64::BITS - first.leading_zeros();
     writer.bits(u64::from(length), FIRST_LENGTH_BITS);
     writer.bits(first, length.saturating_sub(1));
-    let mut habits = Habits::NONE;
+    let mut models = ResidualModels::INITIAL;
     for residual in residuals {
-        habits.write(writer, residual);
+        models.write(writer, residual);
     }
 }
 
 fn residuals(predictor: Predictor, present: &[(i64, i64)]) -> Vec<i64> {
-    let mut foresight = Foresight::new(predictor, present[0].0, present[0].1);
+    let mut state = PredictorState::new(predictor, present[0].0, present[0].1);
     present[1..]
         .iter()
         .map(|(value, time)| {
-            let residual = value - foresight.expect(*time);
-            foresight.learn(*value, *time);
+            let residual = value - state.predict(*time);
+            state.update(*value, *time);
             residual
         })
         .collect()
 }
 
-/// Bits that residuals take, near enough to choose by.
+/// Approximate size of the residuals in bits, for the choice of a predictor.
 fn cost(residuals: &[i64]) -> u64 {
-    let (mut writer, mut habits) = (RangeWriter::new(), Habits::NONE);
+    let (mut writer, mut models) = (RangeWriter::new(), ResidualModels::INITIAL);
     for residual in residuals {
-        habits.write(&mut writer, *residual);
+        models.write(&mut writer, *residual);
     }
     writer.bits_written()
 }
 
-/// Reads a column of `count` samples. `times` is `None` for the column of
-/// times itself, which cannot be foretold from them.
+/// Reads a column of `count` samples. `times` is `None` for the column of times
+/// itself, which cannot be predicted from them.
 pub(super) fn read(
     reader: &mut RangeReader<'_>,
     id: u64,
@@ -137,12 +138,12 @@ pub(super) fn read(
     let time = |row: usize| times.map_or(0, |times| times[row]);
     let first = bounded(unzigzag(read_first(reader)?), id, first_row)?;
     values[first_row] = Some(first);
-    let mut foresight = Foresight::new(predictor, first, time(first_row));
-    let mut habits = Habits::NONE;
+    let mut state = PredictorState::new(predictor, first, time(first_row));
+    let mut models = ResidualModels::INITIAL;
     for row in rows {
-        let value = foresight.expect(time(row)) + habits.read(reader)?;
+        let value = state.predict(time(row)) + models.read(reader)?;
         values[row] = Some(bounded(value, id, row)?);
-        foresight.learn(value, time(row));
+        state.update(value, time(row));
     }
     Ok(values)
 }
@@ -155,21 +156,22 @@ fn read_first(reader: &mut RangeReader<'_>) -> Result<u64, DecodeError> {
     Ok(1 << (length - 1) | reader.bits(length - 1)?)
 }
 
-/// Whether all are there; if not, whether each is, by whether the one before was.
+/// Writes one bit for "all present"; otherwise one bit per value, modelled by
+/// the presence of the value before.
 fn write_presence(writer: &mut RangeWriter, values: &[Option<i64>]) {
     let is_whole = values.iter().all(Option::is_some);
     writer.bits(u64::from(!is_whole), 1);
     if is_whole {
         return;
     }
-    let (mut odds, mut before) = ([Odds::EVEN; 2], true);
+    let (mut model, mut before) = ([BitModel::INITIAL; 2], true);
     for value in values {
-        writer.answer(&mut odds[usize::from(before)], value.is_some());
+        writer.modelled_bit(&mut model[usize::from(before)], value.is_some());
         before = value.is_some();
     }
 }
 
-/// `None` when every sample has the value.
+/// Reads the presence of each value; `None` when every sample has one.
 fn read_presence(
     reader: &mut RangeReader<'_>,
     count: usize,
@@ -177,10 +179,10 @@ fn read_presence(
     if reader.bits(1)? == 0 {
         return Ok(None);
     }
-    let (mut odds, mut before) = ([Odds::EVEN; 2], true);
+    let (mut model, mut before) = ([BitModel::INITIAL; 2], true);
     let mut presence = Vec::with_capacity(count);
     for _ in 0..count {
-        before = reader.answer(&mut odds[usize::from(before)])?;
+        before = reader.modelled_bit(&mut model[usize::from(before)])?;
         presence.push(before);
     }
     Ok(Some(presence))

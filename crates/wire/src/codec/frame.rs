@@ -1,12 +1,12 @@
-//! The frame: header, profile, tally, columns, checksum.
+//! The frame: header, tally, notes, profile, columns, checksum.
 
 use super::bits::{BitReader, BitWriter};
 use super::columns::{self, Column};
 use super::dense;
 use super::error::{DecodeError, EncodeError};
 use super::notes::{self, Notes};
+use super::plain;
 use super::range::{RangeReader, RangeWriter};
-use super::stack;
 use super::step::Step;
 use super::tally;
 use crate::batch::{Batch, StreamId};
@@ -23,17 +23,17 @@ const VERSION: u8 = 1;
 const HAS_NOTES: u8 = 1;
 /// The columns are range-coded.
 const IS_DENSE: u8 = 2;
-/// Magic, version and flags; the checksum.
+/// Bytes of magic, version and flags.
 const HEAD_BYTES: usize = 4;
 const CHECKSUM_BYTES: usize = 4;
 /// Columns that a frame may have, known and unknown.
 const MAX_COLUMNS: u64 = 64;
 
-/// Writes a batch as a frame. Samples are put in order of time.
+/// Writes a batch as a frame, with the samples in order of time.
 ///
 /// # Errors
-/// When a value is one that no ship can have (see [`super::check`]) or the batch
-/// is too large.
+/// When a value is out of range (see [`super::check`]) or the batch is too
+/// large.
 pub fn encode(batch: &Batch) -> Result<Vec<u8>, EncodeError> {
     if batch.samples.len() > MAX_SAMPLES {
         return Err(EncodeError::TooManySamples(batch.samples.len()));
@@ -49,12 +49,12 @@ pub fn encode(batch: &Batch) -> Result<Vec<u8>, EncodeError> {
     let columns = columns::from_samples(&samples);
 
     let mut writer = BitWriter::default();
-    writer.octets(&MAGIC);
+    writer.bytes(&MAGIC);
     let has_notes = !batch.alerts.is_empty() || batch.thinned.is_some();
     let notes = if has_notes { HAS_NOTES } else { 0 };
     let dense = if samples.is_empty() { 0 } else { IS_DENSE };
-    writer.octets(&[VERSION, notes | dense]);
-    writer.octets(batch.stream.0.as_bytes());
+    writer.bytes(&[VERSION, notes | dense]);
+    writer.bytes(batch.stream.0.as_bytes());
     writer.varint(batch.seq);
     tally::write(&mut writer, &batch.tally)?;
     if has_notes {
@@ -75,7 +75,7 @@ pub fn encode(batch: &Batch) -> Result<Vec<u8>, EncodeError> {
     Ok(bytes)
 }
 
-/// The columns, range-coded: nothing for none.
+/// Range-codes the columns; no bytes for no columns.
 fn write_columns(columns: &[Column]) -> Vec<u8> {
     let mut writer = RangeWriter::new();
     let mut times: Option<Vec<i64>> = None;
@@ -84,14 +84,14 @@ fn write_columns(columns: &[Column]) -> Vec<u8> {
         // The column of times is the first, and whole.
         times.get_or_insert_with(|| column.values.iter().flatten().copied().collect());
     }
-    writer.into_octets()
+    writer.into_bytes()
 }
 
 /// Reads a frame.
 ///
 /// # Errors
 /// When the bytes are not a whole, undamaged frame of a version that this
-/// decoder knows, or hold what no ship can have.
+/// decoder knows, or hold values out of range.
 pub fn decode(bytes: &[u8]) -> Result<Batch, DecodeError> {
     let (flags, content) = content(bytes)?;
     let mut reader = BitReader::new(content);
@@ -116,12 +116,12 @@ pub fn decode(bytes: &[u8]) -> Result<Batch, DecodeError> {
         .ok_or(DecodeError::TooManySamples(stated))?;
     let profile = read_profile(&mut reader)?;
     let columns = if flags & IS_DENSE == 0 {
-        // Before anything of the size of `count` is allocated.
-        if count > 0 && columns::REQUIRED * stack::min_bits(count) > reader.left() {
+        // Checked before anything of the size of `count` is allocated.
+        if count > 0 && columns::REQUIRED * plain::min_bits(count) > reader.left() {
             return Err(DecodeError::TooManySamples(stated));
         }
         let columns = read_columns(&profile, |id, times| {
-            stack::read(&mut reader, id, count, times)
+            plain::read(&mut reader, id, count, times)
         })?;
         reader.finish()?;
         columns
@@ -143,7 +143,8 @@ pub fn decode(bytes: &[u8]) -> Result<Batch, DecodeError> {
     })
 }
 
-/// The flags of an undamaged frame, and what stands between its head and checksum.
+/// Returns the flags of an undamaged frame, and the bytes between its head and
+/// checksum.
 fn content(bytes: &[u8]) -> Result<(u8, &[u8]), DecodeError> {
     if bytes.len() > MAX_BYTES {
         return Err(DecodeError::TooLarge(bytes.len()));
@@ -170,7 +171,7 @@ fn content(bytes: &[u8]) -> Result<(u8, &[u8]), DecodeError> {
     Ok((body[3], &body[HEAD_BYTES..]))
 }
 
-/// Ids, rising, and their steps.
+/// Reads the column ids, which must rise, and their steps.
 fn read_profile(reader: &mut BitReader<'_>) -> Result<Vec<(u64, Step)>, DecodeError> {
     let count = reader.varint()?;
     let mut profile = Vec::new();
@@ -187,8 +188,8 @@ fn read_profile(reader: &mut BitReader<'_>) -> Result<Vec<(u64, Step)>, DecodeEr
     Ok(profile)
 }
 
-/// Every column in turn, by `read` from its id and the times; those that this version does
-/// not know are read and forgotten.
+/// Reads every column with `read`, which gets its id and the times; unknown
+/// columns are dropped.
 fn read_columns(
     profile: &[(u64, Step)],
     mut read: impl FnMut(u64, Option<&[i64]>) -> Result<Vec<Option<i64>>, DecodeError>,

@@ -1,11 +1,13 @@
-//! Batches as bytes: `sr1`, columns of integers with predictors, what they miss range-coded.
+//! Batches as bytes, format `sr1`: columns of integers with predictors, and
+//! range-coded residuals.
 //!
-//! `FORMAT.md` beside this crate has every byte. What always holds:
+//! `FORMAT.md` in this crate describes every byte. Invariants:
 //!
-//! - [`encode`] of what [`decode`] gave is the same bytes, if `encode` wrote them.
-//! - A value comes back within half a step of what was sent.
-//! - [`decode`] takes any bytes: it answers or refuses, in time and memory
-//!   bounded by [`MAX_BYTES`] and [`MAX_SAMPLES`], and never panics.
+//! - [`encode`] of a batch from [`decode`] gives the same bytes, if `encode`
+//!   wrote them.
+//! - A decoded value lies within half a step of the one sent.
+//! - [`decode`] accepts or refuses any bytes, in time and memory bounded by
+//!   [`MAX_BYTES`] and [`MAX_SAMPLES`], and never panics.
 
 pub(crate) mod bits;
 mod columns;
@@ -13,10 +15,10 @@ mod dense;
 mod error;
 mod frame;
 mod notes;
+mod plain;
 mod predict;
 mod range;
 mod rice;
-mod stack;
 mod step;
 mod tally;
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! Notes in a frame: what is neither tally nor sample. Each says its kind and its
-//! length, so that a decoder passes over those that it does not know.
+//! Notes in a frame: everything but the tally and the samples. Each states its
+//! kind and length, so that a decoder skips unknown kinds.
 
 use super::bits::{BitReader, BitWriter, unzigzag, zigzag};
 use super::error::{DecodeError, EncodeError};
@@ -8,17 +8,17 @@ use crate::batch::Thinned;
 use binnacle_compass::time::Timestamp;
 use uuid::Uuid;
 
-/// Notes that one frame may have.
+/// The most notes of one frame.
 const NOTES_MAX: u64 = 255;
 const ALERT: u64 = 1;
 const THINNED: u64 = 2;
 /// The first second of GPS time, and the first of the year 2100.
 const TIME_RANGE_S: std::ops::Range<i64> = 315_964_800..4_102_444_800;
 const TENTHS_PER_DEG: f64 = 10.0;
-const GYRO_THERE: u64 = 1;
-const SATELLITE_THERE: u64 = 2;
+const HAS_GYRO: u64 = 1;
+const HAS_SATELLITE: u64 = 2;
 
-/// What a frame's notes hold.
+/// The contents of a frame's notes.
 #[derive(Debug, Default)]
 pub(super) struct Notes {
     pub(super) alerts: Vec<ShipAlert>,
@@ -37,7 +37,7 @@ pub(super) fn write(
     }
     writer.varint(count);
     for alert in alerts {
-        write_note(writer, ALERT, &alert_octets(alert)?);
+        write_note(writer, ALERT, &encode_alert(alert)?);
     }
     if let Some(thinned) = thinned {
         let mut note = BitWriter::default();
@@ -48,18 +48,18 @@ pub(super) fn write(
     Ok(())
 }
 
-fn write_note(writer: &mut BitWriter, kind: u64, octets: &[u8]) {
+fn write_note(writer: &mut BitWriter, kind: u64, bytes: &[u8]) {
     writer.varint(kind);
-    writer.varint(octets.len() as u64);
-    writer.octets(octets);
+    writer.varint(bytes.len() as u64);
+    writer.bytes(bytes);
 }
 
-fn alert_octets(alert: &ShipAlert) -> Result<Vec<u8>, EncodeError> {
+fn encode_alert(alert: &ShipAlert) -> Result<Vec<u8>, EncodeError> {
     let mut note = BitWriter::default();
     if alert.revision == 0 {
         return Err(EncodeError::Alert("revision"));
     }
-    note.octets(alert.id.as_bytes());
+    note.bytes(alert.id.as_bytes());
     note.varint(u64::from(alert.revision));
     let state = match alert.state {
         ShipAlertState::Open => 0,
@@ -75,11 +75,8 @@ fn alert_octets(alert: &ShipAlert) -> Result<Vec<u8>, EncodeError> {
         note.varint(seconds.unsigned_abs());
     }
     let (gyro, satellite) = (alert.gyro_departure_deg, alert.satellite_departure_deg);
-    let there = |departure: Option<f64>, bit| if departure.is_some() { bit } else { 0 };
-    note.bits(
-        there(gyro, GYRO_THERE) | there(satellite, SATELLITE_THERE),
-        8,
-    );
+    let flag = |departure: Option<f64>, bit| if departure.is_some() { bit } else { 0 };
+    note.bits(flag(gyro, HAS_GYRO) | flag(satellite, HAS_SATELLITE), 8);
     let departures = gyro.into_iter().chain(satellite);
     for departure in departures {
         note.varint(zigzag(tenths("departure", departure)?));
@@ -96,7 +93,8 @@ fn tenths(field: &'static str, degrees: f64) -> Result<i64, EncodeError> {
     Ok((degrees * TENTHS_PER_DEG).round() as i64)
 }
 
-/// Reads what [`write()`] wrote, and what a later agent may add to it.
+/// Reads the notes of [`write()`], and skips fields that a later agent
+/// appended.
 pub(super) fn read(reader: &mut BitReader<'_>) -> Result<Notes, DecodeError> {
     let count = reader.varint()?;
     if count > NOTES_MAX {
@@ -106,8 +104,8 @@ pub(super) fn read(reader: &mut BitReader<'_>) -> Result<Notes, DecodeError> {
     for _ in 0..count {
         let kind = reader.varint()?;
         let length = usize::try_from(reader.varint()?).map_err(|_| DecodeError::Truncated)?;
-        let octets = reader.octets(length)?;
-        let mut note = BitReader::new(&octets);
+        let bytes = reader.bytes(length)?;
+        let mut note = BitReader::new(&bytes);
         match kind {
             ALERT => notes.alerts.push(read_alert(&mut note)?),
             THINNED if notes.thinned.is_some() => return Err(DecodeError::BadNote(kind)),
@@ -143,14 +141,14 @@ fn alert(note: &mut BitReader<'_>) -> Result<Option<ShipAlert>, DecodeError> {
         _ => return Ok(None),
     };
     let (since, at) = (time(note.varint()?), time(note.varint()?));
-    let there = note.bits(8)?;
+    let present = note.bits(8)?;
     let mut departure = |bit| -> Result<Option<f64>, DecodeError> {
-        if there & bit == 0 {
+        if present & bit == 0 {
             return Ok(None);
         }
         Ok(Some(unzigzag(note.varint()?) as f64 / TENTHS_PER_DEG))
     };
-    let (gyro, satellite) = (departure(GYRO_THERE)?, departure(SATELLITE_THERE)?);
+    let (gyro, satellite) = (departure(HAS_GYRO)?, departure(HAS_SATELLITE)?);
     let limit_deg = note.varint()? as f64 / TENTHS_PER_DEG;
     let model_version = u32::try_from(note.varint()?);
     let angles = [gyro, satellite, Some(limit_deg)];

@@ -1,8 +1,7 @@
-//! Predictors: what the next integer of a column is likely to be, from those
-//! before it.
+//! Predictors: the expected next integer of a column, from those before it.
 //!
-//! Integers only, so that every decoder in every language comes to the same
-//! values. Values stay within ±2⁵³, so nothing here can overflow.
+//! Integers only, so that every decoder in every language gets the same values.
+//! Values stay within ±2⁵³, so nothing here can overflow.
 
 /// The greatest magnitude of a column's value: floats hold it exactly.
 pub(super) const VALUE_LIMIT: i64 = 1 << 53;
@@ -10,7 +9,7 @@ pub(super) const VALUE_LIMIT: i64 = 1 << 53;
 /// Fractional bits of the running mean.
 const MEAN_BITS: u32 = 8;
 
-/// The next value is foretold as …
+/// The next value is predicted as …
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Predictor {
     /// the first value of the column;
@@ -19,18 +18,20 @@ pub(super) enum Predictor {
     Previous,
     /// the line through the two before, evenly spaced;
     Linear,
-    /// a running mean that takes in 1/2, 1/4, 1/8 or 1/16 of each value's news;
+    /// a running mean that moves by 1/2, 1/4, 1/8 or 1/16 of each value's
+    /// innovation;
     Mean(u32),
     /// the line through the two before, by their times;
     LinearInTime,
-    /// what the time since the one before leaves beside that, if nothing lay between: when
-    /// values are lengths, and times, in halves of their units, the middles. Never more
-    /// than the greatest so far.
+    /// the time since the value before, less that value, and at most the
+    /// greatest so far. This fits back-to-back stretches: the values are
+    /// lengths, the times their middles in half units.
     BackToBack,
 }
 
 impl Predictor {
-    /// All, by their number in the frame. A plain frame has the first eight.
+    /// All predictors, by their number in the frame. A plain frame has the
+    /// first eight.
     pub(super) const ALL: [Predictor; 9] = [
         Predictor::First,
         Predictor::Previous,
@@ -43,18 +44,18 @@ impl Predictor {
         Predictor::BackToBack,
     ];
 
-    /// Whether it foretells from the samples' times, which then must be known.
+    /// True when it predicts from the samples' times, which must then be known.
     pub(super) fn needs_times(self) -> bool {
         matches!(self, Predictor::LinearInTime | Predictor::BackToBack)
     }
 }
 
-/// A predictor at work on one column.
+/// The state of a predictor in one column.
 #[derive(Debug)]
-pub(super) struct Foresight {
+pub(super) struct PredictorState {
     predictor: Predictor,
     first: i64,
-    /// The last value and its time, and the one before.
+    /// The last value and its time.
     last: (i64, i64),
     before: Option<(i64, i64)>,
     greatest: i64,
@@ -62,10 +63,10 @@ pub(super) struct Foresight {
     mean: i64,
 }
 
-impl Foresight {
+impl PredictorState {
     /// Starts from the column's first value and its time.
-    pub(super) fn new(predictor: Predictor, value: i64, time: i64) -> Foresight {
-        Foresight {
+    pub(super) fn new(predictor: Predictor, value: i64, time: i64) -> PredictorState {
+        PredictorState {
             predictor,
             first: value,
             last: (value, time),
@@ -75,10 +76,10 @@ impl Foresight {
         }
     }
 
-    /// What to expect at `time`.
-    pub(super) fn expect(&self, time: i64) -> i64 {
+    /// Returns the prediction for `time`.
+    pub(super) fn predict(&self, time: i64) -> i64 {
         let (last, last_time) = self.last;
-        let foretold = match (self.predictor, self.before) {
+        let predicted = match (self.predictor, self.before) {
             (Predictor::First, _) => self.first,
             (Predictor::Mean(_), _) => (self.mean + (1 << (MEAN_BITS - 1))) >> MEAN_BITS,
             (Predictor::Linear, Some((before, _))) => 2 * last - before,
@@ -91,11 +92,11 @@ impl Foresight {
             (Predictor::BackToBack, _) => (time - last_time - last).min(self.greatest),
             _ => last,
         };
-        foretold.clamp(-VALUE_LIMIT, VALUE_LIMIT)
+        predicted.clamp(-VALUE_LIMIT, VALUE_LIMIT)
     }
 
-    /// Takes in what came.
-    pub(super) fn learn(&mut self, value: i64, time: i64) {
+    /// Updates the state with the actual value.
+    pub(super) fn update(&mut self, value: i64, time: i64) {
         self.before = Some(self.last);
         self.last = (value, time);
         self.greatest = self.greatest.max(value);
@@ -109,35 +110,36 @@ impl Foresight {
 mod tests {
     use super::*;
 
-    fn expectations(predictor: Predictor, values: &[(i64, i64)]) -> Vec<i64> {
-        let mut foresight = Foresight::new(predictor, values[0].0, values[0].1);
+    fn predictions(predictor: Predictor, values: &[(i64, i64)]) -> Vec<i64> {
+        let mut state = PredictorState::new(predictor, values[0].0, values[0].1);
         values[1..]
             .iter()
             .map(|(value, time)| {
-                let expected = foresight.expect(*time);
-                foresight.learn(*value, *time);
+                let expected = state.predict(*time);
+                state.update(*value, *time);
                 expected
             })
             .collect()
     }
 
     #[test]
-    fn each_predictor_does_what_its_name_says() {
+    fn each_predictor_matches_its_description() {
         let values = [(10, 0), (12, 1), (14, 3), (20, 6)];
-        assert_eq!(expectations(Predictor::First, &values), [10, 10, 10]);
-        assert_eq!(expectations(Predictor::Previous, &values), [10, 12, 14]);
-        assert_eq!(expectations(Predictor::Linear, &values), [10, 14, 16]);
-        assert_eq!(expectations(Predictor::Mean(1), &values), [10, 11, 13]);
-        assert_eq!(expectations(Predictor::LinearInTime, &values), [10, 16, 17]);
-        // The third began where the second ended; between the last two something lay.
+        assert_eq!(predictions(Predictor::First, &values), [10, 10, 10]);
+        assert_eq!(predictions(Predictor::Previous, &values), [10, 12, 14]);
+        assert_eq!(predictions(Predictor::Linear, &values), [10, 14, 16]);
+        assert_eq!(predictions(Predictor::Mean(1), &values), [10, 11, 13]);
+        assert_eq!(predictions(Predictor::LinearInTime, &values), [10, 16, 17]);
+        // The third began where the second ended; between the last two was a
+        // gap.
         let lengths = [(60, 300), (60, 420), (20, 500), (60, 600)];
-        assert_eq!(expectations(Predictor::BackToBack, &lengths), [60, 20, 60]);
+        assert_eq!(predictions(Predictor::BackToBack, &lengths), [60, 20, 60]);
     }
 
     #[test]
     fn two_values_at_one_time_do_not_divide_by_zero() {
         let values = [(10, 0), (12, 0), (14, 0)];
-        assert_eq!(expectations(Predictor::LinearInTime, &values), [10, 12]);
+        assert_eq!(predictions(Predictor::LinearInTime, &values), [10, 12]);
     }
 
     #[test]
@@ -145,7 +147,7 @@ mod tests {
         let (low, high) = (-VALUE_LIMIT, VALUE_LIMIT);
         let values = [(low, low), (high, low + 1), (low, high), (high, high)];
         for predictor in Predictor::ALL {
-            for expected in expectations(predictor, &values) {
+            for expected in predictions(predictor, &values) {
                 assert!((low..=high).contains(&expected), "{predictor:?}");
             }
         }

@@ -1,25 +1,26 @@
-//! Residuals in blocks of up to 128, each with the code that suits it best.
+//! Residuals in blocks of up to 128, each block with the code that suits it
+//! best.
 //!
 //! A block begins with four bits: 0 to 13 is the parameter of a Rice code with
-//! an escape for outliers, 14 codes runs of zeros, 15 says that all are zero.
+//! an escape for outliers, 14 codes runs of zeros, 15 means that all are zero.
 
 use super::bits::{BitReader, unzigzag};
 use super::error::DecodeError;
 
-/// Residuals of one block.
+/// Residuals per block.
 const BLOCK: usize = 128;
 
 const ZERO_RUNS: u32 = 14;
 const ALL_ZERO: u32 = 15;
-/// A quotient of so many ones is an escape.
+/// Quotient, in ones, that stands for an escape.
 const ESCAPE: u64 = 24;
 
-/// Bits that `count` residuals take at the very least: the blocks' code numbers.
+/// The least number of bits of `count` residuals: the blocks' code numbers.
 pub(super) fn min_bits(count: usize) -> usize {
     count.div_ceil(BLOCK) * 4
 }
 
-/// Reads `count` residuals, giving each to `take`.
+/// Reads `count` residuals and passes each to `take`.
 pub(super) fn read(
     reader: &mut BitReader<'_>,
     count: usize,

@@ -1,7 +1,7 @@
 //! The step of a column: a mantissa of 1 to 15 and a negative power of ten.
 //!
-//! A value is `integer · mantissa / 10^exponent`, computed in integers as far
-//! as it goes, so that 7 steps of 0.05 are 0.35 and nothing near it.
+//! A value is `integer · mantissa / 10^exponent`. It is computed in integers up
+//! to the last division, so that 7 steps of 0.05 are exactly 0.35.
 
 use super::predict::VALUE_LIMIT;
 
@@ -13,18 +13,19 @@ pub(super) struct Step {
 }
 
 impl Step {
-    /// A step known when this is compiled: mantissa 1 to 15, exponent 0 to 15.
+    /// A step known at compile time: mantissa 1 to 15, exponent 0 to 15.
     pub(super) const fn new(mantissa: u8, exponent: u8) -> Step {
         assert!(mantissa >= 1 && mantissa <= 15 && exponent <= 15);
         Step { mantissa, exponent }
     }
 
-    /// The mantissa in the high four bits, the exponent in the low four.
+    /// The step as a byte: mantissa in the high four bits, exponent in the low
+    /// four.
     pub(super) fn byte(self) -> u8 {
         self.mantissa << 4 | self.exponent
     }
 
-    /// Reads what [`Step::byte`] wrote; a mantissa of zero is none.
+    /// The step of a byte; `None` for a mantissa of zero.
     pub(super) fn from_byte(byte: u8) -> Option<Step> {
         let (mantissa, exponent) = (byte >> 4, byte & 15);
         (mantissa > 0).then_some(Step { mantissa, exponent })
@@ -37,15 +38,15 @@ impl Step {
         (fine % mantissa == 0).then_some(fine / mantissa)
     }
 
-    /// The nearest number of steps, held within what a column can carry.
+    /// The nearest number of steps, clamped to the range of a column.
     pub(super) fn count(self, value: f64) -> i64 {
         let scale = 10_f64.powi(i32::from(self.exponent));
         let steps = (value * scale / f64::from(self.mantissa)).round();
-        // `as` holds what is too large; NaN, which callers have refused, is 0.
+        // `as` clamps large values; NaN, which callers have refused, becomes 0.
         (steps as i64).clamp(-VALUE_LIMIT, VALUE_LIMIT)
     }
 
-    /// What `steps` come to, as a fraction.
+    /// The value of `steps` as an exact fraction.
     pub(super) fn exact(self, steps: i64) -> Decimal {
         Decimal {
             units: i128::from(steps) * i128::from(self.mantissa),
@@ -62,13 +63,13 @@ pub(super) struct Decimal {
 }
 
 impl Decimal {
-    /// Nothing.
+    /// Zero.
     pub(super) const ZERO: Decimal = Decimal {
         units: 0,
         exponent: 0,
     };
 
-    /// The sum.
+    /// The exact sum.
     pub(super) fn plus(self, other: Decimal) -> Decimal {
         let exponent = self.exponent.max(other.exponent);
         let units = |d: Decimal| d.units * power(exponent - d.exponent);
@@ -78,7 +79,7 @@ impl Decimal {
         }
     }
 
-    /// The same direction from 0 up to 360.
+    /// The direction wrapped into [0, 360).
     pub(super) fn wrapped_360(self) -> Decimal {
         let circle = 360 * power(self.exponent);
         Decimal {
@@ -87,7 +88,7 @@ impl Decimal {
         }
     }
 
-    /// The same direction from −180 up to 180.
+    /// The direction wrapped into [−180, 180).
     pub(super) fn wrapped_180(self) -> Decimal {
         let circle = 360 * power(self.exponent);
         Decimal {
@@ -96,12 +97,12 @@ impl Decimal {
         }
     }
 
-    /// The nearest float to it.
+    /// The nearest float.
     pub(super) fn value(self) -> f64 {
         self.units as f64 / 10_f64.powi(i32::from(self.exponent))
     }
 
-    /// Millionths, rounded down.
+    /// The value in millionths, rounded down.
     pub(super) fn micros(self) -> i128 {
         (self.units * 1_000_000).div_euclid(power(self.exponent))
     }

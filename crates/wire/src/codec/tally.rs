@@ -5,11 +5,11 @@ use super::error::{DecodeError, EncodeError};
 use crate::reasons;
 use std::collections::BTreeMap;
 
-/// Reasons that one tally may have.
+/// The most reasons of one tally.
 const REASONS_MAX: usize = 255;
-/// Bytes of a reason's name.
+/// The most bytes of a reason's name.
 const NAME_MAX: usize = 64;
-/// Stands for a name in place of a number.
+/// Stands in place of a number before a name.
 const NAMED: u64 = 0;
 
 /// Writes the tally in order of the names.
@@ -37,11 +37,11 @@ fn write_name(writer: &mut BitWriter, name: &str) -> Result<(), EncodeError> {
     }
     writer.varint(NAMED);
     writer.varint(name.len() as u64);
-    writer.octets(name.as_bytes());
+    writer.bytes(name.as_bytes());
     Ok(())
 }
 
-/// Reads what [`write()`] wrote, in any order of names.
+/// Reads the tally of [`write()`], with the names in any order.
 pub(super) fn read(reader: &mut BitReader<'_>) -> Result<BTreeMap<String, u64>, DecodeError> {
     let entries = reader.varint()?;
     let mut tally = BTreeMap::new();
@@ -68,5 +68,5 @@ fn read_name(reader: &mut BitReader<'_>, entry: usize) -> Result<String, DecodeE
     if length == 0 || length > NAME_MAX as u64 {
         return Err(DecodeError::BadReason(entry));
     }
-    String::from_utf8(reader.octets(length as usize)?).map_err(|_| DecodeError::BadReason(entry))
+    String::from_utf8(reader.bytes(length as usize)?).map_err(|_| DecodeError::BadReason(entry))
 }

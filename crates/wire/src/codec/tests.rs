@@ -1,4 +1,4 @@
-//! Batches there and back, at the edges of everything.
+//! Round trips of batches at the limits of every field.
 
 use super::*;
 use crate::batch::{Batch, StreamId};
@@ -34,11 +34,11 @@ fn batch(samples: Vec<Sample>) -> Batch {
     }
 }
 
-fn there_and_back(sent: &Batch) -> Batch {
+fn round_trip(sent: &Batch) -> Batch {
     let bytes = encode(sent).unwrap();
-    let came = decode(&bytes).unwrap();
-    assert_eq!(encode(&came).unwrap(), bytes);
-    came
+    let decoded = decode(&bytes).unwrap();
+    assert_eq!(encode(&decoded).unwrap(), bytes);
+    decoded
 }
 
 fn apart(a: f64, b: f64) -> f64 {
@@ -51,7 +51,7 @@ fn an_empty_batch_carries_its_tally() {
     sent.seq = u64::MAX;
     sent.tally.insert(crate::reasons::TURNING.to_owned(), 12);
     sent.tally.insert("iceberg".to_owned(), u64::MAX);
-    assert_eq!(there_and_back(&sent), sent);
+    assert_eq!(round_trip(&sent), sent);
 }
 
 #[test]
@@ -71,12 +71,15 @@ fn headings_come_back_within_half_a_step_all_round_the_circle() {
         }
     }
     for few in samples.chunks(9000) {
-        let came = there_and_back(&batch(few.to_vec()));
-        for (sent, came) in few.iter().zip(&came.samples) {
-            assert!(apart(sent.compass.degrees(), came.compass.degrees()) <= 0.010_001);
-            assert_eq!(sent.gyro.is_some(), came.gyro.is_some());
-            assert_eq!(sent.satellite.is_some(), came.satellite.is_some());
-            for (a, b) in [(sent.gyro, came.gyro), (sent.satellite, came.satellite)] {
+        let decoded = round_trip(&batch(few.to_vec()));
+        for (sent, decoded) in few.iter().zip(&decoded.samples) {
+            assert!(apart(sent.compass.degrees(), decoded.compass.degrees()) <= 0.010_001);
+            assert_eq!(sent.gyro.is_some(), decoded.gyro.is_some());
+            assert_eq!(sent.satellite.is_some(), decoded.satellite.is_some());
+            for (a, b) in [
+                (sent.gyro, decoded.gyro),
+                (sent.satellite, decoded.satellite),
+            ] {
                 let (Some(a), Some(b)) = (a, b) else { continue };
                 assert!(apart(a.degrees(), b.degrees()) <= 0.025_001, "{a:?} {b:?}");
             }
@@ -95,13 +98,16 @@ fn a_missing_value_stays_missing() {
         sample.rate_of_turn_deg_min = None;
         sample.spread_deg = (row == 150).then_some(0.5);
     }
-    let came = there_and_back(&sent);
-    for (sent, came) in sent.samples.iter().zip(&came.samples) {
+    let decoded = round_trip(&sent);
+    for (sent, decoded) in sent.samples.iter().zip(&decoded.samples) {
         assert_eq!(
             (sent.sog_kn, sent.spread_deg),
-            (came.sog_kn, came.spread_deg)
+            (decoded.sog_kn, decoded.spread_deg)
         );
-        assert_eq!((came.rate_of_turn_deg_min, came.satellite), (None, None));
+        assert_eq!(
+            (decoded.rate_of_turn_deg_min, decoded.satellite),
+            (None, None)
+        );
     }
 }
 
@@ -109,13 +115,13 @@ fn a_missing_value_stays_missing() {
 fn samples_come_out_in_order_of_time() {
     let late = sample("2026-11-21T08:00:00Z", 10.0, Some(9.0), None);
     let early = sample("2026-11-21T07:00:05Z", 20.0, Some(19.0), None);
-    let came = there_and_back(&batch(vec![late, early]));
-    let times: Vec<String> = came.samples.iter().map(|s| s.time.to_string()).collect();
+    let decoded = round_trip(&batch(vec![late, early]));
+    let times: Vec<String> = decoded.samples.iter().map(|s| s.time.to_string()).collect();
     assert_eq!(times, ["2026-11-21T07:00:05Z", "2026-11-21T08:00:00Z"]);
 }
 
 #[test]
-fn what_no_ship_can_have_is_refused_by_name() {
+fn a_value_out_of_range_is_refused_by_name() {
     type Spoil = fn(&mut Sample);
     let spoilt: [(&str, Spoil); 6] = [
         ("time", |s| {
@@ -148,7 +154,7 @@ fn limits_are_named() {
         Err(EncodeError::TooManySamples(65_536))
     );
     assert_eq!(
-        there_and_back(&batch(vec![one; MAX_SAMPLES])).samples.len(),
+        round_trip(&batch(vec![one; MAX_SAMPLES])).samples.len(),
         MAX_SAMPLES
     );
     let zero = Batch {
@@ -218,7 +224,7 @@ fn each_kind_of_damage_has_its_own_error() {
     assert_eq!(decode(&edited(&bytes, 20, 0)), Err(DecodeError::SeqZero));
 }
 
-/// The frame with one byte changed and its checksum made right again.
+/// The frame with one byte changed and its checksum recomputed.
 fn edited(bytes: &[u8], at: usize, byte: u8) -> Vec<u8> {
     let mut body = bytes[..bytes.len() - 4].to_vec();
     body[at] = byte;

@@ -1,70 +1,71 @@
-//! The answer to a ship as bytes: `bd1`, an eighth of what it is as JSON.
+//! The server's response to an agent as bytes, format `bd1`: an eighth of its
+//! size as JSON.
 //!
-//! `DOWNLINK.md` beside this crate has every byte. What always holds:
+//! `DOWNLINK.md` in this crate describes every byte. Invariants:
 //!
-//! - An answer comes back as it was sent, but for times, which are whole seconds, and
-//!   the model, whose deviation stays within 0.001° and whose band within 0.005°.
-//! - [`decode`] takes any bytes: it answers or refuses, in time and memory bounded by
+//! - A response is decoded as it was encoded, with two exceptions: times are
+//!   whole seconds, and the model's deviation stays within 0.001° and its band
+//!   within 0.005°.
+//! - [`decode`] accepts or refuses any bytes, in time and memory bounded by
 //!   their number, and never panics.
-//! - What a later shore adds is passed over.
+//! - Fields that a later server adds are skipped.
 
+mod fields;
 mod model;
 
 use crate::codec::bits::{BitReader, BitWriter};
-use crate::messages::{CardWithdrawn, Downlink, Settings};
-use binnacle_compass::time::Timestamp;
+use crate::messages::{Downlink, Settings};
+use fields::{read_time, read_withdrawn, write_time, write_withdrawn};
 use uuid::Uuid;
 
-/// What an agent asks for that reads this form: `?form=1`.
+/// The form that an agent asks for: `?form=1`.
 pub const FORM: u8 = 1;
 
-/// What an agent says as its protocol in a TLS hello (RFC 7301) when it will not be back
-/// within a day: a ticket for a next session would be of no use to it.
+/// The ALPN protocol (RFC 7301) of an agent that will not connect again within
+/// a day. A ticket for a next session would be useless to it.
 pub const ONCE: &[u8] = b"once";
 
 const MAGIC: [u8; 2] = *b"BD";
-/// Magic and version; the checksum.
+/// Bytes of magic and version.
 const HEAD_BYTES: usize = 3;
 const CHECKSUM_BYTES: usize = 4;
 const MODEL: u64 = 1;
 const CARD_WITHDRAWN: u64 = 2;
 const SETTINGS: u64 = 3;
-/// The longest word for what withdrew a card.
-const MAX_REASON_BYTES: usize = 255;
 
-/// Why bytes are not an answer that can be read here.
+/// The reason why bytes are not a readable response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DecodeError {
-    /// Something else altogether.
-    #[error("these bytes are not a compact answer: they do not begin with 42 44")]
-    NotOne,
-    /// Damaged or cut on the way.
-    #[error("the compact answer is damaged")]
+    /// The bytes are something else altogether.
+    #[error("these bytes are not a compact response: they do not begin with 42 44")]
+    BadMagic,
+    /// The bytes were damaged or cut on the way.
+    #[error("the compact response is damaged")]
     Damaged,
-    /// The shore is ahead of this program, and was not asked for that.
-    #[error("the compact answer has form {0}, and this program reads form 1")]
+    /// A later form, although the agent did not ask for it.
+    #[error("the compact response has form {0}, and this program reads form 1")]
     Form(u8),
-    /// A part that is there is not what it must be.
-    #[error("the compact answer's {0} cannot be read")]
+    /// A part is cut short or out of range.
+    #[error("the compact response's {0} cannot be read")]
     Bad(&'static str),
 }
 
-/// How an agent that asks for this form names the model that it has, `&card=`: the last
-/// eight hexadecimal digits of its id, which are random.
+/// The name of an agent's current model in `&card=`: the last eight hexadecimal
+/// digits of its id, which are random.
 pub fn card_tag(model: Uuid) -> String {
     format!("{:08x}", model.as_u128() as u32)
 }
 
-/// Writes an answer; `None` when it has a model that this form cannot carry, which then
+/// Writes a response; `None` when this form cannot carry its model, which then
 /// goes as JSON.
 pub fn encode(downlink: &Downlink) -> Option<Vec<u8>> {
     let mut writer = BitWriter::default();
-    writer.octets(&MAGIC);
-    writer.octets(&[FORM]);
+    writer.bytes(&MAGIC);
+    writer.bytes(&[FORM]);
     writer.varint(downlink.contiguous_seq);
     write_time(&mut writer, downlink.server_time)?;
     if let Some(model) = &downlink.model {
-        write_part(&mut writer, MODEL, &model::octets(model)?);
+        write_part(&mut writer, MODEL, &model::encode(model)?);
     }
     if let Some(withdrawn) = &downlink.card_withdrawn {
         let mut part = BitWriter::default();
@@ -72,7 +73,7 @@ pub fn encode(downlink: &Downlink) -> Option<Vec<u8>> {
         write_part(&mut writer, CARD_WITHDRAWN, &part.into_bytes());
     }
     if let Some(settings) = &downlink.settings {
-        // They change once a year: their JSON needs no second form.
+        // Settings change once a year: JSON is compact enough.
         let text = serde_json::to_vec(settings).ok()?;
         write_part(&mut writer, SETTINGS, &text);
     }
@@ -81,18 +82,18 @@ pub fn encode(downlink: &Downlink) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// Whether these bytes say that they are an answer of this form, or a later one.
+/// True for the bytes of a response in this form or a later one.
 pub fn is_compact(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC)
 }
 
-/// Reads an answer.
+/// Reads a response.
 ///
 /// # Errors
-/// When it is not one, or not whole, or of a later form.
+/// When the bytes are another thing, incomplete, or of a later form.
 pub fn decode(bytes: &[u8]) -> Result<Downlink, DecodeError> {
     if !is_compact(bytes) {
-        return Err(DecodeError::NotOne);
+        return Err(DecodeError::BadMagic);
     }
     let body = bytes.len().checked_sub(CHECKSUM_BYTES);
     let body = body.filter(|body| *body >= HEAD_BYTES);
@@ -114,8 +115,8 @@ pub fn decode(bytes: &[u8]) -> Result<Downlink, DecodeError> {
         server_time: read_time(&mut reader).ok_or(DecodeError::Bad("time"))?,
     };
     while reader.left() > 0 {
-        let (kind, octets) = read_part(&mut reader).ok_or(DecodeError::Damaged)?;
-        let mut part = BitReader::new(&octets);
+        let (kind, bytes) = read_part(&mut reader).ok_or(DecodeError::Damaged)?;
+        let mut part = BitReader::new(&bytes);
         match kind {
             MODEL => {
                 let model = model::read(&mut part).ok_or(DecodeError::Bad("model"))?;
@@ -126,60 +127,27 @@ pub fn decode(bytes: &[u8]) -> Result<Downlink, DecodeError> {
                 let withdrawn = withdrawn.ok_or(DecodeError::Bad("withdrawal"))?;
                 downlink.card_withdrawn = Some(withdrawn);
             }
-            SETTINGS => downlink.settings = Some(read_settings(&octets)?),
+            SETTINGS => downlink.settings = Some(read_settings(&bytes)?),
             _ => {}
         }
     }
     Ok(downlink)
 }
 
-fn write_part(writer: &mut BitWriter, kind: u64, octets: &[u8]) {
+fn write_part(writer: &mut BitWriter, kind: u64, bytes: &[u8]) {
     writer.varint(kind);
-    writer.varint(octets.len() as u64);
-    writer.octets(octets);
+    writer.varint(bytes.len() as u64);
+    writer.bytes(bytes);
 }
 
 fn read_part(reader: &mut BitReader<'_>) -> Option<(u64, Vec<u8>)> {
     let kind = reader.varint().ok()?;
     let length = usize::try_from(reader.varint().ok()?).ok()?;
-    Some((kind, reader.octets(length).ok()?))
+    Some((kind, reader.bytes(length).ok()?))
 }
 
-fn read_settings(octets: &[u8]) -> Result<Settings, DecodeError> {
-    serde_json::from_slice(octets).map_err(|_| DecodeError::Bad("settings"))
-}
-
-/// Whole seconds since 1970; `None` for before.
-fn write_time(writer: &mut BitWriter, time: Timestamp) -> Option<()> {
-    let seconds = u64::try_from(time.micros().div_euclid(1_000_000)).ok()?;
-    writer.varint(seconds);
-    Some(())
-}
-
-fn read_time(reader: &mut BitReader<'_>) -> Option<Timestamp> {
-    let seconds = i64::try_from(reader.varint().ok()?).ok()?;
-    Timestamp::from_micros(seconds.checked_mul(1_000_000)?).ok()
-}
-
-fn write_withdrawn(writer: &mut BitWriter, withdrawn: &CardWithdrawn) -> Option<()> {
-    write_time(writer, withdrawn.since)?;
-    let reason = withdrawn.reason.as_bytes();
-    if reason.len() > MAX_REASON_BYTES {
-        return None;
-    }
-    writer.varint(reason.len() as u64);
-    writer.octets(reason);
-    Some(())
-}
-
-fn read_withdrawn(reader: &mut BitReader<'_>) -> Option<CardWithdrawn> {
-    let since = read_time(reader)?;
-    let length = usize::try_from(reader.varint().ok()?).ok()?;
-    if length > MAX_REASON_BYTES {
-        return None;
-    }
-    let reason = String::from_utf8(reader.octets(length).ok()?).ok()?;
-    Some(CardWithdrawn { since, reason })
+fn read_settings(bytes: &[u8]) -> Result<Settings, DecodeError> {
+    serde_json::from_slice(bytes).map_err(|_| DecodeError::Bad("settings"))
 }
 
 #[cfg(test)]

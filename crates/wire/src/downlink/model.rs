@@ -1,11 +1,12 @@
-//! A model in a compact answer: parameters as they are, the covariance by its
+//! A model in a compact response: parameters as they are, the covariance by its
 //! standard errors and the Cholesky factor of its correlations.
 //!
-//! The factor's rows have length 1, so that each rounded entry changes the standard error
-//! of a deviation by no more than 2⁻¹⁶ of a parameter's own share in it, also where two
-//! parameters' large shares all but cancel. Rounding the covariance itself would not.
+//! The factor's rows have length 1. Each rounded entry therefore changes the
+//! standard error of a deviation by no more than 2⁻¹⁶ of a parameter's own
+//! share in it. This holds also where the large shares of two parameters all
+//! but cancel; rounding the covariance itself would not.
 
-use super::{read_time, read_withdrawn, write_time, write_withdrawn};
+use super::fields::{read_time, read_withdrawn, write_time, write_withdrawn};
 use crate::codec::bits::{BitReader, BitWriter};
 use crate::messages::ModelDownlink;
 use binnacle_compass::model::{Covariance, Identifiable, Model, Parameters};
@@ -15,29 +16,29 @@ const HAS_REPLACES: u64 = 1;
 const HAS_COVARIANCE: u64 = 2;
 const HAS_IDENTIFIABLE: u64 = 4;
 const HAS_RMS: u64 = 8;
-/// Parameters and the constant.
+/// Seven parameters and the constant.
 const COUNT: usize = 8;
-/// What stands for 1 in an entry of the factor.
+/// Value of an entry of 1 in the factor.
 const ONE: f64 = 32_767.0;
 const THOUSANDTHS_PER_DEG: f64 = 1_000.0;
-/// How far from 1 rounding may leave a correlation with itself; what is further away was
-/// no covariance.
+/// The greatest distance from 1 that rounding leaves in a correlation with
+/// itself; anything further away was not a covariance.
 const SLACK: f64 = 1e-4;
-/// A residual of more is none.
+/// The largest credible residual.
 const RMS_MAX_DEG: f64 = 180.0;
 
-/// The part's octets; `None` when there is a number that is none.
-pub(super) fn octets(sent: &ModelDownlink) -> Option<Vec<u8>> {
+/// Writes the part; `None` when a number is not finite or out of range.
+pub(super) fn encode(sent: &ModelDownlink) -> Option<Vec<u8>> {
     let model = &sent.model;
     let mut writer = BitWriter::default();
-    writer.octets(sent.id.as_bytes());
+    writer.bytes(sent.id.as_bytes());
     writer.varint(u64::from(sent.version));
     write_time(&mut writer, sent.data_until)?;
-    let there = |there: bool, flag| if there { flag } else { 0 };
-    let flags = there(sent.replaces.is_some(), HAS_REPLACES)
-        | there(model.covariance.is_some(), HAS_COVARIANCE)
-        | there(model.identifiable.is_some(), HAS_IDENTIFIABLE)
-        | there(model.rms_deg.is_some(), HAS_RMS);
+    let flag = |present: bool, flag| if present { flag } else { 0 };
+    let flags = flag(sent.replaces.is_some(), HAS_REPLACES)
+        | flag(model.covariance.is_some(), HAS_COVARIANCE)
+        | flag(model.identifiable.is_some(), HAS_IDENTIFIABLE)
+        | flag(model.rms_deg.is_some(), HAS_RMS);
     writer.varint(flags);
     if let Some(replaces) = &sent.replaces {
         write_withdrawn(&mut writer, replaces)?;
@@ -51,9 +52,9 @@ pub(super) fn octets(sent: &ModelDownlink) -> Option<Vec<u8>> {
         write_covariance(&mut writer, covariance)?;
     }
     if let Some(identifiable) = model.identifiable {
-        let bits = answers(identifiable);
-        let octet = (0..COUNT).fold(0, |octet, i| octet | (u64::from(bits[i]) << i));
-        writer.bits(octet, 8);
+        let bits = identifiable_flags(identifiable);
+        let byte = (0..COUNT).fold(0, |byte, i| byte | (u64::from(bits[i]) << i));
+        writer.bits(byte, 8);
     }
     if let Some(rms_deg) = model.rms_deg {
         if !(0.0..=RMS_MAX_DEG).contains(&rms_deg) {
@@ -64,7 +65,8 @@ pub(super) fn octets(sent: &ModelDownlink) -> Option<Vec<u8>> {
     Some(writer.into_bytes())
 }
 
-/// Reads what [`octets`] wrote; what follows is a later shore's.
+/// Reads the bytes of [`encode`]; fields that a later server appended are
+/// ignored.
 pub(super) fn read(reader: &mut BitReader<'_>) -> Option<ModelDownlink> {
     let id = Uuid::from_u64_pair(reader.bits(64).ok()?, reader.bits(64).ok()?);
     let version = u32::try_from(reader.varint().ok()?).ok()?;
@@ -144,7 +146,7 @@ fn values(p: &Parameters, constant_deg: f64) -> [f64; COUNT] {
     ]
 }
 
-fn answers(of: Identifiable) -> [bool; COUNT] {
+fn identifiable_flags(of: Identifiable) -> [bool; COUNT] {
     [
         of.bx_nt,
         of.chi13,
@@ -157,8 +159,8 @@ fn answers(of: Identifiable) -> [bool; COUNT] {
     ]
 }
 
-fn identifiable(octet: u64) -> Identifiable {
-    let known = |index: u32| octet >> index & 1 == 1;
+fn identifiable(byte: u64) -> Identifiable {
+    let known = |index: u32| byte >> index & 1 == 1;
     Identifiable {
         bx_nt: known(0),
         chi13: known(1),
@@ -176,20 +178,21 @@ fn write_float(writer: &mut BitWriter, value: f64) -> Option<()> {
     if !single.is_finite() {
         return None;
     }
-    writer.octets(&single.to_le_bytes());
+    writer.bytes(&single.to_le_bytes());
     Some(())
 }
 
 fn read_float(reader: &mut BitReader<'_>) -> Option<f64> {
-    let octets: [u8; 4] = reader.octets(4).ok()?.try_into().ok()?;
-    let single = f32::from_le_bytes(octets);
+    let bytes: [u8; 4] = reader.bytes(4).ok()?.try_into().ok()?;
+    let single = f32::from_le_bytes(bytes);
     single.is_finite().then_some(f64::from(single))
 }
 
 fn write_covariance(writer: &mut BitWriter, covariance: &Covariance) -> Option<()> {
     let mut errors = [0.0; COUNT];
     for (index, error) in errors.iter_mut().enumerate() {
-        // Rounding of a parameter that is known exactly may go below nil.
+        // Rounding may make the variance of an exactly known parameter
+        // negative.
         *error = covariance[index][index].max(0.0).sqrt();
         write_float(writer, *error)?;
     }
@@ -200,7 +203,7 @@ fn write_covariance(writer: &mut BitWriter, covariance: &Covariance) -> Option<(
             return None;
         }
         for entry in &row[..=index] {
-            writer.octets(&((entry * ONE).round() as i16).to_le_bytes());
+            writer.bytes(&((entry * ONE).round() as i16).to_le_bytes());
         }
     }
     Some(())
@@ -239,8 +242,8 @@ fn read_covariance(reader: &mut BitReader<'_>) -> Option<Covariance> {
     let mut factor = [[0.0; COUNT]; COUNT];
     for (index, row) in factor.iter_mut().enumerate() {
         for entry in &mut row[..=index] {
-            let octets: [u8; 2] = reader.octets(2).ok()?.try_into().ok()?;
-            *entry = f64::from(i16::from_le_bytes(octets)) / ONE * errors[index];
+            let bytes: [u8; 2] = reader.bytes(2).ok()?.try_into().ok()?;
+            *entry = f64::from(i16::from_le_bytes(bytes)) / ONE * errors[index];
         }
     }
     let mut covariance = [[0.0; COUNT]; COUNT];

@@ -1,19 +1,21 @@
 use super::*;
-use crate::messages::ModelDownlink;
+use crate::messages::{CardWithdrawn, ModelDownlink};
 use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::model::{Covariance, Model};
 use binnacle_compass::ship::EarthField;
+use binnacle_compass::time::Timestamp;
 use proptest::prelude::*;
 use serde_json::json;
 
-/// What ships' parameters and constants differ by, and are known to at worst.
+/// The range of ships' parameters and constants, and of their worst standard
+/// errors.
 const SPREAD: [f64; 8] = [3000.0, 0.1, 3000.0, 0.1, 0.1, 0.02, 0.02, 3.0];
 
 fn at(text: &str) -> Timestamp {
     Timestamp::parse(text).unwrap()
 }
 
-/// Any eight numbers from −1 to 1, as parameters and a constant.
+/// A model of eight numbers from −1 to 1, scaled to parameters and a constant.
 fn model(of: [f64; 8], covariance: Option<&Covariance>) -> Model {
     let names = [
         "bx_nt",
@@ -39,8 +41,9 @@ fn model(of: [f64; 8], covariance: Option<&Covariance>) -> Model {
     serde_json::from_value(json).unwrap()
 }
 
-/// A covariance with standard errors of a tenth of the spread at most, bx and χ13, by and
-/// χ23, A and the constant all but bound to each other.
+/// A covariance with standard errors of a tenth of the spread at most. Its bx
+/// and χ13, its by and χ23, and its A and the constant are all but perfectly
+/// correlated.
 fn covariance(factor: &[f64]) -> Covariance {
     let mut rows = [[0.0; 8]; 8];
     for (row, drawn) in rows.iter_mut().zip(factor.chunks(8)) {
@@ -86,29 +89,29 @@ fn sent(model: Model) -> Downlink {
 
 proptest! {
     #[test]
-    fn the_card_aboard_is_the_card_ashore(
+    fn the_decoded_card_is_the_card_sent(
         of in prop::array::uniform8(-1.0..1.0_f64),
         factor in prop::collection::vec(-1.0..1.0_f64, 64),
         h_nt in 15_000.0..40_000.0_f64,
         z_nt in -60_000.0..60_000.0_f64,
     ) {
-        let ashore = model(of.map(|part| part / 3.0), Some(&covariance(&factor)));
-        let bytes = encode(&sent(ashore.clone())).unwrap();
-        let aboard = decode(&bytes).unwrap().model.unwrap().model;
+        let original = model(of.map(|part| part / 3.0), Some(&covariance(&factor)));
+        let bytes = encode(&sent(original.clone())).unwrap();
+        let decoded = decode(&bytes).unwrap().model.unwrap().model;
         for degrees in (0..360).step_by(10) {
             let compass = CompassHeading::new(f64::from(degrees)).unwrap();
             let earth = EarthField { h_nt, z_nt };
-            let ashore = ashore.deviation(compass, earth).unwrap();
-            let aboard = aboard.deviation(compass, earth).unwrap();
-            let apart = ashore.deviation.degrees_east() - aboard.deviation.degrees_east();
-            prop_assert!(apart.abs() < 0.001, "{apart}");
-            let bands = ashore.band95_deg.unwrap() - aboard.band95_deg.unwrap();
+            let original = original.deviation(compass, earth).unwrap();
+            let decoded = decoded.deviation(compass, earth).unwrap();
+            let difference = original.deviation.degrees_east() - decoded.deviation.degrees_east();
+            prop_assert!(difference.abs() < 0.001, "{difference}");
+            let bands = original.band95_deg.unwrap() - decoded.band95_deg.unwrap();
             prop_assert!(bands.abs() < 0.005, "{bands}");
         }
     }
 
     #[test]
-    fn any_bytes_are_answered_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+    fn any_bytes_are_decoded_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         decode(&bytes).ok();
         let mut sealed = [&MAGIC[..], &[FORM], &bytes].concat();
         sealed.extend(crc32fast::hash(&sealed).to_le_bytes());
@@ -116,7 +119,7 @@ proptest! {
     }
 
     #[test]
-    fn a_damaged_answer_is_never_read(at in 0_usize..200, flip in 1_u8..=255) {
+    fn a_damaged_response_is_never_read(at in 0_usize..200, flip in 1_u8..=255) {
         let whole = encode(&sent(model([0.1; 8], None))).unwrap();
         let mut bytes = whole.clone();
         let at = at % bytes.len();
@@ -127,10 +130,10 @@ proptest! {
 }
 
 #[test]
-fn an_answer_comes_back_as_it_was_sent() {
+fn a_response_comes_back_as_it_was_sent() {
     let mut downlink = sent(model([0.25; 8], None));
     let parameters = &mut downlink.model.as_mut().unwrap().model;
-    // What a single-precision number holds exactly.
+    // Numbers that single precision holds exactly.
     parameters.parameters_over_lambda = decode(&encode(&sent(parameters.clone())).unwrap())
         .unwrap()
         .model
@@ -155,7 +158,7 @@ fn an_answer_comes_back_as_it_was_sent() {
 }
 
 #[test]
-fn a_whole_model_fits_into_two_hundred_octets() {
+fn a_whole_model_fits_into_two_hundred_bytes() {
     let mut downlink = sent(model([0.25; 8], Some(&covariance(&[0.5; 64]))));
     assert!(encode(&downlink).unwrap().len() < 230);
     downlink.model.as_mut().unwrap().replaces = None;
@@ -164,7 +167,7 @@ fn a_whole_model_fits_into_two_hundred_octets() {
 }
 
 #[test]
-fn what_a_later_shore_adds_is_passed_over() {
+fn parts_of_a_later_server_are_skipped() {
     let downlink = sent(model([0.25; 8], None));
     let whole = encode(&downlink).unwrap();
     let mut longer = whole[..whole.len() - CHECKSUM_BYTES].to_vec();
@@ -180,16 +183,16 @@ fn a_model_is_named_by_the_end_of_its_id() {
 }
 
 #[test]
-fn a_later_form_and_something_else_are_told_apart() {
+fn a_later_form_and_other_bytes_have_their_own_errors() {
     let mut later = [&MAGIC[..], &[FORM + 1, 9, 9, 9]].concat();
     later.extend(crc32fast::hash(&later).to_le_bytes());
     assert_eq!(decode(&later), Err(DecodeError::Form(2)));
-    assert_eq!(decode(b"<html>"), Err(DecodeError::NotOne));
+    assert_eq!(decode(b"<html>"), Err(DecodeError::BadMagic));
     assert_eq!(decode(b"BD"), Err(DecodeError::Damaged));
 }
 
 #[test]
-fn what_is_no_number_or_no_covariance_goes_another_way() {
+fn a_model_with_nan_or_no_covariance_is_not_encoded() {
     let mut no_number = model([0.25; 8], None);
     no_number.parameters_over_lambda.bx_nt = f64::NAN;
     assert_eq!(encode(&sent(no_number)), None);

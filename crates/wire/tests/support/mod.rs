@@ -1,4 +1,5 @@
-//! Ships' days for tests, benchmarks and vectors: the same seed, the same samples.
+//! Days of sailing for tests, benchmarks and vectors: the samples depend on the
+//! seed alone.
 
 // Each program that includes this uses a part of it.
 #![allow(dead_code)]
@@ -13,7 +14,7 @@ use binnacle_wire::reasons;
 use std::collections::BTreeMap;
 use uuid::Uuid;
 
-/// What Knuth's linear congruential generator gives, from 0 up to 1.
+/// Knuth's linear congruential generator, from 0 up to 1.
 pub(crate) struct Dice(pub(crate) u64);
 
 impl Dice {
@@ -35,9 +36,9 @@ impl Dice {
     }
 }
 
-/// Ten-minute means along legs of some hours: gyro with a Schuler swing, a
-/// compass with deviation and noise, wandering speed; about one sample in five
-/// is missing, as after turns.
+/// Ten-minute means along legs of some hours: a gyro with a Schuler swing, a
+/// compass with deviation and noise, varying speed. About one sample in five is
+/// missing, as after turns.
 pub(crate) fn voyage(seed: u64, count: usize) -> Vec<Sample> {
     let mut dice = Dice(seed);
     let mut time = Timestamp::parse("2026-10-01T00:00:05Z").expect("a date");
@@ -105,7 +106,7 @@ pub(crate) fn batch(seq: u64, samples: Vec<Sample>) -> Batch {
     }
 }
 
-/// What a ship says when her compass and her gyro have parted.
+/// An alert of a vessel whose compass and gyro differ.
 pub(crate) fn alert(revision: u32) -> ShipAlert {
     let since = Timestamp::parse("2026-10-01T04:00:00Z").expect("a date");
     ShipAlert {

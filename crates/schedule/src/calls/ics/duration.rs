@@ -1,14 +1,14 @@
-//! How long an event lasts, where its end is not given (RFC 5545, section 3.3.6).
+//! The duration of an event without an end (RFC 5545, section 3.3.6).
 
 use super::line::Line;
 use crate::calls::FileError;
 
-/// Hours of `P2DT12H`, `PT90M`, `P1W` and their like.
+/// Parses hours from `P2DT12H`, `PT90M`, `P1W` and the like.
 ///
 /// # Errors
-/// When it is something else, negative, or more than [`MOST_HOURS`].
+/// When it is something else, negative, or more than [`MAX_HOURS`].
 pub(super) fn hours(line: &Line) -> Result<f64, FileError> {
-    let hours = read(&line.value).filter(|hours| *hours <= MOST_HOURS);
+    let hours = read(&line.value).filter(|hours| *hours <= MAX_HOURS);
     hours.ok_or_else(|| {
         let what = format!(
             "{:?} is not a duration of a year at most, as P2DT12H",
@@ -18,8 +18,8 @@ pub(super) fn hours(line: &Line) -> Result<f64, FileError> {
     })
 }
 
-/// No call is longer than a year.
-const MOST_HOURS: f64 = 366.0 * 24.0;
+/// The longest call, a year.
+const MAX_HOURS: f64 = 366.0 * 24.0;
 
 fn read(text: &str) -> Option<f64> {
     let text = text.strip_prefix('+').unwrap_or(text).strip_prefix('P')?;
@@ -36,7 +36,7 @@ fn read(text: &str) -> Option<f64> {
         while !rest.is_empty() {
             let end = rest.find(|c: char| !c.is_ascii_digit())?;
             let (digits, unit) = rest.split_at(end);
-            // Greater units come first, each once at most.
+            // Larger units come first, each at most once.
             let (letter, hours) = units.find(|(letter, _)| unit.starts_with(*letter))?;
             sum += f64::from(digits.parse::<u32>().ok()?) * hours;
             rest = &unit[letter.len_utf8()..];

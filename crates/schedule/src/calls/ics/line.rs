@@ -2,17 +2,17 @@
 
 use crate::calls::FileError;
 
-/// No line is longer when unfolded, in bytes.
-const LONGEST: usize = 16_384;
+/// The longest unfolded line, in bytes.
+const MAX_LINE_BYTES: usize = 16_384;
 
-/// A content line, and where it begins.
+/// A content line.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Line {
     pub(super) number: usize,
-    /// In capitals.
+    /// The name in capitals.
     pub(super) name: String,
     parameters: Vec<(String, String)>,
-    /// Without the escapes of text.
+    /// The value without the escapes of text.
     pub(super) value: String,
 }
 
@@ -27,7 +27,8 @@ impl Line {
     }
 }
 
-/// All lines. A line that begins with a blank goes on with the one before (RFC 5545, 3.1).
+/// Splits a text into lines. A line that begins with a blank continues the line
+/// before (RFC 5545, 3.1).
 pub(super) fn lines(text: &str) -> Result<Vec<Line>, FileError> {
     let mut whole: Vec<(usize, String)> = Vec::new();
     for (at, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
@@ -35,11 +36,14 @@ pub(super) fn lines(text: &str) -> Result<Vec<Line>, FileError> {
             (Some(more), Some((_, begun))) => begun.push_str(more),
             _ => whole.push((at + 1, line.to_owned())),
         }
-        if whole.last().is_some_and(|(_, line)| line.len() > LONGEST) {
+        if whole
+            .last()
+            .is_some_and(|(_, line)| line.len() > MAX_LINE_BYTES)
+        {
             return Err(FileError::new(
                 at + 1,
                 "line",
-                format!("is longer than {LONGEST} bytes"),
+                format!("is longer than {MAX_LINE_BYTES} bytes"),
             ));
         }
     }
@@ -53,7 +57,7 @@ pub(super) fn lines(text: &str) -> Result<Vec<Line>, FileError> {
 fn read(number: usize, line: &str) -> Result<Line, FileError> {
     let Some(colon) = outside_quotes(line, ':').next() else {
         let what = format!(
-            "{:?} is no line of a calendar",
+            "{:?} is not a calendar line",
             line.chars().take(40).collect::<String>()
         );
         return Err(FileError::new(number, "line", what));

@@ -1,10 +1,10 @@
-//! At which port a calendar's event is.
+//! Finds the port of a calendar's event.
 //!
-//! What always holds: `X-UNLOCODE` goes before `LOCATION`, and where either says something
-//! `SUMMARY` names no other port: ships are called as codes are, and so are parts of ports'
-//! names. A word is taken for a code only where it stands alone between commas or brackets of
-//! `LOCATION`, beside the port's own name, or in `SUMMARY` behind "at". What may be two ports
-//! is refused.
+//! Invariants: `X-UNLOCODE` takes precedence over `LOCATION`. Where either is
+//! given, `SUMMARY` cannot name another port: ships' names and parts of ports'
+//! names can look like codes. A word counts as a code only where it stands
+//! alone between commas or brackets of `LOCATION`, beside the port's own name,
+//! or in `SUMMARY` behind "at". An ambiguous port is refused.
 
 use super::line::Line;
 use crate::calls::FileError;
@@ -12,10 +12,10 @@ use crate::ports::{self, Port, PortCode};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
-/// What stands between the parts of a place.
+/// Separators between the parts of a place.
 const BETWEEN: [char; 12] = [',', ';', '(', ')', '[', ']', '/', '|', ':', '\n', '–', '—'];
 
-/// The port of an event, as its properties have it.
+/// Returns the port of an event from its properties.
 pub(super) fn port<'a>(
     begins: usize,
     find: &impl Fn(&str) -> Option<&'a Line>,
@@ -31,13 +31,13 @@ pub(super) fn port<'a>(
         };
     }
     match said("LOCATION") {
-        Some(line) => of_location(&line.value, summary)
+        Some(line) => port_of_location(&line.value, summary)
             .map_err(|what| FileError::new(line.number, "LOCATION", what)),
-        None => of_summary(summary).map_err(|what| FileError::new(begins, "LOCATION", what)),
+        None => port_of_summary(summary).map_err(|what| FileError::new(begins, "LOCATION", what)),
     }
 }
 
-fn of_location(text: &str, summary: &str) -> Result<PortCode, String> {
+fn port_of_location(text: &str, summary: &str) -> Result<PortCode, String> {
     let mut named = named(text.split(',').next().unwrap_or_default());
     if named.is_empty() {
         named = self::named(text.split(BETWEEN).next().unwrap_or_default());
@@ -48,15 +48,13 @@ fn of_location(text: &str, summary: &str) -> Result<PortCode, String> {
         ([code], []) => Ok(*code),
         ([code], named) if named.iter().any(|port| is_called(*code, port)) => Ok(*code),
         ([code], [port, ..]) => Err(format!(
-            "{text:?} has the code {code} and the name of {} ({}); write one of them",
+            "{text:?} has the code {code} and the name of {} ({}); use only one of them",
             port.name, port.code
         )),
-        ([one, other, ..], _) => Err(may_be(text, *one, *other)),
+        ([one, other, ..], _) => Err(ambiguous(text, *one, *other)),
         ([], [port]) => Ok(port.code),
-        ([], []) => Err(format!(
-            "{text:?} is no port that is known; write the UN/LOCODE"
-        )),
-        // Which of those that are called so, the summary may say.
+        ([], []) => Err(format!("{text:?} is not a known port; write the UN/LOCODE")),
+        // The summary may choose among ports of the same name.
         ([], [one, other, ..]) => {
             let meant = words_as_codes(summary).filter(|code| {
                 let mut called = named.iter();
@@ -64,13 +62,13 @@ fn of_location(text: &str, summary: &str) -> Result<PortCode, String> {
             });
             match distinct(meant)[..] {
                 [code] => Ok(code),
-                _ => Err(may_be(&one.name.to_lowercase(), one.code, other.code)),
+                _ => Err(ambiguous(&one.name.to_lowercase(), one.code, other.code)),
             }
         }
     }
 }
 
-fn of_summary(text: &str) -> Result<PortCode, String> {
+fn port_of_summary(text: &str) -> Result<PortCode, String> {
     let behind_at = parts(text).filter_map(|part| {
         let (_, there) = part.rsplit_once(" at ")?;
         let capitals = there.split_whitespace().take_while(|word| is_capital(word));
@@ -84,11 +82,11 @@ fn of_summary(text: &str) -> Result<PortCode, String> {
              port's name"
                 .to_owned(),
         ),
-        [one, other, ..] => Err(may_be(text, one, other)),
+        [one, other, ..] => Err(ambiguous(text, one, other)),
     }
 }
 
-fn may_be(what: &str, one: PortCode, other: PortCode) -> String {
+fn ambiguous(what: &str, one: PortCode, other: PortCode) -> String {
     format!("{what:?} may be {one} or {other}; write the UN/LOCODE")
 }
 
@@ -99,7 +97,7 @@ fn distinct(codes: impl Iterator<Item = PortCode>) -> Vec<PortCode> {
     codes
 }
 
-/// What stands between commas, brackets and dashes.
+/// The parts between commas, brackets and dashes.
 fn parts(text: &str) -> impl Iterator<Item = &str> {
     text.split(BETWEEN)
         .flat_map(|part| part.split(" - "))
@@ -110,7 +108,7 @@ fn is_capital(word: &str) -> bool {
     !word.is_empty() && !word.chars().any(char::is_lowercase)
 }
 
-/// The code that a text is and nothing else, with or without its space.
+/// The code, if the text is a code and nothing else, with or without its space.
 fn alone(text: &str) -> Option<PortCode> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let fits = match words[..] {
@@ -125,7 +123,7 @@ fn alone(text: &str) -> Option<PortCode> {
     ports::find(code).map(|_| code)
 }
 
-/// All words in capitals, and pairs of them, that are a port's code.
+/// Codes among the words in capitals and pairs of them.
 fn words_as_codes(text: &str) -> impl Iterator<Item = PortCode> {
     let words: Vec<&str> = text
         .split(|letter: char| !letter.is_ascii_alphanumeric())
@@ -140,7 +138,7 @@ fn words_as_codes(text: &str) -> impl Iterator<Item = PortCode> {
     codes.into_iter()
 }
 
-/// The codes in a text that has their ports' names as well.
+/// Codes in a text that also contains their ports' names.
 fn beside_their_names(text: &str) -> impl Iterator<Item = PortCode> {
     let whole = format!(" {} ", plain(text));
     words_as_codes(text).filter(move |code| {
@@ -171,8 +169,8 @@ fn named(name: &str) -> &'static [&'static Port] {
     found.map_or(&[], Vec::as_slice)
 }
 
-/// Whether the port of a code may be called as another is: Georgetown is also Georgetown,
-/// Grand Cayman.
+/// True if the port of a code shares a name with another: Georgetown is also
+/// Georgetown, Grand Cayman.
 fn is_called(code: PortCode, other: &Port) -> bool {
     let Some(port) = ports::find(code) else {
         return false;
@@ -180,7 +178,8 @@ fn is_called(code: PortCode, other: &Port) -> bool {
     names(port).any(|name| names(other).any(|named| named == name))
 }
 
-/// A port's names in plain words: whole, and up to a comma or a bracket.
+/// A port's names in plain words: the whole name, and the part before a comma
+/// or bracket.
 fn names(port: &Port) -> impl Iterator<Item = String> {
     let both = [&port.name, &port.plain_name].map(|name| {
         let first = name.split([',', '(']).next().unwrap_or_default();
@@ -189,7 +188,7 @@ fn names(port: &Port) -> impl Iterator<Item = String> {
     both.into_iter().flatten().filter(|name| !name.is_empty())
 }
 
-/// Words in small letters, with one blank between them.
+/// The text in lower case, with single blanks between words.
 fn plain(text: &str) -> String {
     let words = text.split(|letter: char| !letter.is_alphanumeric());
     let words: Vec<String> = words

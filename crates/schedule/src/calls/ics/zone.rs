@@ -1,36 +1,46 @@
 //! Time zones as a calendar defines them: one offset, or two with yearly rules.
 //!
-//! Of rules, those that zones in use are written with are read: `FREQ=YEARLY` with
-//! `BYMONTH` and `BYDAY` of a weekday counted from either end of the month. Another rule
-//! is refused, rather than an hour be wrong.
+//! Only the rules of zones in use are read: `FREQ=YEARLY` with `BYMONTH` and
+//! `BYDAY` of a weekday, counted from either end of the month. Any other rule
+//! is refused, since it could put times off by an hour.
 
 use super::line::Line;
 use crate::calls::FileError;
 use chrono::{Datelike, Days, NaiveDate, NaiveDateTime, Weekday};
 use std::collections::BTreeMap;
 
-/// The most offsets of one zone: those in use have two, and far fewer with all their past.
-/// Each time of the file is held against every one of them.
-const MOST_OFFSETS: usize = 200;
+/// The most offsets of one zone. Zones in use have two, and far fewer than this
+/// with all their past. Each time in the file is compared with every one of
+/// them.
+const MAX_OFFSETS: usize = 200;
 
-/// A zone.
+/// A time zone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Zone {
-    /// At least one.
+    /// The offsets; at least one.
     observed: Vec<Observance>,
 }
 
-/// An offset, from when it is observed.
+/// An offset and its beginning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Observance {
     begins: NaiveDateTime,
     offset_s: i64,
-    /// Month, weekday, and which one of the month: from its end, where negative.
-    yearly: Option<(u32, Weekday, i32)>,
+    /// The rule of its yearly beginning.
+    yearly: Option<YearlyRule>,
+}
+
+/// A weekday of a month, each year.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct YearlyRule {
+    month: u32,
+    weekday: Weekday,
+    /// Number within the month; counted from its end, if negative.
+    which: i32,
 }
 
 impl Zone {
-    /// Seconds ahead of UTC at a local time: those of the observance that began last.
+    /// Seconds ahead of UTC at a local time, by the observance that began last.
     pub(super) fn offset_s(&self, local: NaiveDateTime) -> i64 {
         let last = self
             .observed
@@ -49,7 +59,7 @@ impl Observance {
         let years = [local.year(), local.year() - 1];
         let onsets = years
             .iter()
-            .filter_map(|year| Some(on(*year, rule)?.and_time(self.begins.time())));
+            .filter_map(|year| Some(day_in(*year, rule)?.and_time(self.begins.time())));
         onsets
             .filter(|onset| *onset <= local && *onset >= self.begins)
             .max()
@@ -57,7 +67,12 @@ impl Observance {
 }
 
 /// The day of a rule in a year.
-fn on(year: i32, (month, weekday, which): (u32, Weekday, i32)) -> Option<NaiveDate> {
+fn day_in(year: i32, rule: YearlyRule) -> Option<NaiveDate> {
+    let YearlyRule {
+        month,
+        weekday,
+        which,
+    } = rule;
     if which > 0 {
         return NaiveDate::from_weekday_of_month_opt(year, month, weekday, which as u8);
     }
@@ -73,7 +88,7 @@ fn on(year: i32, (month, weekday, which): (u32, Weekday, i32)) -> Option<NaiveDa
     ))
 }
 
-/// The zones that a calendar defines, by name.
+/// Reads the zones that a calendar defines, by name.
 pub(super) fn zones(lines: &[Line]) -> Result<BTreeMap<String, Zone>, FileError> {
     let mut zones = BTreeMap::new();
     let mut begun: Option<(usize, String, Vec<Observance>)> = None;
@@ -99,8 +114,8 @@ pub(super) fn zones(lines: &[Line]) -> Result<BTreeMap<String, Zone>, FileError>
                     ));
                 };
                 let yearly = rule.map(yearly).transpose()?;
-                if observed.len() == MOST_OFFSETS {
-                    let what = format!("more than {MOST_OFFSETS} offsets in one time zone");
+                if observed.len() == MAX_OFFSETS {
+                    let what = format!("more than {MAX_OFFSETS} offsets in one time zone");
                     return Err(FileError::new(line.number, &line.value, what));
                 }
                 observed.push(Observance {
@@ -130,7 +145,7 @@ pub(super) fn zones(lines: &[Line]) -> Result<BTreeMap<String, Zone>, FileError>
     Ok(zones)
 }
 
-/// `+0100`, or with seconds.
+/// Parses `+0100`, with optional seconds.
 fn offset(text: &str) -> Option<i64> {
     let digits = text.strip_prefix(['+', '-'])?;
     if !(digits.len() == 4 || digits.len() == 6)
@@ -151,7 +166,7 @@ fn offset(text: &str) -> Option<i64> {
     })
 }
 
-fn yearly(line: &Line) -> Result<(u32, Weekday, i32), FileError> {
+fn yearly(line: &Line) -> Result<YearlyRule, FileError> {
     let wrong = || {
         let what = format!(
             "{:?} is not a yearly rule of a month and a weekday",
@@ -169,10 +184,14 @@ fn yearly(line: &Line) -> Result<(u32, Weekday, i32), FileError> {
         }
     }
     let (month, (weekday, which)) = month.zip(day).ok_or_else(wrong)?;
-    Ok((month, weekday, which))
+    Ok(YearlyRule {
+        month,
+        weekday,
+        which,
+    })
 }
 
-/// `-1SU` and its like.
+/// Parses `-1SU` and the like.
 fn by_day(text: &str) -> Option<(Weekday, i32)> {
     let (which, day) = text.split_at_checked(text.len().checked_sub(2)?)?;
     let which: i32 = which

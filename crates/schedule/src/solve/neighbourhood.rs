@@ -1,0 +1,93 @@
+//! Large neighbourhood search: needs that compete for the same teams are solved
+//! again, while all others are fixed.
+
+use super::branch_and_bound;
+use super::open::Open;
+use super::problem::{Assignment, Problem};
+use super::work_limit::WorkLimit;
+
+/// Work of branch and bound on a neighbourhood, in nodes times choices.
+const NEIGHBOURHOOD_EFFORT: usize = 60_000;
+/// Needs of a neighbourhood.
+const NEIGHBOURHOOD_SIZE: usize = 60;
+
+/// Improves all neighbourhoods once.
+pub(super) fn improve(
+    problem: &Problem,
+    open: &Open,
+    known: Assignment,
+    work: &mut WorkLimit,
+) -> Assignment {
+    let wanted = wanted(problem, &open.choices);
+    let mut wanted_by: Vec<Vec<usize>> = vec![Vec::new(); problem.teams.len()];
+    for (need, days) in wanted.iter().enumerate() {
+        for day in days {
+            wanted_by[*day].push(need);
+        }
+    }
+    let mut found = known;
+    let mut done = vec![false; problem.unmet.len()];
+    for seed in 0..problem.unmet.len() {
+        // A need within an earlier neighbourhood is not the centre of another.
+        if done[seed] || wanted[seed].len() < 2 {
+            continue;
+        }
+        if work.is_spent() {
+            break;
+        }
+        let near = neighbourhood_of(seed, &wanted, &wanted_by);
+        let mut free = vec![false; problem.unmet.len()];
+        for (at, need) in near.into_iter().enumerate() {
+            free[need] = true;
+            // Neighbourhoods overlap by half.
+            done[need] |= at < NEIGHBOURHOOD_SIZE / 2;
+        }
+        let choices = problem.choices.iter().enumerate();
+        let some = Open {
+            choices: choices
+                .map(|(index, choice)| {
+                    let is_open = open.choices[index] && free[choice.need];
+                    is_open || found[choice.need] == Some(index)
+                })
+                .collect(),
+            unmet: free
+                .iter()
+                .zip(&open.unmet)
+                .map(|(free, open)| *free && *open)
+                .collect(),
+        };
+        found = branch_and_bound::solve_parts(problem, &some, found, NEIGHBOURHOOD_EFFORT, work)
+            .assignment;
+    }
+    found
+}
+
+/// The firms' days on which each need has an open choice.
+fn wanted(problem: &Problem, open: &[bool]) -> Vec<Vec<usize>> {
+    let mut wanted: Vec<Vec<usize>> = vec![Vec::new(); problem.unmet.len()];
+    for (choice, open) in problem.choices.iter().zip(open) {
+        let day = problem.visits[choice.visit].firm_day;
+        if *open && !wanted[choice.need].contains(&day) {
+            wanted[choice.need].push(day);
+        }
+    }
+    wanted
+}
+
+/// The needs nearest to one, itself first: those that want the same firms'
+/// days, then those that want the same days as these.
+fn neighbourhood_of(seed: usize, wanted: &[Vec<usize>], wanted_by: &[Vec<usize>]) -> Vec<usize> {
+    let mut near = vec![seed];
+    let mut at = 0;
+    while at < near.len() && near.len() < NEIGHBOURHOOD_SIZE {
+        for day in &wanted[near[at]] {
+            for need in &wanted_by[*day] {
+                if near.len() < NEIGHBOURHOOD_SIZE && !near.contains(need) {
+                    near.push(*need);
+                }
+            }
+        }
+        at += 1;
+    }
+    near
+}

@@ -1,0 +1,5 @@
+//! The heading instruments of a ship.
+
+pub(crate) mod compass;
+pub(crate) mod gyro;
+pub(crate) mod satellite;

@@ -1,0 +1,4 @@
+//! Links between a ship and a server.
+
+pub mod gateway;
+pub mod satellite;

@@ -1,0 +1,5 @@
+//! Processes under test, and what they need of the system.
+
+pub mod database;
+pub mod namespace;
+pub mod program;
