@@ -1,10 +1,12 @@
-//! Migrating a database that holds data loses nothing.
+//! Migrating loses nothing that a database holds, and refuses another version's database.
 
 use crate::support::{Answer, Engine, Shore, attempt, password_hash};
 use binnacle_server::db::{Db, Tx};
 use binnacle_server::secret;
 use reqwest::Method;
 use serde_json::json;
+use sqlx::SqlSafeStr;
+use sqlx::migrate::{Migration, MigrationType, Migrator};
 use uuid::Uuid;
 
 /// 2026-11-21T07:00:00Z, when every test begins, and a day later.
@@ -30,6 +32,46 @@ async fn on_sqlite_every_token_and_webhook_is_there_afterwards() {
 #[tokio::test]
 async fn on_postgres_every_token_and_webhook_is_there_afterwards() {
     nothing_is_lost(Engine::Postgres).await;
+}
+
+#[tokio::test]
+async fn on_sqlite_a_database_of_another_version_is_refused() {
+    another_version_is_refused(Engine::Sqlite).await;
+}
+
+#[tokio::test]
+async fn on_postgres_a_database_of_another_version_is_refused() {
+    another_version_is_refused(Engine::Postgres).await;
+}
+
+/// Refuses an applied migration that is unknown, and one whose text differs.
+async fn another_version_is_refused(engine: Engine) {
+    for number in [1, 63] {
+        let bare = Shore::bare(engine).await;
+        let other = Migration::new(
+            number,
+            "other".into(),
+            MigrationType::Simple,
+            "CREATE TABLE other (id BIGINT)".into_sql_str(),
+            false,
+        );
+        let other = Migrator::with_migrations(vec![other]);
+        match &bare.db {
+            Db::Sqlite { writer, .. } => other.run(writer).await.unwrap(),
+            Db::Postgres(pool) => other.run(pool).await.unwrap(),
+        }
+        let error = format!("{:#}", bare.db.migrate().await.unwrap_err());
+        assert!(
+            error.contains("another version of binnacle-server"),
+            "{error}"
+        );
+        assert!(error.contains(&format!("migration {number} ")), "{error}");
+        // Nothing was created: the table's name is free.
+        let mut tx = bare.db.begin().await.unwrap();
+        run!(&mut tx, "CREATE TABLE operators (id BIGINT)");
+        tx.commit().await.unwrap();
+        bare.remove().await;
+    }
 }
 
 async fn nothing_is_lost(engine: Engine) {

@@ -167,6 +167,12 @@ impl Prepared {
         let clock = Clock::manual(Timestamp::parse(START).unwrap());
         Shore::open(self.database, clock, &[]).await
     }
+
+    /// Removes the database.
+    pub(crate) async fn remove(self) {
+        self.db.close().await;
+        self.database.remove().await;
+    }
 }
 
 fn config(url: &str, settings: &[&str]) -> Serve {
