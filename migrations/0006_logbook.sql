@@ -1,21 +1,23 @@
--- What people report about a vessel. An entry is never removed: it is revised, or
--- withdrawn and kept.
+-- Logbook: what people report about a vessel.
+
+-- Entries as they now stand. They are never removed: an entry is revised, or withdrawn
+-- and kept.
 CREATE TABLE logbook_entries (
     vessel_id UUID NOT NULL REFERENCES vessels (id),
-    id UUID NOT NULL, -- made on board where it was reported there
-    compass_id UUID, -- none: it concerns the whole ship
+    id UUID NOT NULL, -- made on board for entries reported there
+    compass_id UUID, -- NULL: it concerns the whole vessel
     kind TEXT NOT NULL,
     from_at BIGINT NOT NULL,
-    to_at BIGINT CHECK (to_at >= from_at), -- none: an event, or it goes on
+    to_at BIGINT CHECK (to_at >= from_at), -- NULL: a moment, or it goes on
     cargo TEXT,
     hatch TEXT,
     port TEXT,
     note TEXT NOT NULL,
     created_at BIGINT NOT NULL,
-    created_by TEXT NOT NULL, -- a name; may be empty for a report from on board
+    created_by TEXT NOT NULL, -- a name; may be empty for reports from on board
     author TEXT NOT NULL CHECK (author IN ('user', 'agent', 'firm')),
     revision BIGINT NOT NULL, -- from 1
-    board_revision BIGINT, -- the latest that came from on board
+    board_revision BIGINT, -- latest revision from on board
     revised_at BIGINT,
     revised_by TEXT,
     withdrawn_at BIGINT,
@@ -27,7 +29,7 @@ CREATE TABLE logbook_entries (
 );
 CREATE INDEX logbook_entries_by_time ON logbook_entries (vessel_id, from_at, id);
 
--- Each revision of an entry as it was written. A row is never changed or removed.
+-- Each revision of an entry as written. Rows are never changed or removed.
 CREATE TABLE logbook_revisions (
     vessel_id UUID NOT NULL,
     entry_id UUID NOT NULL,
@@ -40,16 +42,3 @@ CREATE TABLE logbook_revisions (
     PRIMARY KEY (vessel_id, entry_id, revision),
     FOREIGN KEY (vessel_id, entry_id) REFERENCES logbook_entries (vessel_id, id)
 );
-
--- Events are of more kinds now. They are kept for a day, for dashboards that were
--- away: these read everything anew.
-DROP TABLE events;
-CREATE TABLE events (
-    id UUID NOT NULL PRIMARY KEY,
-    operator_id UUID NOT NULL REFERENCES operators (id),
-    vessel_id UUID NOT NULL,
-    kind TEXT NOT NULL, -- the program knows them; SQLite could not widen a CHECK
-    created_at BIGINT NOT NULL
-);
-CREATE INDEX events_by_operator ON events (operator_id, id);
-CREATE INDEX events_by_time ON events (created_at);

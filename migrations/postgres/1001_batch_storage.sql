@@ -1,2 +1,2 @@
--- Batches are compressed already: keep the database from trying again.
+-- Batches are compressed already: PostgreSQL need not try.
 ALTER TABLE batches ALTER COLUMN bytes SET STORAGE EXTERNAL;

@@ -3,7 +3,7 @@
 use super::{Db, Pools, Subscribers};
 use anyhow::{Context, bail};
 use sqlx::Database;
-use sqlx::migrate::Migrator;
+use sqlx::migrate::{MigrateError, Migrator};
 use sqlx::pool::PoolOptions;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqliteSynchronous};
 use std::str::FromStr;
@@ -15,6 +15,9 @@ static POSTGRES_ONLY: Migrator = sqlx::migrate!("../migrations/postgres");
 
 /// How long a connection waits for another process's lock, or for its turn.
 const PATIENCE: Duration = Duration::from_secs(30);
+
+const OTHER_VERSION: &str = "the database was set up by another version of binnacle-server: \
+                             run that version, or name a new database";
 
 impl Db {
     /// Opens `sqlite://FILE` (made when missing) or `postgres://…`.
@@ -36,17 +39,30 @@ impl Db {
     /// Applies the migrations that are missing.
     ///
     /// # Errors
-    /// When one fails, or one that was applied has been edited since.
+    /// When one fails, or one that was applied is unknown or has been edited since.
     pub async fn migrate(&self) -> anyhow::Result<()> {
-        match &self.pools {
-            Pools::Sqlite { writer, .. } => PORTABLE.run(writer).await?,
+        let migrated = match &self.pools {
+            Pools::Sqlite { writer, .. } => PORTABLE.run(writer).await,
             Pools::Postgres(pool) => {
                 let all = PORTABLE.iter().chain(POSTGRES_ONLY.iter()).cloned();
-                Migrator::with_migrations(all.collect()).run(pool).await?;
+                Migrator::with_migrations(all.collect()).run(pool).await
             }
-        }
-        Ok(())
+        };
+        migrated.map_err(explain)
     }
+}
+
+/// Adds advice to the error that another version's database causes.
+fn explain(error: MigrateError) -> anyhow::Error {
+    let other_version = matches!(
+        error,
+        MigrateError::VersionMissing(_) | MigrateError::VersionMismatch(_)
+    );
+    let error = anyhow::Error::new(error);
+    if other_version {
+        return error.context(OTHER_VERSION);
+    }
+    error
 }
 
 /// Of so many connections at most, which are kept: reaping those that are idle may spin

@@ -36,6 +36,7 @@ mod logbook_effects;
 mod mail;
 mod mail_tls;
 mod mail_tries;
+mod migration;
 mod notifications;
 mod offers;
 mod out_of_service;

@@ -1,7 +1,5 @@
 //! Firms, their people, and who sees whom.
 
-mod migration;
-
 use crate::commands::{assert_refused, good, run};
 use crate::offers::Trade;
 use crate::on_both;

@@ -25,7 +25,6 @@ use binnacle_server::{command, operations};
 use clap::Parser;
 use database::Database;
 use metrics_exporter_prometheus::PrometheusHandle;
-use sqlx::migrate::Migrator;
 use std::sync::OnceLock;
 use tokio::net::TcpListener;
 use tokio::task::JoinHandle;
@@ -56,18 +55,18 @@ impl Shore {
         Shore::open(database, clock, settings).await
     }
 
-    /// A database as the migrations before one left it, before the server opens it.
-    pub(crate) async fn aged(engine: Engine, before: i64) -> Aged {
+    /// A migrated database, before the server opens it.
+    pub(crate) async fn prepared(engine: Engine) -> Prepared {
+        let prepared = Shore::bare(engine).await;
+        prepared.db.migrate().await.unwrap();
+        prepared
+    }
+
+    /// A database without any table, before the server opens it.
+    pub(crate) async fn bare(engine: Engine) -> Prepared {
         let database = Database::bare(engine).await;
         let db = Db::connect(&database.url, subscribers()).await.unwrap();
-        let all = sqlx::migrate!("../migrations");
-        let old = all.iter().filter(|migration| migration.version < before);
-        let old = Migrator::with_migrations(old.cloned().collect());
-        match db.pools() {
-            Pools::Sqlite { writer, .. } => old.run(writer).await.unwrap(),
-            Pools::Postgres(pool) => old.run(pool).await.unwrap(),
-        }
-        Aged { db, database }
+        Prepared { db, database }
     }
 
     async fn open(database: Database, clock: Clock, settings: &[&str]) -> Shore {
@@ -158,18 +157,24 @@ impl Shore {
     }
 }
 
-/// An old database, to be filled.
-pub(crate) struct Aged {
+/// A database to be filled before the server opens it.
+pub(crate) struct Prepared {
     pub(crate) db: Db,
     database: Database,
 }
 
-impl Aged {
-    /// The server of today on it.
+impl Prepared {
+    /// Starts the server on it.
     pub(crate) async fn open(self) -> Shore {
         self.db.close().await;
         let clock = Clock::manual(Timestamp::parse(START).unwrap());
         Shore::open(self.database, clock, &[]).await
+    }
+
+    /// Removes the database.
+    pub(crate) async fn remove(self) {
+        self.db.close().await;
+        self.database.remove().await;
     }
 }
 

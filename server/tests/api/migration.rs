@@ -1,10 +1,12 @@
-//! A database from before there were firms loses nothing.
+//! Migrating loses nothing that a database holds, and refuses another version's database.
 
 use crate::support::{Answer, Engine, Shore, attempt, password_hash};
 use binnacle_server::db::{Connection, Db, Tx};
 use binnacle_server::secret;
 use reqwest::Method;
 use serde_json::json;
+use sqlx::SqlSafeStr;
+use sqlx::migrate::{Migration, MigrationType, Migrator};
 use uuid::Uuid;
 
 /// 2026-11-21T07:00:00Z, when every test begins, and a day later.
@@ -32,18 +34,57 @@ async fn on_postgres_every_token_and_webhook_is_there_afterwards() {
     nothing_is_lost(Engine::Postgres).await;
 }
 
+#[tokio::test]
+async fn on_sqlite_a_database_of_another_version_is_refused() {
+    another_version_is_refused(Engine::Sqlite).await;
+}
+
+#[tokio::test]
+async fn on_postgres_a_database_of_another_version_is_refused() {
+    another_version_is_refused(Engine::Postgres).await;
+}
+
+/// Refuses an applied migration that is unknown, and one whose text differs.
+async fn another_version_is_refused(engine: Engine) {
+    for number in [1, 63] {
+        let bare = Shore::bare(engine).await;
+        let other = Migration::new(
+            number,
+            "other".into(),
+            MigrationType::Simple,
+            "CREATE TABLE other (id BIGINT)".into_sql_str(),
+            false,
+        );
+        let other = Migrator::with_migrations(vec![other]);
+        match bare.db.pools() {
+            Pools::Sqlite { writer, .. } => other.run(writer).await.unwrap(),
+            Pools::Postgres(pool) => other.run(pool).await.unwrap(),
+        }
+        let error = format!("{:#}", bare.db.migrate().await.unwrap_err());
+        assert!(
+            error.contains("another version of binnacle-server"),
+            "{error}"
+        );
+        assert!(error.contains(&format!("migration {number} ")), "{error}");
+        // Nothing was created: the table's name is free.
+        let mut tx = bare.db.begin().await.unwrap();
+        run!(&mut tx, "CREATE TABLE operators (id BIGINT)");
+        tx.commit().await.unwrap();
+        bare.remove().await;
+    }
+}
+
 async fn nothing_is_lost(engine: Engine) {
-    let aged = Shore::aged(engine, 25).await;
+    let prepared = Shore::prepared(engine).await;
     let operator = Uuid::now_v7();
-    fill(&aged.db, operator).await;
-    let shore = aged.open().await;
+    fill(&prepared.db, operator).await;
+    let shore = prepared.open().await;
     for number in 0..PEOPLE {
         let role = ["admin", "viewer", "platform_admin"][number];
         let url = format!("{}/api/v1/me", shore.url);
         let cookie = format!("binnacle_session=session{number}");
-        // A later migration has everyone sign in again.
         let by_cookie = Answer::of(shore.http.get(&url).header("cookie", cookie)).await;
-        assert_eq!(by_cookie.problem(), "unauthenticated");
+        assert_eq!(by_cookie.good()["role"], role);
         let token = shore
             .http
             .get(&url)
@@ -66,11 +107,11 @@ async fn nothing_is_lost(engine: Engine) {
     };
     let webhooks = Answer::of(request(Method::GET, "/webhooks")).await.good();
     assert_eq!(webhooks["items"][0]["url"], "https://example.com/hook");
-    // The key of before still finds what it made.
+    // The stored key still finds what it made.
     let vessel = request(Method::POST, "/vessels").json(&json!({ "name": "Other" }));
     let vessel = vessel.header("Idempotency-Key", "old");
     assert_eq!(Answer::of(vessel).await.problem(), "idempotency-key-reused");
-    // What refers to users refers to those of now: who is removed is signed out.
+    // Sessions and tokens refer to their user: who is removed is signed out.
     shore.sql("DELETE FROM users WHERE role = 'viewer'").await;
     let gone = shore.http.get(url("/me")).bearer_auth("bna_token1");
     assert_eq!(Answer::of(gone).await.problem(), "unauthenticated");
@@ -79,7 +120,7 @@ async fn nothing_is_lost(engine: Engine) {
     shore.finish().await;
 }
 
-/// People of each role, as they were entered when there were no firms.
+/// Fills in people of each role, a webhook and an idempotency key.
 async fn fill(db: &Db, operator: Uuid) {
     let mut tx = db.begin().await.unwrap();
     run!(
@@ -104,10 +145,12 @@ async fn fill(db: &Db, operator: Uuid) {
         );
         run!(
             &mut tx,
-            "INSERT INTO sessions (token_hash, user_id, created_at, expires_at)
-             VALUES ($1, $2, $3, $4)",
-            secret::hash(&format!("session{number}")),
+            "INSERT INTO sessions (id, user_id, token_hash, created_at, last_seen_at, expires_at,
+                                   address, user_agent)
+             VALUES ($1, $2, $3, $4, $4, $5, '', '')",
+            Uuid::now_v7(),
             user,
+            secret::hash(&format!("session{number}")),
             NOW,
             TOMORROW
         );
@@ -140,7 +183,7 @@ async fn fill(db: &Db, operator: Uuid) {
     );
     run!(
         &mut tx,
-        "INSERT INTO idempotency_keys (operator_id, key_hash, request_hash, resource_id, created_at)
+        "INSERT INTO idempotency_keys (tenant_id, key_hash, request_hash, resource_id, created_at)
          VALUES ($1, $2, $3, $1, $4)",
         operator,
         secret::hash("old"),
