@@ -14,7 +14,8 @@ COPY server/openapi.json ../server/openapi.json
 COPY web/ ./
 RUN npm run build
 
-FROM rust:1.95-bookworm AS build
+# The version in rust-toolchain.toml.
+FROM rust:1.95.0-bookworm AS build
 WORKDIR /src
 COPY Cargo.toml Cargo.lock clippy.toml ./
 COPY crates/ crates/
