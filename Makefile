@@ -58,10 +58,10 @@ soak: web ## The long tests: many kills, many voyages
 bench: setup ## Run the benchmarks of BENCHMARKS.md
 	$(CARGO) bench --locked -p binnacle-magnetics -p binnacle-nmea -p binnacle-wire --bench '*'
 
-bench-link: setup ## Count the octets of a simulated month over a satellite, by profile
+bench-link: setup ## Count the bytes of a simulated month over a satellite, by profile
 	$(CARGO) build --locked --workspace
 	BINNACLE_LINK_DAYS=30 $(CARGO) test --locked --workspace --test satellite \
-		packets_and_all -- --nocapture --test-threads=1 | grep 'octets a day'
+		packets_and_all -- --nocapture --test-threads=1 | grep 'bytes a day'
 
 bench-formats: setup ## Compare frames with other formats, over stock HTTPS, and with their entropy
 	scripts/bench-formats
