@@ -2,7 +2,7 @@
 # One image with the server (dashboard inside) and the agent; small, non-root.
 #   docker build -t binnacle .
 #   docker run -p 8080:8080 -v binnacle:/var/lib/binnacle binnacle
-# The agent, with data_dir = "/var/lib/binnacle" in agent.toml; `enrol` likewise, before:
+# The agent, with data_dir = "/var/lib/binnacle" in agent.toml; run `enrol` first, likewise:
 #   docker run -v agent:/var/lib/binnacle -v ./agent.toml:/etc/binnacle/agent.toml:ro binnacle \
 #     binnacle-agent run --config /etc/binnacle/agent.toml
 
@@ -14,7 +14,8 @@ COPY server/openapi.json ../server/openapi.json
 COPY web/ ./
 RUN npm run build
 
-FROM rust:1.95-bookworm AS build
+# The version in rust-toolchain.toml.
+FROM rust:1.95.0-bookworm AS build
 WORKDIR /src
 COPY Cargo.toml Cargo.lock clippy.toml ./
 COPY crates/ crates/

@@ -177,7 +177,7 @@ def openssl(*arguments):
 
 
 def public_key(key_file):
-    """The last 32 octets of the key's DER form (RFC 8410)."""
+    """The last 32 bytes of the key's DER form (RFC 8410)."""
     return openssl("pkey", "-in", key_file, "-pubout", "-outform", "DER")[-32:].hex()
 
 

@@ -1,7 +1,7 @@
 //! Migrating loses nothing that a database holds, and refuses another version's database.
 
 use crate::support::{Answer, Engine, Shore, attempt, password_hash};
-use binnacle_server::db::{Connection, Db, Tx};
+use binnacle_server::db::{Connection, Db, Pools, Tx};
 use binnacle_server::secret;
 use reqwest::Method;
 use serde_json::json;
