@@ -1,6 +1,7 @@
-//! Looking into the log.
+//! The API that reads the log.
 
-use super::{Filter, Line, csv, store};
+use super::store::{self, Selection};
+use super::{Filter, Line, csv};
 use crate::access::Auditor;
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
@@ -56,9 +57,9 @@ async fn list_audit(
     Params(filter): Params<Filter>,
     page: Page,
 ) -> Result<Json<AuditList>> {
-    let wanted = Wanted::new(auditor, filter)?;
+    let selection = Selection::read(auditor, filter)?;
     let before = page.after_id()?;
-    let found = store::list(&app.db, &wanted, before, page.fetch()).await?;
+    let found = store::list(&app.db, &selection, before, page.fetch()).await?;
     let listed = page.cut(found, |line| line.id.to_string());
     Ok(Json(AuditList {
         items: listed.items,
@@ -76,23 +77,15 @@ async fn audit_csv(
     auditor: Auditor,
     Params(filter): Params<Filter>,
 ) -> Result<Response> {
-    let wanted = Wanted::new(auditor, filter)?;
+    let selection = Selection::read(auditor, filter)?;
     let head = stream::iter([Ok(Bytes::from(csv::head()))]);
-    let rest = stream::try_unfold((app, wanted, Some(Uuid::max())), next_lines);
+    let rest = stream::try_unfold((app, selection, Some(Uuid::max())), next_lines);
     let body = Body::from_stream(head.chain(rest));
     Ok(file("text/csv; charset=utf-8", "audit.csv", body))
 }
 
-/// What to look for, and in whose part of the log.
-pub(super) struct Wanted {
-    pub(super) auditor: Auditor,
-    pub(super) filter: Filter,
-    pub(super) from: Option<Time>,
-    pub(super) to: Option<Time>,
-}
-
-impl Wanted {
-    fn new(auditor: Auditor, filter: Filter) -> Result<Wanted> {
+impl Selection {
+    fn read(auditor: Auditor, filter: Filter) -> Result<Selection> {
         // PostgreSQL takes no NUL in a text, and no route has one.
         if filter.route.iter().any(|route| route.contains('\0')) {
             return Err(Error::Invalid {
@@ -102,8 +95,9 @@ impl Wanted {
         }
         let from = time("from", filter.from.as_deref())?.map(Time);
         let to = time("to", filter.to.as_deref())?.map(Time);
-        Ok(Wanted {
-            auditor,
+        Ok(Selection {
+            operator: auditor.operator(),
+            firm: auditor.firm(),
             filter,
             from,
             to,
@@ -111,19 +105,19 @@ impl Wanted {
     }
 }
 
-type Rest = (App, Wanted, Option<Uuid>);
+type Rest = (App, Selection, Option<Uuid>);
 
-async fn next_lines((app, wanted, before): Rest) -> Result<Option<(Bytes, Rest)>> {
+async fn next_lines((app, selection, before): Rest) -> Result<Option<(Bytes, Rest)>> {
     let Some(before) = before else {
         return Ok(None);
     };
     let lines = async {
-        let found = store::list(&app.db, &wanted, Some(before), AT_A_TIME).await?;
+        let found = store::list(&app.db, &selection, Some(before), AT_A_TIME).await?;
         let next = found.last().map(|line| line.id);
         Ok((Bytes::from(csv::lines(&found)?), next))
     };
     match lines.await {
-        Ok((lines, next)) => Ok(Some((lines, (app, wanted, next)))),
+        Ok((lines, next)) => Ok(Some((lines, (app, selection, next)))),
         Err(cause) => {
             error!(error = format!("{cause:?}"), "an audit log was cut off");
             Err(cause)

@@ -1,11 +1,20 @@
 //! Lines in the database.
 
-use super::Line;
-use super::query::Wanted;
+use super::{Filter, Line};
 use crate::db::{Db, Result, Tx, execute, row, rows};
-use crate::ids::{OperatorId, VesselId};
+use crate::ids::{FirmId, OperatorId, VesselId};
 use crate::time::Time;
 use uuid::Uuid;
+
+/// The lines that are asked for, and the tenant whose part of the log they are in: the whole
+/// log where there is none.
+pub(super) struct Selection {
+    pub(super) operator: Option<OperatorId>,
+    pub(super) firm: Option<FirmId>,
+    pub(super) filter: Filter,
+    pub(super) from: Option<Time>,
+    pub(super) to: Option<Time>,
+}
 
 pub(super) async fn insert(tx: &mut Tx, line: &Line) -> Result<()> {
     execute!(
@@ -48,11 +57,11 @@ pub(super) async fn answered(db: &Db, id: Uuid, status: i64) -> Result<()> {
 /// The newest first, from before an id.
 pub(super) async fn list(
     db: &Db,
-    wanted: &Wanted,
+    selection: &Selection,
     before: Option<Uuid>,
     limit: i64,
 ) -> Result<Vec<Line>> {
-    let filter = &wanted.filter;
+    let filter = &selection.filter;
     rows!(
         db,
         Line,
@@ -68,15 +77,15 @@ pub(super) async fn list(
            AND ($9 IS NULL OR at < $9)
          ORDER BY id DESC
          LIMIT $10",
-        wanted.auditor.operator(),
-        wanted.auditor.firm(),
+        selection.operator,
+        selection.firm,
         before.unwrap_or(Uuid::max()),
         filter.actor,
         filter.vessel,
         filter.order,
         filter.route.as_deref(),
-        wanted.from,
-        wanted.to,
+        selection.from,
+        selection.to,
         limit
     )
 }

@@ -8,6 +8,7 @@ use crate::support::{Answer, Engine, PASSWORD, Person, Shore, attempt};
 use binnacle_server::audit::forget;
 use reqwest::Method;
 use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 
 on_both!(
     a_change_has_its_line,
@@ -334,6 +335,36 @@ async fn lines_go_when_they_are_old(shore: Shore) {
     let left = done(&lines(&ada, "").await);
     assert_eq!(left, ["POST /session 200", "POST /session 200"]);
     shore.finish().await;
+}
+
+/// Source files below a folder.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+    found
+}
+
+#[test]
+fn no_handler_begins_a_transaction_without_its_request() {
+    let mut handlers = 0;
+    for path in sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for function in text.split("\n}\n") {
+            if let Some((_, handler)) = function.split_once("#[utoipa::path(") {
+                handlers += 1;
+                let forgets = handler.contains("db.begin()");
+                assert!(!forgets, "{}: {handler}", path.display());
+            }
+        }
+    }
+    assert!(handlers > 150, "{handlers} handlers were found");
 }
 
 #[tokio::test]
