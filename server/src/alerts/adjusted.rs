@@ -6,8 +6,8 @@
 //! itself, stands.
 
 use super::alert::Cause;
-use super::findings::Findings;
 use super::store::{self, OpenAlert};
+use crate::analysis::Findings;
 use crate::db::Db;
 use crate::error::Result;
 use crate::ids::{CompassId, VesselId};

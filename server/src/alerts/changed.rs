@@ -7,9 +7,9 @@
 //! tells of is expected and calls for none.
 
 use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
-use super::findings::{Findings, FoundChange};
 use super::limits::AlertLimits;
 use super::wanted::sinking_slack_deg;
+use crate::analysis::{Findings, FoundChange};
 use crate::time::Time;
 use binnacle_magnetics::change;
 use binnacle_magnetics::time::Timestamp;

@@ -9,13 +9,12 @@
 use super::adjusted::{ADJUSTED, forget_changes, is_about_before};
 use super::alert::{Alert, AlertWanted, Cause, Severity, State};
 use super::changed::{Became, became};
-use super::findings::Findings;
 use super::limits::AlertLimits;
 use super::store::{self, Known};
 use super::wanted::{alerts_of, silence};
 use super::{aboard, cloned};
+use crate::analysis::{self, Findings};
 use crate::app::App;
-use crate::changes;
 use crate::db::Tx;
 use crate::error::Result;
 use crate::events::{self, Event};
@@ -74,7 +73,7 @@ pub async fn after_analysis(
         return Ok(None);
     };
     let mut findings: Findings = serde_json::from_str(&findings)?;
-    changes::sharpen_in(tx, vessel, &mut findings).await?;
+    analysis::sharpen_in(tx, vessel, &mut findings).await?;
     let adjusted = work_orders::adjusted_at(tx, vessel, compass).await?;
     if let Some(adjusted) = adjusted {
         forget_changes(&mut findings, adjusted);

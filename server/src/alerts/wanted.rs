@@ -7,9 +7,8 @@
 
 use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
 use super::changed::changed;
-use super::findings::{FailedLately, Findings};
 use super::limits::AlertLimits;
-use crate::analysis::LeftOut;
+use crate::analysis::{FailedLately, Findings, LeftOut};
 use crate::deviation::Worst;
 use crate::time::Time;
 use binnacle_magnetics::time::Timestamp;

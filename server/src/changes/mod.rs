@@ -4,14 +4,12 @@
 //! What always holds: the timeline is what the last analysis found; all curves are of
 //! one place, where the last sample was taken, so that they can be compared.
 
-mod fleet;
 mod schema;
 mod store;
 mod timeline;
 
-pub use fleet::{keep_disturbances, sharpen_in};
-
 use crate::access::Reader;
+use crate::analysis;
 use crate::app::App;
 use crate::compasses::{self, WhichCompass};
 use crate::error::{Problem, Result};
@@ -48,7 +46,7 @@ async fn list_changes(
     let compass = compasses::find(&app.db, id, which.compass).await?;
     let mut analysed = store::find(&app.db, id, compass.id).await?;
     if let Some(analysed) = &mut analysed {
-        fleet::sharpen(&app.db, id, &mut analysed.findings).await?;
+        analysis::sharpen(&app.db, id, &mut analysed.findings).await?;
     }
     let versions = store::versions(&app.db, id, compass.id).await?;
     Ok(Json(timeline(compass.id, analysed, &versions)))

@@ -1,6 +1,6 @@
 //! What a timeline is made from, in the database.
 
-use crate::alerts::Findings;
+use crate::analysis::Findings;
 use crate::db::{Db, row, rows};
 use crate::error::Result;
 use crate::ids::{CompassId, VesselId};

@@ -5,8 +5,7 @@
 
 use super::schema::{CauseProbabilitySchema, CauseSchema, StepSchema};
 use super::store::{Analysed, StoredEpoch, Version};
-use crate::alerts::FoundChange;
-use crate::analysis::RefusalSchema;
+use crate::analysis::{FoundChange, RefusalSchema};
 use crate::deviation::{self, Row};
 use crate::ids::CompassId;
 use crate::logbook::LogbookKindSchema;

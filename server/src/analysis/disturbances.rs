@@ -5,8 +5,8 @@
 //! that there was one. A disturbance that is new has the analyses of those who were
 //! disturbed at the same time looked at again, which alters their alerts alone.
 
-use crate::alerts::{Findings, FoundChange};
-use crate::analysis;
+use super::findings::{Findings, FoundChange};
+use super::queue;
 use crate::db::{Db, Result as DbResult, Tx, execute, rows};
 use crate::error::Result;
 use crate::ids::{CompassId, VesselId};
@@ -56,7 +56,7 @@ struct Around {
 
 /// Keeps a compass's passing disturbances in place of those of the analysis before, and
 /// has others look again that were disturbed in the hours of a new one.
-pub async fn keep_disturbances(
+pub(super) async fn keep_disturbances(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
@@ -132,13 +132,13 @@ async fn wake_others(
         Time(began_at.0.plus_seconds(-LONGEST_S))
     )?;
     for (other,) in others {
-        analysis::enqueue(tx, other, now, WAIT_S).await?;
+        queue::enqueue(tx, other, now, WAIT_S).await?;
     }
     Ok(())
 }
 
 /// Puts what was found of a vessel's compass in the light of other ships'.
-pub(super) async fn sharpen(db: &Db, vessel: VesselId, findings: &mut Findings) -> Result<()> {
+pub async fn sharpen(db: &Db, vessel: VesselId, findings: &mut Findings) -> Result<()> {
     let until = findings.data_until;
     for found in findings.changes.iter_mut().filter(|found| may_pass(found)) {
         let Some(around) = Around::of(found, until) else {

@@ -1,18 +1,14 @@
 //! What of an analysis alerts are made from: small enough to be kept beside it, so
 //! that other limits make other alerts without another analysis.
 
-mod found;
-
-pub use found::FoundChange;
-
-use crate::analysis::LeftOut;
+use super::change_findings::{FoundChange, found_changes};
+use crate::analysis::left_out::LeftOut;
 use crate::deviation::{self, Worst};
 use binnacle_magnetics::analyse::{Analysis, Epoch, LastPlace, LogbookEntry, SampleDiagnostic};
 use binnacle_magnetics::angle::wrap_180;
 use binnacle_magnetics::fit::FitError;
 use binnacle_magnetics::ship::EarthField;
 use binnacle_magnetics::time::Timestamp;
-use found::found_changes;
 use serde::{Deserialize, Serialize};
 
 /// How far back `lately` reaches from the last sample, seconds.
