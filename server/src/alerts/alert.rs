@@ -82,7 +82,7 @@ pub enum State {
 
 /// An alert that ought to be open.
 #[derive(Clone, Debug, PartialEq)]
-pub struct AlertWanted {
+pub struct DesiredAlert {
     /// What it is about.
     pub cause: Cause,
     /// How bad it is.
@@ -90,7 +90,7 @@ pub struct AlertWanted {
     /// When its cause began, as far as that is known.
     pub since: Time,
     /// What an alert of this cause was dated if it was about the same event.
-    pub dated: Dated,
+    pub window: EventWindow,
     /// What is so, in a sentence.
     pub summary: String,
     /// What to do.
@@ -103,17 +103,17 @@ pub struct AlertWanted {
 ///
 /// The default is any date: of what goes on, rather than happened at a time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Dated {
+pub struct EventWindow {
     /// Not before this.
     pub from: Option<Time>,
     /// Not after this.
     pub to: Option<Time>,
 }
 
-impl Dated {
+impl EventWindow {
     /// This date and no other.
-    pub fn exactly(at: Time) -> Dated {
-        Dated {
+    pub fn exactly(at: Time) -> EventWindow {
+        EventWindow {
             from: Some(at),
             to: Some(at),
         }
@@ -239,7 +239,7 @@ pub(super) struct Clearing {
 impl Alert {
     /// Whether it is closed because what it told of is over, or somebody said so.
     pub fn is_over(&self) -> bool {
-        self.cleared_by.is_some() || self.clearing_reason.as_deref() == Some(super::look::OVER)
+        self.cleared_by.is_some() || self.clearing_reason.as_deref() == Some(super::reconcile::OVER)
     }
 }
 

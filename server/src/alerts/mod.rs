@@ -14,26 +14,28 @@
 //!   the clock, when a vessel falls silent.
 //! - Every change is stored together with what tells people of it.
 
-mod aboard;
-mod adjusted;
-mod agreed;
+mod after_adjustment;
+mod agent_alerts;
 mod alert;
-mod changed;
-mod cloned;
+mod change_rules;
+mod duplicate_agent;
+mod job_at_risk;
 mod limits;
-mod look;
+mod reconcile;
+mod rules;
 mod store;
-mod wanted;
 
-pub use aboard::from_ship;
-pub use adjusted::in_force;
-pub use agreed::of_schedule;
-pub use alert::{Alert, AlertWanted, Cause, Dated, Evidence, Severity, State};
-pub use cloned::{agent_revoked, from_batch};
+pub use after_adjustment::list_in_force;
+pub use agent_alerts::record_agent_alerts;
+pub use alert::{Alert, Cause, DesiredAlert, EventWindow, Evidence, Severity, State};
+pub use duplicate_agent::{check_duplicate_agent, end_duplicate_agent};
+pub use job_at_risk::reconcile_jobs_at_risk;
 pub use limits::AlertLimits;
-pub use look::{AlertNews, after_analysis, by_the_clock, for_silence, out_of_service, sum, watch};
-pub use store::{OpenAlert, Standing, standing};
-pub use wanted::{alerts_of, silence};
+pub use reconcile::{
+    AlertChange, check_silence, check_timed, end_all, reconcile_analysis, summarize, watch,
+};
+pub use rules::{find_desired, silence};
+pub use store::{OpenAlert, OpenCount, count_open};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
@@ -44,8 +46,8 @@ use crate::outbox::Kind;
 use crate::session;
 use alert::{Acknowledgement, AlertList, Clearing, Filter};
 use axum::extract::State as Shared;
-use look::News;
-use store::Word;
+use reconcile::PendingChange;
+use store::Remark;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -143,7 +145,7 @@ async fn change(
     let now = app.clock.now().into();
     let vessel = alert.vessel_id;
     let mut tx = app.db.begin().await?;
-    let word = Word {
+    let word = Remark {
         by: session::name_of(&mut tx, writer.user).await?,
         text: words,
         at: now,
@@ -154,7 +156,9 @@ async fn change(
         _ => store::clear(&mut tx, vessel, id, &word).await?,
     };
     if changed {
-        let event = look::tell(&mut tx, vessel, &[News::of(id, became)], now).await?;
+        let event =
+            reconcile::publish_changes(&mut tx, vessel, &[PendingChange::of(id, became)], now)
+                .await?;
         tx.commit().await?;
         if let Some(event) = event {
             app.publish(event);

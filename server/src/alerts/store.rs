@@ -1,6 +1,6 @@
 //! Alerts in the database.
 
-use super::alert::{Alert, AlertWanted, Cause, Evidence, Filter, Severity, State};
+use super::alert::{Alert, Cause, DesiredAlert, Evidence, Filter, Severity, State};
 use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use crate::error::{Error, Result};
 use crate::ids::{AlertId, CompassId, OperatorId, VesselId};
@@ -9,7 +9,7 @@ use uuid::Uuid;
 
 /// An alert whose cause was there at the last look; cleared if a person did that.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub(super) struct Known {
+pub(super) struct KnownAlert {
     pub(super) id: AlertId,
     pub(super) cause: Cause,
     pub(super) severity: Severity,
@@ -24,7 +24,7 @@ pub(super) struct Known {
 
 /// What a person says of an alert.
 #[derive(Clone, Debug)]
-pub(super) struct Word {
+pub(super) struct Remark {
     pub(super) by: String,
     pub(super) text: Option<String>,
     pub(super) at: Time,
@@ -118,10 +118,10 @@ pub(super) async fn known(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
-) -> DbResult<Vec<Known>> {
+) -> DbResult<Vec<KnownAlert>> {
     rows!(
         in tx,
-        Known,
+        KnownAlert,
         "SELECT id, cause, severity, state, summary, advice, evidence, since, cleared_at
          FROM alerts
          WHERE vessel_id = $1 AND compass_id = $2 AND holds
@@ -135,7 +135,7 @@ pub(super) async fn insert(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
-    wanted: &AlertWanted,
+    wanted: &DesiredAlert,
     now: Time,
 ) -> Result<AlertId> {
     let id = AlertId::new();
@@ -164,8 +164,8 @@ pub(super) async fn insert(
 pub(super) async fn update(
     tx: &mut Tx,
     vessel: VesselId,
-    known: &Known,
-    wanted: &AlertWanted,
+    known: &KnownAlert,
+    wanted: &DesiredAlert,
     now: Time,
 ) -> Result<()> {
     execute!(
@@ -225,7 +225,7 @@ pub(super) async fn acknowledge(
     tx: &mut Tx,
     vessel: VesselId,
     id: AlertId,
-    word: &Word,
+    word: &Remark,
 ) -> DbResult<bool> {
     let changed = execute!(
         tx,
@@ -247,7 +247,7 @@ pub(super) async fn clear(
     tx: &mut Tx,
     vessel: VesselId,
     id: AlertId,
-    word: &Word,
+    word: &Remark,
 ) -> DbResult<bool> {
     let changed = execute!(
         tx,
@@ -266,7 +266,7 @@ pub(super) async fn clear(
 
 /// How a vessel's open alerts stand.
 #[derive(Clone, Copy, Debug, sqlx::FromRow)]
-pub struct Standing {
+pub struct OpenCount {
     /// The vessel.
     pub vessel_id: VesselId,
     /// How bad.
@@ -278,15 +278,15 @@ pub struct Standing {
 }
 
 /// The open alerts of an operator's vessels from one id to another, counted.
-pub async fn standing(
+pub async fn count_open(
     db: &Db,
     operator: OperatorId,
     first: VesselId,
     last: VesselId,
-) -> DbResult<Vec<Standing>> {
+) -> DbResult<Vec<OpenCount>> {
     rows!(
         db,
-        Standing,
+        OpenCount,
         "SELECT a.vessel_id, a.severity, a.state, COUNT(*) AS alerts
          FROM alerts a
          JOIN vessels v ON v.id = a.vessel_id
@@ -346,7 +346,7 @@ pub(super) async fn findings(
 
 /// When a compass's agents were last heard of.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub(super) struct Heard {
+pub(super) struct LastUpload {
     pub(super) vessel_id: VesselId,
     pub(super) compass_id: CompassId,
     pub(super) last_at: Time,
@@ -357,10 +357,10 @@ pub(super) struct Heard {
 }
 
 /// When the agents of every compass that has any were last heard of, of vessels in service.
-pub(super) async fn heard(db: &Db) -> DbResult<Vec<Heard>> {
+pub(super) async fn heard(db: &Db) -> DbResult<Vec<LastUpload>> {
     rows!(
         db,
-        Heard,
+        LastUpload,
         "SELECT s.vessel_id, s.compass_id, MAX(COALESCE(s.last_upload_at, s.opened_at)) AS last_at,
                 MAX(w.alerts) AS limits,
                 (SELECT COUNT(*) FROM alerts a

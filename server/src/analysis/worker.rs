@@ -158,7 +158,7 @@ async fn work(app: &App, job: queue::Job) -> Result<usize> {
     }
     // Also where nothing new was found: the limits may be others.
     for compass in &compasses {
-        let told = alerts::after_analysis(&mut tx, job.vessel_id, compass.id, &limits, now);
+        let told = alerts::reconcile_analysis(&mut tx, job.vessel_id, compass.id, &limits, now);
         events.extend(told.await?);
     }
     tx.commit().await?;

@@ -2,7 +2,7 @@
 
 use super::letter::Letter;
 use super::store;
-use crate::alerts::{Alert, AlertNews, Severity};
+use crate::alerts::{Alert, AlertChange, Severity};
 use crate::db::Tx;
 use crate::error::Result;
 use crate::ids::{OperatorId, RecipientId};
@@ -13,7 +13,7 @@ use crate::time::Time;
 pub async fn announce(
     tx: &mut Tx,
     operator: OperatorId,
-    all: &[AlertNews],
+    all: &[AlertChange],
     now: Time,
 ) -> Result<()> {
     for (recipient, least) in store::wishes(tx, operator).await? {
@@ -35,9 +35,9 @@ pub async fn announce(
 
 /// Whether a letter of the next alert of the cause goes to the same recipient: it says more
 /// than that this one is over.
-fn is_replaced(news: &AlertNews, least: Severity, all: &[AlertNews]) -> bool {
+fn is_replaced(news: &AlertChange, least: Severity, all: &[AlertChange]) -> bool {
     let of = |alert: &Alert| (alert.compass_id, alert.cause);
-    let is_next = |other: &AlertNews| {
+    let is_next = |other: &AlertChange| {
         other.kind == Kind::AlertRaised
             && other.alert.severity >= least
             && of(&other.alert) == of(&news.alert)
@@ -50,7 +50,7 @@ async fn note(
     tx: &mut Tx,
     recipient: RecipientId,
     least: Severity,
-    news: &AlertNews,
+    news: &AlertChange,
 ) -> Result<bool> {
     let alert = news.alert.id;
     let told = store::told(tx, recipient, alert).await?;
@@ -83,9 +83,9 @@ mod tests {
     use crate::ids::{AlertId, CompassId, DeliveryId, VesselId};
     use binnacle_magnetics::time::Timestamp;
 
-    fn news(kind: Kind, compass: CompassId, severity: Severity) -> AlertNews {
+    fn news(kind: Kind, compass: CompassId, severity: Severity) -> AlertChange {
         let at = Time(Timestamp::parse("2026-11-21T07:00:00Z").unwrap());
-        AlertNews {
+        AlertChange {
             id: DeliveryId::new(),
             kind,
             alert: Alert {

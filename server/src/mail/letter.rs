@@ -1,6 +1,6 @@
 //! What a letter says: plain text, so that every program shows it the same.
 
-use crate::alerts::{AlertNews, Severity};
+use crate::alerts::{AlertChange, Severity};
 use crate::ids::OperatorId;
 use crate::outbox::Kind;
 use serde::{Deserialize, Serialize};
@@ -66,7 +66,7 @@ pub(super) enum Why {
 
 impl Letter {
     /// What is new about an alert.
-    pub(super) fn of(news: &AlertNews) -> Letter {
+    pub(super) fn of(news: &AlertChange) -> Letter {
         let alert = &news.alert;
         let (subject, text) = words_of(news);
         Letter {
@@ -126,7 +126,7 @@ impl Letter {
 }
 
 /// What is new about an alert: in a line, and in full.
-pub fn words_of(news: &AlertNews) -> (String, String) {
+pub fn words_of(news: &AlertChange) -> (String, String) {
     let alert = &news.alert;
     let state = match (news.kind, news.was) {
         (Kind::AlertCleared, _) if alert.is_over() => "over".to_owned(),
@@ -144,8 +144,8 @@ pub(super) fn header(subject: &str) -> String {
     one_line(subject).replace("=?", "= ?")
 }
 
-fn text(news: &AlertNews) -> String {
-    let AlertNews { alert, kind, .. } = news;
+fn text(news: &AlertChange) -> String {
+    let AlertChange { alert, kind, .. } = news;
     let before = news.was.map(|was| format!(" ({} before)", name(was)));
     let mut lines = vec![
         format!("Vessel:   {}", one_line(&alert.vessel_name)),

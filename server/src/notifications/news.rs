@@ -6,7 +6,7 @@
 use super::kind::{Kind, Way};
 use super::settings::Settings;
 use super::store;
-use crate::alerts::{AlertNews, Severity};
+use crate::alerts::{AlertChange, Severity};
 use crate::db::{Tx, row, rows};
 use crate::error::Result;
 use crate::ids::{AlertId, OperatorId, OrderId, UserId, VesselId};
@@ -75,14 +75,14 @@ pub async fn tell(
 pub async fn tell_of_alerts(
     tx: &mut Tx,
     operator: OperatorId,
-    all: &[AlertNews],
+    all: &[AlertChange],
     now: Time,
 ) -> Result<()> {
     let news: Vec<News> = all.iter().filter_map(of_alert).collect();
     tell(tx, operator, &news, None, now).await
 }
 
-fn of_alert(news: &AlertNews) -> Option<News> {
+fn of_alert(news: &AlertChange) -> Option<News> {
     let alert = &news.alert;
     let critical = alert.severity == Severity::Critical;
     let presses = alert.severity >= Severity::Warning;

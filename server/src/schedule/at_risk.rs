@@ -3,7 +3,7 @@
 use super::gather::{Agreed, Gathered, Names};
 use super::orders::Aside;
 use super::plan::Plan;
-use crate::alerts::{AlertWanted, Cause, Dated, Evidence, Severity};
+use crate::alerts::{Cause, DesiredAlert, EventWindow, Evidence, Severity};
 use crate::ids::{CompassId, FirmId, OrderId, VesselId};
 use binnacle_schedule::input::JobState;
 use binnacle_schedule::plan::ChangeKind;
@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const STANDS: &str = "confirmed";
 
 /// Those that the plan moves or gives up.
-pub(super) fn at_risk(plan: &Plan, names: &Names) -> BTreeMap<(VesselId, CompassId), AlertWanted> {
+pub(super) fn at_risk(plan: &Plan, names: &Names) -> BTreeMap<(VesselId, CompassId), DesiredAlert> {
     let mut wanted = BTreeMap::new();
     for change in &plan.changes {
         let stands = change.what == ChangeKind::Kept && change.why == STANDS;
@@ -40,7 +40,7 @@ pub(super) fn at_risk(plan: &Plan, names: &Names) -> BTreeMap<(VesselId, Compass
 pub(super) fn aside(
     plan: &Plan,
     gathered: &Gathered,
-    wanted: &mut BTreeMap<(VesselId, CompassId), AlertWanted>,
+    wanted: &mut BTreeMap<(VesselId, CompassId), DesiredAlert>,
 ) -> BTreeSet<(VesselId, CompassId)> {
     let mut not_told = BTreeSet::new();
     let mut jobs: BTreeMap<(VesselId, FirmId, NaiveDate), Vec<&Aside>> = BTreeMap::new();
@@ -65,13 +65,13 @@ pub(super) fn aside(
     not_told
 }
 
-fn unfit(plan: &Plan, firm: &str, day: NaiveDate, why: &str, orders: &[OrderId]) -> AlertWanted {
+fn unfit(plan: &Plan, firm: &str, day: NaiveDate, why: &str, orders: &[OrderId]) -> DesiredAlert {
     let orders = orders.iter().map(|order| format!("Work order {order}."));
-    AlertWanted {
+    DesiredAlert {
         cause: Cause::AgreedJobAtRisk,
         severity: Severity::Warning,
         since: plan.solved_at,
-        dated: Dated::default(),
+        window: EventWindow::default(),
         summary: format!(
             "The adjustment agreed with {firm} for {day} does not fit any more: {why}."
         ),

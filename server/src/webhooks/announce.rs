@@ -2,7 +2,7 @@
 //! orders.
 
 use super::store;
-use crate::alerts::AlertNews;
+use crate::alerts::AlertChange;
 use crate::db::Tx;
 use crate::error::Result;
 use crate::ids::OperatorId;
@@ -15,12 +15,12 @@ use serde_json::json;
 pub async fn announce(
     tx: &mut Tx,
     operator: OperatorId,
-    news: &[AlertNews],
+    news: &[AlertChange],
     now: Time,
 ) -> Result<()> {
     for (webhook, kinds) in store::wishes(tx, operator.into()).await? {
         let wanted = news.iter().filter(|news| kinds.0.contains(&news.kind));
-        for AlertNews {
+        for AlertChange {
             id, kind, alert, ..
         } in wanted
         {

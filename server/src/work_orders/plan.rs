@@ -239,7 +239,7 @@ pub(super) async fn foretold(app: &App, standing: &Standing) -> Result<Learnt> {
 /// [`Error::NotAdjustable`] with what would cure it.
 pub(super) async fn offer(app: &App, summary: &Summary, prepared: Prepared) -> Result<Outcome> {
     let (vessel, compass) = (summary.vessel_id, summary.compass_id);
-    let alerts = alerts::in_force(&app.db, vessel, compass).await?;
+    let alerts = alerts::list_in_force(&app.db, vessel, compass).await?;
     let unproved = prepared.basis.model.headings_until;
     let mut outcome = calculate(app, move || plan(&prepared.adjustment())).await?;
     if let Some(until) = unproved {

@@ -10,7 +10,7 @@ use super::entry::{Author, Content};
 use super::news::{self, Before};
 use super::order::State;
 use super::store;
-use crate::alerts::{AlertWanted, Cause, Dated, Evidence, Severity};
+use crate::alerts::{Cause, DesiredAlert, EventWindow, Evidence, Severity};
 use crate::db::Tx;
 use crate::error::Result;
 use crate::events::Event;
@@ -179,7 +179,7 @@ pub async fn alert(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
-) -> Result<Option<AlertWanted>> {
+) -> Result<Option<DesiredAlert>> {
     let last = store::last_completed(tx, vessel, compass).await?;
     let Some((order, State::Failed, at)) = last else {
         return Ok(None);
@@ -191,12 +191,12 @@ pub async fn alert(
     Ok(Some(wanted(order, at, &verified)))
 }
 
-fn wanted(order: OrderId, at: Time, verified: &Verified) -> AlertWanted {
-    AlertWanted {
+fn wanted(order: OrderId, at: Time, verified: &Verified) -> DesiredAlert {
+    DesiredAlert {
         cause: Cause::AdjustmentNotConfirmed,
         severity: Severity::Critical,
         since: at,
-        dated: Dated::exactly(at),
+        window: EventWindow::exactly(at),
         summary: format!(
             "Headings at sea do not agree with what the adjustment foretold: {}.",
             verified.words

@@ -6,13 +6,13 @@
 //! is about one event: another of its cause is another alert, whatever people said of
 //! the first.
 
-use super::adjusted::{ADJUSTED, forget_changes, is_about_before};
-use super::alert::{Alert, AlertWanted, Cause, Severity, State};
-use super::changed::{Became, became};
+use super::after_adjustment::{ADJUSTED, forget_changes, is_about_before};
+use super::alert::{Alert, Cause, DesiredAlert, Severity, State};
+use super::change_rules::{Became, became};
 use super::limits::AlertLimits;
-use super::store::{self, Known};
-use super::wanted::{alerts_of, silence};
-use super::{aboard, cloned};
+use super::rules::{find_desired, silence};
+use super::store::{self, KnownAlert};
+use super::{agent_alerts, duplicate_agent};
 use crate::analysis::{self, Findings};
 use crate::app::App;
 use crate::db::Tx;
@@ -40,7 +40,7 @@ const FOLLOWED: &str = "another of its cause followed";
 
 /// A change of an alert: what became of it, or only other words.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct News {
+pub(super) struct PendingChange {
     pub(super) alert: AlertId,
     pub(super) became: Option<Kind>,
     /// How bad it was before, where that is another severity.
@@ -49,7 +49,7 @@ pub(super) struct News {
 
 /// What became of an alert, and how it stands then.
 #[derive(Clone, Debug)]
-pub struct AlertNews {
+pub struct AlertChange {
     /// The event's id.
     pub id: DeliveryId,
     /// What became of it.
@@ -61,7 +61,7 @@ pub struct AlertNews {
 }
 
 /// Holds a compass's alerts against its last analysis.
-pub async fn after_analysis(
+pub async fn reconcile_analysis(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
@@ -82,20 +82,20 @@ pub async fn after_analysis(
     known.retain(|alert| alert.cause.is_of_an_analysis());
     let open = known.iter().map(|alert| (alert.cause, alert.severity));
     let open: Vec<(Cause, Severity)> = open.collect();
-    let mut wanted = alerts_of(&findings, limits, &open);
+    let mut wanted = find_desired(&findings, limits, &open);
     wanted.extend(work_orders::alert(tx, vessel, compass).await?);
-    let why = |alert: &Known| match adjusted {
+    let why = |alert: &KnownAlert| match adjusted {
         Some(adjusted) if is_about_before(alert.cause, alert.since, adjusted) => ADJUSTED,
         _ => why_cleared(alert, &findings),
     };
-    let mut news = bring_in_line(tx, vessel, compass, &known, &wanted, why, now).await?;
-    news.extend(aboard::in_line(tx, vessel, compass, findings.data_until, now).await?);
-    tell(tx, vessel, &news, now).await
+    let mut news = reconcile(tx, vessel, compass, &known, &wanted, why, now).await?;
+    news.extend(agent_alerts::in_line(tx, vessel, compass, findings.data_until, now).await?);
+    publish_changes(tx, vessel, &news, now).await
 }
 
 /// What clears an alert that an analysis calls for no more. Without a model nothing is
 /// known of what the compass shows.
-fn why_cleared(alert: &Known, findings: &Findings) -> &'static str {
+fn why_cleared(alert: &KnownAlert, findings: &Findings) -> &'static str {
     match became(alert.cause, alert.since, findings) {
         Some(Became::Withdrawn) => return WITHDRAWN,
         Some(Became::Learnt) => return LEARNT,
@@ -113,13 +113,13 @@ fn why_cleared(alert: &Known, findings: &Findings) -> &'static str {
 ///
 /// # Errors
 /// When the database cannot be asked.
-pub async fn out_of_service(tx: &mut Tx, vessel: VesselId, now: Time) -> Result<Vec<Event>> {
+pub async fn end_all(tx: &mut Tx, vessel: VesselId, now: Time) -> Result<Vec<Event>> {
     let mut events = Vec::new();
     for compass in compasses::ids(tx, vessel).await? {
         store::lock(tx, vessel, compass).await?;
         let known = store::known(tx, vessel, compass).await?;
-        let news = bring_in_line(tx, vessel, compass, &known, &[], |_| OVER, now).await?;
-        events.extend(tell(tx, vessel, &news, now).await?);
+        let news = reconcile(tx, vessel, compass, &known, &[], |_| OVER, now).await?;
+        events.extend(publish_changes(tx, vessel, &news, now).await?);
     }
     Ok(events)
 }
@@ -128,7 +128,7 @@ pub async fn out_of_service(tx: &mut Tx, vessel: VesselId, now: Time) -> Result<
 ///
 /// # Errors
 /// When the database cannot be asked.
-pub async fn for_silence(app: &App) -> Result<()> {
+pub async fn check_silence(app: &App) -> Result<()> {
     let now: Time = app.clock.now().into();
     for heard in store::heard(&app.db).await? {
         let limits = match &heard.limits {
@@ -144,9 +144,9 @@ pub async fn for_silence(app: &App) -> Result<()> {
         store::lock(&mut tx, vessel, compass).await?;
         let mut known = store::known(&mut tx, vessel, compass).await?;
         known.retain(|alert| alert.cause.is_of_the_clock());
-        let wanted: Vec<AlertWanted> = wanted.into_iter().collect();
-        let news = bring_in_line(&mut tx, vessel, compass, &known, &wanted, |_| OVER, now).await?;
-        let event = tell(&mut tx, vessel, &news, now).await?;
+        let wanted: Vec<DesiredAlert> = wanted.into_iter().collect();
+        let news = reconcile(&mut tx, vessel, compass, &known, &wanted, |_| OVER, now).await?;
+        let event = publish_changes(&mut tx, vessel, &news, now).await?;
         tx.commit().await?;
         if let Some(event) = event {
             app.publish(event);
@@ -159,16 +159,16 @@ pub async fn for_silence(app: &App) -> Result<()> {
 ///
 /// # Errors
 /// When the database cannot be asked.
-pub async fn by_the_clock(app: &App) -> Result<()> {
-    for_silence(app).await?;
-    aboard::look(app).await?;
-    cloned::look(app).await
+pub async fn check_timed(app: &App) -> Result<()> {
+    check_silence(app).await?;
+    agent_alerts::look(app).await?;
+    duplicate_agent::look(app).await
 }
 
 /// Looks after alerts of the clock until the server stops.
 pub async fn watch(app: App) {
     while !app.stopping.is_cancelled() {
-        if let Err(error) = by_the_clock(&app).await {
+        if let Err(error) = check_timed(&app).await {
             error!(?error, "alerts of the clock cannot be looked for");
         }
         tokio::select! {
@@ -178,15 +178,15 @@ pub async fn watch(app: App) {
     }
 }
 
-pub(super) async fn bring_in_line(
+pub(super) async fn reconcile(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
-    known: &[Known],
-    wanted: &[AlertWanted],
-    why_cleared: impl Fn(&Known) -> &'static str,
+    known: &[KnownAlert],
+    wanted: &[DesiredAlert],
+    why_cleared: impl Fn(&KnownAlert) -> &'static str,
     now: Time,
-) -> Result<Vec<News>> {
+) -> Result<Vec<PendingChange>> {
     let in_service = vessels::is_in_service(tx, vessel).await?;
     let wanted = if in_service { wanted } else { &[] };
     let mut news = Vec::new();
@@ -201,7 +201,7 @@ pub(super) async fn bring_in_line(
         };
         store::end(tx, vessel, alert.id, why, now).await?;
         if alert.state != State::Cleared {
-            news.push(News::of(alert.id, Kind::AlertCleared));
+            news.push(PendingChange::of(alert.id, Kind::AlertCleared));
         }
     }
     for wanted in wanted {
@@ -215,21 +215,21 @@ async fn open_or_update(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
-    known: Option<&Known>,
-    wanted: &AlertWanted,
+    known: Option<&KnownAlert>,
+    wanted: &DesiredAlert,
     now: Time,
-) -> Result<Vec<News>> {
-    let raised = |alert| News::of(alert, Kind::AlertRaised);
+) -> Result<Vec<PendingChange>> {
+    let raised = |alert| PendingChange::of(alert, Kind::AlertRaised);
     let Some(known) = known else {
         let id = store::insert(tx, vessel, compass, wanted, now).await?;
         return Ok(vec![raised(id)]);
     };
     let worse = wanted.severity > known.severity;
-    let is_another = !wanted.dated.includes(known.since);
+    let is_another = !wanted.window.includes(known.since);
     let is_cleared = known.state == State::Cleared;
     if is_another || (is_cleared && worse) {
         store::end(tx, vessel, known.id, FOLLOWED, now).await?;
-        let cleared = (!is_cleared).then(|| News::of(known.id, Kind::AlertCleared));
+        let cleared = (!is_cleared).then(|| PendingChange::of(known.id, Kind::AlertCleared));
         let id = store::insert(tx, vessel, compass, wanted, now).await?;
         return Ok(cleared.into_iter().chain([raised(id)]).collect());
     }
@@ -242,7 +242,7 @@ async fn open_or_update(
         State::Acknowledged if worse => Some(Kind::AlertRaised),
         _ => Some(Kind::AlertUpdated),
     };
-    Ok(vec![News {
+    Ok(vec![PendingChange {
         alert: known.id,
         became,
         was: (wanted.severity != known.severity).then_some(known.severity),
@@ -250,10 +250,10 @@ async fn open_or_update(
 }
 
 /// Tells dashboards, within the transaction, and whoever else wants to know.
-pub(super) async fn tell(
+pub(super) async fn publish_changes(
     tx: &mut Tx,
     vessel: VesselId,
-    news: &[News],
+    news: &[PendingChange],
     now: Time,
 ) -> Result<Option<Event>> {
     if news.is_empty() {
@@ -261,12 +261,12 @@ pub(super) async fn tell(
     }
     let mut told = Vec::new();
     for news in news {
-        let News { alert, was, .. } = news;
+        let PendingChange { alert, was, .. } = news;
         let Some(kind) = news.became else {
             continue;
         };
         info!(%vessel, %alert, ?kind, "an alert changed");
-        told.push(AlertNews {
+        told.push(AlertChange {
             id: DeliveryId::new(),
             kind,
             alert: store::read(tx, vessel, *alert).await?,
@@ -280,9 +280,9 @@ pub(super) async fn tell(
     Ok(Some(event))
 }
 
-impl News {
-    pub(super) fn of(alert: AlertId, became: Kind) -> News {
-        News {
+impl PendingChange {
+    pub(super) fn of(alert: AlertId, became: Kind) -> PendingChange {
+        PendingChange {
             alert,
             became: Some(became),
             was: None,
@@ -290,8 +290,8 @@ impl News {
     }
 }
 
-impl Known {
-    fn says(&self, wanted: &AlertWanted) -> bool {
+impl KnownAlert {
+    fn says(&self, wanted: &DesiredAlert) -> bool {
         (
             self.severity,
             &self.summary,
@@ -307,7 +307,9 @@ impl Known {
 }
 
 /// The worst of some severities, with how many alerts nobody has acknowledged.
-pub fn sum<'a>(standing: impl Iterator<Item = &'a store::Standing>) -> (u32, Option<Severity>) {
+pub fn summarize<'a>(
+    standing: impl Iterator<Item = &'a store::OpenCount>,
+) -> (u32, Option<Severity>) {
     let (mut raised, mut worst) = (0, None);
     for of_a_kind in standing {
         worst = worst.max(Some(of_a_kind.severity));

@@ -31,7 +31,11 @@ pub(super) fn forget_changes(findings: &mut Findings, adjusted: Time) {
 ///
 /// # Errors
 /// When the database cannot be asked.
-pub async fn in_force(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Vec<OpenAlert>> {
+pub async fn list_in_force(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Vec<OpenAlert>> {
     let mut open = store::open_of_compass(db, vessel, compass).await?;
     let last = work_orders::completed(db, vessel, compass).await?.pop();
     if let Some(last) = last {

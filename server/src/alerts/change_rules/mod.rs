@@ -6,9 +6,9 @@
 //! each cause speaks for all. Work on correctors, compass or ship that the logbook
 //! tells of is expected and calls for none.
 
-use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
+use super::alert::{Cause, DesiredAlert, EventWindow, Evidence, Severity};
 use super::limits::AlertLimits;
-use super::wanted::sinking_slack_deg;
+use super::rules::hysteresis_deg;
 use crate::analysis::{Findings, FoundChange};
 use crate::time::Time;
 use binnacle_magnetics::change;
@@ -48,8 +48,8 @@ pub(super) fn changed(
     findings: &Findings,
     limits: &AlertLimits,
     open_at: impl Fn(Cause) -> Option<Severity>,
-) -> Vec<AlertWanted> {
-    let mut wanted: Vec<AlertWanted> = Vec::new();
+) -> Vec<DesiredAlert> {
+    let mut wanted: Vec<DesiredAlert> = Vec::new();
     for found in findings.changes.iter().rev() {
         let cause = cause_of(found.change.cause);
         let known = wanted.iter().any(|alert| alert.cause == cause);
@@ -152,7 +152,7 @@ fn holds(found: &FoundChange, stage: Stage, findings: &Findings) -> bool {
 /// Later samples date a change better, by days if they fill a gap, and may name
 /// another cause: an alert was about the change that is nearest to its date, among
 /// those of the ship, those of her references, or the others.
-fn dated(found: &FoundChange, findings: &Findings) -> Dated {
+fn dated(found: &FoundChange, findings: &Findings) -> EventWindow {
     let at = found.change.from;
     let kind =
         |cause: change::Cause| (cause.is_the_ships(), cause == change::Cause::ReferenceFault);
@@ -163,7 +163,7 @@ fn dated(found: &FoundChange, findings: &Findings) -> Dated {
         .filter(|other| *other != at)
         .partition(|other| *other < at);
     let midway = |other: Timestamp| at.plus_seconds(other.seconds_since(at) / 2.0).into();
-    Dated {
+    EventWindow {
         from: before.into_iter().max().map(midway),
         to: after.into_iter().min().map(midway),
     }
@@ -173,9 +173,9 @@ fn alert(
     found: &FoundChange,
     cause: Cause,
     stage: Stage,
-    dated: Dated,
+    window: EventWindow,
     severity: Severity,
-) -> AlertWanted {
+) -> DesiredAlert {
     let change = &found.change;
     let mut evidence = change.evidence.clone();
     let likely = change.causes.iter().filter(|c| c.probability >= UNLIKELY);
@@ -185,11 +185,11 @@ fn alert(
     if !likely.is_empty() {
         evidence.push(format!("How likely each cause is: {}.", likely.join(", ")));
     }
-    AlertWanted {
+    DesiredAlert {
         cause,
         severity,
         since: change.from.into(),
-        dated,
+        window,
         summary: summary(found, stage),
         advice: if is_compass_or_gyro(change) {
             COMPASS_OR_GYRO
@@ -215,9 +215,9 @@ fn severity(
     }
     let ahead_deg = found.size_ahead_deg.unwrap_or(0.0);
     let size_deg = found.size_deg.unwrap_or(0.0).max(ahead_deg);
-    let by_size = if size_deg >= limits.deviation_deg - sinking_slack_deg(was, Severity::Critical) {
+    let by_size = if size_deg >= limits.deviation_deg - hysteresis_deg(was, Severity::Critical) {
         Severity::Critical
-    } else if size_deg >= WARN_DEG - sinking_slack_deg(was, Severity::Warning)
+    } else if size_deg >= WARN_DEG - hysteresis_deg(was, Severity::Warning)
         || found.change.cause == change::Cause::ReferenceFault
     {
         Severity::Warning

@@ -6,10 +6,10 @@
 //! have not parted for [`QUIET_S`], by the ship's samples or the clock. An analysis
 //! neither raises it nor says anything else of it.
 
-use super::adjusted::ADJUSTED;
-use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity, State};
-use super::look::{News, OVER, bring_in_line, tell};
-use super::store::{self, Known};
+use super::after_adjustment::ADJUSTED;
+use super::alert::{Cause, DesiredAlert, EventWindow, Evidence, Severity, State};
+use super::reconcile::{OVER, PendingChange, publish_changes, reconcile};
+use super::store::{self, KnownAlert};
 use crate::app::App;
 use crate::db::{Result as DbResult, Tx, execute, rows};
 use crate::error::Result;
@@ -31,7 +31,7 @@ const NOT_JUDGED: &str = "the card by which it was judged is not in force any mo
 const CRITICAL_DEG: f64 = 10.0;
 
 /// Takes what a batch says of the ship's own alerts.
-pub async fn from_ship(
+pub async fn record_agent_alerts(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
@@ -47,7 +47,7 @@ pub async fn from_ship(
     }
     let said = alerts.iter().map(|alert| alert.at).max();
     let news = in_line(tx, vessel, compass, said, now).await?;
-    tell(tx, vessel, &news, now).await
+    publish_changes(tx, vessel, &news, now).await
 }
 
 /// Holds the ship's own alert against the time that she is known to have sailed until;
@@ -58,7 +58,7 @@ pub(super) async fn in_line(
     compass: CompassId,
     until: Option<Timestamp>,
     now: Time,
-) -> Result<Vec<News>> {
+) -> Result<Vec<PendingChange>> {
     let mut known = store::known(tx, vessel, compass).await?;
     known.retain(|alert| alert.cause == Cause::ReportedAboard);
     let spoken = spoken(tx, vessel, compass).await?;
@@ -73,7 +73,7 @@ pub(super) async fn in_line(
         ShipAlertState::NotJudged => (called_for(&spoken, known.first(), until), NOT_JUDGED),
         _ => (called_for(&spoken, known.first(), until), OVER),
     };
-    bring_in_line(tx, vessel, compass, &known, wanted.as_slice(), |_| why, now).await
+    reconcile(tx, vessel, compass, &known, wanted.as_slice(), |_| why, now).await
 }
 
 /// Looks which of these alerts have been quiet for long, where no sample tells.
@@ -84,7 +84,7 @@ pub(super) async fn look(app: &App) -> Result<()> {
         let mut tx = app.db.begin().await?;
         store::lock(&mut tx, vessel, compass).await?;
         let news = in_line(&mut tx, vessel, compass, Some(now.0), now).await?;
-        let event = tell(&mut tx, vessel, &news, now).await?;
+        let event = publish_changes(&mut tx, vessel, &news, now).await?;
         tx.commit().await?;
         if let Some(event) = event {
             app.publish(event);
@@ -96,9 +96,9 @@ pub(super) async fn look(app: &App) -> Result<()> {
 /// The alert that what the ship said calls for, the latest first.
 fn called_for(
     spoken: &[ShipAlert],
-    known: Option<&Known>,
+    known: Option<&KnownAlert>,
     until: Option<Timestamp>,
-) -> Option<AlertWanted> {
+) -> Option<DesiredAlert> {
     let last = spoken.first()?;
     let alert = if last.state == ShipAlertState::Open {
         wanted(last)
@@ -114,11 +114,11 @@ fn called_for(
         return Some(alert);
     }
     let since: Time = since(spoken).unwrap_or(last.since).into();
-    Some(AlertWanted {
+    Some(DesiredAlert {
         since,
-        dated: Dated {
+        window: EventWindow {
             from: Some(since),
-            ..alert.dated
+            ..alert.window
         },
         ..alert
     })
@@ -172,7 +172,7 @@ async fn spoken(tx: &mut Tx, vessel: VesselId, compass: CompassId) -> Result<Vec
 }
 
 /// What is said of one that is not open, and was until lately.
-fn quiet(last: &ShipAlert, known: &Known) -> AlertWanted {
+fn quiet(last: &ShipAlert, known: &KnownAlert) -> DesiredAlert {
     let (who, _) = words(last);
     let since = Time(last.at).to_the_minute();
     let (so, advice) = match last.state {
@@ -186,7 +186,7 @@ fn quiet(last: &ShipAlert, known: &Known) -> AlertWanted {
              clears itself.",
         ),
     };
-    AlertWanted {
+    DesiredAlert {
         severity: known.severity,
         summary: format!("{who} parted, reported by the ship's agent; {so}."),
         advice,
@@ -194,7 +194,7 @@ fn quiet(last: &ShipAlert, known: &Known) -> AlertWanted {
     }
 }
 
-fn wanted(alert: &ShipAlert) -> AlertWanted {
+fn wanted(alert: &ShipAlert) -> DesiredAlert {
     let size_deg = alert.departure_deg().abs();
     let severity = if size_deg > CRITICAL_DEG {
         Severity::Critical
@@ -219,11 +219,11 @@ fn wanted(alert: &ShipAlert) -> AlertWanted {
         alert.limit_deg
     ));
     let (who, advice) = words(alert);
-    AlertWanted {
+    DesiredAlert {
         cause: Cause::ReportedAboard,
         severity,
         since: alert.since.into(),
-        dated: Dated::exactly(alert.since.into()),
+        window: EventWindow::exactly(alert.since.into()),
         summary: format!("{who} parted by {size_deg:.0}°, reported by the ship's agent."),
         advice,
         evidence: Evidence(evidence),
@@ -272,7 +272,7 @@ mod tests {
     use binnacle_magnetics::time::Timestamp;
     use uuid::Uuid;
 
-    fn said(gyro: Option<f64>, satellite: Option<f64>) -> AlertWanted {
+    fn said(gyro: Option<f64>, satellite: Option<f64>) -> DesiredAlert {
         let at = Timestamp::parse("2026-11-21T07:00:00Z").unwrap();
         wanted(&ShipAlert {
             id: Uuid::from_u128(1),

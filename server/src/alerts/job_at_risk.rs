@@ -4,8 +4,8 @@
 //! What always holds: they are raised and cleared in the transaction that keeps the
 //! schedule that found them, and each compass has one.
 
-use super::alert::{AlertWanted, Cause};
-use super::look::{OVER, bring_in_line, tell};
+use super::alert::{Cause, DesiredAlert};
+use super::reconcile::{OVER, publish_changes, reconcile};
 use super::store;
 use crate::db::{Tx, rows};
 use crate::error::Result;
@@ -16,10 +16,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Brings an operator's alerts of this cause in line with what a schedule found, but those
 /// that it could not tell of: they stay as they are.
-pub async fn of_schedule(
+pub async fn reconcile_jobs_at_risk(
     tx: &mut Tx,
     operator: OperatorId,
-    mut wanted: BTreeMap<(VesselId, CompassId), AlertWanted>,
+    mut wanted: BTreeMap<(VesselId, CompassId), DesiredAlert>,
     not_told: &BTreeSet<(VesselId, CompassId)>,
     now: Time,
 ) -> Result<Vec<Event>> {
@@ -42,9 +42,9 @@ pub async fn of_schedule(
         store::lock(tx, vessel, compass).await?;
         let mut known = store::known(tx, vessel, compass).await?;
         known.retain(|alert| alert.cause == Cause::AgreedJobAtRisk);
-        let wanted: Vec<AlertWanted> = wanted.remove(&(vessel, compass)).into_iter().collect();
-        let news = bring_in_line(tx, vessel, compass, &known, &wanted, |_| OVER, now).await?;
-        events.extend(tell(tx, vessel, &news, now).await?);
+        let wanted: Vec<DesiredAlert> = wanted.remove(&(vessel, compass)).into_iter().collect();
+        let news = reconcile(tx, vessel, compass, &known, &wanted, |_| OVER, now).await?;
+        events.extend(publish_changes(tx, vessel, &news, now).await?);
     }
     Ok(events)
 }

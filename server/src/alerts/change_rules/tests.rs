@@ -36,7 +36,7 @@ fn found(cause: Found, size_deg: f64) -> FoundChange {
 }
 
 /// A ship that has sailed for so many days since, with such a band by now.
-fn sailed(changes: Vec<FoundChange>, days: f64, band95_deg: Option<f64>) -> Vec<AlertWanted> {
+fn sailed(changes: Vec<FoundChange>, days: f64, band95_deg: Option<f64>) -> Vec<DesiredAlert> {
     known_as(None, changes, days, band95_deg)
 }
 
@@ -46,7 +46,7 @@ fn known_as(
     changes: Vec<FoundChange>,
     days: f64,
     band95_deg: Option<f64>,
-) -> Vec<AlertWanted> {
+) -> Vec<DesiredAlert> {
     let findings = Findings {
         epoch_from: changes.last().map(|found| found.change.from),
         data_until: changes
@@ -228,7 +228,7 @@ fn an_alert_was_about_the_change_nearest_to_its_date() {
     let after_first =
         |seconds: f64| -> crate::time::Time { first.change.from.plus_seconds(seconds).into() };
     let alone = sailed(vec![first.clone()], 0.0, None);
-    assert!(alone[0].dated.includes(after_first(5.0 * 86_400.0)));
+    assert!(alone[0].window.includes(after_first(5.0 * 86_400.0)));
 
     // The first is taken for something else by now.
     let mut renamed = first.clone();
@@ -237,8 +237,8 @@ fn an_alert_was_about_the_change_nearest_to_its_date() {
         let wanted = sailed(vec![earlier, storm.clone(), second.clone()], 0.0, None);
         let struck = &wanted[0];
         assert_eq!(struck.since, second.change.from.into());
-        assert!(!struck.dated.includes(after_first(3600.0)));
-        assert!(struck.dated.includes(after_first(80_000.0)));
+        assert!(!struck.window.includes(after_first(3600.0)));
+        assert!(struck.window.includes(after_first(80_000.0)));
     }
 }
 
@@ -250,8 +250,8 @@ fn a_second_fault_of_a_reference_is_another_alert() {
     second.change.from = at("2026-11-21T12:00:00Z");
     let wanted = sailed(vec![first, second], 0.1, Some(1.0));
     assert_eq!(wanted.len(), 1);
-    assert!(!wanted[0].dated.includes(at("2026-11-18T12:00:00Z").into()));
-    assert!(wanted[0].dated.includes(at("2026-11-21T12:00:00Z").into()));
+    assert!(!wanted[0].window.includes(at("2026-11-18T12:00:00Z").into()));
+    assert!(wanted[0].window.includes(at("2026-11-21T12:00:00Z").into()));
 }
 
 #[test]

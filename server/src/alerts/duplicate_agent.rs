@@ -5,8 +5,8 @@
 //! the first one's files. It is raised in the transaction that stores the batch; it is
 //! over when the agent's token is revoked, or when nothing has shown it for a week.
 
-use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
-use super::look::{OVER, bring_in_line, tell};
+use super::alert::{Cause, DesiredAlert, EventWindow, Evidence, Severity};
+use super::reconcile::{OVER, publish_changes, reconcile};
 use super::store;
 use crate::access::Agent;
 use crate::app::App;
@@ -27,7 +27,7 @@ struct Newer {
 }
 
 /// Takes that a new batch came in a stream.
-pub async fn from_batch(
+pub async fn check_duplicate_agent(
     tx: &mut Tx,
     agent: Agent,
     stream: Uuid,
@@ -53,7 +53,7 @@ pub async fn from_batch(
 }
 
 /// The agent is known no more, and so none of the two is.
-pub async fn agent_revoked(tx: &mut Tx, agent: Agent, now: Time) -> Result<Option<Event>> {
+pub async fn end_duplicate_agent(tx: &mut Tx, agent: Agent, now: Time) -> Result<Option<Event>> {
     in_line(tx, agent.vessel_id, agent.compass_id, &[], now).await
 }
 
@@ -76,22 +76,22 @@ async fn in_line(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
-    wanted: &[AlertWanted],
+    wanted: &[DesiredAlert],
     now: Time,
 ) -> Result<Option<Event>> {
     store::lock(tx, vessel, compass).await?;
     let mut known = store::known(tx, vessel, compass).await?;
     known.retain(|alert| alert.cause == Cause::ClonedAgent);
-    let news = bring_in_line(tx, vessel, compass, &known, wanted, |_| OVER, now).await?;
-    tell(tx, vessel, &news, now).await
+    let news = reconcile(tx, vessel, compass, &known, wanted, |_| OVER, now).await?;
+    publish_changes(tx, vessel, &news, now).await
 }
 
-fn wanted(stream: Uuid, seq: u64, newer: &Newer) -> AlertWanted {
-    AlertWanted {
+fn wanted(stream: Uuid, seq: u64, newer: &Newer) -> DesiredAlert {
+    DesiredAlert {
         cause: Cause::ClonedAgent,
         severity: Severity::Warning,
         since: newer.opened_at,
-        dated: Dated::default(),
+        window: EventWindow::default(),
         summary: "Two computers send as this compass's agent: one has a copy of the other's \
                   files."
             .to_owned(),

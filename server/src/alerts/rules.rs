@@ -1,12 +1,12 @@
 //! Which alerts a compass's analysis calls for.
 //!
-//! What always holds: [`alerts_of`] is a pure function of what was found, the
+//! What always holds: [`find_desired`] is a pure function of what was found, the
 //! vessel's limits and what is open already; it names each cause once. A limit that
 //! was passed is left only [`SLACK_DEG`] below it, so that an alert does not come
 //! and go with every batch, nor rise and sink.
 
-use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
-use super::changed::changed;
+use super::alert::{Cause, DesiredAlert, EventWindow, Evidence, Severity};
+use super::change_rules::changed;
 use super::limits::AlertLimits;
 use crate::analysis::{FailedLately, Findings, LeftOut};
 use crate::deviation::Worst;
@@ -24,11 +24,11 @@ const FAILED_SHARE: f64 = 0.1;
 const FAILED_SAMPLES: u64 = 3;
 
 /// The alerts that ought to be open; `open` are the causes that are, and how bad.
-pub fn alerts_of(
+pub fn find_desired(
     findings: &Findings,
     limits: &AlertLimits,
     open: &[(Cause, Severity)],
-) -> Vec<AlertWanted> {
+) -> Vec<DesiredAlert> {
     let open_at = |cause| {
         let known = open.iter().find(|(known, _)| *known == cause);
         known.map(|(_, severity)| *severity)
@@ -80,13 +80,13 @@ pub fn alerts_of(
 }
 
 /// What calls for an alert when nothing has come since `last`.
-pub fn silence(last: Time, limits: &AlertLimits, now: Time) -> Option<AlertWanted> {
+pub fn silence(last: Time, limits: &AlertLimits, now: Time) -> Option<DesiredAlert> {
     let days = now.0.seconds_since(last.0) / 86_400.0;
-    (days > limits.silent_days).then(|| AlertWanted {
+    (days > limits.silent_days).then(|| DesiredAlert {
         cause: Cause::SilentAgent,
         severity: Severity::Notice,
         since: last,
-        dated: Dated::default(),
+        window: EventWindow::default(),
         summary: format!(
             "Nothing has come from the vessel's agent for more than {} days.",
             limits.silent_days
@@ -101,7 +101,7 @@ pub fn silence(last: Time, limits: &AlertLimits, now: Time) -> Option<AlertWante
 }
 
 /// How far below what made an alert so bad the figure must be, for one that has been.
-pub(super) fn sinking_slack_deg(was: Option<Severity>, severity: Severity) -> f64 {
+pub(super) fn hysteresis_deg(was: Option<Severity>, severity: Severity) -> f64 {
     if was >= Some(severity) {
         SLACK_DEG
     } else {
@@ -114,13 +114,13 @@ fn over_limit(
     limits: &AlertLimits,
     data_until: Timestamp,
     was: Option<Severity>,
-) -> AlertWanted {
+) -> DesiredAlert {
     let size_deg = worst.deviation_deg.abs();
     let surely_deg = size_deg - worst.band95_deg.unwrap_or(0.0);
     let severity =
-        if size_deg > 2.0 * limits.deviation_deg - sinking_slack_deg(was, Severity::Critical) {
+        if size_deg > 2.0 * limits.deviation_deg - hysteresis_deg(was, Severity::Critical) {
             Severity::Critical
-        } else if surely_deg > limits.deviation_deg - sinking_slack_deg(was, Severity::Warning) {
+        } else if surely_deg > limits.deviation_deg - hysteresis_deg(was, Severity::Warning) {
             Severity::Warning
         } else {
             Severity::Notice
@@ -137,11 +137,11 @@ fn over_limit(
             .band95_deg
             .map(|band_deg| format!("Its 95 % band there is ±{band_deg:.1}°.")),
     );
-    AlertWanted {
+    DesiredAlert {
         cause: Cause::DeviationOverLimit,
         severity,
         since: data_until.into(),
-        dated: Dated::default(),
+        window: EventWindow::default(),
         summary: format!(
             "Deviation is {size_deg:.1}° {side} on compass heading {heading}{stands}."
         ),
@@ -160,12 +160,12 @@ fn stands(figure_deg: f64, limit_deg: f64) -> String {
     format!(": it was over the limit of {limit_deg}° and has not yet fallen to {ends_deg}°")
 }
 
-fn no_model(refusal: &str, left_out: LeftOut, from: Timestamp) -> AlertWanted {
-    AlertWanted {
+fn no_model(refusal: &str, left_out: LeftOut, from: Timestamp) -> DesiredAlert {
+    DesiredAlert {
         cause: Cause::NoModel,
         severity: Severity::Notice,
         since: from.into(),
-        dated: Dated::default(),
+        window: EventWindow::default(),
         summary: "Samples have come for more than a week, but no model could be made of them."
             .to_owned(),
         advice: "Use no deviation card of earlier date. Take azimuths, and let the ship lie on \
@@ -174,12 +174,12 @@ fn no_model(refusal: &str, left_out: LeftOut, from: Timestamp) -> AlertWanted {
     }
 }
 
-fn wide_band(band_deg: f64, limits: &AlertLimits, from: Timestamp) -> AlertWanted {
-    AlertWanted {
+fn wide_band(band_deg: f64, limits: &AlertLimits, from: Timestamp) -> DesiredAlert {
+    DesiredAlert {
         cause: Cause::WideBand,
         severity: Severity::Notice,
         since: from.into(),
-        dated: Dated::default(),
+        window: EventWindow::default(),
         summary: format!(
             "On some heading the deviation is known only to ±{band_deg:.1}°{}.",
             stands(band_deg, limits.band95_deg)
@@ -197,12 +197,12 @@ const TRUST_NEITHER: &str = "Check both against an azimuth, and the alignment an
      latitude settings of the gyro. Until then take neither as the compass's true heading; the \
      magnetic compass itself is not suspected.";
 
-fn disagree(offset_deg: f64, findings: &Findings, data_until: Timestamp) -> AlertWanted {
-    AlertWanted {
+fn disagree(offset_deg: f64, findings: &Findings, data_until: Timestamp) -> DesiredAlert {
+    DesiredAlert {
         cause: Cause::ReferenceFault,
         severity: Severity::Warning,
         since: findings.epoch_data_from.unwrap_or(data_until).into(),
-        dated: Dated::default(),
+        window: EventWindow::default(),
         summary: format!(
             "Gyro and satellite compass differ by {:.1}° throughout, more than any alignment \
              explains: one of them is wrong.",
@@ -219,12 +219,12 @@ fn disagree(offset_deg: f64, findings: &Findings, data_until: Timestamp) -> Aler
     }
 }
 
-fn one_failed(failed: &FailedLately) -> AlertWanted {
-    AlertWanted {
+fn one_failed(failed: &FailedLately) -> DesiredAlert {
+    DesiredAlert {
         cause: Cause::ReferenceFault,
         severity: Severity::Warning,
         since: failed.from.into(),
-        dated: Dated::default(),
+        window: EventWindow::default(),
         summary: format!(
             "Gyro and satellite compass parted: lately they departed by {:.1}° from their usual \
              difference.",
@@ -280,7 +280,7 @@ mod tests {
     }
 
     fn causes(findings: &Findings, open: &[(Cause, Severity)]) -> Vec<(Cause, Severity)> {
-        let wanted = alerts_of(findings, &AlertLimits::default(), open);
+        let wanted = find_desired(findings, &AlertLimits::default(), open);
         wanted
             .iter()
             .map(|alert| (alert.cause, alert.severity))
@@ -305,7 +305,7 @@ mod tests {
             let findings = with_worst(deviation_deg, 1.0);
             assert_eq!(causes(&findings, &[]), expected, "{deviation_deg}");
         }
-        let wanted = alerts_of(&with_worst(-6.1, 1.0), &AlertLimits::default(), &[]);
+        let wanted = find_desired(&with_worst(-6.1, 1.0), &AlertLimits::default(), &[]);
         assert!(
             wanted[0].summary.contains("6.1° W on compass heading 095°"),
             "{wanted:?}"
@@ -315,7 +315,7 @@ mod tests {
     #[test]
     fn an_open_alert_stays_until_the_figure_is_well_below_its_limit() {
         let open = [(Cause::DeviationOverLimit, Severity::Notice)];
-        let wanted = alerts_of(&with_worst(-4.9, 1.0), &AlertLimits::default(), &open);
+        let wanted = find_desired(&with_worst(-4.9, 1.0), &AlertLimits::default(), &open);
         assert_eq!(
             wanted[0].summary,
             "Deviation is 4.9° W on compass heading 095°: it was over the limit of 5° and has not \
