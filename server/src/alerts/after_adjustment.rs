@@ -1,36 +1,27 @@
-//! What an adjustment brings to an end: alerts about the ship as she was before it.
+//! Alerts about the ship before an adjustment, which the adjustment ends.
 //!
-//! What always holds: from the moment of an adjustment that an order completed the card that
-//! it foretold is the one in force, until headings at sea speak against it; then the order's
-//! own alert does. What was found before it of gyro or satellite compass, or of the compass
-//! itself, stands.
+//! Invariants:
+//!
+//! - From an adjustment that a work order completed, the card that it predicts is in force until
+//!   headings at sea contradict it. Then the order's own alert counts.
+//! - Alerts about gyro, satellite compass or the compass itself stand.
 
-use super::alert::Cause;
+use super::cause::Cause;
+use super::causes::UnconfirmedAdjustment;
 use super::store::{self, OpenAlert};
 use crate::analysis::Findings;
-use crate::db::Db;
+use crate::db::{Db, Tx};
 use crate::error::Result;
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
 use crate::work_orders;
 
-/// Why such an alert cleared itself.
-pub(super) const ADJUSTED: &str = "the compass has been adjusted since: the card that was foretold \
-                                   then holds until headings at sea verify it, or speak against it";
-
-/// Takes out the changes of the ship that lie before an adjustment.
-pub(super) fn forget_changes(findings: &mut Findings, adjusted: Time) {
-    findings.changes.retain(|found| {
-        let change = &found.change;
-        !change.cause.is_the_ships() || Time(change.from) >= adjusted
-    });
-}
-
-/// The alerts of a compass that are not cleared, the newest first; without those about the
-/// ship as she was before its last adjustment, which the next analysis clears.
+/// Lists a compass's alerts that are not cleared, the newest first.
+///
+/// Those about the ship before its last adjustment are left out: the next analysis clears them.
 ///
 /// # Errors
-/// When the database cannot be asked.
+/// Fails when the database does.
 pub async fn list_in_force(
     db: &Db,
     vessel: VesselId,
@@ -39,24 +30,38 @@ pub async fn list_in_force(
     let mut open = store::open_of_compass(db, vessel, compass).await?;
     let last = work_orders::completed(db, vessel, compass).await?.pop();
     if let Some(last) = last {
-        open.retain(|alert| !is_about_before(alert.cause, alert.since, last.at));
+        open.retain(|alert| !is_ended_by(last.at, alert.cause, alert.since));
     }
     Ok(open)
 }
 
-/// Whether an alert is about the ship as she was before an adjustment.
-pub(super) fn is_about_before(cause: Cause, since: Time, adjusted: Time) -> bool {
-    let is_the_ships = matches!(
-        cause,
-        Cause::DeviationOverLimit
-            | Cause::WideBand
-            | Cause::NoModel
-            | Cause::LightningOrShock
-            | Cause::MagneticCargo
-            | Cause::Drift
-            | Cause::Alignment
-            | Cause::UnknownChange
-            | Cause::AdjustmentNotConfirmed
-    );
-    is_the_ships && since < adjusted
+/// Returns the time of a compass's last adjustment by a work order.
+pub(super) async fn adjusted_at(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<Time>> {
+    work_orders::adjusted_at(tx, vessel, compass).await
+}
+
+/// Returns a compass's last adjustment, if headings at sea contradict it.
+pub(super) async fn unconfirmed(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<UnconfirmedAdjustment>> {
+    work_orders::unconfirmed_adjustment(tx, vessel, compass).await
+}
+
+/// Removes the changes of the ship that lie before an adjustment.
+pub(super) fn remove_earlier_changes(findings: &mut Findings, adjusted: Time) {
+    findings.changes.retain(|found| {
+        let change = &found.change;
+        !change.cause.is_the_ships() || Time(change.from) >= adjusted
+    });
+}
+
+/// Tells whether an adjustment ends an alert that began at `since`.
+pub(super) fn is_ended_by(adjusted: Time, cause: Cause, since: Time) -> bool {
+    cause.row().ends_with_adjustment && since < adjusted
 }

@@ -134,7 +134,7 @@ pub fn words_of(news: &AlertChange) -> (String, String) {
         (_, Some(was)) if was > alert.severity => format!("only {} now", name(alert.severity)),
         _ => name(alert.severity).to_owned(),
     };
-    let subject = format!("{}: {state}, {}", alert.vessel_name, alert.cause.words());
+    let subject = format!("{}: {state}, {}", alert.vessel_name, alert.cause.title());
     (one_line(&subject), text(news))
 }
 

@@ -156,7 +156,7 @@ async fn keep(app: &App, operator: OperatorId, plan: &Plan, gathered: &Gathered)
     let mut wanted = at_risk(plan, &gathered.names);
     let not_told = aside(plan, gathered, &mut wanted);
     let mut told =
-        alerts::reconcile_jobs_at_risk(&mut tx, operator, wanted, &not_told, plan.solved_at)
+        alerts::reconcile_jobs_at_risk(&mut tx, operator, &wanted, &not_told, plan.solved_at)
             .await?;
     for vessel in store::told(plan) {
         let kind = events::Kind::Schedule;

@@ -60,7 +60,7 @@ pub use offering::NewOffer;
 pub use order::{NewOrder, State};
 pub use refusal::{Cure, Refusal};
 pub use store::{is_any_under_way, lock_compass, must_not_be_adjusting};
-pub use verification::{adjusted_at, after_analysis, alert};
+pub use verification::{adjusted_at, after_analysis, unconfirmed_adjustment};
 
 use crate::access::{PartyReader, PartyWriter, Writer};
 use crate::app::App;

@@ -1,4 +1,14 @@
-use super::*;
+//! Alerts from changes that the detector found.
+
+use crate::alerts::alert::Severity;
+use crate::alerts::cause::Cause;
+use crate::alerts::causes::CAUSES;
+use crate::alerts::causes::change_rules::{Outcome, outcome};
+use crate::alerts::causes::evaluate::evaluate_changes;
+use crate::alerts::desired::DesiredAlert;
+use crate::alerts::limits::AlertLimits;
+use crate::analysis::{Findings, FoundChange};
+use crate::time::Time;
 use binnacle_magnetics::change::{Cause as Found, CauseProbability, Change};
 use binnacle_magnetics::time::Timestamp;
 
@@ -56,7 +66,9 @@ fn known_as(
         changes,
         ..Findings::default()
     };
-    changed(&findings, &AlertLimits::default(), |_| was)
+    let open = CAUSES.iter().filter_map(|row| Some((row.cause, was?)));
+    let open: Vec<(Cause, Severity)> = open.collect();
+    evaluate_changes(&findings, &AlertLimits::default(), &open)
 }
 
 #[test]
@@ -149,12 +161,12 @@ fn a_change_that_became_calls_for_no_alert_and_clears_its_own() {
         changes: vec![change.clone()],
         ..Findings::default()
     };
-    let of = |cause, change: &FoundChange| became(cause, told, &findings(change));
+    let of = |cause, change: &FoundChange| outcome(cause, told, &findings(change));
     let lightning = Cause::LightningOrShock;
-    assert_eq!(of(lightning, &none), Some(Became::Learnt));
+    assert_eq!(of(lightning, &none), Some(Outcome::Learned));
     (none.change.confirmed, none.change.withdrawn) = (false, true);
     none.change.ended = Some(at("2026-11-20T00:00:00Z"));
-    assert_eq!(of(lightning, &none), Some(Became::Withdrawn));
+    assert_eq!(of(lightning, &none), Some(Outcome::Withdrawn));
     assert_eq!(of(Cause::MagneticCargo, &none), None);
     assert_eq!(sailed(vec![none], 0.5, Some(1.0)), []);
 }
@@ -166,7 +178,7 @@ fn only_what_ended_is_over() {
     let told: Time = struck.change.from.into();
     let of = |cause, change: &FoundChange| {
         let changes = vec![change.clone()];
-        became(
+        outcome(
             cause,
             told,
             &Findings {
@@ -175,8 +187,8 @@ fn only_what_ended_is_over() {
             },
         )
     };
-    assert_eq!(of(Cause::LightningOrShock, &struck), Some(Became::Learnt));
-    assert_eq!(of(Cause::Drift, &struck), Some(Became::Renamed));
+    assert_eq!(of(Cause::LightningOrShock, &struck), Some(Outcome::Learned));
+    assert_eq!(of(Cause::Drift, &struck), Some(Outcome::Renamed));
     struck.change.ended = Some(at("2026-11-20T00:00:00Z"));
     assert_eq!(of(Cause::LightningOrShock, &struck), None);
     let storm = found(Found::MagneticStorm, 3.0);
