@@ -19,34 +19,36 @@ pub enum Cause {
     ReferenceFault,
     /// The magnetic compass sticks, repeats itself or swings.
     CompassFault,
-    /// A strike, or a heavy blow to the hull.
+    /// Lightning, or a heavy blow to the hull.
     LightningOrShock,
     /// Steel, scrap or the like on board.
     MagneticCargo,
-    /// The ship's magnetism wandered off.
+    /// Slow drift of the ship's magnetism.
     Drift,
-    /// The compass's zero moved: its lubber line, its seat, or its sensor.
+    /// Shift of the compass's zero: of its lubber line, its seat, or its sensor.
     Alignment,
-    /// The earth's crust, at a place.
+    /// Local anomaly of the earth's crust.
     LocalAnomaly,
-    /// The sun, for hours.
+    /// Magnetic storm, for hours.
     MagneticStorm,
-    /// The quay's and its cranes' iron.
+    /// Iron of the quay and its cranes.
     BerthSteel,
-    /// A change of which no cause is likely.
+    /// A change without a likely cause.
     UnknownChange,
-    /// Headings at sea do not agree with what an adjustment foretold.
+    /// Headings at sea contradict the prediction of an adjustment.
     AdjustmentNotConfirmed,
-    /// An adjustment that was agreed with a firm does not fit any more.
+    /// An adjustment that was agreed with a firm no longer fits the schedule.
     AgreedJobAtRisk,
-    /// The ship's agent says that compass and gyro have parted.
-    ReportedAboard,
-    /// Nothing has come from the vessel for too long.
+    /// The ship's agent reports that compass and gyro have parted.
+    #[serde(rename = "reported_aboard")]
+    #[sqlx(rename = "reported_aboard")]
+    ReportedByAgent,
+    /// The vessel has uploaded nothing for too long.
     SilentAgent,
     /// Two computers send as one agent.
     ClonedAgent,
-    /// There is no model although samples have come for a while.
+    /// There is no model although there have been samples for a while.
     NoModel,
-    /// The model is less certain than the vessel's limit asks.
+    /// The model is less certain than the vessel's limit requires.
     WideBand,
 }

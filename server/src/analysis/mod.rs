@@ -21,8 +21,8 @@ mod store;
 mod track;
 mod worker;
 
-pub use disturbances::{sharpen, sharpen_in};
-pub use findings::{FailedLately, Findings, FoundChange, findings_of};
+pub use disturbances::{compare_with_fleet, compare_with_fleet_in};
+pub use findings::{FailedLately, Findings, FoundChange};
 pub use input::{Input, input_hash};
 pub use left_out::LeftOut;
 pub use queue::{Job, claim, count as count_jobs, enqueue, enqueue_outdated, renew};

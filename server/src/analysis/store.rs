@@ -1,6 +1,6 @@
 //! What an analysis leaves in the database.
 
-use super::disturbances::keep_disturbances;
+use super::disturbances::store_disturbances;
 use super::findings::Findings;
 use super::left_out::LeftOut;
 use super::track::track;
@@ -246,7 +246,7 @@ pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option
     )?;
     save_diagnostics(tx, found).await?;
     let (vessel, compass) = (found.vessel_id, found.compass_id);
-    keep_disturbances(tx, vessel, compass, &found.findings, now).await?;
+    store_disturbances(tx, vessel, compass, &found.findings, now).await?;
     let next = next_model(found, now)?;
     let next = next.filter(|next| {
         foretold.is_none_or(|known| {

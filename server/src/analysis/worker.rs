@@ -1,6 +1,6 @@
 //! Takes jobs from the queue, one after the other.
 
-use super::findings::findings_of;
+use super::findings::Findings;
 use super::store::{Covered, Found};
 use super::{input, queue, store};
 use crate::app::App;
@@ -192,7 +192,7 @@ async fn analyse_compass(
             vessel_id,
             compass_id,
             input_hash,
-            findings: findings_of(&analysis, &input.logbook),
+            findings: Findings::from_analysis(&analysis, &input.logbook),
             analysis,
             covered,
         }))

@@ -19,8 +19,8 @@ const QUIET_S: f64 = 6.0 * 3600.0;
 const CRITICAL_DEG: f64 = 10.0;
 
 /// Compass and reference parted, by the agent's own comparison.
-pub(super) const REPORTED_ABOARD: CauseRow = CauseRow {
-    cause: Cause::ReportedAboard,
+pub(super) const REPORTED_BY_AGENT: CauseRow = CauseRow {
+    cause: Cause::ReportedByAgent,
     title: "compass and gyro parted, says the ship",
     finders: &[Finder::AgentReports(reported)],
     severity,

@@ -24,7 +24,7 @@ pub(in crate::alerts) static CAUSES: [CauseRow; 18] = [
     model_quality::WIDE_BAND,
     adjustments::ADJUSTMENT_NOT_CONFIRMED,
     adjustments::AGREED_JOB_AT_RISK,
-    agent_reports::REPORTED_ABOARD,
+    agent_reports::REPORTED_BY_AGENT,
     agent_link::SILENT_AGENT,
     agent_link::CLONED_AGENT,
 ];

@@ -32,7 +32,7 @@ pub async fn reconcile_analysis(
         return Ok(None);
     };
     let mut findings: Findings = serde_json::from_str(&findings)?;
-    analysis::sharpen_in(tx, vessel, &mut findings).await?;
+    analysis::compare_with_fleet_in(tx, vessel, &mut findings).await?;
     let adjusted = adjusted_at(tx, vessel, compass).await?;
     if let Some(adjusted) = adjusted {
         remove_earlier_changes(&mut findings, adjusted);

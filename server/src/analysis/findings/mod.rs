@@ -7,4 +7,4 @@ mod change_findings;
 mod summary;
 
 pub use change_findings::FoundChange;
-pub use summary::{FailedLately, Findings, findings_of};
+pub use summary::{FailedLately, Findings};

@@ -53,5 +53,5 @@ fn only_what_goes_quiet_is_ended_by_the_clock() {
 fn only_a_compass_that_cannot_be_trusted_has_no_card() {
     let blocked = CAUSES.iter().filter(|row| row.on_card == Effect::Block);
     let blocked: Vec<Cause> = blocked.map(|row| row.cause).collect();
-    assert_eq!(blocked, [Cause::CompassFault, Cause::ReportedAboard]);
+    assert_eq!(blocked, [Cause::CompassFault, Cause::ReportedByAgent]);
 }
