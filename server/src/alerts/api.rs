@@ -56,7 +56,7 @@ async fn find_alert(
 
 /// Acknowledge an alert
 ///
-/// Someone knows and sees to it. Acknowledging it again changes nothing.
+/// Records that someone is dealing with it. Acknowledging it again changes nothing.
 #[utoipa::path(post, path = "/alerts/{id}/acknowledge", tag = "alerts",
     params(("id" = AlertId, Path)), request_body = Option<Acknowledgement>,
     responses((status = 200, body = Alert), (status = 401, body = Problem),

@@ -57,7 +57,7 @@ impl fmt::Display for LeftOut {
         let kinds = kinds.join(" and ");
         write!(
             f,
-            "; by entries of the logbook samples are left out: {kinds}"
+            "; because of logbook entries, samples are left out: {kinds}"
         )
     }
 }

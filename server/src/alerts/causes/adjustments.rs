@@ -9,12 +9,12 @@ use crate::alerts::desired::EventWindow;
 /// Open as long as the work order stands failed.
 pub(super) const ADJUSTMENT_NOT_CONFIRMED: CauseRow = CauseRow {
     cause: Cause::AdjustmentNotConfirmed,
-    title: "an adjustment that the sea does not confirm",
+    title: "adjustment not confirmed at sea",
     finders: &[Finder::Verification(not_confirmed)],
     severity: |_| Severity::Critical,
     advice: |_| {
-        "Do not use the predicted card. Take azimuths on all headings, look whether the correctors \
-         stand as the record says, and have the ship swung or adjusted again."
+        "Do not use the predicted card. Take azimuths on all headings, check that the correctors \
+         stand as recorded, and have the ship swung or adjusted again."
     },
     on_card: Effect::Note,
     on_plan: Effect::Note,
@@ -26,12 +26,12 @@ pub(super) const ADJUSTMENT_NOT_CONFIRMED: CauseRow = CauseRow {
 /// An ETA moved past the due date, a port call was cancelled, the firm has fewer teams.
 pub(super) const AGREED_JOB_AT_RISK: CauseRow = CauseRow {
     cause: Cause::AgreedJobAtRisk,
-    title: "an agreed adjustment that does not fit any more",
+    title: "agreed adjustment no longer fits",
     finders: &[Finder::Schedule(at_risk)],
     severity: |_| Severity::Warning,
     advice: |_| {
-        "Agree on another time with the firm, or cancel its order and offer the job as the \
-         schedule has it now."
+        "Agree on another time with the firm, or cancel its order and offer the job as it is \
+         scheduled now."
     },
     on_card: Effect::None,
     on_plan: Effect::None,
@@ -53,7 +53,7 @@ fn not_confirmed(adjustment: &UnconfirmedAdjustment) -> Condition {
         ..Condition::new(
             at,
             format!(
-                "Headings at sea do not agree with what the adjustment foretold: {}.",
+                "Headings at sea do not agree with the prediction of the adjustment: {}.",
                 adjustment.verdict
             ),
         )
@@ -67,7 +67,7 @@ fn at_risk(job: &JobAtRisk) -> Condition {
         ..Condition::new(
             job.since,
             format!(
-                "The adjustment agreed with {} for {} does not fit any more: {}.",
+                "The adjustment agreed with {} for {} no longer fits: {}.",
                 job.firm, job.day, job.reason
             ),
         )

@@ -16,8 +16,8 @@ pub(super) const SILENT_AGENT: CauseRow = CauseRow {
     finders: &[Finder::Clock(silent)],
     severity: |_| Severity::Notice,
     advice: |_| {
-        "Ask the ship whether the agent's computer is on and what its page says of the link. What \
-         it sampled meanwhile is kept aboard and comes by itself."
+        "Ask the ship whether the agent's computer is on and what its page says of the link. Its \
+         samples are kept on board and uploaded later."
     },
     on_card: Effect::None,
     on_plan: Effect::None,
@@ -34,7 +34,7 @@ pub(super) const CLONED_AGENT: CauseRow = CauseRow {
     severity: |_| Severity::Warning,
     advice: |_| {
         "Find out which of them reads this ship's instruments, and stop the other. If that cannot \
-         be told from here, revoke the agent and enrol the right one anew: what it has is kept. \
+         be settled from ashore, revoke the agent and enrol the right one again: its data is kept. \
          Until then the samples of both are used."
     },
     on_card: Effect::None,
@@ -51,10 +51,13 @@ fn silent(silence: &Silence<'_>) -> Option<Condition> {
     let limit_days = silence.limits.silent_days;
     let days = silence.now.0.seconds_since(last.0) / 86_400.0;
     (days > limit_days).then(|| Condition {
-        evidence: vec![format!("The last batch came at {}.", last.to_the_minute())],
+        evidence: vec![format!(
+            "The last batch arrived at {}.",
+            last.to_the_minute()
+        )],
         ..Condition::new(
             last,
-            format!("Nothing has come from the vessel's agent for more than {limit_days} days."),
+            format!("The vessel's agent has sent nothing for more than {limit_days} days."),
         )
     })
 }
@@ -67,7 +70,7 @@ fn cloned(conflict: &StreamConflict) -> Condition {
     Condition {
         evidence: vec![
             format!("Stream {newer} was opened at {}.", opened_at.0),
-            format!("Batch {seq} came in the older stream {stream} after that."),
+            format!("Batch {seq} arrived in the older stream {stream} after that."),
         ],
         ..Condition::new(
             opened_at,

@@ -21,7 +21,7 @@ const CRITICAL_DEG: f64 = 10.0;
 /// Compass and reference parted, by the agent's own comparison.
 pub(super) const REPORTED_BY_AGENT: CauseRow = CauseRow {
     cause: Cause::ReportedByAgent,
-    title: "compass and gyro parted, says the ship",
+    title: "compass and gyro have parted, reported by the agent",
     finders: &[Finder::AgentReports(reported)],
     severity,
     advice,
@@ -117,7 +117,7 @@ fn quiet(last: &ShipAlert, known: &KnownAlert) -> Condition {
     let since = Time(last.at).to_the_minute();
     let (state, case) = match last.state {
         ShipAlertState::NotJudged => (
-            format!("since {since} nobody can tell whether they still are apart"),
+            format!("since {since} it is not known whether they are still apart"),
             Case::NotJudged,
         ),
         _ => (format!("since {since} they agree"), Case::Together),
@@ -158,21 +158,21 @@ fn advice(case: Case) -> &'static str {
             suspect: Suspect::Compass,
             ..
         } => {
-            "Steer by gyro: the satellite compass bears it out. Do not use the card. Take an \
+            "Steer by gyro: the satellite compass confirms it. Do not use the card. Take an \
              azimuth, and ask on board about lightning, a shock or magnetic cargo."
         }
         Case::Parted {
             suspect: Suspect::Gyro,
             ..
         } => {
-            "The satellite compass bears out the magnetic compass: have the gyro and its speed and \
+            "The satellite compass confirms the magnetic compass: have the gyro and its speed and \
              latitude settings checked, and an azimuth taken before it is steered by."
         }
         Case::Parted {
             suspect: Suspect::Satellite,
             ..
         } => {
-            "The gyro bears out the magnetic compass: have the satellite compass and its antennas \
+            "The gyro confirms the magnetic compass: have the satellite compass and its antennas \
              checked."
         }
         Case::Parted {

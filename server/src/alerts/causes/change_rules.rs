@@ -189,7 +189,7 @@ fn size(detected: &DetectedChange<'_>, stage: Stage) -> Size {
         limit_deg: detected.limits.deviation_deg,
         was: detected.was,
         ceiling: match stage {
-            // A change in doubt may be none. With a new model the compass can be relied on
+            // An unconfirmed change may be none. With a new model the compass can be relied on
             // again, and a disturbance spoils no model.
             Stage::Unconfirmed | Stage::Learned | Stage::NotTheShips => Severity::Warning,
             Stage::NoModel | Stage::Interim => Severity::Critical,
@@ -214,7 +214,7 @@ pub(super) fn by_size(size: &Size) -> Severity {
 fn name(cause: change::Cause) -> &'static str {
     match cause {
         change::Cause::AdjustmentOrRepair => "work on ship or compass that nobody reported",
-        change::Cause::Unknown => "something unknown",
+        change::Cause::Unknown => "an unknown cause",
         change::Cause::ReferenceFault => "a fault of gyro or satellite compass",
         known => alert_cause(known).title(),
     }
@@ -242,15 +242,15 @@ fn summary(found: &FoundChange, stage: Stage) -> String {
     }
     match stage {
         Stage::Unconfirmed => format!(
-            "Since about {since} the compass may be astray{size}; perhaps {cause}. It is not \
+            "Since about {since} the compass may be in error{size}; possibly {cause}. It is not \
              certain yet."
         ),
         Stage::NotTheShips => format!(
-            "Since about {since} the measured deviation is astray{size}; most likely {cause}, \
+            "Since about {since} the measured deviation is in error{size}; most likely {cause}, \
              not the ship."
         ),
         Stage::NoModel | Stage::Interim | Stage::Learned => {
-            format!("Since about {since} the deviation is another{size}; most likely {cause}.")
+            format!("Since about {since} the deviation has changed{size}; most likely {cause}.")
         }
     }
 }
@@ -270,7 +270,7 @@ pub(super) fn advice(case: Case) -> &'static str {
         Case::Change(Stage::NoModel) => {
             "No card holds. Steer by gyro or satellite compass, take an azimuth once a watch and \
              on each new course, and report what happened in the logbook. Steady courses on other \
-             headings make a new model soonest; expect an adjustment."
+             headings give a new model soonest; expect an adjustment."
         }
         Case::Change(Stage::Interim) => {
             "Do not use the card from before. Steer by gyro, satellite compass or the corrected \

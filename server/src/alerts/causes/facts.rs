@@ -42,7 +42,7 @@ pub(in crate::alerts) struct Situation<'a> {
     pub open: &'a [(Cause, Severity)],
     /// Time of the last sample.
     pub data_until: Timestamp,
-    /// Whether an alert about a change, other than a reference's fault, is raised beside.
+    /// True if the changes call for an alert other than a reference's fault.
     pub has_change: bool,
 }
 

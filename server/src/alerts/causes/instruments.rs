@@ -29,12 +29,13 @@ pub(super) const REFERENCE_FAULT: CauseRow = CauseRow {
     severity: |_| Severity::Warning,
     advice: |case| match case {
         Case::CompassOrReference => {
-            "Compass or gyro swings, and there is no third to tell which. Trust neither: take an \
-             azimuth now and each watch, compare both with a steady course over ground, and look \
-             at compass, sensor and cables. The samples taken meanwhile are left out of the model."
+            "Compass or gyro swings, and there is no third instrument to tell which. Trust \
+             neither: take an azimuth now and each watch, compare both with a steady course over \
+             ground, and look at compass, sensor and cables. The samples taken meanwhile are left \
+             out of the model."
         }
         Case::ShipOrReference => {
-            "Compass or reference is astray, and the samples do not tell yet which. Take an \
+            "Compass or reference is in error, and the samples do not tell yet which. Take an \
              azimuth now and once a watch and steer by what it confirms; report in the logbook \
              what may have happened."
         }
@@ -143,7 +144,7 @@ fn one_failed(failed: &FailedLately) -> Condition {
     Condition {
         evidence: vec![
             format!(
-                "So it was in {} of the {} samples of the last day that had both.",
+                "This was so in {} of the {} samples of the last day that had both.",
                 failed.samples, failed.of
             ),
             format!(
@@ -155,8 +156,8 @@ fn one_failed(failed: &FailedLately) -> Condition {
         ..Condition::new(
             failed.from.into(),
             format!(
-                "Gyro and satellite compass parted: lately they departed by {:.1}° from their \
-                 usual difference.",
+                "Gyro and satellite compass have parted: recently they departed by {:.1}° from \
+                 their usual difference.",
                 failed.departure_deg.abs()
             ),
         )

@@ -18,8 +18,8 @@ pub(super) const NO_MODEL: CauseRow = CauseRow {
     finders: &[Finder::Findings(no_model)],
     severity: |_| Severity::Notice,
     advice: |_| {
-        "Use no deviation card of earlier date. Take azimuths, and let the ship lie on the \
-         headings that are missing where the passage allows."
+        "Use no earlier deviation card. Take azimuths, and steer the headings that are missing \
+         where the passage allows."
     },
     on_card: Effect::None,
     on_plan: Effect::None,
@@ -35,8 +35,8 @@ pub(super) const WIDE_BAND: CauseRow = CauseRow {
     finders: &[Finder::Findings(wide_band)],
     severity: |_| Severity::Notice,
     advice: |_| {
-        "Take an azimuth before relying on the card on a heading that she seldom lies on. The \
-         vessel's page says which headings would tell most."
+        "Take an azimuth before relying on the card on a heading that the vessel seldom steers. \
+         The vessel's page shows which headings would help most."
     },
     on_card: Effect::None,
     on_plan: Effect::None,
@@ -53,7 +53,7 @@ fn no_model(situation: &Situation<'_>) -> Option<Condition> {
         evidence: vec![format!("What is missing: {refusal}{left_out}.")],
         ..Condition::new(
             from.into(),
-            "Samples have come for more than a week, but no model could be made of them."
+            "There have been samples for more than a week, but no model could be fitted to them."
                 .to_owned(),
         )
     })
@@ -75,7 +75,7 @@ fn wide_band(situation: &Situation<'_>) -> Option<Condition> {
     let comparison = compare(band_deg, limits.band95_deg);
     Some(Condition {
         evidence: vec![format!(
-            "Samples have come since {}.",
+            "There have been samples since {}.",
             Time(from).to_the_minute()
         )],
         ..Condition::new(

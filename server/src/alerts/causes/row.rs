@@ -29,9 +29,9 @@ pub(in crate::alerts) struct CauseRow {
     pub on_plan: Effect,
     /// Rule by which it clears itself.
     pub ending: Ending,
-    /// Whether an adjustment ends it, if it began before.
+    /// True if an adjustment ends it that came after its beginning.
     pub ends_with_adjustment: bool,
-    /// Whether later samples date it anew: it is an event rather than a state.
+    /// True if later samples date it anew: it is an event rather than a state.
     pub is_redated: bool,
 }
 
@@ -141,7 +141,7 @@ pub(in crate::alerts) enum Case {
     Parted {
         /// The instrument that the two others contradict.
         suspect: Suspect,
-        /// Whether the gyro is among them.
+        /// True if the gyro is one of them.
         has_gyro: bool,
     },
     /// Compass and reference have not parted since.

@@ -26,8 +26,8 @@ pub(super) const MAGNETIC_CARGO: CauseRow = CauseRow {
         }
         Case::Change(Stage::Interim | Stage::Learned) => {
             "Use no card from before loading. Steer by gyro, satellite compass or the corrected \
-             heading, which knows the cargo, take an azimuth once a watch, and report the cargo in \
-             the logbook. The model from before is used again once it is discharged."
+             heading, which takes the cargo into account, take an azimuth once a watch, and report \
+             the cargo in the logbook. The model from before is used again once it is discharged."
         }
         other => advice(other),
     },
@@ -46,10 +46,10 @@ pub(super) const ALIGNMENT: CauseRow = CauseRow {
     cause: Cause::Alignment,
     title: "the compass's zero moved",
     advice: |_| {
-        "Use no card from before: the compass is off by the same on every heading. Steer by gyro, \
-         satellite compass or the corrected heading and take an azimuth. Look whether the bowl, \
-         the lubber line or the sensor has shifted against the ship's head; put it back, and \
-         report that in the logbook. No corrector needs to be moved."
+        "Use no card from before: the compass error has changed by the same on every heading. \
+         Steer by gyro, satellite compass or the corrected heading and take an azimuth. Check \
+         whether the bowl, the lubber line or the sensor has shifted against the ship's head; put \
+         it back, and report that in the logbook. No corrector needs to be moved."
     },
     ..SHIP_CHANGE
 };

@@ -19,7 +19,7 @@ const CHECK_EVERY: Duration = Duration::from_mins(1);
 pub async fn watch(app: App) {
     while !app.stopping.is_cancelled() {
         if let Err(error) = check_timed(&app).await {
-            error!(?error, "alerts of the clock cannot be looked for");
+            error!(?error, "the timed alerts could not be checked");
         }
         tokio::select! {
             () = app.stopping.cancelled() => {}

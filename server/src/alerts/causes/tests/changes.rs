@@ -45,12 +45,12 @@ fn found(cause: Found, size_deg: f64) -> FoundChange {
     }
 }
 
-/// A ship that has sailed for so many days since, with such a band by now.
+/// Returns the alerts after so many days at sea, with such a band by then.
 fn sailed(changes: Vec<FoundChange>, days: f64, band95_deg: Option<f64>) -> Vec<DesiredAlert> {
     known_as(None, changes, days, band95_deg)
 }
 
-/// The same where an alert of such a severity is open of each cause.
+/// Returns the alerts where one of severity `was` is open of each cause.
 fn known_as(
     was: Option<Severity>,
     changes: Vec<FoundChange>,
@@ -124,10 +124,10 @@ fn a_change_is_as_bad_as_the_deviation_that_it_causes() {
 }
 
 #[test]
-fn what_is_not_certain_is_told_as_such_and_trusts_no_card() {
-    let mut doubtful = found(Found::Unknown, 8.0);
-    doubtful.change.confirmed = false;
-    let wanted = sailed(vec![doubtful], 0.0, Some(1.0));
+fn an_unconfirmed_change_says_so_and_trusts_no_card() {
+    let mut unconfirmed = found(Found::Unknown, 8.0);
+    unconfirmed.change.confirmed = false;
+    let wanted = sailed(vec![unconfirmed], 0.0, Some(1.0));
     assert_eq!(wanted[0].severity, Severity::Warning);
     assert!(wanted[0].summary.contains("not certain yet"), "{wanted:?}");
     assert!(
@@ -139,29 +139,29 @@ fn what_is_not_certain_is_told_as_such_and_trusts_no_card() {
 #[test]
 fn the_advice_follows_the_model_and_the_alert_ends_with_its_certainty() {
     let struck = || vec![found(Found::LightningOrShock, 6.0)];
-    let told = |days, band_deg| sailed(struck(), days, band_deg);
-    assert!(told(0.1, None)[0].advice.starts_with("No card holds."));
+    let alerts = |days, band_deg| sailed(struck(), days, band_deg);
+    assert!(alerts(0.1, None)[0].advice.starts_with("No card holds."));
     for (days, band_deg) in [(0.5, 2.0), (3.0, 4.0)] {
-        let interim = &told(days, Some(band_deg))[0];
+        let interim = &alerts(days, Some(band_deg))[0];
         assert!(interim.advice.contains("band is wider for now"));
         assert_eq!(interim.severity, Severity::Critical);
     }
-    let learnt = &told(3.0, Some(2.0))[0];
-    assert!(learnt.advice.starts_with("Put up a new card"));
-    assert_eq!(learnt.severity, Severity::Warning);
-    assert_eq!(told(8.0, Some(2.0)), []);
-    assert_eq!(told(8.0, Some(4.0)).len(), 1, "not learnt yet");
+    let learned = &alerts(3.0, Some(2.0))[0];
+    assert!(learned.advice.starts_with("Put up a new card"));
+    assert_eq!(learned.severity, Severity::Warning);
+    assert_eq!(alerts(8.0, Some(2.0)), []);
+    assert_eq!(alerts(8.0, Some(4.0)).len(), 1, "not learned yet");
 }
 
 #[test]
 fn a_change_that_became_calls_for_no_alert_and_clears_its_own() {
     let mut none = found(Found::LightningOrShock, 3.0);
-    let told: Time = none.change.from.into();
+    let since: Time = none.change.from.into();
     let findings = |change: &FoundChange| Findings {
         changes: vec![change.clone()],
         ..Findings::default()
     };
-    let of = |cause, change: &FoundChange| outcome(cause, told, &findings(change));
+    let of = |cause, change: &FoundChange| outcome(cause, since, &findings(change));
     let lightning = Cause::LightningOrShock;
     assert_eq!(of(lightning, &none), Some(Outcome::Learned));
     (none.change.confirmed, none.change.withdrawn) = (false, true);
@@ -171,16 +171,16 @@ fn a_change_that_became_calls_for_no_alert_and_clears_its_own() {
     assert_eq!(sailed(vec![none], 0.5, Some(1.0)), []);
 }
 
-/// What stays is not over: the deviation is another one for good.
+/// A change that stays is not over: the deviation is another one for good.
 #[test]
 fn only_what_ended_is_over() {
     let mut struck = found(Found::LightningOrShock, 3.0);
-    let told: Time = struck.change.from.into();
+    let since: Time = struck.change.from.into();
     let of = |cause, change: &FoundChange| {
         let changes = vec![change.clone()];
         outcome(
             cause,
-            told,
+            since,
             &Findings {
                 changes,
                 ..Findings::default()
@@ -196,7 +196,7 @@ fn only_what_ended_is_over() {
 }
 
 #[test]
-fn an_earlier_change_is_told_for_a_week_only() {
+fn an_earlier_change_is_an_alert_for_a_week_only() {
     let struck = found(Found::LightningOrShock, 3.0);
     let mut loaded = found(Found::MagneticCargo, 3.0);
     loaded.change.from = at("2026-11-19T12:00:00Z");
@@ -267,7 +267,7 @@ fn a_second_fault_of_a_reference_is_another_alert() {
 }
 
 #[test]
-fn a_zero_that_moved_is_told_with_what_to_do() {
+fn a_moved_zero_comes_with_advice() {
     let wanted = sailed(vec![found(Found::Alignment, 3.0)], 0.1, Some(1.0));
     assert_eq!(wanted[0].cause, Cause::Alignment);
     assert!(wanted[0].summary.contains("the compass's zero moved"));
