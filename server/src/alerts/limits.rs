@@ -1,22 +1,22 @@
-//! From when on a vessel's alerts are raised.
+//! Limits from which a vessel's alerts are raised.
 
 use crate::error::Result;
 use crate::http::degrees;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// Limits of a vessel. A flag state may ask for others: AMSA and the Marshall
-/// Islands (MN 2-011-32) have the compass adjusted above 5° on any heading.
+/// Limits of a vessel's alerts. A flag state may ask for others: AMSA and the Marshall Islands
+/// (MN 2-011-32) have the compass adjusted above 5° on any heading.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(default)]
 pub struct AlertLimits {
-    /// The greatest deviation that is no alert, degrees.
+    /// Greatest deviation without an alert, degrees.
     #[schema(minimum = 1, maximum = 45, example = 5.0)]
     pub deviation_deg: f64,
-    /// The greatest half width of the 95 % band that is no alert, degrees.
+    /// Greatest half width of the 95 % band without an alert, degrees.
     #[schema(minimum = 0.5, maximum = 45, example = 3.0)]
     pub band95_deg: f64,
-    /// Days without a batch that are no alert.
+    /// Days without a batch before an alert.
     #[schema(minimum = 0.25, maximum = 365, example = 3.0)]
     pub silent_days: f64,
 }
@@ -32,10 +32,10 @@ impl Default for AlertLimits {
 }
 
 impl AlertLimits {
-    /// The same, if they make sense.
+    /// Returns the limits, if each is within its range.
     ///
     /// # Errors
-    /// When one is outside its range.
+    /// Fails when one is outside its range.
     pub fn checked(self) -> Result<AlertLimits> {
         degrees("alerts.deviation_deg", self.deviation_deg, 1.0, 45.0)?;
         degrees("alerts.band95_deg", self.band95_deg, 0.5, 45.0)?;

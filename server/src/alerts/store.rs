@@ -1,36 +1,27 @@
 //! Alerts in the database.
 
-use super::alert::{Alert, AlertWanted, Cause, Evidence, Filter, Severity, State};
+use super::alert::{Alert, KnownAlert, State};
+use super::cause::Cause;
+use super::causes::Source;
+use super::desired::DesiredAlert;
+use super::schema::Filter;
 use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
+use crate::enrolment::Agent;
 use crate::error::{Error, Result};
 use crate::ids::{AlertId, CompassId, OperatorId, VesselId};
+use crate::severity::Severity;
 use crate::time::Time;
 use uuid::Uuid;
 
-/// An alert whose cause was there at the last look; cleared if a person did that.
-#[derive(Clone, Debug, sqlx::FromRow)]
-pub(super) struct Known {
-    pub(super) id: AlertId,
-    pub(super) cause: Cause,
-    pub(super) severity: Severity,
-    pub(super) state: State,
-    pub(super) summary: String,
-    pub(super) advice: String,
-    #[sqlx(try_from = "String")]
-    pub(super) evidence: Evidence,
-    pub(super) since: Time,
-    pub(super) cleared_at: Option<Time>,
-}
-
-/// What a person says of an alert.
+/// Remark of a person on an alert.
 #[derive(Clone, Debug)]
-pub(super) struct Word {
+pub(super) struct Remark {
     pub(super) by: String,
     pub(super) text: Option<String>,
     pub(super) at: Time,
 }
 
-/// The newest first, from before an id.
+/// Lists an operator's alerts from before an id, the newest first.
 pub(super) async fn list(
     db: &Db,
     operator: OperatorId,
@@ -65,10 +56,10 @@ pub(super) async fn list(
     )
 }
 
-/// An alert of the operator's.
+/// Finds an alert of the operator's.
 ///
 /// # Errors
-/// [`Error::NotFound`] when there is none.
+/// Fails with [`Error::NotFound`] when there is none.
 pub(super) async fn must_find(db: &Db, operator: OperatorId, id: AlertId) -> Result<Alert> {
     row!(
         db,
@@ -85,7 +76,7 @@ pub(super) async fn must_find(db: &Db, operator: OperatorId, id: AlertId) -> Res
     .ok_or(Error::NotFound("alert"))
 }
 
-/// The same within a transaction, of a vessel that is known.
+/// Reads an alert of a vessel within a transaction.
 pub(super) async fn read(tx: &mut Tx, vessel: VesselId, id: AlertId) -> Result<Alert> {
     let found = row!(
         in tx,
@@ -102,7 +93,7 @@ pub(super) async fn read(tx: &mut Tx, vessel: VesselId, id: AlertId) -> Result<A
     found.ok_or(Error::NotFound("alert"))
 }
 
-/// Lets nobody else change a compass's alerts until the transaction ends.
+/// Locks a compass's alerts until the transaction ends.
 pub(super) async fn lock(tx: &mut Tx, vessel: VesselId, compass: CompassId) -> DbResult<()> {
     execute!(
         tx,
@@ -113,15 +104,15 @@ pub(super) async fn lock(tx: &mut Tx, vessel: VesselId, compass: CompassId) -> D
     Ok(())
 }
 
-/// A compass's alerts whose cause was there at the last look: one of each cause.
+/// Lists a compass's alerts whose cause held at the last evaluation: one of each cause.
 pub(super) async fn known(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
-) -> DbResult<Vec<Known>> {
+) -> DbResult<Vec<KnownAlert>> {
     rows!(
         in tx,
-        Known,
+        KnownAlert,
         "SELECT id, cause, severity, state, summary, advice, evidence, since, cleared_at
          FROM alerts
          WHERE vessel_id = $1 AND compass_id = $2 AND holds
@@ -131,11 +122,24 @@ pub(super) async fn known(
     )
 }
 
+/// Lists the known alerts of one source.
+pub(super) async fn known_of(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+    source: Source,
+) -> DbResult<Vec<KnownAlert>> {
+    let mut known = known(tx, vessel, compass).await?;
+    known.retain(|alert| alert.cause.row().source() == source);
+    Ok(known)
+}
+
+/// Inserts a raised alert.
 pub(super) async fn insert(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
-    wanted: &AlertWanted,
+    desired: &DesiredAlert,
     now: Time,
 ) -> Result<AlertId> {
     let id = AlertId::new();
@@ -147,25 +151,24 @@ pub(super) async fn insert(
         vessel,
         id,
         compass,
-        wanted.cause,
-        wanted.severity,
+        desired.cause,
+        desired.severity,
         true,
-        wanted.since,
-        wanted.summary.as_str(),
-        wanted.advice,
-        serde_json::to_string(&wanted.evidence)?,
+        desired.since,
+        desired.summary.as_str(),
+        desired.advice,
+        serde_json::to_string(&desired.evidence)?,
         now
     )?;
     Ok(id)
 }
 
-/// Says what is so now; one that got worse than what was acknowledged is raised
-/// again.
+/// Updates an alert; one that is worse than what was acknowledged is raised again.
 pub(super) async fn update(
     tx: &mut Tx,
     vessel: VesselId,
-    known: &Known,
-    wanted: &AlertWanted,
+    known: &KnownAlert,
+    desired: &DesiredAlert,
     now: Time,
 ) -> Result<()> {
     execute!(
@@ -175,14 +178,14 @@ pub(super) async fn update(
          WHERE vessel_id = $1 AND id = $2",
         vessel,
         known.id,
-        wanted.severity,
-        wanted.summary.as_str(),
-        wanted.advice,
-        serde_json::to_string(&wanted.evidence)?,
+        desired.severity,
+        desired.summary.as_str(),
+        desired.advice,
+        serde_json::to_string(&desired.evidence)?,
         now,
-        Some(wanted.since).filter(|_| wanted.cause.is_dated_anew())
+        Some(desired.since).filter(|_| desired.cause.row().is_redated)
     )?;
-    if wanted.severity > known.severity && known.state == State::Acknowledged {
+    if desired.severity > known.severity && known.state == State::Acknowledged {
         execute!(
             &mut *tx,
             "UPDATE alerts SET state = 'raised', acknowledged_at = NULL, acknowledged_by = NULL,
@@ -195,8 +198,7 @@ pub(super) async fn update(
     Ok(())
 }
 
-/// Notes that an alert's cause is over; one that is open is cleared by that, for the
-/// reason given.
+/// Records that an alert's cause is over, which clears an open alert for the reason given.
 pub(super) async fn end(
     tx: &mut Tx,
     vessel: VesselId,
@@ -220,12 +222,12 @@ pub(super) async fn end(
     Ok(())
 }
 
-/// Notes that someone knows; `false` unless it is raised.
+/// Acknowledges an alert; `false` unless it is raised.
 pub(super) async fn acknowledge(
     tx: &mut Tx,
     vessel: VesselId,
     id: AlertId,
-    word: &Word,
+    remark: &Remark,
 ) -> DbResult<bool> {
     let changed = execute!(
         tx,
@@ -235,9 +237,9 @@ pub(super) async fn acknowledge(
          WHERE vessel_id = $1 AND id = $2 AND state = 'raised'",
         vessel,
         id,
-        word.at,
-        word.by.as_str(),
-        word.text.as_deref()
+        remark.at,
+        remark.by.as_str(),
+        remark.text.as_deref()
     )?;
     Ok(changed > 0)
 }
@@ -247,7 +249,7 @@ pub(super) async fn clear(
     tx: &mut Tx,
     vessel: VesselId,
     id: AlertId,
-    word: &Word,
+    remark: &Remark,
 ) -> DbResult<bool> {
     let changed = execute!(
         tx,
@@ -257,36 +259,36 @@ pub(super) async fn clear(
          WHERE vessel_id = $1 AND id = $2 AND state <> 'cleared'",
         vessel,
         id,
-        word.at,
-        word.by.as_str(),
-        word.text.as_deref()
+        remark.at,
+        remark.by.as_str(),
+        remark.text.as_deref()
     )?;
     Ok(changed > 0)
 }
 
-/// How a vessel's open alerts stand.
+/// Number of a vessel's open alerts of one severity and state.
 #[derive(Clone, Copy, Debug, sqlx::FromRow)]
-pub struct Standing {
+pub struct OpenCount {
     /// The vessel.
     pub vessel_id: VesselId,
-    /// How bad.
+    /// Their severity.
     pub severity: Severity,
-    /// How far people have come with them.
+    /// Their state.
     pub state: State,
-    /// How many.
+    /// Their number.
     pub alerts: i64,
 }
 
-/// The open alerts of an operator's vessels from one id to another, counted.
-pub async fn standing(
+/// Counts the open alerts of an operator's vessels from one id to another.
+pub async fn count_open(
     db: &Db,
     operator: OperatorId,
     first: VesselId,
     last: VesselId,
-) -> DbResult<Vec<Standing>> {
+) -> DbResult<Vec<OpenCount>> {
     rows!(
         db,
-        Standing,
+        OpenCount,
         "SELECT a.vessel_id, a.severity, a.state, COUNT(*) AS alerts
          FROM alerts a
          JOIN vessels v ON v.id = a.vessel_id
@@ -299,18 +301,18 @@ pub async fn standing(
     )
 }
 
-/// What an open alert says, in short.
+/// An open alert in short.
 #[derive(Clone, Debug, sqlx::FromRow)]
 pub struct OpenAlert {
-    /// What it is about.
+    /// Its cause.
     pub cause: Cause,
-    /// Since when it is so.
+    /// Beginning of its cause.
     pub since: Time,
-    /// What is so, in a sentence.
+    /// The facts, in a sentence.
     pub summary: String,
 }
 
-/// The alerts of a compass that are not cleared, the newest first.
+/// Lists the alerts of a compass that are not cleared, the newest first.
 pub(super) async fn open_of_compass(
     db: &Db,
     vessel: VesselId,
@@ -327,7 +329,7 @@ pub(super) async fn open_of_compass(
     )
 }
 
-/// What was found of a compass at its last analysis, as JSON.
+/// Reads the findings of a compass's last analysis, as JSON.
 pub(super) async fn findings(
     tx: &mut Tx,
     vessel: VesselId,
@@ -344,23 +346,23 @@ pub(super) async fn findings(
     Ok(found.and_then(|(findings,)| findings))
 }
 
-/// When a compass's agents were last heard of.
+/// Last upload of a compass's agents.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub(super) struct Heard {
+pub(super) struct LastUpload {
     pub(super) vessel_id: VesselId,
     pub(super) compass_id: CompassId,
     pub(super) last_at: Time,
     /// The vessel's limits as JSON; none for the defaults.
     pub(super) limits: Option<String>,
-    /// Whether their silence is an alert already, or was until a person cleared it.
+    /// Number of alerts about their silence, with those that a person cleared.
     pub(super) alerts: i64,
 }
 
-/// When the agents of every compass that has any were last heard of, of vessels in service.
-pub(super) async fn heard(db: &Db) -> DbResult<Vec<Heard>> {
+/// Lists the last upload for every compass with an agent, of vessels in service.
+pub(super) async fn last_uploads(db: &Db) -> DbResult<Vec<LastUpload>> {
     rows!(
         db,
-        Heard,
+        LastUpload,
         "SELECT s.vessel_id, s.compass_id, MAX(COALESCE(s.last_upload_at, s.opened_at)) AS last_at,
                 MAX(w.alerts) AS limits,
                 (SELECT COUNT(*) FROM alerts a
@@ -374,8 +376,8 @@ pub(super) async fn heard(db: &Db) -> DbResult<Vec<Heard>> {
     )
 }
 
-/// The compasses whose alert of a cause goes on, though nothing has shown it since.
-pub(super) async fn unshown(
+/// Lists the compasses whose alert of a cause goes on, and was not updated since.
+pub(super) async fn not_updated_since(
     db: &Db,
     cause: Cause,
     since: Time,
@@ -389,4 +391,52 @@ pub(super) async fn unshown(
         cause,
         since
     )
+}
+
+/// Lists an operator's compasses with an alert about an agreed job.
+pub(super) async fn with_job_at_risk(
+    tx: &mut Tx,
+    operator: OperatorId,
+) -> DbResult<Vec<(VesselId, CompassId)>> {
+    rows!(
+        in tx,
+        (VesselId, CompassId),
+        "SELECT a.vessel_id, a.compass_id FROM alerts a JOIN vessels v ON v.id = a.vessel_id
+         WHERE v.operator_id = $1 AND a.cause = $2 AND a.holds
+         ORDER BY a.vessel_id, a.compass_id",
+        operator,
+        Cause::AgreedJobAtRisk
+    )
+}
+
+/// Finds the first newer stream in which an agent has sent, with the time of its opening.
+///
+/// Ids of streams are in the order of their opening.
+pub(super) async fn newer_stream(
+    tx: &mut Tx,
+    agent: Agent,
+    stream: Uuid,
+) -> DbResult<Option<(Uuid, Time)>> {
+    row!(
+        in tx,
+        (Uuid, Time),
+        "SELECT id, opened_at FROM streams
+         WHERE vessel_id = $1 AND agent_id = $2 AND id > $3 AND batches > 0
+         ORDER BY id LIMIT 1",
+        agent.vessel_id,
+        agent.agent_id,
+        stream
+    )
+}
+
+/// Returns the number of raised alerts, and the worst severity of the open ones.
+pub fn summarize<'a>(counts: impl Iterator<Item = &'a OpenCount>) -> (u32, Option<Severity>) {
+    let (mut raised, mut worst) = (0, None);
+    for count in counts {
+        worst = worst.max(Some(count.severity));
+        if count.state == State::Raised {
+            raised += count.alerts as u32;
+        }
+    }
+    (raised, worst)
 }

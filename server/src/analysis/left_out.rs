@@ -1,25 +1,26 @@
-//! Samples that the logbook keeps out of the current epoch's model: an entry that nobody
-//! ended may keep out all.
+//! Samples that the logbook keeps out of the current epoch's model.
+//!
+//! An entry that nobody ended may keep out all of them.
 
 use binnacle_compass::result::{Analysis, SampleReason};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use utoipa::ToSchema;
 
-/// How many samples of the current epoch logbook entries leave out.
+/// Number of samples of the current epoch that logbook entries leave out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct LeftOut {
-    /// By entries of magnetic cargo.
+    /// Left out by entries of magnetic cargo.
     #[schema(example = 288)]
     pub magnetic_cargo: u64,
-    /// By entries of a berth.
+    /// Left out by entries of a berth.
     #[schema(example = 12)]
     pub berth: u64,
 }
 
 impl LeftOut {
-    /// Those of an analysis.
-    pub fn of(analysis: &Analysis) -> LeftOut {
+    /// Counts the samples that an analysis left out.
+    pub fn from_analysis(analysis: &Analysis) -> LeftOut {
         let from = analysis.current_epoch().and_then(|epoch| epoch.from);
         let samples = analysis.samples.iter();
         let current = samples.filter(|s| from.is_none_or(|from| s.sample.time >= from));
@@ -34,13 +35,13 @@ impl LeftOut {
         left_out
     }
 
-    /// Whether there are any.
+    /// Tells whether there are any.
     pub fn any(&self) -> bool {
         *self != LeftOut::default()
     }
 }
 
-/// What follows a refusal: nothing where nothing is left out.
+/// Continues the sentence of a refusal; empty where nothing is left out.
 impl fmt::Display for LeftOut {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut kinds = Vec::new();
@@ -56,7 +57,7 @@ impl fmt::Display for LeftOut {
         let kinds = kinds.join(" and ");
         write!(
             f,
-            "; by entries of the logbook samples are left out: {kinds}"
+            "; because of logbook entries, samples are left out: {kinds}"
         )
     }
 }

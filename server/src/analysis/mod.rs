@@ -11,6 +11,8 @@
 //! - One job waits for each vessel, however many batches come; a batch that comes
 //!   while one runs makes the next.
 
+mod disturbances;
+mod findings;
 mod input;
 mod left_out;
 mod queue;
@@ -19,6 +21,8 @@ mod store;
 mod track;
 mod worker;
 
+pub use disturbances::{compare_with_fleet, compare_with_fleet_in};
+pub use findings::{FailedLately, Findings, FoundChange};
 pub use input::{Input, input_hash};
 pub use left_out::LeftOut;
 pub use queue::{Job, claim, count as count_jobs, enqueue, enqueue_outdated, renew};

@@ -1,9 +1,9 @@
 //! What an analysis leaves in the database.
 
-use super::LeftOut;
+use super::disturbances::store_disturbances;
+use super::findings::Findings;
+use super::left_out::LeftOut;
 use super::track::track;
-use crate::alerts::Findings;
-use crate::changes;
 use crate::db::{Db, Tx, execute, row, rows};
 use crate::error::{Error, Result};
 use crate::events::{self, Event, Kind};
@@ -246,7 +246,7 @@ pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option
     )?;
     save_diagnostics(tx, found).await?;
     let (vessel, compass) = (found.vessel_id, found.compass_id);
-    changes::keep_disturbances(tx, vessel, compass, &found.findings, now).await?;
+    store_disturbances(tx, vessel, compass, &found.findings, now).await?;
     let next = next_model(found, now)?;
     let next = next.filter(|next| {
         foretold.is_none_or(|known| {

@@ -1,5 +1,6 @@
 //! Takes jobs from the queue, one after the other.
 
+use super::findings::Findings;
 use super::store::{Covered, Found};
 use super::{input, queue, store};
 use crate::app::App;
@@ -158,8 +159,8 @@ async fn work(app: &App, job: queue::Job) -> Result<usize> {
     // Also where nothing new was found: the limits may be others.
     for compass in &compasses {
         let (vessel, compass) = (job.vessel_id, compass.id);
-        let failed = work_orders::alert(&mut tx, vessel, compass).await?;
-        let told = alerts::after_analysis(&mut tx, vessel, compass, &limits, failed, now);
+        let unconfirmed = work_orders::unconfirmed_adjustment(&mut tx, vessel, compass).await?;
+        let told = alerts::reconcile_analysis(&mut tx, vessel, compass, &limits, unconfirmed, now);
         events.extend(told.await?);
     }
     tx.commit().await?;
@@ -193,7 +194,7 @@ async fn analyse_compass(
             vessel_id,
             compass_id,
             input_hash,
-            findings: alerts::findings_of(&analysis, &input.logbook),
+            findings: Findings::from_analysis(&analysis, &input.logbook),
             analysis,
             covered,
         }))

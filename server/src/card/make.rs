@@ -11,7 +11,7 @@ use super::due::{self, next_due};
 use super::observed::{Observed, STEP_DEG};
 use super::refusal::{OLDEST_DAYS, Refusal};
 use crate::adjustments::CompletedOrder;
-use crate::alerts::{Cause, OpenAlert};
+use crate::alerts::{Effect, OpenAlert};
 use crate::binnacles::Revised;
 use crate::compasses::Compass;
 use crate::deviation::{self, Row};
@@ -168,9 +168,8 @@ fn unverified<'a>(
 /// A compass that stands still, or has parted from the gyro on board, is not described
 /// by any model.
 fn not_suspected(alerts: &[OpenAlert]) -> Result<(), Refusal> {
-    let is_of_the_compass =
-        |alert: &&OpenAlert| matches!(alert.cause, Cause::CompassFault | Cause::ReportedAboard);
-    match alerts.iter().find(is_of_the_compass) {
+    let blocks = |alert: &&OpenAlert| alert.cause.effect_on_card() == Effect::Block;
+    match alerts.iter().find(blocks) {
         Some(alert) => Err(Refusal::CompassSuspected {
             summary: alert.summary.clone(),
         }),
@@ -282,7 +281,7 @@ fn notes(model: &StoredModel, alerts: &[OpenAlert], cargo: &[CargoAboard]) -> Ve
     notes.extend(
         alerts
             .iter()
-            .filter(|alert| bears_on_the_card(alert.cause))
+            .filter(|alert| alert.cause.effect_on_card() == Effect::Note)
             .map(|alert| alert.summary.clone()),
     );
     if !cargo.is_empty() {
@@ -296,31 +295,6 @@ fn notes(model: &StoredModel, alerts: &[OpenAlert], cargo: &[CargoAboard]) -> Ve
     let cautions = quality.iter().flat_map(|quality| &quality.cautions);
     notes.extend(cautions.map(|caution| sentence(&caution.to_string())));
     notes
-}
-
-/// Whether a reader of the card must know of an alert of this cause.
-fn bears_on_the_card(cause: Cause) -> bool {
-    match cause {
-        Cause::DeviationOverLimit
-        | Cause::AdjustmentNotConfirmed
-        | Cause::ReferenceFault
-        | Cause::LightningOrShock
-        | Cause::MagneticCargo
-        | Cause::Drift
-        | Cause::Alignment
-        | Cause::UnknownChange => true,
-        // Refused before, or of the samples' way rather than of the ship.
-        Cause::CompassFault
-        | Cause::AgreedJobAtRisk
-        | Cause::ReportedAboard
-        | Cause::LocalAnomaly
-        | Cause::MagneticStorm
-        | Cause::BerthSteel
-        | Cause::SilentAgent
-        | Cause::ClonedAgent
-        | Cause::NoModel
-        | Cause::WideBand => false,
-    }
 }
 
 fn sentence(text: &str) -> String {

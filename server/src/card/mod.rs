@@ -192,7 +192,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     let completed = adjustments::completed(db, id, compass.id).await?;
     let binnacle = binnacles::current(db, id, compass.id).await?;
     let logbook = logbook::of_compass(db, id, compass.id).await?;
-    let alerts = alerts::in_force(db, id, compass.id).await?;
+    let alerts = alerts::list_in_force(db, id, compass.id).await?;
     let made = tokio::task::spawn_blocking(move || {
         let seen = match model.foretold_by {
             Some(_) => Seen::Foretold(&model.model.0),

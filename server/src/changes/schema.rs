@@ -1,40 +1,40 @@
-//! How the OpenAPI document describes what the science crate says of a change.
+//! OpenAPI descriptions of the changes of the science crate.
 
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// What changes what a compass shows.
+/// Cause of a change of what a compass shows.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = ChangeCause)]
 #[allow(dead_code, reason = "describes binnacle_compass::result::Cause")]
 pub(super) enum CauseSchema {
-    /// A strike, or a heavy blow to the hull.
+    /// Lightning, or a heavy blow to the hull.
     LightningOrShock,
     /// Steel, scrap or the like on board.
     MagneticCargo,
-    /// Correctors, compass or structure were worked on.
+    /// Work on correctors, compass or structure.
     AdjustmentOrRepair,
-    /// The ship's magnetism wandered off.
+    /// Slow drift of the ship's magnetism.
     Drift,
-    /// The magnetic compass sticks, repeats itself or swings.
+    /// Fault of the magnetic compass: it sticks, repeats itself or swings.
     CompassFault,
-    /// The compass's zero moved: its lubber line, its seat, or the element that sends its
-    /// heading on.
+    /// Shift of the compass's zero: of its lubber line, its seat, or the element that transmits
+    /// its heading.
     Alignment,
-    /// Gyro or satellite compass errs: the magnetic compass is well.
+    /// Fault of gyro or satellite compass, not of the magnetic compass.
     ReferenceFault,
-    /// The earth's crust, at a place.
+    /// Local anomaly of the earth's crust.
     LocalAnomaly,
-    /// The sun, for hours.
+    /// Magnetic storm, for hours.
     MagneticStorm,
-    /// The quay's and its cranes' iron.
+    /// Iron of the quay and its cranes.
     BerthSteel,
     /// None of these is likely.
     Unknown,
 }
 
-/// A cause and how likely it is.
+/// A cause and its probability.
 #[derive(ToSchema)]
 #[schema(as = CauseProbability)]
 #[allow(
@@ -60,7 +60,7 @@ pub(super) struct StepSchema {
     /// Fore and aft, forward positive.
     #[schema(example = 1850.0)]
     bx_nt: f64,
-    /// Athwart, starboard positive.
+    /// Athwartships, starboard positive.
     #[schema(example = -640.0)]
     by_nt: f64,
     /// Standard error of the first.

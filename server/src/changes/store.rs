@@ -1,6 +1,6 @@
-//! What a timeline is made from, in the database.
+//! Epochs and findings of a timeline in the database.
 
-use crate::alerts::Findings;
+use crate::analysis::Findings;
 use crate::db::{Db, row, rows};
 use crate::error::Result;
 use crate::ids::{CompassId, VesselId};
@@ -11,14 +11,14 @@ use binnacle_compass::result::{Cause, FitError};
 use binnacle_compass::time::Timestamp;
 use serde::Deserialize;
 
-/// The last analysis of a compass, as far as it tells of changes.
+/// Last analysis of a compass, as far as it concerns changes.
 pub(super) struct Analysed {
     pub(super) at: Time,
     pub(super) epochs: Vec<StoredEpoch>,
     pub(super) findings: Findings,
 }
 
-/// An epoch as it was stored; what an older server left out is none.
+/// A stored epoch. Fields that an older server did not store are none.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct StoredEpoch {
@@ -40,7 +40,7 @@ pub(super) struct Version {
     pub(super) data_until: Time,
 }
 
-/// The compass's last analysis; none before the first.
+/// Finds the compass's last analysis; none before the first.
 pub(super) async fn find(
     db: &Db,
     vessel: VesselId,
@@ -68,7 +68,7 @@ pub(super) async fn find(
     }))
 }
 
-/// All versions of the compass's model, the oldest first.
+/// Lists all versions of the compass's model, the oldest first.
 pub(super) async fn versions(
     db: &Db,
     vessel: VesselId,

@@ -1,12 +1,11 @@
-//! What the page of a vessel's changes shows, from what is stored.
+//! Timeline of a compass, as the API shows it.
 //!
-//! What always holds: every index is of an epoch in the same timeline; an epoch has a
-//! model or says why it has none.
+//! Invariants: every index is of an epoch in the same timeline. An epoch has a model, or the
+//! reason for which it has none.
 
 use super::schema::{CauseProbabilitySchema, CauseSchema, StepSchema};
 use super::store::{Analysed, StoredEpoch, Version};
-use crate::alerts::FoundChange;
-use crate::analysis::RefusalSchema;
+use crate::analysis::{FoundChange, RefusalSchema};
 use crate::deviation::{self, Row};
 use crate::ids::CompassId;
 use crate::logbook::LogbookKindSchema;
@@ -17,37 +16,35 @@ use binnacle_compass::ship::EarthField;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// Degrees of compass heading between a curve's rows.
+/// Step of compass heading between the rows of a curve, degrees.
 const STEP_DEG: f64 = 10.0;
 
-/// A compass's epochs and changes, by its last analysis.
+/// Epochs and changes of a compass, by its last analysis.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Timeline)]
 pub(super) struct Timeline {
     /// The compass.
     compass_id: CompassId,
-    /// When the analysis was made; none before the first.
+    /// Time of the analysis; none before the first.
     #[schema(required)]
     analysed_at: Option<Time>,
-    /// Where the last sample was taken: all curves are of here; none before the first
-    /// analysis.
+    /// Place of the last sample, to which all curves belong; none before the first analysis.
     #[schema(required)]
     place: Option<Place>,
     /// In order of time, without gaps; the last one goes on.
     epochs: Vec<Epoch>,
     /// In order of time.
     changes: Vec<ChangeFound>,
-    /// What entries of the logbook do to the samples that people should know, a sentence
-    /// each.
+    /// Effects of logbook entries on the samples that people should know, a sentence each.
     #[schema(example = json!([]))]
     notices: Vec<String>,
 }
 
-/// Where and when the last sample was taken, and the earth's field there.
+/// Place and time of the last sample, and the earth's field there.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = TimelinePlace)]
 pub(super) struct Place {
-    /// When.
+    /// Time.
     at: Time,
     /// Degrees north.
     #[schema(example = 43.4)]
@@ -66,24 +63,24 @@ pub(super) struct Place {
     z_nt: f64,
 }
 
-/// An interval in which the ship's magnetism was constant, but for slow drift.
+/// Interval of constant ship's magnetism, but for slow drift.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Epoch)]
 pub(super) struct Epoch {
-    /// Its beginning; none for the first, which reaches back without end.
+    /// Its beginning; none for the first epoch.
     #[schema(required)]
     from: Option<Time>,
-    /// Its end; none for the last, which goes on.
+    /// Its end; none for the last epoch, which goes on.
     #[schema(required)]
     to: Option<Time>,
-    /// The kind of logbook entry that began it; none where none did.
+    /// Kind of the logbook entry that began it; none where none did.
     #[schema(required, value_type = Option<LogbookKindSchema>)]
     begun_by: Option<LogbookKind>,
-    /// The likeliest cause of the change that began it, or that was over by then; none
-    /// where the samples show no change.
+    /// Likeliest cause of the change that began it, or that was over by then; none where the
+    /// samples show no change.
     #[schema(required, value_type = Option<CauseSchema>)]
     begun_by_change: Option<Cause>,
-    /// Place in this list of the earlier epoch whose magnetism it is again.
+    /// Index in this list of the earlier epoch whose magnetism it has again.
     #[schema(required)]
     resumes: Option<usize>,
     /// Time of its first sample.
@@ -92,74 +89,74 @@ pub(super) struct Epoch {
     /// Time of its last sample.
     #[schema(required)]
     data_until: Option<Time>,
-    /// The last version of the model that was made from samples up to this epoch's;
-    /// none where there was none.
+    /// Last version of the model that was made from samples up to this epoch's; none where
+    /// there was none.
     #[schema(required, example = 4)]
     model_version: Option<i64>,
     /// Root mean square of the residuals, degrees.
     #[schema(required, example = 0.3)]
     rms_deg: Option<f64>,
-    /// Samples that carry weight in its model.
+    /// Number of samples that carry weight in its model.
     #[schema(required, example = 412)]
     samples_used: Option<u64>,
-    /// Its deviation at `place`, by compass heading from 0, each 10°; none without a
+    /// Its deviation at `place`, by compass heading from 0 in steps of 10°; none without a
     /// model, or where headings are ambiguous.
     #[schema(required)]
     curve: Option<Vec<Row>>,
-    /// Why it has no model.
+    /// Reason for which it has no model.
     #[schema(required, value_type = Option<RefusalSchema>)]
     refusal: Option<FitError>,
 }
 
-/// Something that changed what the compass shows, or seemed to.
+/// Change of what the compass shows, real or apparent.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Change)]
 pub(super) struct ChangeFound {
-    /// When it most likely happened.
+    /// Most likely time.
     from: Time,
-    /// It hardly happened before this.
+    /// Earliest likely time.
     from_earliest: Time,
-    /// Nor after this.
+    /// Latest likely time.
     from_latest: Time,
-    /// Time of the sample that told.
+    /// Time of the sample that showed it.
     detected_at: Time,
-    /// Whether it is certain enough to act on; if not, more samples will tell.
+    /// True if it is certain enough to act on; otherwise more samples will tell.
     confirmed: bool,
-    /// Whether it had been certain, until what came after did not bear it out: it was none,
-    /// and `ended` is when that told.
+    /// True if it had been certain, and later samples did not confirm it. There was no change,
+    /// and `ended` is the time at which that showed.
     withdrawn: bool,
-    /// The likeliest cause.
+    /// Likeliest cause.
     #[schema(value_type = CauseSchema)]
     cause: Cause,
-    /// All causes that may be, the likeliest first.
+    /// All possible causes, the likeliest first.
     #[schema(value_type = Vec<CauseProbabilitySchema>)]
     causes: Vec<CauseProbability>,
-    /// Why, a sentence each.
+    /// Evidence, a sentence each.
     #[schema(example = json!(["it began at sea", "the logbook has a report of that time"]))]
     evidence: Vec<String>,
-    /// By how much the deviation changed where the ship was then, on the heading where
-    /// it changed most, degrees; none where the ship's magnetism did not change.
+    /// Change of the deviation at the ship's place then, on the heading where it changed most,
+    /// degrees; none where the ship's magnetism did not change.
     #[schema(required, example = 6.2)]
     deviation_change_deg: Option<f64>,
-    /// How the ship's permanent magnetism changed; none where it did not.
+    /// Change of the ship's permanent magnetism; none where it did not change.
     #[schema(required, value_type = Option<StepSchema>)]
     step: Option<Step>,
-    /// When it was over; none while it lasts.
+    /// Its end; none while it lasts.
     #[schema(required)]
     ended: Option<Time>,
-    /// Place in `epochs` of the one that it ended: its curve is the one before. None
-    /// where it ended none.
+    /// Index in `epochs` of the epoch that it ended, whose curve is the one before. None where
+    /// it ended none.
     #[schema(required)]
     epoch_before: Option<usize>,
-    /// Place of the one that it began: its curve is the one after.
+    /// Index of the epoch that it began, whose curve is the one after.
     #[schema(required)]
     epoch_after: Option<usize>,
-    /// Place of the one that began when it was over.
+    /// Index of the epoch that began when it was over.
     #[schema(required)]
     epoch_ended: Option<usize>,
 }
 
-/// Puts together what was found.
+/// Makes the timeline from what is stored.
 pub(super) fn timeline(
     compass_id: CompassId,
     analysed: Option<Analysed>,
@@ -189,12 +186,12 @@ pub(super) fn timeline(
         changes: findings
             .changes
             .into_iter()
-            .filter(is_told)
-            .map(told)
+            .filter(is_shown)
+            .map(ChangeFound::from)
             .collect(),
         epochs: epochs
             .into_iter()
-            .map(|epoch| in_line(epoch, place, versions))
+            .map(|epoch| Epoch::new(epoch, place, versions))
             .collect(),
     }
 }
@@ -212,32 +209,34 @@ impl From<LastPlace> for Place {
     }
 }
 
-fn in_line(epoch: StoredEpoch, place: Option<LastPlace>, versions: &[Version]) -> Epoch {
-    let model = epoch.model.as_ref();
-    let curve = model.zip(place).and_then(|(model, place)| {
-        let earth = EarthField {
-            h_nt: place.h_nt,
-            z_nt: place.z_nt,
-        };
-        deviation::table(model, earth, STEP_DEG).ok()
-    });
-    Epoch {
-        from: epoch.from.map(Time),
-        to: epoch.to.map(Time),
-        begun_by: epoch.begun_by,
-        begun_by_change: epoch.begun_by_change,
-        resumes: epoch.resumes,
-        data_from: epoch.data_from.map(Time),
-        data_until: epoch.data_until.map(Time),
-        model_version: model.and_then(|_| version(&epoch, versions)),
-        rms_deg: model.and_then(|model| model.rms_deg),
-        samples_used: model.map(|model| model.samples_used),
-        curve,
-        refusal: epoch.refusal,
+impl Epoch {
+    fn new(epoch: StoredEpoch, place: Option<LastPlace>, versions: &[Version]) -> Epoch {
+        let model = epoch.model.as_ref();
+        let curve = model.zip(place).and_then(|(model, place)| {
+            let earth = EarthField {
+                h_nt: place.h_nt,
+                z_nt: place.z_nt,
+            };
+            deviation::table(model, earth, STEP_DEG).ok()
+        });
+        Epoch {
+            from: epoch.from.map(Time),
+            to: epoch.to.map(Time),
+            begun_by: epoch.begun_by,
+            begun_by_change: epoch.begun_by_change,
+            resumes: epoch.resumes,
+            data_from: epoch.data_from.map(Time),
+            data_until: epoch.data_until.map(Time),
+            model_version: model.and_then(|_| version(&epoch, versions)),
+            rms_deg: model.and_then(|model| model.rms_deg),
+            samples_used: model.map(|model| model.samples_used),
+            curve,
+            refusal: epoch.refusal,
+        }
     }
 }
 
-/// The last version made from samples that end in the epoch.
+/// Returns the last version made from samples that end in the epoch.
 fn version(epoch: &StoredEpoch, versions: &[Version]) -> Option<i64> {
     let (from, until) = (epoch.data_from?, epoch.data_until?);
     let within = |found: &&Version| (from..=until).contains(&found.data_until.0);
@@ -245,28 +244,31 @@ fn version(epoch: &StoredEpoch, versions: &[Version]) -> Option<i64> {
     Some(last.version)
 }
 
-/// What is too faint for the ship alone is told when others speak for it.
-fn is_told(found: &FoundChange) -> bool {
+/// Tells whether a change is shown. A disturbance too small to be certain by this ship alone is
+/// shown once other ships confirm it.
+fn is_shown(found: &FoundChange) -> bool {
     !found.change.is_faint()
 }
 
-fn told(found: FoundChange) -> ChangeFound {
-    let change = found.change;
-    ChangeFound {
-        from: change.from.into(),
-        from_earliest: change.from_earliest.into(),
-        from_latest: change.from_latest.into(),
-        detected_at: change.detected_at.into(),
-        confirmed: change.confirmed,
-        withdrawn: change.withdrawn,
-        cause: change.cause,
-        causes: change.causes,
-        evidence: change.evidence,
-        deviation_change_deg: change.deviation_change_deg,
-        step: change.step,
-        ended: change.ended.map(Time),
-        epoch_before: found.epoch.and_then(|after| after.checked_sub(1)),
-        epoch_after: found.epoch,
-        epoch_ended: found.epoch_ended,
+impl From<FoundChange> for ChangeFound {
+    fn from(found: FoundChange) -> ChangeFound {
+        let change = found.change;
+        ChangeFound {
+            from: change.from.into(),
+            from_earliest: change.from_earliest.into(),
+            from_latest: change.from_latest.into(),
+            detected_at: change.detected_at.into(),
+            confirmed: change.confirmed,
+            withdrawn: change.withdrawn,
+            cause: change.cause,
+            causes: change.causes,
+            evidence: change.evidence,
+            deviation_change_deg: change.deviation_change_deg,
+            step: change.step,
+            ended: change.ended.map(Time),
+            epoch_before: found.epoch.and_then(|after| after.checked_sub(1)),
+            epoch_after: found.epoch,
+            epoch_ended: found.epoch_ended,
+        }
     }
 }

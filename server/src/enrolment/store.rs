@@ -191,7 +191,7 @@ pub async fn revoke(
         now
     )?
     .ok_or(Error::NotFound("agent"))?;
-    let event = alerts::agent_revoked(&mut tx, revoked, now).await?;
+    let event = alerts::end_duplicate_agent(&mut tx, revoked, now).await?;
     tx.commit().await?;
     Ok(event)
 }

@@ -7,7 +7,7 @@
 mod store;
 
 use crate::access::Reader;
-use crate::alerts::{Cause, Severity, State};
+use crate::alerts::{Cause, State};
 use crate::analysis::Track;
 use crate::app::App;
 use crate::deviation::{self, Worst};
@@ -15,6 +15,7 @@ use crate::error::{Problem, Result};
 use crate::http::{Json, Params};
 use crate::ids::{AlertId, VesselId};
 use crate::models::StoredModel;
+use crate::severity::Severity;
 use crate::time::Time;
 use crate::vessels::LastPosition;
 use axum::extract;

@@ -1,10 +1,11 @@
 //! What the database holds of a whole fleet, in five questions.
 
-use crate::alerts::{Cause, Severity, State};
+use crate::alerts::{Cause, State};
 use crate::analysis::Track;
 use crate::db::{Db, Result, rows};
 use crate::ids::{AlertId, OperatorId, VesselId};
 use crate::models::{self, StoredModel};
+use crate::severity::Severity;
 use crate::time::Time;
 use crate::vessels::LastPosition;
 use uuid::Uuid;

@@ -1,30 +1,48 @@
-//! Which news of an alert becomes a letter, and to whom.
+//! Letters about topics that rise and fall in severity, and who gets which.
 
 use super::letter::Letter;
 use super::store;
-use crate::alerts::{Alert, AlertNews, Severity};
 use crate::db::Tx;
 use crate::error::Result;
-use crate::ids::{OperatorId, RecipientId};
+use crate::ids::{DeliveryId, OperatorId, RecipientId};
 use crate::outbox::{self, Kind, Message};
+use crate::severity::Severity;
 use crate::time::Time;
+use uuid::Uuid;
 
-/// Queues letters about alerts for those of an operator's recipients who want them.
+/// Something new about a topic, for those who get mail from some severity on.
+#[derive(Clone, Debug)]
+pub struct Announcement {
+    /// The delivery's id.
+    pub id: DeliveryId,
+    /// Whether the topic begins, goes on or ends.
+    pub kind: Kind,
+    /// The topic: each recipient is written to when it gets worse, and when it ends.
+    pub topic: Uuid,
+    /// Name of what topics that follow one another have in common.
+    pub series: String,
+    /// Severity of the topic now.
+    pub severity: Severity,
+    /// The letter.
+    pub letter: Letter,
+}
+
+/// Queues letters for those of an operator's recipients who want them.
 pub async fn announce(
     tx: &mut Tx,
     operator: OperatorId,
-    all: &[AlertNews],
+    all: &[Announcement],
     now: Time,
 ) -> Result<()> {
     for (recipient, least) in store::wishes(tx, operator).await? {
-        for news in all {
-            let is_news = note(tx, recipient, least, news).await?;
-            if is_news && !is_replaced(news, least, all) {
+        for announcement in all {
+            let is_due = note(tx, recipient, least, announcement).await?;
+            if is_due && !is_replaced(announcement, least, all) {
                 let message = Message {
-                    id: news.id,
-                    kind: news.kind,
+                    id: announcement.id,
+                    kind: announcement.kind,
                     order: None,
-                    body: serde_json::to_string(&Letter::of(news))?,
+                    body: serde_json::to_string(&announcement.letter)?,
                 };
                 outbox::queue(tx, recipient.0, &message, now).await?;
             }
@@ -33,44 +51,43 @@ pub async fn announce(
     Ok(())
 }
 
-/// Whether a letter of the next alert of the cause goes to the same recipient: it says more
+/// Whether a letter of the next topic of the series goes to the same recipient: it says more
 /// than that this one is over.
-fn is_replaced(news: &AlertNews, least: Severity, all: &[AlertNews]) -> bool {
-    let of = |alert: &Alert| (alert.compass_id, alert.cause);
-    let is_next = |other: &AlertNews| {
+fn is_replaced(announcement: &Announcement, least: Severity, all: &[Announcement]) -> bool {
+    let is_next = |other: &Announcement| {
         other.kind == Kind::AlertRaised
-            && other.alert.severity >= least
-            && of(&other.alert) == of(&news.alert)
+            && other.severity >= least
+            && other.series == announcement.series
     };
-    news.kind == Kind::AlertCleared && all.iter().any(is_next)
+    announcement.kind == Kind::AlertCleared && all.iter().any(is_next)
 }
 
-/// Whether a recipient is told this, which is then noted.
+/// Notes what a recipient is written of a topic. Returns whether a letter is due.
 async fn note(
     tx: &mut Tx,
     recipient: RecipientId,
     least: Severity,
-    news: &AlertNews,
+    announcement: &Announcement,
 ) -> Result<bool> {
-    let alert = news.alert.id;
-    let told = store::told(tx, recipient, alert).await?;
-    match news.kind {
+    let topic = announcement.topic;
+    let written = store::last_severity(tx, recipient, topic).await?;
+    match announcement.kind {
         Kind::AlertRaised | Kind::AlertUpdated => {
-            let severity = news.alert.severity;
+            let severity = announcement.severity;
             if severity < least {
                 // For this recipient that is its end.
-                store::forget(tx, recipient, alert).await?;
-                return Ok(told.is_some());
+                store::forget(tx, recipient, topic).await?;
+                return Ok(written.is_some());
             }
-            if told.is_some_and(|told| severity <= told) {
+            if written.is_some_and(|written| severity <= written) {
                 return Ok(false);
             }
-            store::tell(tx, recipient, alert, severity).await?;
+            store::note_severity(tx, recipient, topic, severity).await?;
             Ok(true)
         }
         Kind::AlertCleared => {
-            store::forget(tx, recipient, alert).await?;
-            Ok(told.is_some())
+            store::forget(tx, recipient, topic).await?;
+            Ok(written.is_some())
         }
         _ => Ok(false),
     }
@@ -79,50 +96,26 @@ async fn note(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::alerts::{Cause, Evidence, State};
-    use crate::ids::{AlertId, CompassId, DeliveryId, VesselId};
-    use binnacle_compass::time::Timestamp;
 
-    fn news(kind: Kind, compass: CompassId, severity: Severity) -> AlertNews {
-        let at = Time(Timestamp::parse("2026-11-21T07:00:00Z").unwrap());
-        AlertNews {
+    fn announced(kind: Kind, series: &str, severity: Severity) -> Announcement {
+        Announcement {
             id: DeliveryId::new(),
             kind,
-            alert: Alert {
-                id: AlertId::new(),
-                vessel_id: VesselId::new(),
-                vessel_name: "Nao".to_owned(),
-                compass_id: compass,
-                compass_name: "Standard compass".to_owned(),
-                cause: Cause::LightningOrShock,
-                severity,
-                state: State::Raised,
-                since: at,
-                summary: String::new(),
-                advice: String::new(),
-                evidence: Evidence(Vec::new()),
-                raised_at: at,
-                updated_at: at,
-                acknowledged_at: None,
-                acknowledged_by: None,
-                acknowledgement_note: None,
-                cleared_at: None,
-                cleared_by: None,
-                clearing_reason: None,
-            },
-            was: None,
+            topic: Uuid::now_v7(),
+            series: series.to_owned(),
+            severity,
+            letter: Letter::test(),
         }
     }
 
     #[test]
     fn an_end_is_told_where_the_alert_that_follows_it_is_not() {
-        let compass = CompassId::new();
-        let over = news(Kind::AlertCleared, compass, Severity::Critical);
-        let next = news(Kind::AlertRaised, compass, Severity::Notice);
+        let over = announced(Kind::AlertCleared, "one", Severity::Critical);
+        let next = announced(Kind::AlertRaised, "one", Severity::Notice);
         let all = [over.clone(), next];
         assert!(is_replaced(&over, Severity::Notice, &all));
         assert!(!is_replaced(&over, Severity::Critical, &all));
-        let elsewhere = news(Kind::AlertRaised, CompassId::new(), Severity::Critical);
+        let elsewhere = announced(Kind::AlertRaised, "another", Severity::Critical);
         assert!(!is_replaced(
             &over,
             Severity::Notice,

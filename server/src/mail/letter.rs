@@ -1,8 +1,7 @@
 //! What a letter says: plain text, so that every program shows it the same.
 
-use crate::alerts::{AlertNews, Severity};
 use crate::ids::OperatorId;
-use crate::outbox::Kind;
+use crate::severity::Severity;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
@@ -68,20 +67,6 @@ pub(super) enum Why {
 }
 
 impl Letter {
-    /// What is new about an alert.
-    pub(super) fn of(news: &AlertNews) -> Letter {
-        let alert = &news.alert;
-        let (subject, text) = words_of(news);
-        Letter {
-            subject: header(&subject),
-            text,
-            told: Vec::new(),
-            path: format!("/vessels/{}", alert.vessel_id),
-            about: Some(alert.id.0),
-            report: None,
-        }
-    }
-
     /// What somebody gets who asked for a test.
     pub(super) fn test() -> Letter {
         Letter {
@@ -102,7 +87,7 @@ impl Letter {
                 format!(
                     "You get this because {address} is on your company's list for alerts from {} \
                      on. An administrator takes it off:",
-                    name(least)
+                    least
                 ),
                 "/mail",
             ),
@@ -128,68 +113,10 @@ impl Letter {
     }
 }
 
-/// What is new about an alert: in a line, and in full.
-pub fn words_of(news: &AlertNews) -> (String, String) {
-    let alert = &news.alert;
-    let state = match (news.kind, news.was) {
-        (Kind::AlertCleared, _) if alert.is_over() => "over".to_owned(),
-        (Kind::AlertCleared, _) => "closed".to_owned(),
-        (_, Some(was)) if was > alert.severity => format!("only {} now", name(alert.severity)),
-        _ => name(alert.severity).to_owned(),
-    };
-    let subject = format!("{}: {state}, {}", alert.vessel_name, alert.cause.words());
-    (one_line(&subject), text(news))
-}
-
 /// A subject as it goes into a header: a name that looks like an encoded word (RFC 2047,
 /// section 2) is none.
 pub fn header(subject: &str) -> String {
     one_line(subject).replace("=?", "= ?")
-}
-
-fn text(news: &AlertNews) -> String {
-    let AlertNews { alert, kind, .. } = news;
-    let before = news.was.map(|was| format!(" ({} before)", name(was)));
-    let mut lines = vec![
-        format!("Vessel:   {}", one_line(&alert.vessel_name)),
-        format!("Compass:  {}", one_line(&alert.compass_name)),
-        format!(
-            "Severity: {}{}",
-            name(alert.severity),
-            before.unwrap_or_default()
-        ),
-        format!("Since:    {}", alert.since.to_the_minute()),
-    ];
-    if let (Kind::AlertCleared, Some(cleared_at)) = (*kind, alert.cleared_at) {
-        let word = if alert.is_over() {
-            "Over:  "
-        } else {
-            "Closed:"
-        };
-        lines.push(format!("{word}   {}", cleared_at.to_the_minute()));
-        let by = alert.cleared_by.as_deref().unwrap_or("Binnacle");
-        let reason = alert.clearing_reason.as_deref().unwrap_or("it is over");
-        let why = format!("Cleared by {by}: {reason}");
-        lines.extend([String::new(), wrapped("", &why), String::new()]);
-        lines.extend(["It said:".to_owned(), wrapped("  ", &alert.summary)]);
-        return lines.join("\n") + "\n";
-    }
-    lines.extend([String::new(), wrapped("", &alert.summary), String::new()]);
-    lines.extend(["What to do:".to_owned(), wrapped("  ", &alert.advice)]);
-    if !alert.evidence.0.is_empty() {
-        lines.extend([String::new(), "What shows it:".to_owned()]);
-        let points = alert.evidence.0.iter();
-        lines.extend(points.map(|point| wrapped("- ", point)));
-    }
-    lines.join("\n") + "\n"
-}
-
-fn name(severity: Severity) -> &'static str {
-    match severity {
-        Severity::Notice => "notice",
-        Severity::Warning => "warning",
-        Severity::Critical => "critical",
-    }
 }
 
 /// Without anything that could end a line.

@@ -17,8 +17,8 @@ mod relay;
 mod send;
 mod store;
 
-pub use announce::announce;
-pub use letter::{Letter, Told, header, one_line, words_of, wrapped};
+pub use announce::{Announcement, announce};
+pub use letter::{Letter, Told, header, one_line, wrapped};
 pub use monthly::monthly_letter;
 pub use recipient::address;
 pub use relay::Relay;

@@ -1,8 +1,8 @@
 //! Who gets mail, as it is asked for and shown.
 
-use crate::alerts::Severity;
 use crate::error::{Error, Result};
 use crate::ids::RecipientId;
+use crate::severity::Severity;
 use crate::time::Time;
 use lettre::Address;
 use serde::{Deserialize, Serialize};

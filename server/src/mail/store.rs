@@ -2,11 +2,11 @@
 
 use super::letter::Why;
 use super::recipient::{NewRecipient, Recipient};
-use crate::alerts::Severity;
 use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use crate::error::{Error, Result};
-use crate::ids::{AlertId, OperatorId, RecipientId};
+use crate::ids::{OperatorId, RecipientId};
 use crate::outbox::{self, Channel};
+use crate::severity::Severity;
 use crate::time::Time;
 use uuid::Uuid;
 
@@ -150,11 +150,11 @@ pub(super) async fn wishes(
     )
 }
 
-/// The worst that a recipient was told of an alert; none if nothing.
-pub(super) async fn told(
+/// Returns the worst severity that a recipient was written of a topic.
+pub(super) async fn last_severity(
     tx: &mut Tx,
     recipient: RecipientId,
-    alert: AlertId,
+    topic: Uuid,
 ) -> DbResult<Option<Severity>> {
     let found = row!(
         in tx,
@@ -162,16 +162,16 @@ pub(super) async fn told(
         "SELECT severity FROM mail_told WHERE recipient_id = $1 AND alert_id = $2
          ORDER BY alert_id",
         recipient,
-        alert
+        topic
     )?;
     Ok(found.map(|(severity,)| severity))
 }
 
-/// Notes what a recipient is told of an alert.
-pub(super) async fn tell(
+/// Notes the severity that a recipient is written of a topic.
+pub(super) async fn note_severity(
     tx: &mut Tx,
     recipient: RecipientId,
-    alert: AlertId,
+    topic: Uuid,
     severity: Severity,
 ) -> DbResult<()> {
     execute!(
@@ -179,19 +179,19 @@ pub(super) async fn tell(
         "INSERT INTO mail_told (recipient_id, alert_id, severity) VALUES ($1, $2, $3)
          ON CONFLICT (recipient_id, alert_id) DO UPDATE SET severity = excluded.severity",
         recipient,
-        alert,
+        topic,
         severity
     )?;
     Ok(())
 }
 
-/// Forgets what was told of an alert that is over, or is so for the recipient.
-pub(super) async fn forget(tx: &mut Tx, recipient: RecipientId, alert: AlertId) -> DbResult<()> {
+/// Forgets a topic that is over, or is so for the recipient.
+pub(super) async fn forget(tx: &mut Tx, recipient: RecipientId, topic: Uuid) -> DbResult<()> {
     execute!(
         tx,
         "DELETE FROM mail_told WHERE recipient_id = $1 AND alert_id = $2",
         recipient,
-        alert
+        topic
     )?;
     Ok(())
 }

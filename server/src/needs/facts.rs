@@ -2,7 +2,8 @@
 
 use super::need::Ahead;
 use super::since::Since;
-use crate::alerts::{AlertLimits, Findings};
+use crate::alerts::AlertLimits;
+use crate::analysis::Findings;
 use crate::deviation::{table, worst_of};
 use crate::ids::{CompassId, VesselId};
 use crate::models::StoredModel;

@@ -2,7 +2,8 @@
 
 use super::facts::{Completed, Facts, Stored, Waypoint, Work, compass};
 use super::since::{self, Since};
-use crate::alerts::{AlertLimits, Findings};
+use crate::alerts::AlertLimits;
+use crate::analysis::Findings;
 use crate::app::App;
 use crate::compasses::{self, Compass};
 use crate::db::{Db, rows};

@@ -17,7 +17,7 @@ mod store;
 mod way;
 
 pub use needs::look;
-pub use news::{create, tell_of_alerts};
+pub use news::create;
 pub use post::{post, watch};
 
 use crate::access::Caller;

@@ -6,12 +6,10 @@
 use super::settings::Settings;
 use super::store;
 use super::way::Way;
-use crate::alerts::{AlertNews, Severity};
 use crate::db::{Tx, row, rows};
 use crate::error::Result;
-use crate::ids::{OperatorId, UserId};
+use crate::ids::UserId;
 use crate::notices::{Kind, Notice, NoticesPublished};
-use crate::outbox;
 use crate::session::Role;
 use crate::tenants::Tenant;
 use crate::time::Time;
@@ -50,41 +48,6 @@ pub(super) async fn tell(
         }
     }
     Ok(())
-}
-
-/// Tells an operator's people of what became of alerts.
-pub async fn tell_of_alerts(
-    tx: &mut Tx,
-    operator: OperatorId,
-    all: &[AlertNews],
-    now: Time,
-) -> Result<()> {
-    let news: Vec<Notice> = all.iter().filter_map(of_alert).collect();
-    tell(tx, operator, &news, None, now).await
-}
-
-fn of_alert(news: &AlertNews) -> Option<Notice> {
-    let alert = &news.alert;
-    let critical = alert.severity == Severity::Critical;
-    let presses = alert.severity >= Severity::Warning;
-    let pressed = news.was.is_some_and(|was| was >= Severity::Warning);
-    let told = match news.kind {
-        outbox::Kind::AlertRaised | outbox::Kind::AlertCleared => presses,
-        // Who was told of it hears once that it presses no more, now or when it is over.
-        outbox::Kind::AlertUpdated => critical || presses != pressed,
-        _ => false,
-    };
-    let (subject, text) = crate::mail::words_of(news);
-    told.then(|| Notice {
-        kind: Kind::Alert,
-        urgent: critical && news.kind != outbox::Kind::AlertCleared,
-        subject,
-        text,
-        path: format!("/vessels/{}", alert.vessel_id),
-        vessel: alert.vessel_id,
-        order: None,
-        alert: Some(alert.id),
-    })
 }
 
 async fn people(tx: &mut Tx, tenant: Tenant) -> Result<Vec<Person>> {

@@ -3,7 +3,7 @@
 use super::gather::{Agreed, Gathered, Names};
 use super::orders::Aside;
 use super::plan::Plan;
-use crate::alerts::{AlertWanted, Cause, Dated, Evidence, Severity};
+use crate::alerts::JobAtRisk;
 use crate::ids::{CompassId, FirmId, OrderId, VesselId};
 use binnacle_schedule::input::JobState;
 use binnacle_schedule::plan::ChangeKind;
@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const STANDS: &str = "confirmed";
 
 /// Those that the plan moves or gives up.
-pub(super) fn at_risk(plan: &Plan, names: &Names) -> BTreeMap<(VesselId, CompassId), AlertWanted> {
+pub(super) fn at_risk(plan: &Plan, names: &Names) -> BTreeMap<(VesselId, CompassId), JobAtRisk> {
     let mut wanted = BTreeMap::new();
     for change in &plan.changes {
         let stands = change.what == ChangeKind::Kept && change.why == STANDS;
@@ -30,7 +30,7 @@ pub(super) fn at_risk(plan: &Plan, names: &Names) -> BTreeMap<(VesselId, Compass
         };
         let orders: Vec<OrderId> = held.iter().map(|(_, agreed)| agreed.order_id).collect();
         let firm = names.firm(agreed.firm_id);
-        let alert = unfit(plan, &firm, agreed.day, &change.why, &orders);
+        let alert = unfit(plan, firm, agreed.day, &change.why, orders);
         wanted.insert((agreed.vessel_id, *compass), alert);
     }
     wanted
@@ -40,7 +40,7 @@ pub(super) fn at_risk(plan: &Plan, names: &Names) -> BTreeMap<(VesselId, Compass
 pub(super) fn aside(
     plan: &Plan,
     gathered: &Gathered,
-    wanted: &mut BTreeMap<(VesselId, CompassId), AlertWanted>,
+    wanted: &mut BTreeMap<(VesselId, CompassId), JobAtRisk>,
 ) -> BTreeSet<(VesselId, CompassId)> {
     let mut not_told = BTreeSet::new();
     let mut jobs: BTreeMap<(VesselId, FirmId, NaiveDate), Vec<&Aside>> = BTreeMap::new();
@@ -58,25 +58,25 @@ pub(super) fn aside(
         };
         let orders: Vec<OrderId> = of_job.iter().map(|one| one.order_id).collect();
         let firm = gathered.names.firm(firm);
-        let alert = unfit(plan, &firm, day, why, &orders);
+        let alert = unfit(plan, firm, day, why, orders);
         not_told.remove(&(vessel, first.compass_id));
         wanted.insert((vessel, first.compass_id), alert);
     }
     not_told
 }
 
-fn unfit(plan: &Plan, firm: &str, day: NaiveDate, why: &str, orders: &[OrderId]) -> AlertWanted {
-    let orders = orders.iter().map(|order| format!("Work order {order}."));
-    AlertWanted {
-        cause: Cause::AgreedJobAtRisk,
-        severity: Severity::Warning,
+fn unfit(
+    plan: &Plan,
+    firm: String,
+    day: NaiveDate,
+    reason: &str,
+    orders: Vec<OrderId>,
+) -> JobAtRisk {
+    JobAtRisk {
         since: plan.solved_at,
-        dated: Dated::default(),
-        summary: format!(
-            "The adjustment agreed with {firm} for {day} does not fit any more: {why}."
-        ),
-        advice: "Agree on another time with the firm, or cancel its order and offer the job as \
-                 the schedule has it now.",
-        evidence: Evidence(orders.collect()),
+        firm,
+        day,
+        reason: reason.to_owned(),
+        orders,
     }
 }

@@ -189,7 +189,8 @@ async fn keep(
     let mut wanted = at_risk(plan, &gathered.names);
     let not_told = aside(plan, gathered, &mut wanted);
     let mut told =
-        alerts::of_schedule(&mut tx, operator, wanted, &not_told, plan.solved_at).await?;
+        alerts::reconcile_jobs_at_risk(&mut tx, operator, &wanted, &not_told, plan.solved_at)
+            .await?;
     for vessel in store::told(plan) {
         let kind = events::Kind::Schedule;
         told.push(events::insert(&mut tx, vessel, kind, plan.solved_at).await?);

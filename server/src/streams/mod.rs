@@ -143,8 +143,10 @@ async fn take(
     let mut told = Vec::new();
     if is_new {
         let (vessel, compass) = (agent.vessel_id, agent.compass_id);
-        told.extend(alerts::from_ship(tx, vessel, compass, &batch.alerts, now).await?);
-        told.extend(alerts::from_batch(tx, agent, batch.stream.0, batch.seq, now).await?);
+        told.extend(alerts::record_agent_alerts(tx, vessel, compass, &batch.alerts, now).await?);
+        told.extend(
+            alerts::check_duplicate_agent(tx, agent, batch.stream.0, batch.seq, now).await?,
+        );
         if !batch.samples.is_empty() || !batch.alerts.is_empty() {
             analysis::enqueue(tx, vessel, now, delay_s).await?;
         }

@@ -12,7 +12,7 @@ pub use service::ServiceChanged;
 pub use store::{find_row, is_in_service, must_be_in_fleet, names};
 
 use crate::access::{Reader, Writer};
-use crate::alerts::{self, Severity, Standing};
+use crate::alerts::{self, OpenCount};
 use crate::app::App;
 use crate::audit::RequestContext;
 use crate::compasses::{self, Compass};
@@ -22,6 +22,7 @@ use crate::http::{Id, Json, Page, Params, Valid, optional_text, text};
 use crate::idempotency::{self, Key};
 use crate::ids::{OperatorId, VesselId};
 use crate::models::{self, ModelSummary, StoredModel};
+use crate::severity::Severity;
 use crate::time::Time;
 use amendment::{Amendment, AmendmentSchema};
 use axum::extract::{FromRef, State};
@@ -156,7 +157,7 @@ async fn list_vessels(
     let (operator, first, last) = (reader.operator, first.id, last.id);
     let compasses = compasses::of_fleet(&app.db, operator, first, last).await?;
     let models = models::current_of_fleet(&app.db, operator, first, last).await?;
-    let standing = alerts::standing(&app.db, operator, first, last).await?;
+    let standing = alerts::count_open(&app.db, operator, first, last).await?;
     let items = listed
         .items
         .into_iter()
@@ -250,7 +251,7 @@ async fn assemble(app: &App, operator: OperatorId, id: VesselId) -> Result<Vesse
     let row = must_be_in_fleet(&app.db, operator, id).await?;
     let compasses = compasses::of_vessel(&app.db, id).await?;
     let models = models::current_of_vessel(&app.db, id).await?;
-    let standing = alerts::standing(&app.db, operator, id, id).await?;
+    let standing = alerts::count_open(&app.db, operator, id, id).await?;
     Ok(row.with(&compasses, &models, &standing))
 }
 
@@ -278,9 +279,9 @@ impl NewVessel {
 impl store::Row {
     /// Puts a vessel together from all compasses, current models and counts of
     /// alerts at hand.
-    fn with(self, compasses: &[Compass], models: &[StoredModel], standing: &[Standing]) -> Vessel {
+    fn with(self, compasses: &[Compass], models: &[StoredModel], standing: &[OpenCount]) -> Vessel {
         let hers = standing.iter().filter(|alerts| alerts.vessel_id == self.id);
-        let (open_alerts, worst_alert) = alerts::sum(hers);
+        let (open_alerts, worst_alert) = alerts::summarize(hers);
         let compasses: Vec<Compass> = compasses
             .iter()
             .filter(|compass| compass.vessel_id == self.id)

@@ -54,6 +54,6 @@ pub(super) async fn set(
         return Ok(told);
     }
     set_out_of_service(tx, vessel.id, Some(now)).await?;
-    told.extend(alerts::out_of_service(tx, vessel.id, now).await?);
+    told.extend(alerts::end_all(tx, vessel.id, now).await?);
     Ok(told)
 }

@@ -14,7 +14,7 @@ mod store;
 mod webhook;
 
 pub use address::is_public;
-pub use announce::{announce, announce_messages};
+pub use announce::announce;
 pub use send::{Reach, SIGNATURE_HEADER, Sender, check_url, client};
 
 use crate::access::{PartyReader, PartyWriter};

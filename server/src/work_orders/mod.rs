@@ -60,7 +60,7 @@ pub use order::{NewOrder, State};
 pub use refusal::{Cure, NotAdjustableFields, Refusal};
 pub use store::lock_compass;
 pub use subscriber::{refuse_amended_binnacle, refuse_leave_of_service};
-pub use verification::{after_analysis, alert};
+pub use verification::{after_analysis, unconfirmed_adjustment};
 
 use crate::access::{PartyReader, PartyWriter, Writer};
 use crate::app::App;

@@ -68,7 +68,7 @@ pub(super) async fn tell(
         }
     }
     let operator = Tenant::Operator(summary.operator_id);
-    webhooks::announce_messages(tx, operator, &told, now).await?;
+    webhooks::announce(tx, operator, &told, now).await?;
     let by = author(&new);
     let notices = once.iter().filter_map(|entry| {
         let firm = entry.content.between().map(|said| said.firm.firm_id);
@@ -95,7 +95,7 @@ pub(super) async fn tell(
         if told.is_empty() || passed {
             continue;
         }
-        webhooks::announce_messages(tx, Tenant::Firm(firm), &told, now).await?;
+        webhooks::announce(tx, Tenant::Firm(firm), &told, now).await?;
         let notices = notices_for(summary, offer, was, &new);
         let published = NoticesPublished {
             tenant: Tenant::Firm(firm),

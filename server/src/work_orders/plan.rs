@@ -4,7 +4,7 @@ use super::basis::Prepared;
 use super::order::Summary;
 use super::refusal::{Cure, Refusal, not_adjustable};
 use super::standing::Standing;
-use crate::alerts::{self, Cause};
+use crate::alerts::{self, Effect};
 use crate::app::App;
 use crate::binnacles;
 use crate::error::{Error, Result};
@@ -239,7 +239,7 @@ pub(super) async fn foretold(app: &App, standing: &Standing) -> Result<Learnt> {
 /// `not-adjustable` with what would cure it.
 pub(super) async fn offer(app: &App, summary: &Summary, prepared: Prepared) -> Result<Outcome> {
     let (vessel, compass) = (summary.vessel_id, summary.compass_id);
-    let alerts = alerts::in_force(&app.db, vessel, compass).await?;
+    let alerts = alerts::list_in_force(&app.db, vessel, compass).await?;
     let unproved = prepared.basis.model.headings_until;
     let mut outcome = calculate(app, move || plan(&prepared.adjustment())).await?;
     if let Some(until) = unproved {
@@ -252,38 +252,15 @@ pub(super) async fn offer(app: &App, summary: &Summary, prepared: Prepared) -> R
             ),
         );
     }
-    let told = alerts.iter().filter(|alert| bears_on_a_plan(alert.cause));
+    let told = alerts
+        .iter()
+        .filter(|alert| alert.cause.effect_on_plan() == Effect::Note);
     let told = told.map(|alert| format!("an alert about this compass is open: {}", alert.summary));
     outcome.notes.splice(0..0, told);
     if outcome.plans.is_empty() {
         return Err(not_adjustable(refusals(&outcome)));
     }
     Ok(outcome)
-}
-
-/// Whether an adjuster must know of an alert of this cause before correctors are moved.
-fn bears_on_a_plan(cause: Cause) -> bool {
-    match cause {
-        Cause::AdjustmentNotConfirmed
-        | Cause::CompassFault
-        | Cause::ReferenceFault
-        | Cause::ReportedAboard
-        | Cause::LightningOrShock
-        | Cause::MagneticCargo
-        | Cause::Drift
-        | Cause::Alignment
-        | Cause::UnknownChange => true,
-        // What an adjustment is for, what passes by, and what is not about the compass.
-        Cause::DeviationOverLimit
-        | Cause::AgreedJobAtRisk
-        | Cause::LocalAnomaly
-        | Cause::MagneticStorm
-        | Cause::BerthSteel
-        | Cause::SilentAgent
-        | Cause::ClonedAgent
-        | Cause::NoModel
-        | Cause::WideBand => false,
-    }
 }
 
 /// Runs the planner on a blocking thread, a few at a time.

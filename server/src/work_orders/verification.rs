@@ -10,11 +10,11 @@ use super::entry::{Author, Content};
 use super::news::{self, Before};
 use super::order::State;
 use super::store;
-use crate::alerts::{AlertWanted, Cause, Dated, Evidence, Severity};
+use crate::alerts::UnconfirmedAdjustment;
 use crate::db::Tx;
 use crate::error::Result;
 use crate::events::Event;
-use crate::ids::{CompassId, OrderId, VesselId};
+use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
 use binnacle_adjustment::adjust::{Settled, Verification, verify};
 use binnacle_compass::result::{SampleDiagnostic, SampleReason};
@@ -164,41 +164,24 @@ fn settled(found: &SampleDiagnostic) -> Option<Settled> {
     })
 }
 
-/// The alert that a compass's last adjustment calls for.
-pub async fn alert(
+/// Returns a compass's last adjustment, if headings at sea contradict it.
+pub async fn unconfirmed_adjustment(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
-) -> Result<Option<AlertWanted>> {
+) -> Result<Option<UnconfirmedAdjustment>> {
     let last = store::last_completed(tx, vessel, compass).await?;
-    let Some((order, State::Failed, at)) = last else {
+    let Some((order, State::Failed, adjusted_at)) = last else {
         return Ok(None);
     };
     let whole = store::lock(tx, vessel, order).await?;
-    let Some(verified) = whole.standing().verified else {
-        return Ok(None);
-    };
-    Ok(Some(wanted(order, at, &verified)))
-}
-
-fn wanted(order: OrderId, at: Time, verified: &Verified) -> AlertWanted {
-    AlertWanted {
-        cause: Cause::AdjustmentNotConfirmed,
-        severity: Severity::Critical,
-        since: at,
-        dated: Dated::exactly(at),
-        summary: format!(
-            "Headings at sea do not agree with what the adjustment foretold: {}.",
-            verified.words
-        ),
-        advice: "Do not use the predicted card. Take azimuths on all headings, look whether the \
-                 correctors stand as the record says, and have the ship swung or adjusted again.",
-        evidence: Evidence(vec![format!(
-            "Work order {order}, adjusted at {}; {} samples since.",
-            at.to_the_minute(),
-            verified.samples
-        )]),
-    }
+    let verified = whole.standing().verified;
+    Ok(verified.map(|verified| UnconfirmedAdjustment {
+        order,
+        adjusted_at,
+        verdict: verified.words,
+        samples: verified.samples,
+    }))
 }
 
 #[cfg(test)]

@@ -200,13 +200,13 @@ async fn a_silent_agent_is_an_alert_until_it_sends_again(shore: Shore) {
     let nao = shore.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 3)).await.good();
     shore.advance(2.9 * DAY_S);
-    alerts::for_silence(&shore.app).await.unwrap();
+    alerts::check_silence(&shore.app).await.unwrap();
     // No session lasts so long unused.
     let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
     assert_eq!(list(&ada, "").await, Vec::<Value>::new());
     shore.advance(0.2 * DAY_S);
     for _ in 0..2 {
-        alerts::for_silence(&shore.app).await.unwrap();
+        alerts::check_silence(&shore.app).await.unwrap();
     }
     let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
     let raised = list(&ada, "").await;
@@ -219,7 +219,7 @@ async fn a_silent_agent_is_an_alert_until_it_sends_again(shore: Shore) {
     shore.work().await;
     assert_eq!(list(&ada, "?open=true").await.len(), 1);
     nao.put(2, &passage(DAY, 3)).await.good();
-    alerts::for_silence(&shore.app).await.unwrap();
+    alerts::check_silence(&shore.app).await.unwrap();
     assert_eq!(list(&ada, "?open=true").await, Vec::<Value>::new());
     assert_eq!(list(&ada, "?state=cleared").await.len(), 1);
     shore.finish().await;
@@ -231,8 +231,8 @@ async fn two_servers_that_look_at_once_raise_one_alert(shore: Shore) {
     let second = shore.second().await;
     shore.advance(4.0 * DAY_S);
     let (one, other) = tokio::join!(
-        alerts::for_silence(&shore.app),
-        alerts::for_silence(&second)
+        alerts::check_silence(&shore.app),
+        alerts::check_silence(&second)
     );
     one.unwrap();
     other.unwrap();
@@ -282,7 +282,7 @@ async fn the_list_filters_and_pages(shore: Shore) {
     let other = shore.ship(&ada, "Santa Clara").await;
     limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     shore.advance(4.0 * DAY_S);
-    alerts::for_silence(&shore.app).await.unwrap();
+    alerts::check_silence(&shore.app).await.unwrap();
     let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
     assert_eq!(list(&ada, "").await.len(), 3);
     assert_eq!(list(&ada, "?severity=warning").await.len(), 1);
@@ -304,7 +304,7 @@ async fn another_operators_alerts_are_not_there(shore: Shore) {
     let eve = shore.admin("eve").await;
     shore.ship(&ada, "Nao").await;
     shore.advance(4.0 * DAY_S);
-    alerts::for_silence(&shore.app).await.unwrap();
+    alerts::check_silence(&shore.app).await.unwrap();
     let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
     let eve = Person::sign_in(&shore, eve.operator, &eve.email).await;
     let alert = list(&ada, "").await.remove(0);

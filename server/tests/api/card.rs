@@ -339,7 +339,7 @@ async fn there_is_no_card_of_a_compass_that_is_suspected(shore: Shore) {
     assert_eq!(status, 409);
     assert!(detail.contains("they agree"), "{detail}");
     shore.advance(7.0 * 3600.0);
-    alerts::by_the_clock(&shore.app).await.unwrap();
+    alerts::check_timed(&shore.app).await.unwrap();
     ada.get(&nao.path("/card.json")).await.good();
     shore.finish().await;
 }

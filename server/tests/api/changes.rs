@@ -227,7 +227,10 @@ async fn a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first(s
         (&first["state"], &first["acknowledgement_note"]),
         (&json!("cleared"), &json!("Master informed"))
     );
-    assert_eq!(first["clearing_reason"], "another of its cause followed");
+    assert_eq!(
+        first["clearing_reason"],
+        "another event of the same cause followed"
+    );
     mail::deliver(&shore, &relay).await;
     let subjects = mail::subjects(&relay).split_off(told);
     let lightning: Vec<&String> = subjects

@@ -268,7 +268,7 @@ async fn two_computers_are_no_alert_any_more_when_nothing_has_shown_them_for_a_w
     put_in(&nao, nao.stream, 1).await;
     for (days, state) in [(6.0, "raised"), (1.1, "cleared")] {
         shore.advance(days * 86_400.0);
-        alerts::by_the_clock(&shore.app).await.unwrap();
+        alerts::check_timed(&shore.app).await.unwrap();
         let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
         assert_eq!(clones(&ada).await[0]["state"], state);
     }

@@ -251,7 +251,7 @@ async fn names_make_no_headers_and_come_through_whole(shore: Shore) {
     }
     add(&ada, "bridge@example.com", "notice").await;
     shore.advance(4.0 * DAY_S);
-    alerts::for_silence(&shore.app).await.unwrap();
+    alerts::check_silence(&shore.app).await.unwrap();
     assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered; 3]);
     let mut got: Vec<Value> = relay.got().iter().map(read).collect();
     for name in names {

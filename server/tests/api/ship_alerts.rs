@@ -68,7 +68,7 @@ pub(crate) async fn says_that_it_departs(ship: &Ship, seq: u64) {
 /// Nothing comes for hours.
 async fn hours_pass(shore: &Shore) {
     shore.advance(7.0 * 3600.0);
-    alerts::by_the_clock(&shore.app).await.unwrap();
+    alerts::check_timed(&shore.app).await.unwrap();
 }
 
 async fn list(person: &Person) -> Vec<Value> {
@@ -133,7 +133,7 @@ async fn an_analysis_does_not_clear_what_the_ship_says(shore: Shore) {
     let open = alert(1, 1, ShipAlertState::Open);
     put(&nao, 1, passage(DAY, 300), vec![open]).await;
     shore.work().await;
-    alerts::for_silence(&shore.app).await.unwrap();
+    alerts::check_silence(&shore.app).await.unwrap();
     let open: Vec<Value> = list(&ada)
         .await
         .into_iter()

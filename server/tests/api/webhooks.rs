@@ -105,7 +105,7 @@ pub(crate) async fn deliver(shore: &Shore) -> Vec<Sent> {
 async fn raise(shore: &Shore, person: &Person) -> Person {
     shore.ship(person, "Nao").await;
     shore.advance(4.0 * DAY_S);
-    alerts::for_silence(&shore.app).await.unwrap();
+    alerts::check_silence(&shore.app).await.unwrap();
     Person::sign_in(shore, person.operator, &person.email).await
 }
 

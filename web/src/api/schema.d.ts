@@ -108,7 +108,7 @@ export interface paths {
         put?: never;
         /**
          * Acknowledge an alert
-         * @description Someone knows and sees to it. Acknowledging it again changes nothing.
+         * @description Records that someone is dealing with it. Acknowledging it again changes nothing.
          */
         post: operations["acknowledge_alert"];
         delete?: never;
@@ -1707,11 +1707,11 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * See what changed a compass's deviation, when and why
-         * @description The whole of it, in order of time: the epochs of constant magnetism with their
-         *     deviation on 36 headings where the ship was last, and the changes that were
-         *     found, also what passed again or was a reference's fault. Before the first
-         *     analysis both lists are empty.
+         * List the changes of a compass's deviation, with time and cause
+         * @description The answer is the whole timeline in order of time: the epochs of constant magnetism with
+         *     their deviation on 36 headings at the last place, and the changes that were found. These
+         *     include disturbances that passed and faults of a reference. Before the first analysis both
+         *     lists are empty.
          */
         get: operations["list_changes"];
         put?: never;
@@ -3079,10 +3079,10 @@ export interface components {
              */
             name: string;
         };
-        /** @description That someone knows. */
+        /** @description Acknowledgement of an alert. */
         Acknowledgement: {
             /**
-             * @description In that person's words.
+             * @description A note in the person's own words.
              * @example Master informed; azimuth taken
              */
             note?: string | null;
@@ -3274,18 +3274,18 @@ export interface components {
         /** @description An alert. */
         Alert: {
             acknowledged_at: components["schemas"]["Time"] | null;
-            /** @description Who. */
+            /** @description Name of that person. */
             acknowledged_by: string | null;
-            /** @description In that person's words. */
+            /** @description That person's note. */
             acknowledgement_note: string | null;
-            /** @description What to do. */
+            /** @description Advice to the crew and the office. */
             advice: string;
-            /** @description What it is about. */
+            /** @description Its cause. */
             cause: components["schemas"]["AlertCause"];
             cleared_at: components["schemas"]["Time"] | null;
-            /** @description Who cleared it; none when it cleared itself. */
+            /** @description Name of the person who cleared it; none when it cleared itself. */
             cleared_by: string | null;
-            /** @description Why. */
+            /** @description Reason for clearing it. */
             clearing_reason: string | null;
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
@@ -3294,35 +3294,35 @@ export interface components {
              * @example Standard compass
              */
             compass_name: string;
-            /** @description What shows it, a sentence each. */
+            /** @description The evidence, a sentence each. */
             evidence: string[];
             /** @description The alert's id. */
             id: components["schemas"]["AlertId"];
-            /** @description When it was raised. */
+            /** @description Time at which it was raised. */
             raised_at: components["schemas"]["Time"];
-            /** @description How bad it is. */
+            /** @description Its severity. */
             severity: components["schemas"]["Severity"];
-            /** @description When its cause began, as far as that is known. */
+            /** @description Beginning of its cause, as far as that is known. */
             since: components["schemas"]["Time"];
-            /** @description How far people have come with it. */
+            /** @description Its state. */
             state: components["schemas"]["AlertState"];
             /**
-             * @description What is so, in a sentence.
+             * @description The facts, in a sentence.
              * @example Deviation is 7.4° E on compass heading 095°, over the limit of 5°.
              */
             summary: string;
-            /** @description When it last said something new. */
+            /** @description Time of its last change. */
             updated_at: components["schemas"]["Time"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
             /**
-             * @description Her name.
+             * @description The vessel's name.
              * @example Nao Victoria
              */
             vessel_name: string;
         };
         /**
-         * @description What an alert is about: one compass has at most one open alert of each.
+         * @description Cause of an alert: one compass has at most one open alert of each.
          * @enum {string}
          */
         AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "alignment" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "adjustment_not_confirmed" | "agreed_job_at_risk" | "reported_aboard" | "silent_agent" | "cloned_agent" | "no_model" | "wide_band";
@@ -3332,27 +3332,27 @@ export interface components {
          */
         AlertId: string;
         /**
-         * @description Limits of a vessel. A flag state may ask for others: AMSA and the Marshall
-         *     Islands (MN 2-011-32) have the compass adjusted above 5° on any heading.
+         * @description Limits of a vessel's alerts. A flag state may ask for others: AMSA and the Marshall Islands
+         *     (MN 2-011-32) have the compass adjusted above 5° on any heading.
          */
         AlertLimits: {
             /**
              * Format: double
-             * @description The greatest half width of the 95 % band that is no alert, degrees.
+             * @description Greatest half width of the 95 % band without an alert, degrees.
              * @default 3
              * @example 3
              */
             band95_deg: number;
             /**
              * Format: double
-             * @description The greatest deviation that is no alert, degrees.
+             * @description Greatest deviation without an alert, degrees.
              * @default 5
              * @example 5
              */
             deviation_deg: number;
             /**
              * Format: double
-             * @description Days without a batch that are no alert.
+             * @description Days without a batch before an alert.
              * @default 3
              * @example 3
              */
@@ -3366,7 +3366,7 @@ export interface components {
             next: string | null;
         };
         /**
-         * @description How far people have come with it.
+         * @description State of an alert.
          * @enum {string}
          */
         AlertState: "raised" | "acknowledged" | "cleared";
@@ -4100,7 +4100,7 @@ export interface components {
          * @enum {string}
          */
         CargoKind: "steel" | "scrap" | "containers" | "other";
-        /** @description A cause and how likely it is. */
+        /** @description A cause and its probability. */
         CauseProbability: {
             cause: components["schemas"]["ChangeCause"];
             /**
@@ -4147,56 +4147,56 @@ export interface components {
              */
             h_nt: number;
         };
-        /** @description Something that changed what the compass shows, or seemed to. */
+        /** @description Change of what the compass shows, real or apparent. */
         Change: {
-            /** @description The likeliest cause. */
+            /** @description Likeliest cause. */
             cause: components["schemas"]["ChangeCause"];
-            /** @description All causes that may be, the likeliest first. */
+            /** @description All possible causes, the likeliest first. */
             causes: components["schemas"]["CauseProbability"][];
-            /** @description Whether it is certain enough to act on; if not, more samples will tell. */
+            /** @description True if it is certain enough to act on; otherwise more samples will tell. */
             confirmed: boolean;
-            /** @description Time of the sample that told. */
+            /** @description Time of the sample that showed it. */
             detected_at: components["schemas"]["Time"];
             /**
              * Format: double
-             * @description By how much the deviation changed where the ship was then, on the heading where
-             *     it changed most, degrees; none where the ship's magnetism did not change.
+             * @description Change of the deviation at the ship's place then, on the heading where it changed most,
+             *     degrees; none where the ship's magnetism did not change.
              * @example 6.2
              */
             deviation_change_deg: number | null;
             ended: components["schemas"]["Time"] | null;
-            /** @description Place of the one that it began: its curve is the one after. */
+            /** @description Index of the epoch that it began, whose curve is the one after. */
             epoch_after: number | null;
             /**
-             * @description Place in `epochs` of the one that it ended: its curve is the one before. None
-             *     where it ended none.
+             * @description Index in `epochs` of the epoch that it ended, whose curve is the one before. None where
+             *     it ended none.
              */
             epoch_before: number | null;
-            /** @description Place of the one that began when it was over. */
+            /** @description Index of the epoch that began when it was over. */
             epoch_ended: number | null;
             /**
-             * @description Why, a sentence each.
+             * @description Evidence, a sentence each.
              * @example [
              *       "it began at sea",
              *       "the logbook has a report of that time"
              *     ]
              */
             evidence: string[];
-            /** @description When it most likely happened. */
+            /** @description Most likely time. */
             from: components["schemas"]["Time"];
-            /** @description It hardly happened before this. */
+            /** @description Earliest likely time. */
             from_earliest: components["schemas"]["Time"];
-            /** @description Nor after this. */
+            /** @description Latest likely time. */
             from_latest: components["schemas"]["Time"];
             step: components["schemas"]["Step"] | null;
             /**
-             * @description Whether it had been certain, until what came after did not bear it out: it was none,
-             *     and `ended` is when that told.
+             * @description True if it had been certain, and later samples did not confirm it. There was no change,
+             *     and `ended` is the time at which that showed.
              */
             withdrawn: boolean;
         };
         /**
-         * @description What changes what a compass shows.
+         * @description Cause of a change of what a compass shows.
          * @enum {string}
          */
         ChangeCause: "lightning_or_shock" | "magnetic_cargo" | "adjustment_or_repair" | "drift" | "compass_fault" | "alignment" | "reference_fault" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown";
@@ -4254,10 +4254,10 @@ export interface components {
             /** @description The plan. */
             plan: components["schemas"]["CorrectorPlan"];
         };
-        /** @description That an alert is over. */
+        /** @description Clearing of an alert. */
         Clearing: {
             /**
-             * @description Why.
+             * @description The reason.
              * @example Adjusted at Algeciras
              */
             reason: string;
@@ -4850,12 +4850,12 @@ export interface components {
          * @description An entry of a vessel's logbook.
          */
         EntryId: string;
-        /** @description An interval in which the ship's magnetism was constant, but for slow drift. */
+        /** @description Interval of constant ship's magnetism, but for slow drift. */
         Epoch: {
             begun_by: components["schemas"]["LogbookKind"] | null;
             begun_by_change: components["schemas"]["ChangeCause"] | null;
             /**
-             * @description Its deviation at `place`, by compass heading from 0, each 10°; none without a
+             * @description Its deviation at `place`, by compass heading from 0 in steps of 10°; none without a
              *     model, or where headings are ambiguous.
              */
             curve: components["schemas"]["DeviationRow"][] | null;
@@ -4864,13 +4864,13 @@ export interface components {
             from: components["schemas"]["Time"] | null;
             /**
              * Format: int64
-             * @description The last version of the model that was made from samples up to this epoch's;
-             *     none where there was none.
+             * @description Last version of the model that was made from samples up to this epoch's; none where
+             *     there was none.
              * @example 4
              */
             model_version: number | null;
             refusal: components["schemas"]["Refusal"] | null;
-            /** @description Place in this list of the earlier epoch whose magnetism it is again. */
+            /** @description Index in this list of the earlier epoch whose magnetism it has again. */
             resumes: number | null;
             /**
              * Format: double
@@ -4880,7 +4880,7 @@ export interface components {
             rms_deg: number | null;
             /**
              * Format: int64
-             * @description Samples that carry weight in its model.
+             * @description Number of samples that carry weight in its model.
              * @example 412
              */
             samples_used: number | null;
@@ -5487,17 +5487,17 @@ export interface components {
             /** Format: int32 */
             magnetic_latitude_to_deg: number;
         };
-        /** @description How many samples of the current epoch logbook entries leave out. */
+        /** @description Number of samples of the current epoch that logbook entries leave out. */
         LeftOut: {
             /**
              * Format: int64
-             * @description By entries of a berth.
+             * @description Left out by entries of a berth.
              * @example 12
              */
             berth: number;
             /**
              * Format: int64
-             * @description By entries of magnetic cargo.
+             * @description Left out by entries of magnetic cargo.
              * @example 288
              */
             magnetic_cargo: number;
@@ -7364,11 +7364,11 @@ export interface components {
              */
             satellite_dropped: number;
         };
-        /** @description What a model is refused for. */
+        /** @description Reason for which a model is refused. */
         Refusal: {
             /**
              * Format: int64
-             * @description How many samples there are.
+             * @description Number of samples.
              */
             readings: number;
             /** @enum {string} */
@@ -7378,18 +7378,18 @@ export interface components {
             reason: "no_weight";
             /**
              * Format: int64
-             * @description How many there are.
+             * @description Number of samples.
              */
             samples: number;
         } | {
             /**
              * Format: int64
-             * @description How many there are.
+             * @description Number of usable samples.
              */
             found: number;
             /**
              * Format: int64
-             * @description How many there must be.
+             * @description Number that is needed.
              */
             needed: number;
             /** @enum {string} */
@@ -7397,7 +7397,7 @@ export interface components {
         } | {
             /**
              * Format: double
-             * @description The widest such range that is allowed, degrees.
+             * @description Widest such range that is allowed, degrees.
              */
             allowed_gap_deg: number;
             /**
@@ -7406,39 +7406,39 @@ export interface components {
              */
             found: number;
             /**
-             * @description The headings without a sample: whole sectors of 15°, each range by its
-             *     first degree and the one after its last, beyond 360 through north.
+             * @description Headings without a sample, in whole sectors of 15°. Each range is its first degree and
+             *     the one after its last, beyond 360 through north.
              */
             missing_deg: number[][];
             /**
              * Format: int32
-             * @description How many there must be.
+             * @description Number that is needed.
              */
             needed: number;
             /** @enum {string} */
             reason: "too_few_headings";
             /**
              * Format: double
-             * @description The widest range of headings without a sample, degrees.
+             * @description Widest range of headings without a sample, degrees.
              */
             widest_gap_deg: number;
         } | {
             /**
              * Format: double
-             * @description What there must be, nT.
+             * @description Horizontal field that is needed, nT.
              */
             needed_nt: number;
             /** @enum {string} */
             reason: "field_too_weak";
             /**
              * Format: double
-             * @description The strongest among them, nT.
+             * @description Strongest horizontal field among them, nT.
              */
             strongest_nt: number;
         } | {
             /**
              * Format: double
-             * @description The horizontal field at which it does, nT.
+             * @description Horizontal field at which that happens, nT.
              */
             h_nt: number;
             /** @enum {string} */
@@ -7449,7 +7449,7 @@ export interface components {
         } | {
             /**
              * Format: double
-             * @description How far they may differ, degrees.
+             * @description Greatest difference that is allowed, degrees.
              */
             allowed_deg: number;
             /**
@@ -7462,7 +7462,7 @@ export interface components {
         } | {
             /**
              * Format: int64
-             * @description In how many readings it did.
+             * @description Number of readings in which it did.
              */
             readings: number;
             /** @enum {string} */
@@ -7470,7 +7470,7 @@ export interface components {
         } | {
             /**
              * Format: double
-             * @description How large it may be, degrees.
+             * @description Greatest value that is allowed, degrees.
              */
             allowed_deg: number;
             /** @enum {string} */
@@ -8228,7 +8228,7 @@ export interface components {
             next: string | null;
         };
         /**
-         * @description How bad it is.
+         * @description Severity of an alert.
          * @enum {string}
          */
         Severity: "notice" | "warning" | "critical";
@@ -8289,7 +8289,7 @@ export interface components {
             bx_se_nt: number;
             /**
              * Format: double
-             * @description Athwart, starboard positive.
+             * @description Athwartships, starboard positive.
              * @example -640
              */
             by_nt: number;
@@ -8360,7 +8360,7 @@ export interface components {
          * @example 2026-11-21T07:00:00Z
          */
         Time: string;
-        /** @description A compass's epochs and changes, by its last analysis. */
+        /** @description Epochs and changes of a compass, by its last analysis. */
         Timeline: {
             analysed_at: components["schemas"]["Time"] | null;
             /** @description In order of time. */
@@ -8370,16 +8370,15 @@ export interface components {
             /** @description In order of time, without gaps; the last one goes on. */
             epochs: components["schemas"]["Epoch"][];
             /**
-             * @description What entries of the logbook do to the samples that people should know, a sentence
-             *     each.
+             * @description Effects of logbook entries on the samples that people should know, a sentence each.
              * @example []
              */
             notices: string[];
             place: components["schemas"]["TimelinePlace"] | null;
         };
-        /** @description Where and when the last sample was taken, and the earth's field there. */
+        /** @description Place and time of the last sample, and the earth's field there. */
         TimelinePlace: {
-            /** @description When. */
+            /** @description Time. */
             at: components["schemas"]["Time"];
             /**
              * Format: double
@@ -9198,9 +9197,9 @@ export interface operations {
                 vessel?: components["schemas"]["VesselId"];
                 /** @description Only in this state. */
                 state?: components["schemas"]["AlertState"];
-                /** @description Whether only those that are not cleared (`true`), or only those that are. */
+                /** @description Only those that are not cleared (`true`), or only those that are (`false`). */
                 open?: boolean;
-                /** @description Only as bad as this or worse. */
+                /** @description Only of this severity or worse. */
                 severity?: components["schemas"]["Severity"];
                 /** @description How many at most; 100 if not said. */
                 limit?: number;

@@ -1,24 +1,19 @@
-//! What of an analysis alerts are made from: small enough to be kept beside it, so
-//! that other limits make other alerts without another analysis.
+//! Summary of one compass's analysis.
 
-mod found;
-
-pub use found::FoundChange;
-
-use crate::analysis::LeftOut;
+use super::change_findings::{FoundChange, found_changes};
+use crate::analysis::left_out::LeftOut;
 use crate::deviation::{self, Worst};
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{Analysis, Epoch, FitError, LastPlace, SampleDiagnostic};
 use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
-use found::found_changes;
 use serde::{Deserialize, Serialize};
 
-/// How far back `lately` reaches from the last sample, seconds.
+/// Time before the last sample in which a failed reference counts, seconds.
 const LATELY_S: f64 = 86_400.0;
 
-/// What one compass's analysis found, in short.
+/// Findings about one compass.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Findings {
     /// Time of the last sample.
@@ -29,81 +24,83 @@ pub struct Findings {
     pub worst: Option<Worst>,
     /// The widest half of the 95 % band there, over all headings, degrees.
     pub widest_band95_deg: Option<f64>,
-    /// Why the current epoch has no model.
+    /// Reason for which the current epoch has no model.
     pub refusal: Option<String>,
-    /// Its samples that the logbook leaves out.
+    /// Samples of the current epoch that the logbook leaves out.
     #[serde(default)]
     pub left_out: LeftOut,
-    /// Gyro and satellite compass throughout, when they differ by more than any
-    /// alignment explains: gyro less satellite compass, degrees.
+    /// Gyro less satellite compass, degrees, where they differ throughout by more than any
+    /// alignment explains.
     pub references_disagree_deg: Option<f64>,
-    /// How they compared lately; none unless one of them failed.
+    /// Recent comparison of both; none unless one of them failed.
     pub failed_lately: Option<FailedLately>,
-    /// What changed the ship's magnetism, or seemed to, in order of time.
+    /// Changes of the ship's magnetism, real or apparent, in order of time.
     #[serde(default)]
     pub changes: Vec<FoundChange>,
-    /// What entries of the logbook do to the samples, a sentence each.
+    /// Effects of logbook entries on the samples, a sentence each.
     #[serde(default)]
     pub notices: Vec<String>,
-    /// When the current epoch began.
+    /// Beginning of the current epoch.
     #[serde(default)]
     pub epoch_from: Option<Timestamp>,
-    /// Where the last sample was taken.
+    /// Place of the last sample.
     #[serde(default)]
     pub last_place: Option<LastPlace>,
 }
 
-/// Samples in which gyro and satellite compass departed from their usual
-/// difference, within a day before the last sample.
+/// Samples in which gyro and satellite compass departed from their usual difference, within a
+/// day before the last sample.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FailedLately {
-    /// The first of them.
+    /// Time of the first of them.
     pub from: Timestamp,
-    /// How many there are.
+    /// Their number.
     pub samples: u64,
-    /// Among so many that had both.
+    /// Number of samples with both.
     pub of: u64,
-    /// The last one's departure from the usual difference, degrees.
+    /// Departure of the last one from the usual difference, degrees.
     pub departure_deg: f64,
-    /// In the current epoch the gyro was dropped so often,
+    /// Times that the gyro was dropped in the current epoch.
     pub gyro_dropped: u64,
-    /// and the satellite compass so often.
+    /// Times that the satellite compass was dropped in the current epoch.
     pub satellite_dropped: u64,
 }
 
-/// What the alerts of a compass are made from.
-pub fn findings_of(analysis: &Analysis, logbook: &[LogbookEntry]) -> Findings {
-    let Some(epoch) = analysis.current_epoch() else {
-        return Findings::default();
-    };
-    let at_last_place = epoch.model.as_ref().zip(analysis.last_place);
-    let rows = at_last_place.and_then(|(model, place)| {
-        let earth = EarthField {
-            h_nt: place.h_nt,
-            z_nt: place.z_nt,
+impl Findings {
+    /// Summarizes an analysis.
+    pub fn from_analysis(analysis: &Analysis, logbook: &[LogbookEntry]) -> Findings {
+        let Some(epoch) = analysis.current_epoch() else {
+            return Findings::default();
         };
-        deviation::table(model, earth, 5.0).ok()
-    });
-    Findings {
-        data_until: analysis.data_until,
-        epoch_data_from: epoch.data_from,
-        worst: rows.as_deref().and_then(deviation::worst_of),
-        widest_band95_deg: rows
-            .iter()
-            .flatten()
-            .filter_map(|row| row.band95_deg)
-            .reduce(f64::max),
-        refusal: epoch.refusal.as_ref().map(ToString::to_string),
-        left_out: LeftOut::of(analysis),
-        references_disagree_deg: match epoch.refusal {
-            Some(FitError::ReferencesDisagree { offset_deg, .. }) => Some(offset_deg),
-            _ => None,
-        },
-        failed_lately: failed_lately(epoch, &analysis.samples),
-        changes: found_changes(analysis, logbook),
-        notices: analysis.notices.clone(),
-        epoch_from: epoch.from,
-        last_place: analysis.last_place,
+        let at_last_place = epoch.model.as_ref().zip(analysis.last_place);
+        let rows = at_last_place.and_then(|(model, place)| {
+            let earth = EarthField {
+                h_nt: place.h_nt,
+                z_nt: place.z_nt,
+            };
+            deviation::table(model, earth, 5.0).ok()
+        });
+        Findings {
+            data_until: analysis.data_until,
+            epoch_data_from: epoch.data_from,
+            worst: rows.as_deref().and_then(deviation::worst_of),
+            widest_band95_deg: rows
+                .iter()
+                .flatten()
+                .filter_map(|row| row.band95_deg)
+                .reduce(f64::max),
+            refusal: epoch.refusal.as_ref().map(ToString::to_string),
+            left_out: LeftOut::from_analysis(analysis),
+            references_disagree_deg: match epoch.refusal {
+                Some(FitError::ReferencesDisagree { offset_deg, .. }) => Some(offset_deg),
+                _ => None,
+            },
+            failed_lately: failed_lately(epoch, &analysis.samples),
+            changes: found_changes(analysis, logbook),
+            notices: analysis.notices.clone(),
+            epoch_from: epoch.from,
+            last_place: analysis.last_place,
+        }
     }
 }
 

@@ -1,12 +1,15 @@
-//! What the ships of all fleets tell each other of passing disturbances.
+//! Passing disturbances, compared across the ships of all fleets.
 //!
-//! What always holds: what a ship's own analysis found is stored as it was found, and
-//! put in the light of the others' when it is told; of another ship nothing is told but
-//! that there was one. A disturbance that is new has the analyses of those who were
-//! disturbed at the same time looked at again, which alters their alerts alone.
+//! Invariants:
+//!
+//! - The findings of a ship's own analysis are stored as they are. They are compared with those
+//!   of other ships when they are read.
+//! - Of another ship nothing is revealed but its presence.
+//! - A new disturbance queues the analyses of the ships disturbed at the same time. That changes
+//!   their alerts alone.
 
-use crate::alerts::{Findings, FoundChange};
-use crate::analysis;
+use super::findings::{Findings, FoundChange};
+use super::queue;
 use crate::db::{Db, Result as DbResult, Tx, execute, rows};
 use crate::error::Result;
 use crate::ids::{CompassId, VesselId};
@@ -16,19 +19,19 @@ use binnacle_compass::result::{Elsewhere, in_fleet};
 use binnacle_compass::time::Timestamp;
 use std::collections::BTreeMap;
 
-/// No disturbance lasts longer, seconds.
+/// Longest duration of a disturbance, seconds.
 const LONGEST_S: f64 = 7.0 * 86_400.0;
-/// What ended longer ago is no news, seconds.
-const NEWS_S: f64 = 7.0 * 86_400.0;
-/// So long others wait for more of the same, seconds.
-const WAIT_S: f64 = 60.0;
-/// Half the height of the belt in which a place is looked for, degrees of latitude.
+/// Age beyond which a disturbance no longer queues other analyses, seconds.
+const RECENT_S: f64 = 7.0 * 86_400.0;
+/// Delay of the queued analyses, in which more disturbances may come, seconds.
+const DELAY_S: f64 = 60.0;
+/// Half height of the belt about a place, degrees of latitude.
 const BELT_DEG: f64 = 0.5;
-/// Half its width; wide enough at the latitudes where a compass serves. It ends at the
-/// antimeridian.
+/// Half width of the belt, degrees of longitude: enough at the latitudes where a compass
+/// serves. It ends at the antimeridian.
 const BELT_LON_DEG: f64 = 3.0;
 
-/// Others' disturbances of the hours from $2 to $3, or near a place.
+/// Query for disturbances of other ships in the hours from $2 to $3, or near a place.
 const OTHERS: &str = "SELECT vessel_id, began_at, ended_at, lat, lon FROM disturbances
      WHERE vessel_id <> $1
        AND ((began_at BETWEEN $4 AND $3 AND ended_at >= $2)
@@ -36,6 +39,7 @@ const OTHERS: &str = "SELECT vessel_id, began_at, ended_at, lat, lon FROM distur
      ORDER BY vessel_id, began_at
      LIMIT 1000";
 
+/// A disturbance of another ship.
 #[derive(Clone, Copy, Debug, sqlx::FromRow)]
 struct Disturbed {
     vessel_id: VesselId,
@@ -45,7 +49,7 @@ struct Disturbed {
     lon: f64,
 }
 
-/// Where and when to look for others that were disturbed.
+/// Place and time in which disturbances of other ships bear on one.
 struct Around {
     from: Time,
     until: Time,
@@ -54,9 +58,10 @@ struct Around {
     lon: (f64, f64),
 }
 
-/// Keeps a compass's passing disturbances in place of those of the analysis before, and
-/// has others look again that were disturbed in the hours of a new one.
-pub async fn keep_disturbances(
+/// Stores a compass's passing disturbances in place of those of the analysis before.
+///
+/// Queues the analyses of other ships that were disturbed in the hours of a new one.
+pub(super) async fn store_disturbances(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
@@ -77,7 +82,7 @@ pub async fn keep_disturbances(
         vessel,
         compass
     )?;
-    let mut news = Vec::new();
+    let mut recent = Vec::new();
     for (began_at, ended_at, position) in passing(findings) {
         execute!(
             &mut *tx,
@@ -91,17 +96,18 @@ pub async fn keep_disturbances(
             position.lat_deg(),
             position.lon_deg()
         )?;
-        let is_recent = now.0.seconds_since(ended_at.0) < NEWS_S;
+        let is_recent = now.0.seconds_since(ended_at.0) < RECENT_S;
         if is_recent && known.binary_search(&(began_at,)).is_err() {
-            news.push((began_at, ended_at));
+            recent.push((began_at, ended_at));
         }
     }
-    for (began_at, ended_at) in news {
-        wake_others(tx, vessel, (began_at, ended_at), now).await?;
+    for (began_at, ended_at) in recent {
+        queue_others(tx, vessel, began_at, ended_at, now).await?;
     }
     Ok(())
 }
 
+/// Returns the passing disturbances: beginning, end and place.
 fn passing(findings: &Findings) -> impl Iterator<Item = (Time, Time, Position)> {
     let until = findings.data_until;
     let passing = findings.changes.iter();
@@ -114,10 +120,11 @@ fn passing(findings: &Findings) -> impl Iterator<Item = (Time, Time, Position)> 
     })
 }
 
-async fn wake_others(
+async fn queue_others(
     tx: &mut Tx,
     vessel: VesselId,
-    (began_at, ended_at): (Time, Time),
+    began_at: Time,
+    ended_at: Time,
     now: Time,
 ) -> Result<()> {
     let others = rows!(
@@ -132,13 +139,13 @@ async fn wake_others(
         Time(began_at.0.plus_seconds(-LONGEST_S))
     )?;
     for (other,) in others {
-        analysis::enqueue(tx, other, now, WAIT_S).await?;
+        queue::enqueue(tx, other, now, DELAY_S).await?;
     }
     Ok(())
 }
 
-/// Puts what was found of a vessel's compass in the light of other ships'.
-pub(super) async fn sharpen(db: &Db, vessel: VesselId, findings: &mut Findings) -> Result<()> {
+/// Compares the findings about a vessel's compass with disturbances of other ships.
+pub async fn compare_with_fleet(db: &Db, vessel: VesselId, findings: &mut Findings) -> Result<()> {
     let until = findings.data_until;
     for found in findings.changes.iter_mut().filter(|found| may_pass(found)) {
         let Some(around) = Around::of(found, until) else {
@@ -157,13 +164,17 @@ pub(super) async fn sharpen(db: &Db, vessel: VesselId, findings: &mut Findings) 
             around.lon.0,
             around.lon.1
         )?;
-        in_light_of(found, &around, &others)?;
+        compare(found, &around, &others)?;
     }
     Ok(())
 }
 
-/// The same within a transaction.
-pub async fn sharpen_in(tx: &mut Tx, vessel: VesselId, findings: &mut Findings) -> Result<()> {
+/// Does what [`compare_with_fleet`] does, within a transaction.
+pub async fn compare_with_fleet_in(
+    tx: &mut Tx,
+    vessel: VesselId,
+    findings: &mut Findings,
+) -> Result<()> {
     let until = findings.data_until;
     for found in findings.changes.iter_mut().filter(|found| may_pass(found)) {
         let Some(around) = Around::of(found, until) else {
@@ -182,7 +193,7 @@ pub async fn sharpen_in(tx: &mut Tx, vessel: VesselId, findings: &mut Findings) 
             around.lon.0,
             around.lon.1
         );
-        in_light_of(found, &around, &others?)?;
+        compare(found, &around, &others?)?;
     }
     Ok(())
 }
@@ -213,7 +224,7 @@ impl Around {
     }
 }
 
-fn in_light_of(found: &mut FoundChange, around: &Around, others: &[Disturbed]) -> Result<()> {
+fn compare(found: &mut FoundChange, around: &Around, others: &[Disturbed]) -> Result<()> {
     let mut ships = BTreeMap::new();
     let mut elsewhere = Vec::with_capacity(others.len());
     for other in others {

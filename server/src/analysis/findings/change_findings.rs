@@ -1,9 +1,11 @@
-//! A change, with what it means for the ship where she is now.
+//! Changes, with their effect where the ship is now.
 //!
-//! What always holds: a change that began an epoch, or ended when one began, says
-//! which; its size is of the place of the last sample where models on both sides of it
-//! tell, and else of where it was found. Ships mostly come back to where they were: the
-//! waters of the last weeks stand for those ahead.
+//! Invariants:
+//!
+//! - A change that began an epoch, or ended when one began, names it.
+//! - Its size is of the place of the last sample where there are models on both sides of it,
+//!   otherwise of the place where it was found.
+//! - Ships mostly return to the same waters: those of the last weeks stand for those ahead.
 
 use binnacle_compass::angle::{CompassHeading, wrap_180};
 use binnacle_compass::logbook::LogbookEntry;
@@ -14,43 +16,43 @@ use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// People write down when they noticed, not when it happened, or what was planned, seconds.
+/// Error of dates in the logbook, seconds: people write down when they noticed, or the plan.
 const REPORTED_WITHIN_S: f64 = 2.0 * 86_400.0;
-/// Degrees of compass heading between those on which two models are compared.
+/// Step of compass heading in the comparison of two models, degrees.
 const STEP_DEG: u32 = 5;
-/// How far back the waters reach that stand for those ahead, and how far apart the
-/// places are that are looked at, seconds.
+/// Time of the waters that stand for those ahead, seconds.
 const TRADE_S: f64 = 60.0 * 86_400.0;
+/// Interval between the places that are compared, seconds.
 const PLACES_S: f64 = 86_400.0;
 
-/// A change, and what alerts and the timeline say beside it.
+/// A change, with the particulars that alerts and the timeline need.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FoundChange {
     /// The change itself.
     #[serde(flatten)]
     pub change: Change,
-    /// Place among the epochs of the one that it began.
+    /// Index of the epoch that it began.
     #[serde(default)]
     pub epoch: Option<usize>,
-    /// Place of the one that began when it was over.
+    /// Index of the epoch that began when it was over.
     #[serde(default)]
     pub epoch_ended: Option<usize>,
-    /// Whether the logbook tells of work that explains it.
+    /// True where work in the logbook explains it.
     #[serde(default)]
     pub expected: bool,
-    /// By how much it changes the deviation that is measured, degrees, on the heading
-    /// where it does most; none where that cannot be told.
+    /// Its effect on the measured deviation, degrees, on the heading where that is greatest;
+    /// none where it is not known.
     #[serde(default)]
     pub size_deg: Option<f64>,
-    /// The same on the waters of the last sixty days, which stand for those ahead.
+    /// Its effect on the waters of the last sixty days, which stand for those ahead.
     #[serde(default)]
     pub size_ahead_deg: Option<f64>,
-    /// About where the ship was while it lasted, for what passes by.
+    /// Approximate place of the ship while a passing disturbance lasted.
     #[serde(default)]
     pub position: Option<Position>,
 }
 
-/// The changes that an analysis found.
+/// Returns the changes that an analysis found.
 pub(super) fn found_changes(analysis: &Analysis, logbook: &[LogbookEntry]) -> Vec<FoundChange> {
     let changes = analysis.changes.iter();
     changes
@@ -61,7 +63,7 @@ pub(super) fn found_changes(analysis: &Analysis, logbook: &[LogbookEntry]) -> Ve
 fn found(change: &Change, analysis: &Analysis, logbook: &[LogbookEntry]) -> FoundChange {
     let epochs = &analysis.epochs;
     let begun_at = |time: Timestamp| epochs.iter().position(|epoch| epoch.from == Some(time));
-    // What passes by and what a reference does begins no epoch, even at the same time.
+    // Neither a disturbance nor a reference begins an epoch, even at the same time.
     let is_boundary = change.confirmed && change.cause.is_the_ships();
     let epoch = Some(change.from).filter(|_| is_boundary).and_then(begun_at);
     let spoilt = Spoilt::by(change, analysis);
@@ -69,33 +71,34 @@ fn found(change: &Change, analysis: &Analysis, logbook: &[LogbookEntry]) -> Foun
         let before = epochs.get(after.checked_sub(1)?)?.model.as_ref()?;
         Some((before, epochs[after].model.as_ref()?))
     });
-    let parted_here = sides
+    let size_here_deg = sides
         .zip(analysis.last_place)
         .and_then(|((before, after), place)| {
             let earth = EarthField {
                 h_nt: place.h_nt,
                 z_nt: place.z_nt,
             };
-            parted_deg(before, after, earth)
+            difference_deg(before, after, earth)
         });
-    let parted_ahead = sides.and_then(|(before, after)| {
-        let parted = waters_ahead(analysis).filter_map(|earth| parted_deg(before, after, earth));
-        parted.reduce(f64::max)
+    let size_ahead_deg = sides.and_then(|(before, after)| {
+        let differences =
+            waters_ahead(analysis).filter_map(|earth| difference_deg(before, after, earth));
+        differences.reduce(f64::max)
     });
     FoundChange {
         epoch,
         epoch_ended: change.ended.filter(|_| is_boundary).and_then(begun_at),
         expected: change.cause == Cause::AdjustmentOrRepair && is_reported(change, logbook),
-        size_deg: parted_here
+        size_deg: size_here_deg
             .or(change.deviation_change_deg.map(f64::abs))
             .or(spoilt.most_deg),
-        size_ahead_deg: parted_ahead,
+        size_ahead_deg,
         position: spoilt.position,
         change: change.clone(),
     }
 }
 
-/// Whether people told of work around that time.
+/// Tells whether the logbook reports work around that time.
 fn is_reported(change: &Change, logbook: &[LogbookEntry]) -> bool {
     logbook
         .iter()
@@ -107,7 +110,7 @@ fn is_reported(change: &Change, logbook: &[LogbookEntry]) -> bool {
         })
 }
 
-/// The fields of the last weeks' waters, a day apart.
+/// Returns the earth's fields in the waters of the last weeks, a day apart.
 fn waters_ahead(analysis: &Analysis) -> impl Iterator<Item = EarthField> {
     let since = analysis
         .data_until
@@ -125,25 +128,25 @@ fn waters_ahead(analysis: &Analysis) -> impl Iterator<Item = EarthField> {
     })
 }
 
-/// By how much two models part at most in a field, degrees.
-fn parted_deg(before: &Model, after: &Model, earth: EarthField) -> Option<f64> {
+/// Returns the greatest difference of two models in a field, degrees.
+fn difference_deg(before: &Model, after: &Model, earth: EarthField) -> Option<f64> {
     let deviation_deg = |model: &Model, compass| {
         let predicted = model.deviation(compass, earth).ok()?;
         Some(predicted.deviation.degrees_east())
     };
     let headings = (0..360).step_by(STEP_DEG as usize);
-    let parted = headings.filter_map(|heading_deg| {
+    let differences = headings.filter_map(|heading_deg| {
         let compass = CompassHeading::new(f64::from(heading_deg))?;
         Some((deviation_deg(after, compass)? - deviation_deg(before, compass)?).abs())
     });
-    parted.reduce(f64::max)
+    differences.reduce(f64::max)
 }
 
-/// The samples that a passing disturbance spoilt.
+/// Samples that a passing disturbance spoilt.
 #[derive(Default)]
 struct Spoilt {
     position: Option<Position>,
-    /// By how much they departed from the model at most, degrees.
+    /// Their greatest departure from the model, degrees.
     most_deg: Option<f64>,
 }
 
@@ -232,7 +235,7 @@ mod tests {
     fn models_part_by_the_step_over_the_horizontal_field() {
         let parted = |h_nt| {
             let earth = EarthField { h_nt, z_nt: 0.0 };
-            parted_deg(&with_bx(0.0), &with_bx(2000.0), earth).unwrap()
+            difference_deg(&with_bx(0.0), &with_bx(2000.0), earth).unwrap()
         };
         let expected = |h_nt: f64| (2000.0 / h_nt).asin().to_degrees();
         for h_nt in [12_000.0, 30_000.0] {

@@ -1,4 +1,14 @@
-use super::*;
+//! Alerts from changes that the detector found.
+
+use crate::alerts::cause::Cause;
+use crate::alerts::causes::CAUSES;
+use crate::alerts::causes::change_rules::{Outcome, outcome};
+use crate::alerts::causes::evaluate::evaluate_changes;
+use crate::alerts::desired::DesiredAlert;
+use crate::alerts::limits::AlertLimits;
+use crate::analysis::{Findings, FoundChange};
+use crate::severity::Severity;
+use crate::time::Time;
 use binnacle_compass::result::{Cause as Found, CauseProbability, Change};
 use binnacle_compass::time::Timestamp;
 
@@ -35,18 +45,18 @@ fn found(cause: Found, size_deg: f64) -> FoundChange {
     }
 }
 
-/// A ship that has sailed for so many days since, with such a band by now.
-fn sailed(changes: Vec<FoundChange>, days: f64, band95_deg: Option<f64>) -> Vec<AlertWanted> {
+/// Returns the alerts after so many days at sea, with such a band by then.
+fn sailed(changes: Vec<FoundChange>, days: f64, band95_deg: Option<f64>) -> Vec<DesiredAlert> {
     known_as(None, changes, days, band95_deg)
 }
 
-/// The same where an alert of such a severity is open of each cause.
+/// Returns the alerts where one of severity `was` is open of each cause.
 fn known_as(
     was: Option<Severity>,
     changes: Vec<FoundChange>,
     days: f64,
     band95_deg: Option<f64>,
-) -> Vec<AlertWanted> {
+) -> Vec<DesiredAlert> {
     let findings = Findings {
         epoch_from: changes.last().map(|found| found.change.from),
         data_until: changes
@@ -56,7 +66,9 @@ fn known_as(
         changes,
         ..Findings::default()
     };
-    changed(&findings, &AlertLimits::default(), |_| was)
+    let open = CAUSES.iter().filter_map(|row| Some((row.cause, was?)));
+    let open: Vec<(Cause, Severity)> = open.collect();
+    evaluate_changes(&findings, &AlertLimits::default(), &open)
 }
 
 #[test]
@@ -112,10 +124,10 @@ fn a_change_is_as_bad_as_the_deviation_that_it_causes() {
 }
 
 #[test]
-fn what_is_not_certain_is_told_as_such_and_trusts_no_card() {
-    let mut doubtful = found(Found::Unknown, 8.0);
-    doubtful.change.confirmed = false;
-    let wanted = sailed(vec![doubtful], 0.0, Some(1.0));
+fn an_unconfirmed_change_says_so_and_trusts_no_card() {
+    let mut unconfirmed = found(Found::Unknown, 8.0);
+    unconfirmed.change.confirmed = false;
+    let wanted = sailed(vec![unconfirmed], 0.0, Some(1.0));
     assert_eq!(wanted[0].severity, Severity::Warning);
     assert!(wanted[0].summary.contains("not certain yet"), "{wanted:?}");
     assert!(
@@ -127,56 +139,56 @@ fn what_is_not_certain_is_told_as_such_and_trusts_no_card() {
 #[test]
 fn the_advice_follows_the_model_and_the_alert_ends_with_its_certainty() {
     let struck = || vec![found(Found::LightningOrShock, 6.0)];
-    let told = |days, band_deg| sailed(struck(), days, band_deg);
-    assert!(told(0.1, None)[0].advice.starts_with("No card holds."));
+    let alerts = |days, band_deg| sailed(struck(), days, band_deg);
+    assert!(alerts(0.1, None)[0].advice.starts_with("No card holds."));
     for (days, band_deg) in [(0.5, 2.0), (3.0, 4.0)] {
-        let interim = &told(days, Some(band_deg))[0];
+        let interim = &alerts(days, Some(band_deg))[0];
         assert!(interim.advice.contains("band is wider for now"));
         assert_eq!(interim.severity, Severity::Critical);
     }
-    let learnt = &told(3.0, Some(2.0))[0];
-    assert!(learnt.advice.starts_with("Put up a new card"));
-    assert_eq!(learnt.severity, Severity::Warning);
-    assert_eq!(told(8.0, Some(2.0)), []);
-    assert_eq!(told(8.0, Some(4.0)).len(), 1, "not learnt yet");
+    let learned = &alerts(3.0, Some(2.0))[0];
+    assert!(learned.advice.starts_with("Put up a new card"));
+    assert_eq!(learned.severity, Severity::Warning);
+    assert_eq!(alerts(8.0, Some(2.0)), []);
+    assert_eq!(alerts(8.0, Some(4.0)).len(), 1, "not learned yet");
 }
 
 #[test]
 fn a_change_that_became_calls_for_no_alert_and_clears_its_own() {
     let mut none = found(Found::LightningOrShock, 3.0);
-    let told: Time = none.change.from.into();
+    let since: Time = none.change.from.into();
     let findings = |change: &FoundChange| Findings {
         changes: vec![change.clone()],
         ..Findings::default()
     };
-    let of = |cause, change: &FoundChange| became(cause, told, &findings(change));
+    let of = |cause, change: &FoundChange| outcome(cause, since, &findings(change));
     let lightning = Cause::LightningOrShock;
-    assert_eq!(of(lightning, &none), Some(Became::Learnt));
+    assert_eq!(of(lightning, &none), Some(Outcome::Learned));
     (none.change.confirmed, none.change.withdrawn) = (false, true);
     none.change.ended = Some(at("2026-11-20T00:00:00Z"));
-    assert_eq!(of(lightning, &none), Some(Became::Withdrawn));
+    assert_eq!(of(lightning, &none), Some(Outcome::Withdrawn));
     assert_eq!(of(Cause::MagneticCargo, &none), None);
     assert_eq!(sailed(vec![none], 0.5, Some(1.0)), []);
 }
 
-/// What stays is not over: the deviation is another one for good.
+/// A change that stays is not over: the deviation is another one for good.
 #[test]
 fn only_what_ended_is_over() {
     let mut struck = found(Found::LightningOrShock, 3.0);
-    let told: Time = struck.change.from.into();
+    let since: Time = struck.change.from.into();
     let of = |cause, change: &FoundChange| {
         let changes = vec![change.clone()];
-        became(
+        outcome(
             cause,
-            told,
+            since,
             &Findings {
                 changes,
                 ..Findings::default()
             },
         )
     };
-    assert_eq!(of(Cause::LightningOrShock, &struck), Some(Became::Learnt));
-    assert_eq!(of(Cause::Drift, &struck), Some(Became::Renamed));
+    assert_eq!(of(Cause::LightningOrShock, &struck), Some(Outcome::Learned));
+    assert_eq!(of(Cause::Drift, &struck), Some(Outcome::Renamed));
     struck.change.ended = Some(at("2026-11-20T00:00:00Z"));
     assert_eq!(of(Cause::LightningOrShock, &struck), None);
     let storm = found(Found::MagneticStorm, 3.0);
@@ -184,7 +196,7 @@ fn only_what_ended_is_over() {
 }
 
 #[test]
-fn an_earlier_change_is_told_for_a_week_only() {
+fn an_earlier_change_is_an_alert_for_a_week_only() {
     let struck = found(Found::LightningOrShock, 3.0);
     let mut loaded = found(Found::MagneticCargo, 3.0);
     loaded.change.from = at("2026-11-19T12:00:00Z");
@@ -228,7 +240,7 @@ fn an_alert_was_about_the_change_nearest_to_its_date() {
     let after_first =
         |seconds: f64| -> crate::time::Time { first.change.from.plus_seconds(seconds).into() };
     let alone = sailed(vec![first.clone()], 0.0, None);
-    assert!(alone[0].dated.includes(after_first(5.0 * 86_400.0)));
+    assert!(alone[0].window.includes(after_first(5.0 * 86_400.0)));
 
     // The first is taken for something else by now.
     let mut renamed = first.clone();
@@ -237,8 +249,8 @@ fn an_alert_was_about_the_change_nearest_to_its_date() {
         let wanted = sailed(vec![earlier, storm.clone(), second.clone()], 0.0, None);
         let struck = &wanted[0];
         assert_eq!(struck.since, second.change.from.into());
-        assert!(!struck.dated.includes(after_first(3600.0)));
-        assert!(struck.dated.includes(after_first(80_000.0)));
+        assert!(!struck.window.includes(after_first(3600.0)));
+        assert!(struck.window.includes(after_first(80_000.0)));
     }
 }
 
@@ -250,12 +262,12 @@ fn a_second_fault_of_a_reference_is_another_alert() {
     second.change.from = at("2026-11-21T12:00:00Z");
     let wanted = sailed(vec![first, second], 0.1, Some(1.0));
     assert_eq!(wanted.len(), 1);
-    assert!(!wanted[0].dated.includes(at("2026-11-18T12:00:00Z").into()));
-    assert!(wanted[0].dated.includes(at("2026-11-21T12:00:00Z").into()));
+    assert!(!wanted[0].window.includes(at("2026-11-18T12:00:00Z").into()));
+    assert!(wanted[0].window.includes(at("2026-11-21T12:00:00Z").into()));
 }
 
 #[test]
-fn a_zero_that_moved_is_told_with_what_to_do() {
+fn a_moved_zero_comes_with_advice() {
     let wanted = sailed(vec![found(Found::Alignment, 3.0)], 0.1, Some(1.0));
     assert_eq!(wanted[0].cause, Cause::Alignment);
     assert!(wanted[0].summary.contains("the compass's zero moved"));

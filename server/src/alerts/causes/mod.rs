@@ -1,0 +1,29 @@
+//! The table of causes: what finds each, its severity, title and advice, what it does to a
+//! card and to a plan, and how it ends.
+//!
+//! Invariant: every cause has exactly one row. The files below hold the rows by kind.
+
+mod adjustments;
+mod agent_link;
+mod agent_reports;
+mod change_rules;
+mod deviation_over_limit;
+mod disturbances;
+mod evaluate;
+mod facts;
+mod hysteresis;
+mod instruments;
+mod model_quality;
+mod row;
+mod ship_changes;
+mod table;
+
+pub(super) use evaluate::{evaluate, evaluate_analysis};
+pub(super) use facts::{AgentReports, Facts, Silence, StreamConflict};
+pub use facts::{JobAtRisk, UnconfirmedAdjustment};
+pub use row::Effect;
+pub(super) use row::{Ending, Source};
+pub(super) use table::CAUSES;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,57 @@
+//! The table of causes, and the alerts that its predicates call for.
+
+mod agent_reports;
+mod changes;
+mod figures;
+
+use super::CAUSES;
+use super::row::{Effect, Ending, Source};
+use crate::alerts::cause::Cause;
+use std::collections::BTreeSet;
+use utoipa::PartialSchema;
+
+/// All causes, as the OpenAPI document lists them.
+fn all() -> Vec<Cause> {
+    let schema = serde_json::to_value(Cause::schema()).unwrap();
+    let names = schema["enum"].as_array().unwrap().clone();
+    names
+        .into_iter()
+        .map(|name| serde_json::from_value(name).unwrap())
+        .collect()
+}
+
+#[test]
+fn every_cause_has_exactly_one_row() {
+    let all = all();
+    assert_eq!(all.len(), CAUSES.len());
+    for cause in all {
+        let rows = CAUSES.iter().filter(|row| row.cause == cause);
+        assert_eq!(rows.count(), 1, "{cause:?}");
+    }
+}
+
+#[test]
+fn every_row_is_filled() {
+    let titles: BTreeSet<&str> = CAUSES.iter().map(|row| row.title).collect();
+    assert_eq!(titles.len(), CAUSES.len());
+    for row in &CAUSES {
+        assert!(!row.title.is_empty(), "{:?}", row.cause);
+        assert!(!row.finders.is_empty(), "{:?}", row.cause);
+    }
+}
+
+#[test]
+fn only_what_goes_quiet_is_ended_by_the_clock() {
+    for row in &CAUSES {
+        let is_quiet = matches!(row.ending, Ending::Quiet { .. });
+        let is_of_a_batch = matches!(row.source(), Source::Agent | Source::Batch);
+        assert_eq!(is_quiet, is_of_a_batch, "{:?}", row.cause);
+    }
+}
+
+#[test]
+fn only_a_compass_that_cannot_be_trusted_has_no_card() {
+    let blocked = CAUSES.iter().filter(|row| row.on_card == Effect::Block);
+    let blocked: Vec<Cause> = blocked.map(|row| row.cause).collect();
+    assert_eq!(blocked, [Cause::CompassFault, Cause::ReportedByAgent]);
+}
