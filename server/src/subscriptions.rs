@@ -1,7 +1,7 @@
 //! Who handles which event: one table, in the order in which the handlers run.
 
 use crate::db::Subscribers;
-use crate::{calendar, notifications, schedule, work_orders};
+use crate::{calendar, notifications, port_calls, schedule, work_orders};
 
 /// Returns the handlers of every event of the server.
 pub fn subscribers() -> Subscribers {
@@ -14,4 +14,5 @@ pub fn subscribers() -> Subscribers {
         .on(schedule::on_vessel_event)
         .on(calendar::delete_feeds)
         .on(notifications::create)
+        .on(port_calls::note_berth_heading)
 }

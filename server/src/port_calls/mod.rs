@@ -16,11 +16,13 @@ mod heading;
 mod moving;
 mod ports;
 mod store;
+mod subscriber;
 mod upload;
 
 pub use call::{Content, LearntFrom, LearntHeading, PortCall, Source};
 pub use heading::{Earlier, heading};
-pub use store::{Row, ahead, alongside, lies};
+pub use store::{Row, ahead};
+pub use subscriber::note_berth_heading;
 
 use crate::access::{Reader, Writer};
 use crate::app::App;

@@ -166,21 +166,6 @@ pub(super) async fn ahead_of(db: &Db, vessel: VesselId, now: Time) -> Result<Vec
     )?)
 }
 
-/// The call that a vessel is in at some time, within a transaction.
-pub async fn alongside(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Option<Row>> {
-    Ok(row!(
-        in tx,
-        Row,
-        "SELECT c.*, v.name AS vessel_name FROM port_calls c
-         JOIN vessels v ON v.id = c.vessel_id
-         WHERE c.vessel_id = $1 AND c.eta <= $2 AND c.etd > $2 AND c.withdrawn_at IS NULL
-         ORDER BY c.eta, c.id
-         LIMIT 1",
-        vessel,
-        at
-    )?)
-}
-
 /// A call of the vessel's.
 ///
 /// # Errors
@@ -359,7 +344,12 @@ pub(super) async fn revisions(db: &Db, vessel: VesselId, id: CallId) -> Result<V
 }
 
 /// Notes how she lies in the call that she is in, as it was read alongside.
-pub async fn lies(tx: &mut Tx, vessel: VesselId, at: Time, heading_deg: f64) -> Result<()> {
+pub(super) async fn set_lay_heading(
+    tx: &mut Tx,
+    vessel: VesselId,
+    at: Time,
+    heading_deg: f64,
+) -> Result<()> {
     execute!(
         tx,
         "UPDATE port_calls SET lay_heading_deg = $3

@@ -4,7 +4,6 @@
 //! ships on a day than it has teams for, and a job is offered whole or not at all. The fees
 //! of its orders come to the fee that the plan has for the job.
 
-use super::orders;
 use super::plan::{Job, Plan};
 use super::store;
 use crate::access::Writer;
@@ -121,7 +120,7 @@ async fn offer_job(
             fees_eur: terms.iter().map(fees).collect(),
         };
         let id = OrderId::new();
-        orders::at_call(&mut tx, job.vessel_id, id, job.call_id).await?;
+        work_orders::link_once(&mut tx, job.vessel_id, id, job.call_id).await?;
         let order = order_of(job, compass.compass_id, offer);
         let (goes_on, news) = work_orders::write(&app, &request, tx, writer, id, order).await?;
         (tx, told) = (goes_on, told.into_iter().chain(news).collect());

@@ -6,7 +6,7 @@
 
 use super::gather::NO_TERMS;
 use super::plan::LeftOut;
-use crate::db::{Db, Tx, execute, row, rows};
+use crate::db::{Db, rows};
 use crate::error::Result;
 use crate::firms::port_meant;
 use crate::ids::{CallId, CompassId, FirmId, OperatorId, OrderId, VesselId};
@@ -102,52 +102,6 @@ pub(super) async fn declined(db: &Db, operator: OperatorId) -> Result<Vec<Order>
          ORDER BY o.vessel_id, o.id, f.firm_id",
         operator
     )?)
-}
-
-/// Notes at which call an order is to be done.
-pub(super) async fn at_call(
-    tx: &mut Tx,
-    vessel: VesselId,
-    order: OrderId,
-    call: CallId,
-) -> Result<()> {
-    execute!(
-        tx,
-        "INSERT INTO schedule_orders (vessel_id, order_id, call_id) VALUES ($1, $2, $3)
-         ON CONFLICT (vessel_id, order_id) DO NOTHING",
-        vessel,
-        order,
-        call
-    )?;
-    Ok(())
-}
-
-/// Notes that an order is to be done at a call from now on.
-pub async fn link(tx: &mut Tx, vessel: VesselId, order: OrderId, call: CallId) -> Result<()> {
-    execute!(
-        tx,
-        "INSERT INTO schedule_orders (vessel_id, order_id, call_id) VALUES ($1, $2, $3)
-         ON CONFLICT (vessel_id, order_id) DO UPDATE SET call_id = excluded.call_id",
-        vessel,
-        order,
-        call
-    )?;
-    Ok(())
-}
-
-/// The port of the call that an order is to be done at, where that was noted.
-pub async fn linked_port(tx: &mut Tx, vessel: VesselId, order: OrderId) -> Result<Option<String>> {
-    let found = row!(
-        in tx,
-        (String,),
-        "SELECT c.port FROM schedule_orders l
-         JOIN port_calls c ON c.vessel_id = l.vessel_id AND c.id = l.call_id
-         WHERE l.vessel_id = $1 AND l.order_id = $2
-         ORDER BY c.id",
-        vessel,
-        order
-    )?;
-    Ok(found.map(|(port,)| port))
 }
 
 impl Order {

@@ -6,7 +6,6 @@
 use super::at_risk::{aside, at_risk};
 use super::concurrency::{PlanLock, PlanSlots};
 use super::gather::{Agreed, Gathered, Names, gather};
-use super::orders;
 use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled};
 use super::store;
 use crate::alerts;
@@ -17,6 +16,7 @@ use crate::error::{Error, Result};
 use crate::events;
 use crate::ids::{CallId, CompassId, FirmId, OperatorId, OrderId, VesselId};
 use crate::time::Time;
+use crate::work_orders;
 use anyhow::Context;
 use binnacle_schedule::input::{JobState, read};
 use binnacle_schedule::plan::{self as solved, ChangeKind, Schedule, plan};
@@ -184,7 +184,7 @@ async fn keep(
     store::answered(&mut tx, operator, &gathered.asks).await?;
     for agreed in gathered.names.agreed.values() {
         let (vessel, order, call) = (agreed.vessel_id, agreed.order_id, agreed.call_id);
-        orders::at_call(&mut tx, vessel, order, call).await?;
+        work_orders::link_once(&mut tx, vessel, order, call).await?;
     }
     let mut wanted = at_risk(plan, &gathered.names);
     let not_told = aside(plan, gathered, &mut wanted);

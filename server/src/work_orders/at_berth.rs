@@ -16,11 +16,11 @@ use super::{order_update, shown};
 use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
 use crate::audit::RequestContext;
+use crate::db::DomainEvent;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid, ValidOrNone, degrees, optional_text};
 use crate::idempotency::Key;
-use crate::ids::OrderId;
-use crate::port_calls;
+use crate::ids::{OrderId, VesselId};
 use crate::time::Time;
 use axum::extract::{FromRef, State as Shared};
 use binnacle_adjustment::adjust::{Outcome, ReadingForm};
@@ -37,6 +37,18 @@ const AT_BERTH: [State; 4] = [
     State::Measured,
     State::Adjusting,
 ];
+
+/// The heading at the berth was read, and the reading is credible.
+pub struct BerthHeadingRead {
+    /// The vessel.
+    pub vessel: VesselId,
+    /// When.
+    pub at: Time,
+    /// True heading, degrees.
+    pub heading_deg: f64,
+}
+
+impl DomainEvent for BerthHeadingRead {}
 
 pub(super) fn router<S>() -> OpenApiRouter<S>
 where
@@ -95,7 +107,12 @@ async fn read_berth(
     if let Some(mut change) = update.begin(&whole).await? {
         if refusal.is_none() {
             let (at, heading_deg) = (Time(read.given.at), read.given.heading_true_deg);
-            port_calls::lies(&mut change.tx, vessel, at, heading_deg).await?;
+            let read = BerthHeadingRead {
+                vessel,
+                at,
+                heading_deg,
+            };
+            change.tx.publish(&read).await?;
         }
         change.append(Content::BerthReading(Box::new(read))).await?;
         change.commit().await?;

@@ -4,6 +4,7 @@
 //! What always holds: an order comes to a call of its own port only, and only where its time
 //! lies in it; who was told that its call is gone is told that there is one again.
 
+use super::call_links;
 use super::moved::{self, Alongside, CallChange, CallFit, Moving};
 use super::store;
 use crate::db::Tx;
@@ -11,7 +12,6 @@ use crate::error::Result;
 use crate::events::Event;
 use crate::firms::port_meant;
 use crate::ids::{CallId, OrderId, VesselId};
-use crate::schedule;
 use crate::time::Time;
 
 /// Brings orders without a call to new calls of a vessel, whose row is held; the live events,
@@ -44,7 +44,7 @@ pub async fn calls_come(
         let Some((id, is)) = new.iter().find(|(_, call)| lies_in(call)) else {
             continue;
         };
-        schedule::link(tx, vessel, order.id, *id).await?;
+        call_links::link(tx, vessel, order.id, *id).await?;
         if let Some(gone) = gone {
             let moving = Moving {
                 call_id: gone.call_id,

@@ -16,6 +16,7 @@ mod answers;
 mod asked;
 mod at_berth;
 mod basis;
+mod call_links;
 mod came;
 mod change;
 pub mod completion;
@@ -51,6 +52,8 @@ mod verification;
 mod view;
 mod whereabouts;
 
+pub use at_berth::BerthHeadingRead;
+pub use call_links::link_once;
 pub use came::calls_come;
 pub use deadlines::{lapse, watch};
 pub use done::{Done, Span, done};

@@ -4,6 +4,7 @@
 //! in the transaction that moves the call; the time that was agreed stands until both
 //! agree on another.
 
+use super::call_links;
 use super::entry::{Author, Content};
 use super::news::{self, Before};
 use super::offers::{Between, Offer};
@@ -12,7 +13,6 @@ use crate::db::{Tx, execute, rows};
 use crate::error::Result;
 use crate::events::Event;
 use crate::ids::{CallId, OrderId, VesselId};
-use crate::schedule;
 use crate::time::Time;
 use binnacle_schedule::input::JOB_H;
 use binnacle_schedule::ports::{self, PortCode};
@@ -186,7 +186,7 @@ pub async fn calls_move(
             order.call_id == Some(one.call_id) || order.is_adrift && is_then
         };
         if let Some(one) = moving.iter().find(at) {
-            schedule::link(tx, vessel, order.id, one.then_id).await?;
+            call_links::link(tx, vessel, order.id, one.then_id).await?;
             told.extend(tell(tx, vessel, order.id, one, by, now).await?);
         }
     }

@@ -4,6 +4,7 @@
 //! a call of the vessel's at the order's port, for as long as a job takes, and on a day on
 //! which the firm has a team left by its terms: when it is asked, and when it says yes.
 
+use super::call_links;
 use super::change::Change;
 use super::entry::Content;
 use super::moved::CallFit;
@@ -22,8 +23,6 @@ use crate::firms::{Told, port_meant};
 use crate::http::{Id, Json, Valid, ValidOrNone, optional_text};
 use crate::idempotency::Key;
 use crate::ids::OrderId;
-use crate::port_calls;
-use crate::schedule;
 use crate::tenants::Tenant;
 use crate::time::Time;
 use axum::extract::{FromRef, State as Shared};
@@ -258,10 +257,10 @@ async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
         change.whole.summary.planned_at,
     );
     let id = change.whole.summary.id;
-    if let Some(port) = schedule::linked_port(&mut change.tx, vessel, id).await? {
+    if let Some(port) = call_links::linked_port(&mut change.tx, vessel, id).await? {
         return Ok(Some(port));
     }
-    let call = port_calls::alongside(&mut change.tx, vessel, planned_at).await?;
+    let call = call_links::call_at(&mut change.tx, vessel, planned_at).await?;
     let meant = port_meant(&change.whole.summary.port).map(|port| port.code.to_string());
     let is_hers = |port: &String| meant.as_ref().is_none_or(|meant| meant == port);
     Ok(call.map(|call| call.port).filter(is_hers))
@@ -270,8 +269,8 @@ async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
 /// Notes at which call an order is to be done whose time is another now.
 pub(super) async fn at_its_call(change: &mut Change<'_>, at: Time) -> Result<()> {
     let (vessel, id) = (change.whole.summary.vessel_id, change.whole.summary.id);
-    if let Some(call) = port_calls::alongside(&mut change.tx, vessel, at).await? {
-        schedule::link(&mut change.tx, vessel, id, call.id).await?;
+    if let Some(call) = call_links::call_at(&mut change.tx, vessel, at).await? {
+        call_links::link(&mut change.tx, vessel, id, call.id).await?;
     }
     Ok(())
 }
@@ -292,7 +291,7 @@ async fn must_be_possible(
         return must_have_room(change, firm, terms.planned_at, told).await;
     };
     let (at, vessel) = (terms.planned_at, change.whole.summary.vessel_id);
-    let call = port_calls::alongside(&mut change.tx, vessel, at).await?;
+    let call = call_links::call_at(&mut change.tx, vessel, at).await?;
     let fit = match &call {
         Some(call) => call.alongside()?.fit(&port, at),
         None => CallFit::NoCall,
