@@ -1,8 +1,8 @@
 //! The shore server.
 
 use anyhow::{Result, anyhow};
+use binnacle_server::cli::{Cli, Command};
 use binnacle_server::command;
-use binnacle_server::config::{Cli, Command};
 use clap::Parser;
 use std::process::ExitCode;
 

@@ -1,8 +1,8 @@
 //! State of the whole server: the platform's, and what single capabilities need of it.
 
-use crate::app::App;
-use crate::schedule::PlanSlots;
 use axum::extract::FromRef;
+use binnacle_planning::schedule::PlanSlots;
+use binnacle_platform::app::App;
 
 /// State of every route; each handler takes the part it needs by [`FromRef`].
 #[derive(Clone)]

@@ -1,7 +1,8 @@
 //! Who handles which event: one table, in the order in which the handlers run.
 
-use crate::db::Subscribers;
-use crate::{calendar, notifications, port_calls, schedule, work_orders};
+use binnacle_orders::work_orders;
+use binnacle_planning::{calendar, notifications, port_calls, schedule};
+use binnacle_platform::db::Subscribers;
 
 /// Returns the handlers of every event of the server.
 pub fn subscribers() -> Subscribers {

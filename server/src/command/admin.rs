@@ -3,18 +3,20 @@
 
 use super::operate::block_on;
 use super::{BadInput, answer};
-use crate::audit::RequestContext;
-use crate::clock::Clock;
-use crate::config::{Admin, AdminCommand, Create, FleetRole, Person};
-use crate::db::{Db, Tx};
-use crate::error::Error;
-use crate::ids::{AgentId, FirmId, OperatorId, VesselId};
-use crate::session::{self, Role};
+use crate::cli::{Admin, AdminCommand, Create, FleetRole, Person};
 use crate::subscriptions::subscribers;
-use crate::tenants::Tenant;
-use crate::time::Time;
-use crate::{enrolment, firms, http, operators, password, secret, users};
 use anyhow::Result;
+use binnacle_fleet::{enrolment, operators};
+use binnacle_orders::firms;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::clock::Clock;
+use binnacle_platform::db::{Db, Tx};
+use binnacle_platform::error::Error;
+use binnacle_platform::ids::{AgentId, FirmId, OperatorId, VesselId};
+use binnacle_platform::session::{self, Role};
+use binnacle_platform::tenants::Tenant;
+use binnacle_platform::time::Time;
+use binnacle_platform::{http, password, secret, users};
 use serde_json::json;
 use std::io::Read;
 use std::process::ExitCode;
@@ -143,7 +145,10 @@ async fn create_firm(request: &RequestContext, name: &str, operators: &[Uuid], n
 }
 
 /// What a tenant is named by, if there is none of that id.
-async fn missing(tx: &mut Tx, tenant: Option<Tenant>) -> crate::db::Result<Option<String>> {
+async fn missing(
+    tx: &mut Tx,
+    tenant: Option<Tenant>,
+) -> binnacle_platform::db::Result<Option<String>> {
     let (flag, there) = match tenant {
         Some(Tenant::Operator(id)) => ("--operator", operators::exists(tx, id).await?),
         Some(Tenant::Firm(id)) => ("--firm", firms::exists(tx, id).await?),

@@ -1,7 +1,7 @@
 //! `analyse`: from a file, what the server does with a vessel's uploads.
 
 use super::{BadInput, answer, input, json, logbook};
-use crate::config::Analyse;
+use crate::cli::Analyse;
 use binnacle_analysis::advice::sail_next;
 use binnacle_analysis::analyse::analyse as run;
 use binnacle_analysis::fit::{CsvRow, readings_from_csv};

@@ -2,13 +2,13 @@
 
 use super::operate::block_on;
 use super::{BadInput, answer, json};
-use crate::clock::Clock;
-use crate::config::Bursts;
-use crate::db::Db;
-use crate::ids::VesselId;
-use crate::streams;
+use crate::cli::Bursts;
 use crate::subscriptions::subscribers;
 use anyhow::{Context, Result};
+use binnacle_fleet::ingest;
+use binnacle_platform::clock::Clock;
+use binnacle_platform::db::Db;
+use binnacle_platform::ids::VesselId;
 use binnacle_wire::burst::MESSAGE_BYTES;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -34,7 +34,7 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
         let db = Db::connect(&arguments.database.database_url, subscribers()).await?;
         db.migrate().await?;
         let now = Clock::System.now().into();
-        let imported = streams::import(&db, vessel, &messages, now).await;
+        let imported = ingest::import(&db, vessel, &messages, now).await;
         db.close().await;
         Ok(imported?)
     })?;

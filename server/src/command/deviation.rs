@@ -1,12 +1,12 @@
 //! `deviation`: what a model says about every heading at one place.
 
 use super::{BadInput, answer, input, json, table};
-use crate::config::Deviation;
-use crate::deviation::{Row, table as predict};
+use crate::cli::Deviation;
 use binnacle_compass::deviation::DeviationError;
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
+use binnacle_fleet::deviation::{Row, table as predict};
 use serde_json::json;
 use std::process::ExitCode;
 

@@ -1,7 +1,7 @@
 //! `field`: the earth's field at a place and time.
 
 use super::{BadInput, answer, input, json};
-use crate::config::{Field, FieldModel};
+use crate::cli::{Field, FieldModel};
 use binnacle_compass::field::{FieldModel as Model, field as evaluate};
 use serde::Serialize;
 use std::process::ExitCode;

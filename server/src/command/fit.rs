@@ -1,7 +1,7 @@
 //! `fit`: a model from a file.
 
 use super::{BadInput, answer, input, json, table};
-use crate::config::{Fit, Method};
+use crate::cli::{Fit, Method};
 use binnacle_analysis::advice::{Question, advise};
 use binnacle_analysis::fit::{
     Observation, RobustFit, RobustOptions, fit_ols, fit_paper, fit_robust, readings_from_csv, refer,

@@ -1,21 +1,22 @@
 //! `serve`, `migrate` and `openapi`.
 
-use crate::app::App;
-use crate::clock::Clock;
-use crate::config::{Database, Serve};
-use crate::db::Db;
-use crate::mail::Mailer;
-use crate::peer::Peer;
 use crate::state::ServerState;
 use crate::subscriptions::subscribers;
-use crate::tls::TlsListener;
-use crate::{
-    alerts, analysis, audit, events, http, notifications, operations, outbox, reports, schedule,
-    webhooks, work_orders,
-};
+use crate::{health, routes, worker};
 use anyhow::{Context, Result};
 use axum::extract::connect_info::Connected;
 use axum::serve::{IncomingStream, Listener};
+use binnacle_fleet::{alerts, analysis};
+use binnacle_orders::work_orders;
+use binnacle_planning::{notifications, reports, schedule};
+use binnacle_platform::app::App;
+use binnacle_platform::client_address::Peer;
+use binnacle_platform::clock::Clock;
+use binnacle_platform::config::{Database, Serve};
+use binnacle_platform::db::Db;
+use binnacle_platform::mail::Mailer;
+use binnacle_platform::tls::TlsListener;
+use binnacle_platform::{audit, events, outbox, webhooks};
 use std::future::Future;
 use std::io::Write;
 use std::net::SocketAddr;
@@ -47,8 +48,8 @@ pub fn serve(config: Serve) -> Result<ExitCode> {
         let listener = TcpListener::bind(config.listen)
             .await
             .with_context(|| format!("cannot listen on {}", config.listen))?;
-        let certificate = config.certificate();
-        let app = App::new(db, Clock::System, config, operations::install_metrics()?);
+        let certificate = config.certificate(binnacle_wire::downlink::ONCE);
+        let app = App::new(db, Clock::System, config, health::install_metrics()?);
         if let Some(certificate) = certificate {
             let listener = TlsListener::new(listener, certificate)?;
             announce("https", &listener)?;
@@ -81,7 +82,7 @@ where
         info!(vessels = outdated, "another estimator: analysing again");
     }
     for _ in 0..app.config.analysis_workers {
-        parts.spawn(analysis::run(app.clone()));
+        parts.spawn(worker::run(app.clone()));
     }
     if app.config.analysis_workers > 0 {
         parts.spawn(alerts::watch(app.clone()));
@@ -107,7 +108,7 @@ where
     }
     parts.spawn(stop_on_signal(app.clone()));
     let stopping = app.stopping.clone();
-    let service = http::router(state).into_make_service_with_connect_info::<Peer>();
+    let service = routes::router(state).into_make_service_with_connect_info::<Peer>();
     let serving =
         axum::serve(listener, service).with_graceful_shutdown(stopping.clone().cancelled_owned());
     let deadline = async {
@@ -165,7 +166,7 @@ pub fn migrate(database: &Database) -> Result<ExitCode> {
 /// # Errors
 /// When standard output cannot be written.
 pub fn openapi() -> Result<ExitCode> {
-    let document = http::openapi().to_pretty_json()?;
+    let document = routes::openapi().to_pretty_json()?;
     super::print(&document)?;
     Ok(ExitCode::SUCCESS)
 }

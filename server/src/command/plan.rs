@@ -5,7 +5,7 @@
 //! alone explains a berth that does not fit is bad input.
 
 use super::{BadInput, answer, input, json};
-use crate::config::Plan;
+use crate::cli::Plan;
 use binnacle_adjustment::adjust::{
     AdjustError, Adjustment, AfterForm, BerthForm, Done, Outcome, plan as find_plans, read_again,
 };

@@ -1,7 +1,7 @@
 //! `schedule`: from ships, needs, port calls and firms, who does what where and when.
 
 use super::{BadInput, answer, input, json};
-use crate::config::Schedule;
+use crate::cli::Schedule;
 use binnacle_schedule::input::read;
 use binnacle_schedule::plan::plan;
 use std::process::ExitCode;

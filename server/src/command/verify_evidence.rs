@@ -1,8 +1,8 @@
 //! `verify-evidence`: checks an archive of evidence with nothing but what is in it.
 
 use super::{BadInput, answer};
-use crate::config::VerifyEvidence;
-use crate::evidence::{self, Found};
+use crate::cli::VerifyEvidence;
+use binnacle_orders::evidence::{self, Found};
 use std::fs;
 use std::process::ExitCode;
 

@@ -6,12 +6,12 @@
 
 mod ahead;
 
-use crate::access::Reader;
-use crate::app::App;
 use axum::extract::{FromRequestParts, Request, State};
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, ETAG, IF_NONE_MATCH};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{Html, IntoResponse, Response};
+use binnacle_platform::access::Reader;
+use binnacle_platform::app::App;
 use rust_embed::{EmbeddedFile, RustEmbed};
 
 #[derive(RustEmbed)]

@@ -3,7 +3,7 @@
 use crate::on_both;
 use crate::support::{Answer, Person, Ship, Shore, passage};
 use binnacle_compass::angle::TrueHeading;
-use binnacle_server::alerts;
+use binnacle_fleet::alerts;
 use reqwest::Method;
 use serde_json::{Value, json};
 

@@ -3,7 +3,8 @@
 use crate::analysis::{A_WHILE_S, DAY};
 use crate::on_both;
 use crate::support::{Shore, passage};
-use binnacle_server::analysis::{self, Worked};
+use binnacle_fleet::analysis;
+use binnacle_server::worker::{self, Worked};
 use serde_json::json;
 
 on_both!(
@@ -122,7 +123,7 @@ async fn a_lease_that_ended_goes_to_another_worker(shore: Shore) {
     assert_eq!(shore.work().await, []);
     shore.advance(600.0);
     let other = shore.second().await;
-    let worked = analysis::step(&other).await.unwrap();
+    let worked = worker::step(&other).await.unwrap();
     assert!(matches!(worked, Some(Worked::Analysed(_, 1))), "{worked:?}");
     assert_eq!(ada.get(&nao.path("/model")).await.status, 200);
     other.db.close().await;

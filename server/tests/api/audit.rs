@@ -5,7 +5,7 @@ use crate::commands::{good, run};
 use crate::offers::Trade;
 use crate::on_both;
 use crate::support::{Answer, Engine, PASSWORD, Person, Shore, attempt};
-use binnacle_server::audit::forget;
+use binnacle_platform::audit::forget;
 use reqwest::Method;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

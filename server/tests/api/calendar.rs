@@ -6,7 +6,7 @@ use crate::on_both;
 use crate::planning::{compass_of, due_vessel, enter};
 use crate::port_calls;
 use crate::support::{Answer, Person, Shore};
-use binnacle_server::notifications::look;
+use binnacle_planning::notifications::look;
 use icalendar::{CalendarComponent, CalendarDateTime, Component, DatePerhapsTime};
 use reqwest::Method;
 use serde_json::{Value, json};

@@ -4,7 +4,7 @@ use crate::binnacles::{binnacle, put};
 use crate::on_both;
 use crate::support::{Answer, Person, Ship, Shore, days_at_sea, days_in, passage, struck, truth};
 use binnacle_compass::time::Timestamp;
-use binnacle_server::alerts;
+use binnacle_fleet::alerts;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::batch::Batch;
 use reqwest::Method;

@@ -1,7 +1,7 @@
 //! The API's document.
 
 use crate::support::{Answer, Engine, Shore};
-use binnacle_server::http::openapi;
+use binnacle_server::routes::openapi;
 use serde_json::Value;
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::on_both;
 use crate::support::{Answer, Person, Ship, Shore, exchange, sample};
-use binnacle_server::alerts;
+use binnacle_fleet::alerts;
 use binnacle_wire::batch::StreamId;
 use reqwest::Method;
 use serde_json::{Value, json};

@@ -2,8 +2,8 @@
 
 use crate::on_both;
 use crate::support::{Answer, Engine, Person, Shore, passage};
-use binnacle_server::db::Pools;
-use binnacle_server::events;
+use binnacle_platform::db::Pools;
+use binnacle_platform::events;
 use futures_util::StreamExt;
 use reqwest::Method;
 use serde_json::json;

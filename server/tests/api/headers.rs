@@ -1,7 +1,7 @@
 //! What surrounds every answer, and how large and from where a request may be.
 
 use crate::support::{Answer, Engine, PASSWORD, Shore};
-use binnacle_server::http::openapi;
+use binnacle_server::routes::openapi;
 use reqwest::Method;
 use serde_json::json;
 

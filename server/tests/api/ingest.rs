@@ -2,7 +2,7 @@
 
 use crate::on_both;
 use crate::support::{Answer, Engine, Shore, days_at_sea, frame, passage, truth};
-use binnacle_server::db::Pools;
+use binnacle_platform::db::Pools;
 use binnacle_wire::batch::StreamId;
 use serde_json::json;
 use uuid::Uuid;

@@ -3,7 +3,7 @@
 use crate::logbook::{A_WHILE_S, DAY, patch};
 use crate::on_both;
 use crate::support::{Person, Ship, Shore, passage};
-use binnacle_server::analysis::Worked;
+use binnacle_server::worker::Worked;
 use serde_json::{Value, json};
 
 on_both!(

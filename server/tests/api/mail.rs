@@ -3,10 +3,10 @@
 use crate::alerts::{limit, with_model};
 use crate::on_both;
 use crate::support::{Answer, Letter, Person, Relay, Shore};
-use binnacle_server::alerts;
-use binnacle_server::config;
-use binnacle_server::mail::Mailer;
-use binnacle_server::outbox::{self, Sent};
+use binnacle_fleet::alerts;
+use binnacle_platform::config;
+use binnacle_platform::mail::Mailer;
+use binnacle_platform::outbox::{self, Sent};
 use reqwest::Method;
 use serde_json::{Value, json};
 use std::process::Command;

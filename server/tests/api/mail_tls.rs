@@ -1,9 +1,9 @@
 //! What goes to a mail relay in the clear: nothing that matters.
 
 use crate::support::{Encryption, Engine, Relay, Shore};
-use binnacle_server::config;
-use binnacle_server::mail::Mailer;
-use binnacle_server::outbox::{self, Sent};
+use binnacle_platform::config;
+use binnacle_platform::mail::Mailer;
+use binnacle_platform::outbox::{self, Sent};
 use rcgen::{CertifiedKey, generate_simple_self_signed};
 use rustls::ServerConfig;
 use rustls::pki_types::PrivateKeyDer;

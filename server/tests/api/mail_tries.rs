@@ -4,7 +4,7 @@ use crate::alerts::{limit, with_model};
 use crate::mail::{DAY_S, add, deliver, mailer, path, subjects, test};
 use crate::on_both;
 use crate::support::{At, Mood, Person, Relay, Shore};
-use binnacle_server::outbox::{self, Sent};
+use binnacle_platform::outbox::{self, Sent};
 use serde_json::json;
 
 on_both!(

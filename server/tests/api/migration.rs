@@ -1,8 +1,8 @@
 //! Migrating loses nothing that a database holds, and refuses another version's database.
 
 use crate::support::{Answer, Engine, Shore, attempt, password_hash};
-use binnacle_server::db::{Connection, Db, Pools, Tx};
-use binnacle_server::secret;
+use binnacle_platform::db::{Connection, Db, Pools, Tx};
+use binnacle_platform::secret;
 use reqwest::Method;
 use serde_json::json;
 use sqlx::SqlSafeStr;

@@ -76,7 +76,7 @@ async fn a_vessel_out_of_service_is_in_no_list_and_calls_for_no_alert(shore: Sho
 
     limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.5 })).await;
     shore.advance(5.0 * 86_400.0);
-    binnacle_server::alerts::check_timed(&shore.app)
+    binnacle_fleet::alerts::check_timed(&shore.app)
         .await
         .unwrap();
     let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;

@@ -6,7 +6,7 @@ use crate::on_both;
 use crate::planning::{due_vessel, put};
 use crate::support::{Person, Relay, Shore};
 use crate::work_orders::Job;
-use binnacle_server::reports::look;
+use binnacle_planning::reports::look;
 use serde_json::{Value, json};
 use std::process::Command;
 

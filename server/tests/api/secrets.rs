@@ -2,7 +2,7 @@
 
 use crate::second_factor::app_code;
 use crate::support::{CLIENT_SECRET, Provider, client};
-use binnacle_server::clock::Clock;
+use binnacle_platform::clock::Clock;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;

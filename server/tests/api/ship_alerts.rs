@@ -4,7 +4,7 @@ use crate::on_both;
 use crate::support::{Person, Ship, Shore, passage};
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
-use binnacle_server::alerts;
+use binnacle_fleet::alerts;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::batch::{Batch, Thinned};
 use serde_json::{Value, json};

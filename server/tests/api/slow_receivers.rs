@@ -3,10 +3,10 @@
 use crate::on_both;
 use crate::support::Shore;
 use crate::webhooks::{Receiver, deliver, make, path};
-use binnacle_server::audit::RequestContext;
-use binnacle_server::ids::{DeliveryId, OrderId};
-use binnacle_server::outbox::{self, Kind, Message, Sent};
-use binnacle_server::webhooks::{Reach, Sender};
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::ids::{DeliveryId, OrderId};
+use binnacle_platform::outbox::{self, Kind, Message, Sent};
+use binnacle_platform::webhooks::{Reach, Sender};
 use serde_json::json;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::mpsc;

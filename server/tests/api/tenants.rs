@@ -4,7 +4,7 @@ use crate::binnacles::{binnacle, put};
 use crate::on_both;
 use crate::port_calls::{call, path as calls_of};
 use crate::support::{Answer, Shore};
-use binnacle_server::http::openapi;
+use binnacle_server::routes::openapi;
 use reqwest::Method;
 use serde_json::{Value, json};
 

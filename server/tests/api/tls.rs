@@ -2,7 +2,8 @@
 
 use axum::Router;
 use axum::routing::get;
-use binnacle_server::tls::{Certificate, TlsListener};
+use binnacle_platform::tls::{Certificate, TlsListener};
+use binnacle_wire::downlink::ONCE;
 use rcgen::{CertifiedKey, generate_simple_self_signed};
 use std::fs;
 use std::path::Path;
@@ -32,6 +33,7 @@ fn certificate(folder: &Path) -> Certificate {
     Certificate {
         chain: folder.join("chain.pem"),
         key: folder.join("key.pem"),
+        one_request: ONCE,
     }
 }
 

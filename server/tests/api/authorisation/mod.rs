@@ -5,7 +5,7 @@ mod world;
 
 use crate::on_both;
 use crate::support::{Answer, Shore};
-use binnacle_server::http::openapi;
+use binnacle_server::routes::openapi;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use table::{OPEN, TABLE};

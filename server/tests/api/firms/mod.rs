@@ -4,7 +4,7 @@ use crate::commands::{assert_refused, good, run};
 use crate::offers::Trade;
 use crate::on_both;
 use crate::support::{Answer, Shore};
-use binnacle_server::ids::FirmId;
+use binnacle_platform::ids::FirmId;
 use reqwest::Method;
 use serde_json::{Value, json};
 

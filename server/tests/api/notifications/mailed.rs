@@ -6,7 +6,7 @@ use crate::mail::{add, deliver};
 use crate::offers::{HOUR_S, Trade};
 use crate::on_both;
 use crate::support::{Answer, Relay, Shore};
-use binnacle_server::notifications::post;
+use binnacle_planning::notifications::post;
 use reqwest::Method;
 use serde_json::json;
 

@@ -4,7 +4,7 @@ use super::told;
 use crate::on_both;
 use crate::planning::{due_vessel, put};
 use crate::support::{Person, Shore};
-use binnacle_server::notifications::look;
+use binnacle_planning::notifications::look;
 use serde_json::json;
 
 on_both!(

@@ -7,8 +7,8 @@ mod way;
 
 use crate::on_both;
 use crate::support::{Answer, Person, Shore};
-use binnacle_server::ids::FirmId;
-use binnacle_server::work_orders::lapse;
+use binnacle_orders::work_orders::lapse;
+use binnacle_platform::ids::FirmId;
 use reqwest::Method;
 use serde_json::{Value, json};
 

@@ -5,7 +5,7 @@ use crate::on_both;
 use crate::support::{Answer, Person, Shore};
 use crate::webhooks::{Receiver, deliver, make};
 use crate::work_orders::{Job, reading};
-use binnacle_server::evidence;
+use binnacle_orders::evidence;
 use reqwest::Method;
 use serde_json::{Value, json};
 use std::path::Path;

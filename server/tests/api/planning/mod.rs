@@ -15,10 +15,11 @@ mod withdrawn;
 
 use crate::port_calls;
 use crate::support::{Answer, Person, Shore};
-use binnacle_server::ids::OperatorId;
-use binnacle_server::schedule::PlanSlots;
-use binnacle_server::time::Time;
-use binnacle_server::{firms as all_firms, schedule};
+use binnacle_orders::firms as all_firms;
+use binnacle_planning::schedule;
+use binnacle_planning::schedule::PlanSlots;
+use binnacle_platform::ids::OperatorId;
+use binnacle_platform::time::Time;
 use reqwest::Method;
 use serde_json::{Value, json};
 

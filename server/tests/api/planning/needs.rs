@@ -5,7 +5,7 @@ use crate::logbook::A_WHILE_S;
 use crate::on_both;
 use crate::support::{Person, Ship, Shore, days_at_sea, truth};
 use binnacle_compass::model::Model;
-use binnacle_server::notifications::look;
+use binnacle_planning::notifications::look;
 use serde_json::{Value, json};
 
 on_both!(

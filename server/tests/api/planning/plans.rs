@@ -4,9 +4,9 @@ use super::{compass_of, due_vessel, enter, first, follow, planned_firm, put, sol
 use crate::on_both;
 use crate::port_calls;
 use crate::support::{Person, Shore};
+use binnacle_planning::schedule::{self, PlanSlots};
+use binnacle_platform::db::Pools;
 use binnacle_schedule::{input, plan};
-use binnacle_server::db::Pools;
-use binnacle_server::schedule::{self, PlanSlots};
 use serde_json::{Value, json};
 
 on_both!(

@@ -179,9 +179,9 @@ async fn a_firm_is_booked_once_by_all_operators_together(shore: Shore) {
     );
     let (id, rosa) = firm(&shore, &ada, "rosa").await;
     let mut tx = shore.app.db.begin().await.unwrap();
-    let firm_id = binnacle_server::ids::FirmId(id.parse().unwrap());
-    let now = binnacle_server::time::Time(shore.app.clock.now());
-    binnacle_server::firms::engage(&mut tx, eve.operator, firm_id, now)
+    let firm_id = binnacle_platform::ids::FirmId(id.parse().unwrap());
+    let now = binnacle_platform::time::Time(shore.app.clock.now());
+    binnacle_orders::firms::engage(&mut tx, eve.operator, firm_id, now)
         .await
         .unwrap();
     tx.commit().await.unwrap();

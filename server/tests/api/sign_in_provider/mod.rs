@@ -4,9 +4,9 @@ use crate::second_factor::{app_code, now_s, set_up};
 use crate::support::{
     Answer, Engine, PASSWORD, Person, Provider, Shore, Signer, attempt, provider_settings,
 };
-use binnacle_server::audit::RequestContext;
-use binnacle_server::time::Time;
-use binnacle_server::users;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::time::Time;
+use binnacle_platform::users;
 use serde_json::{Value, json};
 use tokio::net::TcpListener;
 

@@ -3,7 +3,7 @@
 //! Its tables are made once, in a pattern that each test's database is a copy of: all
 //! migrations one by one, for each of hundreds of tests, would take minutes.
 
-use binnacle_server::db::Db;
+use binnacle_platform::db::Db;
 use binnacle_server::subscriptions::subscribers;
 use sqlx::{AssertSqlSafe, Connection, Executor, PgConnection};
 use tempfile::TempDir;

@@ -15,13 +15,14 @@ pub(crate) use ship::{
 };
 
 use binnacle_compass::time::Timestamp;
-use binnacle_server::analysis::{self, Worked};
-use binnacle_server::app::App;
-use binnacle_server::clock::Clock;
-use binnacle_server::config::{Cli, Command, Serve};
-use binnacle_server::db::{Connection, Db, Pools};
+use binnacle_platform::app::App;
+use binnacle_platform::clock::Clock;
+use binnacle_platform::config::Serve;
+use binnacle_platform::db::{Connection, Db, Pools};
+use binnacle_server::cli::{Cli, Command};
 use binnacle_server::subscriptions::subscribers;
-use binnacle_server::{command, operations};
+use binnacle_server::worker::{self, Worked};
+use binnacle_server::{command, health};
 use clap::Parser;
 use database::Database;
 use metrics_exporter_prometheus::PrometheusHandle;
@@ -136,7 +137,7 @@ impl Shore {
     /// Does every job that is due now.
     pub(crate) async fn work(&self) -> Vec<Worked> {
         let mut done = Vec::new();
-        while let Some(worked) = analysis::step(&self.app).await.unwrap() {
+        while let Some(worked) = worker::step(&self.app).await.unwrap() {
             done.push(worked);
         }
         done
@@ -211,7 +212,7 @@ fn config(url: &str, settings: &[&str]) -> Serve {
 fn metrics() -> PrometheusHandle {
     static HANDLE: OnceLock<PrometheusHandle> = OnceLock::new();
     HANDLE
-        .get_or_init(|| operations::install_metrics().unwrap())
+        .get_or_init(|| health::install_metrics().unwrap())
         .clone()
 }
 

@@ -1,12 +1,12 @@
 //! Someone with a browser.
 
 use super::{PASSWORD, Shore};
-use binnacle_server::firms;
-use binnacle_server::ids::{FirmId, OperatorId};
-use binnacle_server::secret;
-use binnacle_server::session::{self, Role};
-use binnacle_server::tenants::Tenant;
-use binnacle_server::time::Time;
+use binnacle_orders::firms;
+use binnacle_platform::ids::{FirmId, OperatorId};
+use binnacle_platform::secret;
+use binnacle_platform::session::{self, Role};
+use binnacle_platform::tenants::Tenant;
+use binnacle_platform::time::Time;
 use reqwest::Method;
 use serde_json::{Value, json};
 use std::sync::OnceLock;
@@ -163,7 +163,7 @@ pub(crate) async fn attempt(shore: &Shore, email: &str, password: &str) -> Answe
 async fn create_operator(shore: &Shore, name: &str) -> OperatorId {
     let now = Time(shore.app.clock.now());
     let mut tx = shore.app.db.begin().await.unwrap();
-    let id = binnacle_server::operators::create(&mut tx, name, now)
+    let id = binnacle_fleet::operators::create(&mut tx, name, now)
         .await
         .unwrap();
     tx.commit().await.unwrap();

@@ -1,0 +1,134 @@
+//! Words in which a change of an alert is announced: a letter, a webhook's message, a notice.
+
+use super::alert::Alert;
+use super::publish::AlertChange;
+use binnacle_platform::ids::OperatorId;
+use binnacle_platform::mail::{Announcement, Letter, header, one_line, wrapped};
+use binnacle_platform::notices::{self, Notice, NoticesPublished};
+use binnacle_platform::outbox::{Kind, Message};
+use binnacle_platform::severity::Severity;
+use binnacle_platform::time::Time;
+use serde_json::json;
+
+/// Returns the message for webhooks.
+pub(super) fn message(change: &AlertChange, now: Time) -> Message {
+    let AlertChange {
+        id, kind, alert, ..
+    } = change;
+    Message {
+        id: *id,
+        kind: *kind,
+        order: None,
+        body: json!({ "id": id, "kind": kind, "at": now, "alert": alert }).to_string(),
+    }
+}
+
+/// Returns the announcement for those who get mail about alerts.
+pub(super) fn announcement(change: &AlertChange) -> Announcement {
+    let alert = &change.alert;
+    let (subject, text) = words_of(change);
+    Announcement {
+        id: change.id,
+        kind: change.kind,
+        topic: alert.id.0,
+        series: series(alert),
+        severity: alert.severity,
+        letter: Letter {
+            subject: header(&subject),
+            text,
+            told: Vec::new(),
+            path: format!("/vessels/{}", alert.vessel_id),
+            about: Some(alert.id.0),
+            report: None,
+        },
+    }
+}
+
+/// Names what alerts that follow one another have in common: compass and cause.
+fn series(alert: &Alert) -> String {
+    format!("{}: {:?}", alert.compass_id, alert.cause)
+}
+
+/// Returns the notices for the operator's people.
+pub(super) fn notices(
+    operator: OperatorId,
+    changes: &[AlertChange],
+    now: Time,
+) -> NoticesPublished {
+    NoticesPublished {
+        tenant: operator.into(),
+        notices: changes.iter().filter_map(notice).collect(),
+        by: None,
+        at: now,
+    }
+}
+
+fn notice(change: &AlertChange) -> Option<Notice> {
+    let alert = &change.alert;
+    let critical = alert.severity == Severity::Critical;
+    let presses = alert.severity >= Severity::Warning;
+    let pressed = change.was.is_some_and(|was| was >= Severity::Warning);
+    let is_announced = match change.kind {
+        Kind::AlertRaised | Kind::AlertCleared => presses,
+        // Who was notified hears once that it presses no more, now or when it is over.
+        Kind::AlertUpdated => critical || presses != pressed,
+        _ => false,
+    };
+    let (subject, text) = words_of(change);
+    is_announced.then(|| Notice {
+        kind: notices::Kind::Alert,
+        urgent: critical && change.kind != Kind::AlertCleared,
+        subject,
+        text,
+        path: format!("/vessels/{}", alert.vessel_id),
+        vessel: alert.vessel_id,
+        order: None,
+        alert: Some(alert.id),
+    })
+}
+
+/// Returns a change of an alert in a line, and in full.
+fn words_of(change: &AlertChange) -> (String, String) {
+    let alert = &change.alert;
+    let state = match (change.kind, change.was) {
+        (Kind::AlertCleared, _) if alert.is_over() => "over".to_owned(),
+        (Kind::AlertCleared, _) => "closed".to_owned(),
+        (_, Some(was)) if was > alert.severity => format!("only {} now", alert.severity),
+        _ => alert.severity.to_string(),
+    };
+    let subject = format!("{}: {state}, {}", alert.vessel_name, alert.cause.title());
+    (one_line(&subject), text(change))
+}
+
+fn text(change: &AlertChange) -> String {
+    let AlertChange { alert, kind, .. } = change;
+    let before = change.was.map(|was| format!(" ({} before)", was));
+    let mut lines = vec![
+        format!("Vessel:   {}", one_line(&alert.vessel_name)),
+        format!("Compass:  {}", one_line(&alert.compass_name)),
+        format!("Severity: {}{}", alert.severity, before.unwrap_or_default()),
+        format!("Since:    {}", alert.since.to_the_minute()),
+    ];
+    if let (Kind::AlertCleared, Some(cleared_at)) = (*kind, alert.cleared_at) {
+        let word = if alert.is_over() {
+            "Over:  "
+        } else {
+            "Closed:"
+        };
+        lines.push(format!("{word}   {}", cleared_at.to_the_minute()));
+        let by = alert.cleared_by.as_deref().unwrap_or("Binnacle");
+        let reason = alert.clearing_reason.as_deref().unwrap_or("it is over");
+        let why = format!("Cleared by {by}: {reason}");
+        lines.extend([String::new(), wrapped("", &why), String::new()]);
+        lines.extend(["It said:".to_owned(), wrapped("  ", &alert.summary)]);
+        return lines.join("\n") + "\n";
+    }
+    lines.extend([String::new(), wrapped("", &alert.summary), String::new()]);
+    lines.extend(["What to do:".to_owned(), wrapped("  ", &alert.advice)]);
+    if !alert.evidence.0.is_empty() {
+        lines.extend([String::new(), "What shows it:".to_owned()]);
+        let points = alert.evidence.0.iter();
+        lines.extend(points.map(|point| wrapped("- ", point)));
+    }
+    lines.join("\n") + "\n"
+}

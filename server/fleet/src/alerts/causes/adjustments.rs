@@ -1,0 +1,75 @@
+//! Adjustments that headings at sea contradict, or that no longer fit the schedule.
+
+use super::facts::{JobAtRisk, UnconfirmedAdjustment};
+use super::row::{CauseRow, Condition, Effect, Ending, Finder};
+use crate::alerts::cause::Cause;
+use crate::alerts::desired::EventWindow;
+use binnacle_platform::severity::Severity;
+
+/// Open as long as the work order stands failed.
+pub(super) const ADJUSTMENT_NOT_CONFIRMED: CauseRow = CauseRow {
+    cause: Cause::AdjustmentNotConfirmed,
+    title: "adjustment not confirmed at sea",
+    finders: &[Finder::Verification(not_confirmed)],
+    severity: |_| Severity::Critical,
+    advice: |_| {
+        "Do not use the predicted card. Take azimuths on all headings, check that the correctors \
+         stand as recorded, and have the ship swung or adjusted again."
+    },
+    on_card: Effect::Note,
+    on_plan: Effect::Note,
+    ending: Ending::NotFound,
+    ends_with_adjustment: true,
+    is_redated: false,
+};
+
+/// An ETA moved past the due date, a port call was cancelled, the firm has fewer teams.
+pub(super) const AGREED_JOB_AT_RISK: CauseRow = CauseRow {
+    cause: Cause::AgreedJobAtRisk,
+    title: "agreed adjustment no longer fits",
+    finders: &[Finder::Schedule(at_risk)],
+    severity: |_| Severity::Warning,
+    advice: |_| {
+        "Agree on another time with the firm, or cancel its order and offer the job as it is \
+         scheduled now."
+    },
+    on_card: Effect::None,
+    on_plan: Effect::None,
+    ending: Ending::NotFound,
+    ends_with_adjustment: false,
+    is_redated: false,
+};
+
+fn not_confirmed(adjustment: &UnconfirmedAdjustment) -> Condition {
+    let at = adjustment.adjusted_at;
+    Condition {
+        window: EventWindow::exactly(at),
+        evidence: vec![format!(
+            "Work order {}, adjusted at {}; {} samples since.",
+            adjustment.order,
+            at.to_the_minute(),
+            adjustment.samples
+        )],
+        ..Condition::new(
+            at,
+            format!(
+                "Headings at sea do not agree with the prediction of the adjustment: {}.",
+                adjustment.verdict
+            ),
+        )
+    }
+}
+
+fn at_risk(job: &JobAtRisk) -> Condition {
+    let orders = job.orders.iter();
+    Condition {
+        evidence: orders.map(|order| format!("Work order {order}.")).collect(),
+        ..Condition::new(
+            job.since,
+            format!(
+                "The adjustment agreed with {} for {} no longer fits: {}.",
+                job.firm, job.day, job.reason
+            ),
+        )
+    }
+}

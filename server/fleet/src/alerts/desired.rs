@@ -1,0 +1,61 @@
+//! Alerts that ought to be open, whatever is stored.
+
+use super::alert::{Evidence, KnownAlert};
+use super::cause::Cause;
+use binnacle_platform::severity::Severity;
+use binnacle_platform::time::Time;
+
+/// An alert that ought to be open.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct DesiredAlert {
+    /// Its cause.
+    pub cause: Cause,
+    /// Its severity.
+    pub severity: Severity,
+    /// Beginning of its cause, as far as that is known.
+    pub since: Time,
+    /// Dates that mark a stored alert of this cause as one about the same event.
+    pub window: EventWindow,
+    /// The facts, in a sentence.
+    pub summary: String,
+    /// Advice to the crew and the office.
+    pub advice: &'static str,
+    /// The evidence, a sentence each.
+    pub evidence: Evidence,
+}
+
+/// The dates that an event may have been given before, when less was known of it.
+///
+/// The default is any date: of a state that goes on, rather than an event at a time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct EventWindow {
+    /// Not before this.
+    pub from: Option<Time>,
+    /// Not after this.
+    pub to: Option<Time>,
+}
+
+impl DesiredAlert {
+    /// Tells whether a stored alert already says the same.
+    pub(super) fn is_said_by(&self, known: &KnownAlert) -> bool {
+        self.severity == known.severity
+            && self.summary == known.summary
+            && self.advice == known.advice
+            && self.evidence == known.evidence
+    }
+}
+
+impl EventWindow {
+    /// Returns the window of this date and no other.
+    pub(super) fn exactly(at: Time) -> EventWindow {
+        EventWindow {
+            from: Some(at),
+            to: Some(at),
+        }
+    }
+
+    /// Tells whether an alert of that date was about this event.
+    pub(super) fn includes(&self, date: Time) -> bool {
+        self.from.is_none_or(|from| from <= date) && self.to.is_none_or(|to| date <= to)
+    }
+}

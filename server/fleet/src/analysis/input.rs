@@ -1,0 +1,148 @@
+//! What an analysis is made from, and the hash that names it.
+
+use crate::{logbook, settings};
+use anyhow::Context;
+use binnacle_compass::logbook::LogbookEntry;
+use binnacle_compass::result::ESTIMATOR;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::AnalysisSettings;
+use binnacle_compass::time::Timestamp;
+use binnacle_platform::db::{Db, rows};
+use binnacle_platform::error::Result;
+use binnacle_platform::ids::{CompassId, VesselId};
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+
+/// Everything that an analysis of one compass depends on.
+#[derive(Clone, Debug)]
+pub struct Input {
+    /// Distinct, in order of time.
+    pub samples: Vec<Sample>,
+    /// What people reported.
+    pub logbook: Vec<LogbookEntry>,
+    /// What the operator decided.
+    pub settings: AnalysisSettings,
+}
+
+/// What is stored of a compass, its batches as they came.
+pub struct Stored {
+    batches: Vec<(Vec<u8>,)>,
+    logbook: Vec<LogbookEntry>,
+    settings: AnalysisSettings,
+    /// When the next of the entries comes true that are written down ahead.
+    pub comes_true: Option<Timestamp>,
+}
+
+/// Reads what is stored of a compass. What the logbook has of times to come is no part of
+/// it: the card holds until the work that is planned is done.
+pub async fn load(db: &Db, vessel: VesselId, compass: CompassId, now: Timestamp) -> Result<Stored> {
+    let batches = rows!(
+        db,
+        (Vec<u8>,),
+        "SELECT b.bytes FROM batches b
+         JOIN streams s ON s.vessel_id = b.vessel_id AND s.id = b.stream
+         WHERE b.vessel_id = $1 AND s.compass_id = $2
+         ORDER BY b.stream, b.seq",
+        vessel,
+        compass
+    )?;
+    let (logbook, ahead): (Vec<_>, Vec<_>) = logbook::of_compass(db, vessel, compass)
+        .await?
+        .into_iter()
+        .partition(|entry| entry.from <= now);
+    Ok(Stored {
+        batches,
+        logbook,
+        comes_true: ahead.iter().map(|entry| entry.from).min(),
+        settings: settings::find(db, vessel).await?.analysis,
+    })
+}
+
+impl Stored {
+    /// Decodes the batches; takes a while, so not for an async thread.
+    pub fn decode(self) -> anyhow::Result<Input> {
+        let mut samples = Vec::new();
+        for (bytes,) in self.batches {
+            let batch = binnacle_wire::decode(&bytes).context("a stored batch cannot be read")?;
+            samples.extend(batch.samples);
+        }
+        Ok(Input {
+            samples: distinct(samples)?,
+            logbook: self.logbook,
+            settings: self.settings,
+        })
+    }
+}
+
+/// In order of time, each once: a batch sent again in a new stream counts once.
+fn distinct(samples: Vec<Sample>) -> anyhow::Result<Vec<Sample>> {
+    let mut keyed = Vec::with_capacity(samples.len());
+    for sample in samples {
+        keyed.push((sample.time, serde_json::to_string(&sample)?, sample));
+    }
+    keyed.sort_by(|x, y| (x.0, &x.1).cmp(&(y.0, &y.1)));
+    keyed.dedup_by(|x, y| x.1 == y.1);
+    Ok(keyed.into_iter().map(|(_, _, sample)| sample).collect())
+}
+
+/// SHA-256 over estimator, settings, logbook and samples, as hexadecimal.
+///
+/// # Errors
+/// When they cannot be written as JSON.
+pub fn input_hash(input: &Input) -> anyhow::Result<String> {
+    let mut hash = Sha256::new();
+    hash.update(ESTIMATOR);
+    update(&mut hash, &input.settings)?;
+    update(&mut hash, &input.logbook)?;
+    for sample in &input.samples {
+        update(&mut hash, sample)?;
+    }
+    let mut text = String::with_capacity(64);
+    for byte in hash.finalize() {
+        write!(text, "{byte:02x}")?;
+    }
+    Ok(text)
+}
+
+fn update(hash: &mut Sha256, value: &impl Serialize) -> anyhow::Result<()> {
+    hash.update(b"\n");
+    hash.update(serde_json::to_string(value)?);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(second: u32, compass_deg: f64) -> Sample {
+        serde_json::from_value(serde_json::json!({
+            "time": format!("2026-11-21T07:00:{second:02}Z"), "lat": 43.0, "lon": -3.0,
+            "compass_deg": compass_deg, "gyro_deg": 90.0, "satellite_deg": null, "sog_kn": 12.0,
+            "rate_of_turn_deg_min": 0.0, "spread_deg": 0.1, "windows": 60,
+        }))
+        .unwrap()
+    }
+
+    fn hash(samples: Vec<Sample>) -> String {
+        let settings = AnalysisSettings::default();
+        let samples = distinct(samples).unwrap();
+        input_hash(&Input {
+            samples,
+            logbook: Vec::new(),
+            settings,
+        })
+        .unwrap()
+    }
+
+    #[test]
+    fn order_and_repetition_do_not_change_the_hash() {
+        let (first, second) = (sample(0, 91.0), sample(10, 92.0));
+        assert_eq!(hash(vec![first, second]), hash(vec![second, first, second]));
+        assert_ne!(hash(vec![first, second]), hash(vec![first]));
+        assert_ne!(
+            hash(vec![first, second]),
+            hash(vec![first, sample(10, 92.1)])
+        );
+    }
+}

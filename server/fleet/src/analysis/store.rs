@@ -1,0 +1,355 @@
+//! What an analysis leaves in the database.
+
+use super::disturbances::store_disturbances;
+use super::findings::Findings;
+use super::left_out::LeftOut;
+use super::track::track;
+use crate::models::{self, ModelJson, StoredModel};
+use binnacle_compass::coverage::Coverage;
+use binnacle_compass::result::{
+    Analysis, Epoch, FitError, ReferenceCheck, SailNext, SampleDiagnostic,
+};
+use binnacle_compass::time::Timestamp;
+use binnacle_platform::db::{Db, Tx, execute, row, rows};
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::events::{self, Event, Kind};
+use binnacle_platform::ids::{CompassId, ModelId, VesselId};
+use binnacle_platform::time::Time;
+use binnacle_wire::messages::CardWithdrawn;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Samples are kept in rows of so many microseconds: 30 days.
+const CHUNK_MICROS: i64 = 30 * 86_400 * 1_000_000;
+
+/// What one compass's analysis found.
+pub struct Found {
+    /// The vessel.
+    pub vessel_id: VesselId,
+    /// The compass.
+    pub compass_id: CompassId,
+    /// Hash of the input.
+    pub input_hash: String,
+    /// The analysis.
+    pub analysis: Analysis,
+    /// Headings and latitudes that its samples cover.
+    pub covered: Covered,
+    /// Findings that alerts rest on.
+    pub findings: Findings,
+}
+
+/// Where a compass's samples lie, where more would tell most, and how gyro and
+/// satellite compass compare in them.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Covered {
+    /// Counts of samples.
+    #[serde(flatten)]
+    pub coverage: Coverage,
+    /// None without a model, and in what was stored before there was advice.
+    #[serde(default)]
+    pub sail_next: Option<SailNext>,
+    /// None where they could not be compared, and in what was stored before they
+    /// were.
+    #[serde(default)]
+    pub references: Option<ReferenceCheck>,
+}
+
+/// The input of the compass's last analysis.
+pub async fn last_hash(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Option<String>> {
+    let found = row!(
+        db,
+        (String,),
+        "SELECT input_hash FROM analyses WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY compass_id",
+        vessel,
+        compass
+    )?;
+    Ok(found.map(|(hash,)| hash))
+}
+
+/// Why the compass's current epoch has no model, none before the first analysis, and
+/// what the logbook leaves out of it.
+pub async fn refusal(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<(Option<FitError>, LeftOut)> {
+    #[derive(Deserialize)]
+    struct Refused {
+        refusal: Option<FitError>,
+    }
+    #[derive(Default, Deserialize)]
+    struct Beside {
+        #[serde(default)]
+        left_out: LeftOut,
+    }
+    let found = row!(
+        db,
+        (String, Option<String>),
+        "SELECT epochs, findings FROM analyses WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY compass_id",
+        vessel,
+        compass
+    )?;
+    let Some((epochs, findings)) = found else {
+        return Ok((None, LeftOut::default()));
+    };
+    let mut epochs: Vec<Refused> = serde_json::from_str(&epochs)?;
+    let beside = findings.map(|text| serde_json::from_str::<Beside>(&text));
+    let left_out = beside.transpose()?.unwrap_or_default().left_out;
+    Ok((epochs.pop().and_then(|epoch| epoch.refusal), left_out))
+}
+
+/// Where a compass's samples lie; empty before the first analysis.
+pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Covered> {
+    let found = row!(
+        db,
+        (String,),
+        "SELECT coverage FROM analyses WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY compass_id",
+        vessel,
+        compass
+    )?;
+    let Some((text,)) = found else {
+        return Ok(Covered {
+            coverage: binnacle_compass::coverage::coverage([]),
+            sail_next: None,
+            references: None,
+        });
+    };
+    Ok(serde_json::from_str(&text)?)
+}
+
+/// What became of the samples: rows that hold those of a range of time, and some
+/// before and after it. Each is a JSON array.
+pub async fn chunks(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+    from: Option<Time>,
+    to: Option<Time>,
+) -> Result<Vec<String>> {
+    let found = rows!(
+        db,
+        (String,),
+        "SELECT samples FROM diagnostics
+         WHERE vessel_id = $1 AND compass_id = $2 AND chunk BETWEEN $3 AND $4
+         ORDER BY chunk",
+        vessel,
+        compass,
+        from.map_or(i64::MIN, number_of),
+        to.map_or(i64::MAX, number_of)
+    )?;
+    Ok(found.into_iter().map(|(samples,)| samples).collect())
+}
+
+/// A row of samples, and the time that it is of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chunk {
+    number: i64,
+    /// Its beginning, which is that of a day.
+    pub from: Time,
+    /// The instant after its end.
+    pub to: Time,
+}
+
+/// The rows that [`chunks`] brings, to be read one by one.
+pub async fn chunks_between(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+    from: Option<Time>,
+    to: Option<Time>,
+) -> Result<Vec<Chunk>> {
+    let found = rows!(
+        db,
+        (i64,),
+        "SELECT chunk FROM diagnostics
+         WHERE vessel_id = $1 AND compass_id = $2 AND chunk BETWEEN $3 AND $4
+         ORDER BY chunk",
+        vessel,
+        compass,
+        from.map_or(i64::MIN, number_of),
+        to.map_or(i64::MAX, number_of)
+    )?;
+    let begins = |number: i64| {
+        let begin = Timestamp::from_micros(number * CHUNK_MICROS).map_err(anyhow::Error::from);
+        Ok::<_, Error>(Time(begin?))
+    };
+    let chunk = |(number,): (i64,)| {
+        Ok(Chunk {
+            number,
+            from: begins(number)?,
+            to: begins(number + 1)?,
+        })
+    };
+    found.into_iter().map(chunk).collect()
+}
+
+/// The samples of a row as a JSON array; an empty one if it is there no more.
+pub async fn chunk(db: &Db, vessel: VesselId, compass: CompassId, chunk: &Chunk) -> Result<String> {
+    let found = row!(
+        db,
+        (String,),
+        "SELECT samples FROM diagnostics
+         WHERE vessel_id = $1 AND compass_id = $2 AND chunk = $3
+         ORDER BY chunk",
+        vessel,
+        compass,
+        chunk.number
+    )?;
+    Ok(found.map_or_else(|| "[]".to_owned(), |(samples,)| samples))
+}
+
+fn number_of(time: Time) -> i64 {
+    time.0.micros().div_euclid(CHUNK_MICROS)
+}
+
+/// Stores what was found in place of what was found before; a new model is the
+/// compass's next version. Answers with an event if there is one, or the card holds
+/// no more.
+pub async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>> {
+    let analysis = &found.analysis;
+    let withdrawn_before = models::withdrawn(tx, found.vessel_id, found.compass_id).await?;
+    // What an adjustment foretold holds from its moment on, and through its epoch.
+    let foretold = models::foretold(tx, found.vessel_id, found.compass_id).await?;
+    let foretold = foretold.filter(|model| {
+        let from = analysis.current_epoch().and_then(|epoch| epoch.from);
+        from.map(Time) <= model.epoch_from
+    });
+    let withdrawn = match foretold {
+        Some(_) => None,
+        None => withdrawal(analysis)?,
+    };
+    execute!(
+        &mut *tx,
+        "INSERT INTO analyses (vessel_id, compass_id, input_hash, estimator, analysed_at, epochs,
+                               coverage, findings, card_withdrawn_at, card_withdrawn_by, track)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)
+         ON CONFLICT (vessel_id, compass_id) DO UPDATE
+         SET input_hash = excluded.input_hash, estimator = excluded.estimator,
+             analysed_at = excluded.analysed_at,
+             epochs = excluded.epochs, coverage = excluded.coverage,
+             findings = excluded.findings, card_withdrawn_at = excluded.card_withdrawn_at,
+             card_withdrawn_by = excluded.card_withdrawn_by, track = excluded.track",
+        found.vessel_id,
+        found.compass_id,
+        found.input_hash.as_str(),
+        analysis.estimator.as_str(),
+        now,
+        serde_json::to_string(&analysis.epochs)?,
+        serde_json::to_string(&found.covered)?,
+        serde_json::to_string(&found.findings)?,
+        withdrawn.as_ref().map(|withdrawn| Time(withdrawn.since)),
+        withdrawn
+            .as_ref()
+            .map(|withdrawn| withdrawn.reason.as_str()),
+        serde_json::to_string(&track(&analysis.samples))?
+    )?;
+    save_diagnostics(tx, found).await?;
+    let (vessel, compass) = (found.vessel_id, found.compass_id);
+    store_disturbances(tx, vessel, compass, &found.findings, now).await?;
+    let next = next_model(found, now)?;
+    let next = next.filter(|next| {
+        foretold.is_none_or(|known| {
+            // Of the ship as she was before the adjustment there is nothing to be told.
+            next.epoch_from >= known.epoch_from && next.knows_more_than(&known)
+        })
+    });
+    let Some(model) = next else {
+        if withdrawn == withdrawn_before {
+            return Ok(None);
+        }
+        let event = events::insert(tx, found.vessel_id, Kind::Model, now).await?;
+        return Ok(Some(event));
+    };
+    models::insert(tx, &model).await?;
+    let event = events::insert(tx, found.vessel_id, Kind::Model, now).await?;
+    Ok(Some(event))
+}
+
+/// Whether the card of an epoch before holds no more while the current one has none.
+fn withdrawal(analysis: &Analysis) -> Result<Option<CardWithdrawn>> {
+    let Some(epoch) = analysis.current_epoch() else {
+        return Ok(None);
+    };
+    let Some(since) = epoch.from.filter(|_| epoch.model.is_none()) else {
+        return Ok(None);
+    };
+    let reason = begun_by(epoch)?.unwrap_or_else(|| "change".to_owned());
+    Ok(Some(CardWithdrawn { since, reason }))
+}
+
+/// What began an epoch, in a word: what people reported, or the change that was found.
+fn begun_by(epoch: &Epoch) -> Result<Option<String>> {
+    let word = match (epoch.begun_by, epoch.begun_by_change) {
+        (Some(reported), _) => serde_json::to_value(reported)?,
+        (None, Some(_)) if epoch.resumes.is_some() => "ship_as_before".into(),
+        (None, found) => serde_json::to_value(found)?,
+    };
+    Ok(word.as_str().map(str::to_owned))
+}
+
+async fn save_diagnostics(tx: &mut Tx, found: &Found) -> Result<()> {
+    execute!(
+        &mut *tx,
+        "DELETE FROM diagnostics WHERE vessel_id = $1 AND compass_id = $2",
+        found.vessel_id,
+        found.compass_id
+    )?;
+    let mut chunks: BTreeMap<i64, Vec<&SampleDiagnostic>> = BTreeMap::new();
+    for sample in &found.analysis.samples {
+        chunks
+            .entry(number_of(Time(sample.sample.time)))
+            .or_default()
+            .push(sample);
+    }
+    for (chunk, samples) in chunks {
+        execute!(
+            &mut *tx,
+            "INSERT INTO diagnostics (vessel_id, compass_id, chunk, samples)
+             VALUES ($1, $2, $3, $4)",
+            found.vessel_id,
+            found.compass_id,
+            chunk,
+            serde_json::to_string(&samples)?
+        )?;
+    }
+    Ok(())
+}
+
+/// The current epoch's model as a row; none when it was refused.
+fn next_model(found: &Found, now: Time) -> Result<Option<StoredModel>> {
+    let epoch = found.analysis.current_epoch();
+    let model = epoch.and_then(|epoch| epoch.model.clone());
+    let (Some(epoch), Some(model)) = (epoch, model) else {
+        return Ok(None);
+    };
+    let (Some(place), Some(data_from), Some(data_until)) =
+        (found.analysis.last_place, epoch.data_from, epoch.data_until)
+    else {
+        return Ok(None);
+    };
+    Ok(Some(StoredModel {
+        vessel_id: found.vessel_id,
+        id: ModelId::new(),
+        compass_id: found.compass_id,
+        version: 0,
+        created_at: now,
+        input_hash: found.input_hash.clone(),
+        estimator: found.analysis.estimator.clone(),
+        epoch_from: epoch.from.map(Time),
+        epoch_to: epoch.to.map(Time),
+        epoch_begun_by: begun_by(epoch)?,
+        data_from: Time(data_from),
+        data_until: Time(data_until),
+        place_at: Time(place.time),
+        lat: place.position.lat_deg(),
+        lon: place.position.lon_deg(),
+        variation_deg: place.variation_deg,
+        h_nt: place.h_nt,
+        z_nt: place.z_nt,
+        model: ModelJson(model),
+        foretold_by: None,
+    }))
+}

@@ -1,0 +1,130 @@
+//! The binnacles of a fleet, in a line each: who stands in what, and where none is entered.
+
+use super::schema::AboardSchema;
+use super::store;
+use crate::compasses::Role;
+use axum::extract::{FromRef, State};
+use binnacle_adjustment::binnacle::{Aboard, Binnacle};
+use binnacle_platform::access::Reader;
+use binnacle_platform::app::App;
+use binnacle_platform::error::{Problem, Result};
+use binnacle_platform::http::{Json, Page};
+use binnacle_platform::ids::{CompassId, VesselId};
+use binnacle_platform::time::Time;
+use serde::Serialize;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new().routes(routes!(list_binnacles))
+}
+
+/// A compass of the fleet's, and what it stands in.
+#[derive(Debug, Serialize, ToSchema)]
+struct FleetBinnacle {
+    /// Her id.
+    vessel_id: VesselId,
+    /// Her name.
+    vessel_name: String,
+    /// The compass's id.
+    compass_id: CompassId,
+    /// Its name.
+    compass_name: String,
+    /// What it serves as.
+    role: Role,
+    /// What it stands in; none where that was never entered, and nothing can be planned.
+    #[schema(required)]
+    binnacle: Option<BinnacleInShort>,
+}
+
+/// The latest revision of a binnacle, in a line.
+#[derive(Debug, Serialize, ToSchema)]
+struct BinnacleInShort {
+    /// Who makes it.
+    maker: String,
+    /// What the maker calls it.
+    model: String,
+    /// The maker's number of this one.
+    serial: String,
+    /// All correctors on board, those in use included.
+    #[schema(value_type = AboardSchema)]
+    aboard: Aboard,
+    /// How many of its effects were measured.
+    measured_effects: usize,
+    /// Counts from 1.
+    revision: i64,
+    /// When it was written.
+    at: Time,
+    /// Who wrote it.
+    by: String,
+    /// Why, in a few words.
+    #[schema(required)]
+    reason: Option<String>,
+}
+
+/// A page of binnacles.
+#[derive(Serialize, ToSchema)]
+struct FleetBinnacleList {
+    /// In the order in which the compasses were entered.
+    items: Vec<FleetBinnacle>,
+    /// `after` of the next page.
+    #[schema(required)]
+    next: Option<String>,
+}
+
+/// List what the fleet's compasses stand in
+///
+/// Every compass of the vessels in service, with its binnacle in short where one is entered.
+#[utoipa::path(get, path = "/binnacles", tag = "adjusting", params(Page),
+    responses((status = 200, body = FleetBinnacleList), (status = 401, body = Problem)))]
+async fn list_binnacles(
+    State(app): State<App>,
+    reader: Reader,
+    page: Page,
+) -> Result<Json<FleetBinnacleList>> {
+    let after = page.after_id()?;
+    let found = store::of_fleet(&app.db, reader.operator, after, page.fetch()).await?;
+    let listed = page.cut(found, |row| row.compass_id.to_string());
+    let items: Result<Vec<FleetBinnacle>> =
+        listed.items.into_iter().map(FleetBinnacle::of).collect();
+    Ok(Json(FleetBinnacleList {
+        items: items?,
+        next: listed.next,
+    }))
+}
+
+impl FleetBinnacle {
+    fn of(row: store::Standing) -> Result<FleetBinnacle> {
+        let binnacle = row.revised()?.map(BinnacleInShort::of);
+        Ok(FleetBinnacle {
+            vessel_id: row.vessel_id,
+            vessel_name: row.vessel_name,
+            compass_id: row.compass_id,
+            compass_name: row.compass_name,
+            role: row.role,
+            binnacle,
+        })
+    }
+}
+
+impl BinnacleInShort {
+    fn of(written: store::Revised) -> BinnacleInShort {
+        let binnacle: &Binnacle = &written.binnacle.0;
+        BinnacleInShort {
+            maker: binnacle.design.maker.clone(),
+            model: binnacle.design.model.clone(),
+            serial: binnacle.serial.clone(),
+            aboard: binnacle.aboard.clone(),
+            measured_effects: binnacle.calibration.len(),
+            revision: written.revision,
+            at: written.at,
+            by: written.author_name,
+            reason: written.reason,
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! Binnacles: the designs that come with the product, and the one that each compass
+//! stands in, with the correctors on board and how they stand.
+//!
+//! What always holds: a binnacle that is stored was checked whole, and no revision of
+//! one is ever changed or lost. What is sent in and what is given out are the same form
+//! (docs/binnacle.md), which `plan --binnacle` reads too.
+
+mod design_schema;
+mod fleet;
+mod schema;
+mod shipped;
+mod store;
+mod words;
+
+pub use schema::{BarSchema, BinnacleSchema, BucketSchema, PairSchema, SettingSchema, TraySchema};
+pub use store::{Author, Revised, current, insert};
+pub use words::in_words;
+
+use crate::compasses;
+use crate::vessels;
+use axum::extract::{FromRef, State};
+use axum::http::header::{CONTENT_DISPOSITION, HeaderName};
+use binnacle_adjustment::binnacle::{Binnacle, BinnacleError, BinnacleForm};
+use binnacle_platform::access::{Reader, Writer};
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::db::DomainEvent;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Page, Params, Valid, optional_text};
+use binnacle_platform::idempotency::{self, Key};
+use binnacle_platform::ids::{BinnacleId, CompassId, VesselId};
+use binnacle_platform::session;
+use binnacle_platform::time::Time;
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// A compass's binnacle is about to be written anew.
+pub struct BinnacleAmended {
+    /// The vessel.
+    pub vessel: VesselId,
+    /// The compass.
+    pub compass: CompassId,
+}
+
+impl DomainEvent for BinnacleAmended {}
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .merge(shipped::router())
+        .merge(fleet::router())
+        .routes(routes!(find_binnacle, put_binnacle))
+        .routes(routes!(list_revisions))
+        .routes(routes!(export_binnacle))
+}
+
+/// A revision of the binnacle that a compass stands in.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct BinnacleRevision {
+    /// Counts from 1.
+    pub revision: i64,
+    /// When it was written.
+    pub at: Time,
+    /// Who wrote it.
+    pub by: String,
+    /// Why, in a few words.
+    #[schema(required)]
+    pub reason: Option<String>,
+    /// The binnacle, with the correctors on board and how they stand.
+    #[schema(value_type = BinnacleSchema)]
+    pub binnacle: Binnacle,
+}
+
+/// A page of revisions.
+#[derive(Serialize, ToSchema)]
+struct BinnacleRevisionList {
+    /// The newest first.
+    items: Vec<BinnacleRevision>,
+    /// `after` of the next page.
+    #[schema(required)]
+    next: Option<String>,
+}
+
+/// Why a binnacle is written anew.
+#[derive(Deserialize, Serialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+struct Why {
+    /// In a few words, such as what was bought or measured.
+    #[param(max_length = 200)]
+    reason: Option<String>,
+}
+
+/// See the binnacle that a compass stands in
+#[utoipa::path(get, path = "/vessels/{id}/compasses/{compass}/binnacle", tag = "adjusting",
+    params(("id" = VesselId, Path), ("compass" = CompassId, Path)),
+    responses((status = 200, body = BinnacleRevision), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn find_binnacle(
+    State(app): State<App>,
+    reader: Reader,
+    Id((vessel, compass)): Id<(VesselId, CompassId)>,
+) -> Result<Json<BinnacleRevision>> {
+    must_be_of_fleet(&app, reader.operator, vessel, compass).await?;
+    let found = store::current(&app.db, vessel, compass).await?;
+    Ok(Json(found.ok_or(Error::NotFound("binnacle"))?.shown()))
+}
+
+/// Write the binnacle that a compass stands in
+///
+/// The whole of it: its type, the correctors on board and how they stand. What was
+/// written before stays among its revisions; the same again makes no new one.
+#[utoipa::path(put, path = "/vessels/{id}/compasses/{compass}/binnacle", tag = "adjusting",
+    params(("id" = VesselId, Path), ("compass" = CompassId, Path), Why, Key),
+    request_body = BinnacleSchema,
+    responses((status = 200, body = BinnacleRevision), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn put_binnacle(
+    State(app): State<App>,
+    request: RequestContext,
+    writer: Writer,
+    Id((vessel, compass)): Id<(VesselId, CompassId)>,
+    Params(why): Params<Why>,
+    key: Key,
+    Valid(form): Valid<BinnacleForm>,
+) -> Result<Json<BinnacleRevision>> {
+    must_be_of_fleet(&app, writer.operator, vessel, compass).await?;
+    let request_hash = idempotency::request_hash(&format!("binnacle of {compass}"), &form)?;
+    let reason = optional_text("reason", why.reason.as_deref())?;
+    let binnacle = Binnacle::try_from(form).map_err(invalid_binnacle)?;
+    binnacle.must_be_credible().map_err(invalid_binnacle)?;
+    let now = app.clock.now().into();
+    let wanted = BinnacleId::new();
+    let mut tx = request.begin().await?;
+    let made = key
+        .once(&mut tx, writer.operator, &request_hash, wanted.0, now)
+        .await?;
+    if made == wanted.0 {
+        tx.publish(&BinnacleAmended { vessel, compass }).await?;
+        let author = Author {
+            id: writer.user.0,
+            name: session::name_of(&mut tx, writer.user).await?,
+            at: now,
+        };
+        let why = reason.as_deref();
+        store::insert(&mut tx, vessel, compass, wanted, &binnacle, why, &author).await?;
+        tx.commit().await?;
+    }
+    let found = store::current(&app.db, vessel, compass).await?;
+    Ok(Json(found.ok_or(Error::NotFound("binnacle"))?.shown()))
+}
+
+/// List what was written of a compass's binnacle
+#[utoipa::path(get, path = "/vessels/{id}/compasses/{compass}/binnacle/revisions",
+    tag = "adjusting",
+    params(("id" = VesselId, Path), ("compass" = CompassId, Path), Page),
+    responses((status = 200, body = BinnacleRevisionList), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn list_revisions(
+    State(app): State<App>,
+    reader: Reader,
+    Id((vessel, compass)): Id<(VesselId, CompassId)>,
+    page: Page,
+) -> Result<Json<BinnacleRevisionList>> {
+    must_be_of_fleet(&app, reader.operator, vessel, compass).await?;
+    let before = page.after_number()?;
+    let found = store::list(&app.db, vessel, compass, before, page.fetch()).await?;
+    let listed = page.cut(found, |revised| revised.revision.to_string());
+    Ok(Json(BinnacleRevisionList {
+        items: listed.items.into_iter().map(Revised::shown).collect(),
+        next: listed.next,
+    }))
+}
+
+/// Export a compass's binnacle as a file
+///
+/// As `binnacle-server plan --binnacle` reads it, and as it can be written again.
+#[utoipa::path(get, path = "/vessels/{id}/compasses/{compass}/binnacle.json", tag = "adjusting",
+    params(("id" = VesselId, Path), ("compass" = CompassId, Path)),
+    responses((status = 200, body = BinnacleSchema), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn export_binnacle(
+    State(app): State<App>,
+    reader: Reader,
+    Id((vessel, compass)): Id<(VesselId, CompassId)>,
+) -> Result<([(HeaderName, &'static str); 1], Json<Binnacle>)> {
+    must_be_of_fleet(&app, reader.operator, vessel, compass).await?;
+    let found = store::current(&app.db, vessel, compass).await?;
+    let binnacle = found.ok_or(Error::NotFound("binnacle"))?.binnacle.0;
+    let as_file = (
+        CONTENT_DISPOSITION,
+        "attachment; filename=\"binnacle.json\"",
+    );
+    Ok(([as_file], Json(binnacle)))
+}
+
+async fn must_be_of_fleet(
+    app: &App,
+    operator: binnacle_platform::ids::OperatorId,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<()> {
+    vessels::must_be_in_fleet(&app.db, operator, vessel).await?;
+    compasses::find(&app.db, vessel, Some(compass)).await?;
+    Ok(())
+}
+
+/// Refusal of a binnacle that cannot be.
+#[allow(
+    clippy::needless_pass_by_value,
+    reason = "it is what map_err hands over"
+)]
+pub fn invalid_binnacle(error: BinnacleError) -> Error {
+    Error::Invalid {
+        field: "binnacle",
+        detail: error.to_string(),
+    }
+}

@@ -1,0 +1,356 @@
+//! What a deviation card says; its form as JSON.
+//!
+//! What always holds: a card is predicted until headings at sea have verified the
+//! adjustment that its model comes from, and a certificate never.
+
+use crate::binnacles::SettingSchema;
+use crate::compasses::Compass;
+use crate::deviation::{HandbookSchema, Row, Worst};
+use crate::ingest::CardWithdrawnSchema;
+use binnacle_adjustment::binnacle::{Setting, Shape};
+use binnacle_compass::handbook::Handbook;
+use binnacle_platform::ids::{ModelId, OrderId, VesselId};
+use binnacle_platform::time::Time;
+use binnacle_wire::messages::CardWithdrawn;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// What a card says of itself while no heading at sea has verified what was foretold.
+pub(super) fn foretold(adjusted_at: Time, order: OrderId) -> String {
+    format!(
+        "Foretold when the compass was adjusted at the berth on {} by work order {order}: \
+         headings at sea have not verified it. Not a certificate of adjustment: no adjuster has \
+         signed it.",
+        adjusted_at.day()
+    )
+}
+
+/// What a predicted card says of itself.
+pub(super) const PREDICTED: &str = "Predicted from observations under way by a model of the \
+     ship's magnetism. Not a certificate of adjustment: no adjuster has signed it.";
+
+/// What a verified card says of itself: by what, and that it is no more than that.
+pub(super) fn verified(by: &VerifiedAtSea) -> String {
+    format!(
+        "Verified at sea: {} headings up to {} agree, to {:.1} degrees, with what was foretold \
+         when the compass was adjusted on {} by work order {}. Not a certificate of adjustment: \
+         no adjuster has signed it.",
+        by.headings,
+        by.until.to_the_minute(),
+        by.rms_deg,
+        by.adjusted_at.day(),
+        by.order
+    )
+}
+
+/// A deviation card of one compass, at a place and a date.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(as = DeviationCard)]
+pub struct Card {
+    /// What the card is worth.
+    pub status: Status,
+    /// The same in words, to stand wherever figures of the card stand.
+    pub statement: String,
+    /// What verified it; none of a card that is predicted.
+    #[schema(required)]
+    pub verified: Option<VerifiedAtSea>,
+    /// The work order whose adjustment at the berth the model comes from, while headings at
+    /// sea have not verified it.
+    #[schema(required)]
+    pub unverified_order: Option<OrderId>,
+    /// The ship.
+    pub vessel: Ship,
+    /// The compass: each magnetic element has a card of its own.
+    pub compass: Compass,
+    /// Where and when it holds.
+    pub place: Place,
+    /// By compass heading from 0, each 15°.
+    pub rows: Vec<CardRow>,
+    /// The heading with the greatest deviation.
+    pub worst: Worst,
+    /// Half the 95 % band where it is widest, degrees.
+    #[schema(example = 0.8)]
+    pub widest_band95_deg: f64,
+    /// The coefficients there.
+    pub coefficients: Coefficients,
+    /// Why no card from before the model's epoch holds; none where there was no change.
+    #[schema(required, value_type = Option<CardWithdrawnSchema>)]
+    pub replaces: Option<CardWithdrawn>,
+    /// The binnacle's correctors as they were last recorded; none where nobody recorded
+    /// them.
+    #[schema(required)]
+    pub correctors: Option<Correctors>,
+    /// Magnetic cargo on board at that date, by the logbook.
+    pub cargo: Vec<CargoAboard>,
+    /// How the degaussing coils are, as it is recorded of the vessel.
+    #[schema(required, example = "no coils fitted")]
+    pub degaussing: Option<String>,
+    /// The last degaussing or deperming in the logbook.
+    #[schema(required)]
+    pub degaussed_at: Option<Time>,
+    /// The last adjustment in the logbook.
+    #[schema(required)]
+    pub adjusted_at: Option<Time>,
+    /// Who did it, by the work order; none where that adjustment was by none.
+    #[schema(required)]
+    pub adjusted_by: Option<AdjustedBy>,
+    /// When the compass is due to be adjusted next; none where no adjustment is on record,
+    /// or where headings at sea have not verified the last.
+    #[schema(required)]
+    pub next_due: Option<NextDue>,
+    /// What belongs on a card and is not recorded here: a person must write it.
+    pub not_recorded: Vec<NotRecorded>,
+    /// The model that says so.
+    pub model: Source,
+    /// What the reader must know, a sentence each; the most pressing first.
+    pub notes: Vec<String>,
+    /// Each 5°, for the curve.
+    #[serde(skip)]
+    pub curve: Vec<Row>,
+}
+
+/// What a card is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = CardStatus)]
+pub enum Status {
+    /// By the model alone.
+    Predicted,
+    /// Headings at sea agree with what was foretold when the compass was adjusted.
+    Verified,
+}
+
+/// What verified a card.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[schema(as = CardVerification)]
+pub struct VerifiedAtSea {
+    /// The work order whose adjustment was verified.
+    pub order: OrderId,
+    /// When the compass was adjusted.
+    pub adjusted_at: Time,
+    /// When the headings were found to be enough.
+    pub verified_at: Time,
+    /// Headings that counted, 15° or more apart.
+    #[schema(example = 9)]
+    pub headings: usize,
+    /// Samples on them.
+    #[schema(example = 131)]
+    pub samples: usize,
+    /// The time of the last of these.
+    pub until: Time,
+    /// Root mean square of what the headings were off, degrees.
+    #[schema(example = 0.4)]
+    pub rms_deg: f64,
+}
+
+impl Status {
+    /// In a word, as in JSON.
+    pub fn word(self) -> &'static str {
+        match self {
+            Status::Predicted => "predicted",
+            Status::Verified => "verified",
+        }
+    }
+}
+
+/// The ship that a card is of.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(as = CardVessel)]
+pub struct Ship {
+    /// The vessel's id.
+    pub id: VesselId,
+    /// Her name.
+    #[schema(example = "Nao Victoria")]
+    pub name: String,
+    /// Her IMO number.
+    #[schema(required, example = "9074729")]
+    pub imo_number: Option<String>,
+    /// Her call sign.
+    #[schema(required, example = "EAVN")]
+    pub call_sign: Option<String>,
+    /// Her flag state.
+    #[schema(required, example = "Spain")]
+    pub flag: Option<String>,
+    /// How her degaussing coils are.
+    #[serde(skip)]
+    pub degaussing: Option<String>,
+}
+
+/// Where and when a card holds, and the earth's field there.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(as = CardPlace)]
+pub struct Place {
+    /// Degrees north.
+    #[schema(example = 43.4)]
+    pub lat: f64,
+    /// Degrees east.
+    #[schema(example = -3.1)]
+    pub lon: f64,
+    /// When.
+    pub at: Time,
+    /// Variation, degrees, east positive.
+    #[schema(example = 0.4)]
+    pub variation_deg: f64,
+    /// The model of the earth's field that says so.
+    #[schema(example = "igrf14")]
+    pub variation_source: String,
+    /// Horizontal field, nT.
+    #[schema(example = 24_300.0)]
+    pub h_nt: f64,
+    /// Vertical field, nT, down positive.
+    #[schema(example = 39_600.0)]
+    pub z_nt: f64,
+}
+
+/// A line of a card.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[schema(as = CardRow)]
+pub struct CardRow {
+    /// Compass heading.
+    #[schema(example = 15.0)]
+    pub compass_deg: f64,
+    /// The magnetic heading then.
+    #[schema(example = 17.3)]
+    pub magnetic_deg: f64,
+    /// The deviation that remains, degrees, east positive.
+    #[schema(example = 2.3)]
+    pub deviation_deg: f64,
+    /// Half the width of its 95 % band, degrees.
+    #[schema(example = 0.6)]
+    pub band95_deg: f64,
+    /// Samples within 7½° of the heading that the model rests on.
+    #[schema(example = 41)]
+    pub samples: u64,
+    /// Their mean of observed less predicted deviation, degrees; none without samples.
+    #[schema(required, example = -0.1)]
+    pub residual_deg: Option<f64>,
+}
+
+/// Coefficients at a card's place, degrees.
+#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+#[schema(as = CardCoefficients)]
+pub struct Coefficients {
+    /// The exact ones, × 57.3.
+    #[schema(value_type = HandbookSchema)]
+    pub exact: Handbook,
+    /// What the model adds on every heading: alignment, reference and variation
+    /// offsets. The handbook's A includes it.
+    #[schema(example = 0.2)]
+    pub constant_deg: f64,
+    /// What an adjuster would find who swung the ship.
+    #[schema(value_type = HandbookSchema)]
+    pub handbook: Handbook,
+}
+
+/// How a binnacle's correctors stand.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(as = CardCorrectors)]
+pub struct Correctors {
+    /// The revision of the binnacle that says so.
+    #[schema(example = 3)]
+    pub revision: i64,
+    /// When it was written.
+    pub at: Time,
+    /// The binnacle: maker, model and serial number.
+    #[schema(example = "Cassens & Plath type 11, no. 2047")]
+    pub binnacle: String,
+    /// How each of them stands.
+    #[schema(value_type = SettingSchema)]
+    pub setting: Setting,
+    /// What the quadrantal correctors are.
+    #[serde(skip)]
+    pub shape: Option<Shape>,
+}
+
+/// Magnetic cargo on board.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+pub struct CargoAboard {
+    /// Since when.
+    pub since: Time,
+    /// What it is: `steel`, `scrap`, `containers` or `other`; none where the logbook does
+    /// not say.
+    #[schema(required, example = "steel")]
+    pub cargo: Option<String>,
+}
+
+/// Who adjusted a compass, by the record of the work order. They have signed that record,
+/// and no card.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[schema(as = CardAdjuster)]
+pub struct AdjustedBy {
+    /// The work order.
+    pub order: OrderId,
+    /// The adjuster.
+    #[schema(required, example = "M. Etxeberria")]
+    pub adjuster: Option<String>,
+    /// The number of their licence.
+    #[schema(required, example = "ES-CA-114")]
+    pub licence: Option<String>,
+    /// Their firm.
+    #[schema(required, example = "Nervión Compass")]
+    pub firm: Option<String>,
+}
+
+/// When a compass is due to be adjusted next, by the schedule's rules.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[schema(as = CardNextDue)]
+pub struct NextDue {
+    /// The day.
+    #[schema(format = Date, example = "2028-11-21")]
+    pub on: String,
+    /// Why, with the rule.
+    #[schema(example = "24 months after the adjustment of 2026-11-21 (ISO 25862:2019, Annex G)")]
+    pub reason: String,
+    /// Whether the flag's own rules were among those that were asked: they are where the
+    /// vessel's flag is recorded by its two letters.
+    pub flags_own_rules: bool,
+}
+
+/// What belongs on a card and nobody has recorded here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = CardNotRecorded)]
+pub enum NotRecorded {
+    /// Where magnets, spheres and Flinders bar are.
+    Correctors,
+    /// How the degaussing coils are set.
+    DegaussingCoils,
+    /// The adjuster, with licence and firm.
+    Adjuster,
+    /// An adjuster's signature on the card, which no program makes.
+    Signature,
+    /// When the compass is due to be adjusted next.
+    NextDue,
+}
+
+/// The model that a card is made from.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(as = CardModel)]
+pub struct Source {
+    /// The model version's id.
+    pub id: ModelId,
+    /// Counts the compass's models from 1.
+    #[schema(example = 12)]
+    pub version: i64,
+    /// When it was fitted, or foretold.
+    pub fitted_at: Time,
+    /// The work order that foretold it; none for a model that was fitted.
+    #[schema(required)]
+    pub foretold_by: Option<OrderId>,
+    /// The time of the first sample in it; of a model that was foretold, in the one that it
+    /// was foretold from.
+    pub data_from: Time,
+    /// The time of the last of them.
+    pub data_until: Time,
+    /// Samples that carried weight.
+    #[schema(example = 412)]
+    pub samples_used: u64,
+    /// Root mean square of the residuals, degrees.
+    #[schema(required, example = 0.3)]
+    pub rms_deg: Option<f64>,
+    /// The estimator that made it.
+    #[schema(example = "state-space-9")]
+    pub estimator: String,
+    /// SHA-256 of everything that it was made from.
+    pub input_hash: String,
+}

@@ -1,0 +1,236 @@
+//! The lower part: coefficients, the ship's state, what to know, who signs, and where
+//! it all comes from.
+
+use super::{FAINT, LEFT, RIGHT, UNKNOWN, known, told};
+use crate::binnacles::in_words;
+use crate::card::contents::{Card, CargoAboard};
+use binnacle_compass::handbook::Handbook;
+use binnacle_drawing::words::signed;
+use binnacle_drawing::{A4, Face, MARGIN, Sheet, Style, wrap};
+use binnacle_platform::time::Time;
+
+const SECOND: f32 = 262.0;
+/// Where the signatures begin, from the sheet's upper edge.
+const SIGNATURES: f32 = A4.1 - MARGIN - 68.0;
+const NOTE_LINE: f32 = 9.4;
+
+/// Draws it below `top`.
+pub(super) fn draw(sheet: &mut Sheet, card: &Card, top: f32) {
+    coefficients(sheet, card, top + 8.0);
+    let below = state(sheet, card, top + 8.0).max(top + 80.0);
+    let below = correctors(sheet, card, below + 5.0);
+    notes(sheet, card, below + 5.0);
+    signatures(sheet);
+    source(sheet, card);
+}
+
+fn coefficients(sheet: &mut Sheet, card: &Card, top: f32) {
+    let small = Style::plain(7.5).grey(FAINT);
+    sheet.text((LEFT, top), Style::bold(8.0), "Coefficients");
+    sheet.text((LEFT + 112.0, top), small.end(), "exact");
+    sheet.text((LEFT + 168.0, top), small.end(), "handbook");
+    let of = |found: &Handbook| {
+        [
+            found.a_deg,
+            found.b_deg,
+            found.c_deg,
+            found.d_deg,
+            found.e_deg,
+        ]
+    };
+    let exact = of(&card.coefficients.exact);
+    let handbook = of(&card.coefficients.handbook);
+    let style = Style::plain(8.0);
+    for (index, name) in ["A", "B", "C", "D", "E"].into_iter().enumerate() {
+        let y = top + 11.0 * (index + 1) as f32;
+        sheet.text((LEFT + 6.0, y), style, name);
+        sheet.text((LEFT + 112.0, y), style.end(), signed(exact[index]));
+        sheet.text((LEFT + 168.0, y), style.end(), signed(handbook[index]));
+    }
+    let constant = signed(card.coefficients.constant_deg);
+    let says = format!("handbook A includes {constant} of alignment and offsets");
+    sheet.text(
+        (LEFT + 6.0, top + 66.0),
+        Style::plain(6.8).grey(FAINT),
+        says,
+    );
+}
+
+/// Answers with where the next thing begins.
+fn state(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
+    let in_logbook = |time: Option<Time>| {
+        time.map_or("none in the logbook".to_owned(), |time| {
+            format!("{} (logbook)", time.day())
+        })
+    };
+    let degaussing = format!(
+        "{}; last degaussed: {}",
+        known(card.degaussing.as_deref()),
+        in_logbook(card.degaussed_at)
+    );
+    let adjusted = match (card.adjusted_at, &card.adjusted_by) {
+        (Some(at), Some(by)) => format!("{} (work order {})", at.day(), by.order),
+        (at, _) => in_logbook(at),
+    };
+    let recorded = card
+        .correctors
+        .as_ref()
+        .map_or(UNKNOWN.to_owned(), |found| {
+            format!(
+                "as below, recorded {} (revision {})",
+                found.at.day(),
+                found.revision
+            )
+        });
+    let adjuster = card.adjusted_by.as_ref().map_or(UNKNOWN.to_owned(), |by| {
+        let licence = by
+            .licence
+            .as_ref()
+            .map(|licence| format!("licence {licence}"));
+        let all = [by.adjuster.clone(), licence, by.firm.clone()];
+        all.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    });
+    let facts = [
+        ("Correctors", recorded),
+        ("Degaussing", degaussing),
+        ("Cargo", cargo(&card.cargo)),
+        ("Last adjusted", adjusted),
+        ("by", adjuster),
+        ("Next due", next_due(card)),
+    ];
+    sheet.text((SECOND, top), Style::bold(8.0), "State");
+    let at = top + 11.0;
+    facts.iter().fold(at, |y, (label, value)| {
+        told(sheet, (SECOND, y), label, value, RIGHT - SECOND)
+    })
+}
+
+fn next_due(card: &Card) -> String {
+    if card.unverified_order.is_some() {
+        return "no date yet: unverified berth adjustment".to_owned();
+    }
+    let Some(due) = &card.next_due else {
+        return "at once: no adjustment is on record".to_owned();
+    };
+    let flags = if due.flags_own_rules {
+        ""
+    } else {
+        "; the flag’s own rules are not counted"
+    };
+    format!("{}: {}{flags}", due.on, due.reason)
+}
+
+fn cargo(aboard: &[CargoAboard]) -> String {
+    let words: Vec<String> = aboard
+        .iter()
+        .map(|cargo| {
+            let what = cargo.cargo.as_deref().unwrap_or("of a kind not said");
+            format!("{what} since {}", cargo.since.to_the_minute())
+        })
+        .collect();
+    match words.as_slice() {
+        [] => "no magnetic cargo in the logbook".to_owned(),
+        some => format!("magnetic: {}", some.join(", ")),
+    }
+}
+
+/// Two beside each other, as many lines as they take; answers with where the next thing
+/// begins.
+fn correctors(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
+    let Some(found) = &card.correctors else {
+        return top;
+    };
+    sheet.text((LEFT, top), Style::bold(8.0), "Correctors");
+    let all = in_words(&found.setting, found.shape);
+    all.chunks(2).fold(top + 11.0, |y, pair| {
+        let columns = [(LEFT + 6.0, SECOND - 14.0), (SECOND, RIGHT)];
+        let ends = pair
+            .iter()
+            .zip(columns)
+            .map(|((label, value), (x, end))| told(sheet, (x, y), label, value, end - x));
+        ends.fold(y, f32::max)
+    })
+}
+
+/// As many as there is room for; the last line says how many more there are.
+fn notes(sheet: &mut Sheet, card: &Card, top: f32) {
+    const SIZE: f32 = 7.5;
+    let room = ((SIGNATURES - 14.0 - top) / NOTE_LINE) as usize;
+    let mut lines: Vec<String> = Vec::new();
+    let mut left = card.notes.len();
+    for note in &card.notes {
+        let wrapped = wrap(note, Face::Regular, SIZE, RIGHT - LEFT - 8.0);
+        if lines.len() + wrapped.len() + 1 > room && left > 0 {
+            break;
+        }
+        let marked = wrapped.into_iter().enumerate();
+        lines.extend(marked.map(|(index, line)| match index {
+            0 => format!("• {line}"),
+            _ => format!("   {line}"),
+        }));
+        left -= 1;
+    }
+    if left > 0 {
+        lines.push(format!("• {left} more: see the card as JSON"));
+    }
+    if !lines.is_empty() {
+        sheet.text((LEFT, top), Style::bold(8.0), "Notes");
+    }
+    for (index, line) in lines.into_iter().enumerate() {
+        let y = top + 11.0 + NOTE_LINE * index as f32;
+        sheet.text((LEFT, y), Style::plain(SIZE), line);
+    }
+}
+
+/// Blank: a person's pen fills them in.
+fn signatures(sheet: &mut Sheet) {
+    sheet.rule((LEFT, SIGNATURES), (RIGHT, SIGNATURES), 0.4);
+    let width = (RIGHT - LEFT - 3.0 * 14.0) / 4.0;
+    for (index, label) in ["Adjuster", "Licence", "Firm", "Date and signature"]
+        .iter()
+        .enumerate()
+    {
+        let left = LEFT + (width + 14.0) * index as f32;
+        let y = SIGNATURES + 26.0;
+        sheet.rule((left, y), (left + width, y), 0.5);
+        sheet.text((left, y + 9.0), Style::plain(7.0).grey(FAINT), *label);
+    }
+}
+
+fn source(sheet: &mut Sheet, card: &Card) {
+    let model = &card.model;
+    let made = format!(
+        "Model version {} of {}",
+        model.version,
+        model.fitted_at.to_the_minute()
+    );
+    let lines = if let Some(order) = model.foretold_by {
+        [
+            format!(
+                "{made}: foretold by work order {order} from {} samples of {} to {}.",
+                model.samples_used,
+                model.data_from.day(),
+                model.data_until.day()
+            ),
+            format!("Record SHA-256 {}", model.input_hash),
+        ]
+    } else {
+        let rms = model
+            .rms_deg
+            .map_or(String::new(), |rms| format!(", residuals {rms:.2}° rms"));
+        [
+            format!(
+                "{made}, {}: {} samples from {} to {}{rms}.",
+                model.estimator,
+                model.samples_used,
+                model.data_from.to_the_minute(),
+                model.data_until.to_the_minute()
+            ),
+            format!("Data SHA-256 {}", model.input_hash),
+        ]
+    };
+    for (index, line) in lines.into_iter().enumerate() {
+        let y = A4.1 - MARGIN - 14.0 + 9.5 * index as f32;
+        sheet.text((LEFT, y), Style::plain(6.8).grey(FAINT), line);
+    }
+}

@@ -1,0 +1,304 @@
+//! From a model to a card, or to the reason why there is none.
+//!
+//! What always holds: a card is a function of what is stored and of where and when it
+//! is asked for. The time of asking only decides whether the model is too old.
+
+use super::contents::{
+    AdjustedBy, Card, CardRow, CargoAboard, Coefficients, Correctors, NotRecorded, PREDICTED,
+    Place, Ship, Source, Status, VerifiedAtSea, foretold, verified,
+};
+use super::due::{self, next_due};
+use super::observed::{Observed, STEP_DEG};
+use super::refusal::{OLDEST_DAYS, Refusal};
+use crate::adjustments::CompletedOrder;
+use crate::alerts::{Effect, OpenAlert};
+use crate::binnacles::Revised;
+use crate::compasses::Compass;
+use crate::deviation::{self, Row};
+use crate::models::StoredModel;
+use binnacle_compass::deviation::{Coefficients as Exact, DeviationError};
+use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::ship::EarthField;
+use binnacle_platform::time::Time;
+
+/// Degrees of compass heading between points of the curve.
+const CURVE_STEP_DEG: f64 = 5.0;
+
+/// A band that excludes no heading.
+const NO_BAND_DEG: f64 = 180.0;
+
+/// Everything that a card is made from.
+pub(super) struct Basis {
+    pub(super) vessel: Ship,
+    pub(super) compass: Compass,
+    pub(super) place: Place,
+    pub(super) model: StoredModel,
+    /// The first and the last sample that it rests on.
+    pub(super) data: (Time, Time),
+    /// The binnacle as it is recorded.
+    pub(super) binnacle: Option<Revised>,
+    /// What people reported, without what is withdrawn.
+    pub(super) logbook: Vec<LogbookEntry>,
+    /// What is open on this compass.
+    pub(super) alerts: Vec<OpenAlert>,
+    /// The compass's adjustments by work orders, in order of time.
+    pub(super) completed: Vec<CompletedOrder>,
+    /// What was observed near each line.
+    pub(super) observed: [Observed; 24],
+    /// The widest half of a band that makes a card, degrees.
+    pub(super) limit_deg: f64,
+    /// The greatest deviation that the vessel's own limits let stand, degrees.
+    pub(super) own_limit_deg: f64,
+    /// When the card is asked for.
+    pub(super) now: Time,
+}
+
+/// The card.
+pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
+    let Basis { model, place, .. } = &basis;
+    not_suspected(&basis.alerts)?;
+    not_too_old(model.data_until, place.at.max(basis.now))?;
+    let earth = EarthField {
+        h_nt: place.h_nt,
+        z_nt: place.z_nt,
+    };
+    let ship = &model.model.0;
+    let curve = deviation::table(ship, earth, CURVE_STEP_DEG)?;
+    let widest_band95_deg = widest(&curve, basis.limit_deg)?;
+    let lines = deviation::table(ship, earth, STEP_DEG)?;
+    let coefficients = Coefficients {
+        exact: Exact::new(&ship.parameters_over_lambda, earth)?.to_degrees(),
+        constant_deg: ship.constant_deg,
+        handbook: ship.handbook(earth)?,
+    };
+    let at = place.at;
+    let cargo = cargo_at(&basis.logbook, at);
+    let adjusted_at = last(&basis.logbook, LogbookKind::Adjustment, at);
+    let adjusted_by = adjusted_by(&basis.completed, adjusted_at);
+    let worst = deviation::worst_of(&curve).ok_or(DeviationError::NotFinite)?;
+    let verified_by = verified_by(model, &basis.completed);
+    let unverified = unverified(model, &basis.completed);
+    let next_due = next_due(&due::Facts {
+        flag: basis.vessel.flag.as_deref(),
+        // What nothing at sea supports starts no term.
+        adjusted_at: adjusted_at.filter(|_| unverified.is_none()),
+        logbook: &basis.logbook,
+        at,
+        worst_deviation_deg: worst.deviation_deg,
+        own_limit_deg: basis.own_limit_deg,
+    });
+    Ok(Card {
+        status: verified_by.map_or(Status::Predicted, |_| Status::Verified),
+        statement: match (&verified_by, unverified, model.foretold_by) {
+            (Some(by), _, _) => verified(by),
+            (None, Some(order), Some(_)) => foretold(order.at, order.order),
+            (None, _, _) => PREDICTED.to_owned(),
+        },
+        verified: verified_by,
+        unverified_order: unverified.map(|order| order.order),
+        rows: lines.iter().zip(basis.observed).map(line).collect(),
+        worst,
+        widest_band95_deg,
+        coefficients,
+        replaces: model.replaces(),
+        notes: notes(model, &basis.alerts, &cargo),
+        cargo,
+        not_recorded: missing([
+            (NotRecorded::Correctors, basis.binnacle.is_none()),
+            (
+                NotRecorded::DegaussingCoils,
+                basis.vessel.degaussing.is_none(),
+            ),
+            (NotRecorded::Adjuster, adjusted_by.is_none()),
+            (NotRecorded::Signature, true),
+            (
+                NotRecorded::NextDue,
+                next_due.is_none() && unverified.is_none(),
+            ),
+        ]),
+        correctors: basis.binnacle.as_ref().map(correctors),
+        degaussed_at: last(&basis.logbook, LogbookKind::Degaussing, at),
+        degaussing: basis.vessel.degaussing.clone(),
+        adjusted_at,
+        adjusted_by,
+        next_due,
+        model: Source {
+            id: model.id,
+            version: model.version,
+            fitted_at: model.created_at,
+            foretold_by: model.foretold_by,
+            data_from: basis.data.0,
+            data_until: basis.data.1,
+            samples_used: ship.samples_used,
+            rms_deg: ship.rms_deg,
+            estimator: model.estimator.clone(),
+            input_hash: model.input_hash.clone(),
+        },
+        curve,
+        vessel: basis.vessel,
+        compass: basis.compass,
+        place: basis.place,
+    })
+}
+
+/// What verified the adjustment that the model comes from.
+fn verified_by(model: &StoredModel, completed: &[CompletedOrder]) -> Option<VerifiedAtSea> {
+    let by = completed.iter().rev().find(|order| order.bears_on(model))?;
+    let at_sea = by.at_sea?;
+    Some(VerifiedAtSea {
+        order: by.order,
+        adjusted_at: by.at,
+        verified_at: at_sea.verified_at,
+        headings: at_sea.headings,
+        samples: at_sea.samples,
+        until: at_sea.until,
+        rms_deg: at_sea.rms_deg,
+    })
+}
+
+/// The adjustment that the model comes from, while nothing at sea has verified it.
+fn unverified<'a>(
+    model: &StoredModel,
+    completed: &'a [CompletedOrder],
+) -> Option<&'a CompletedOrder> {
+    let by = completed.iter().rev().find(|order| order.bears_on(model))?;
+    Some(by).filter(|order| order.at_sea.is_none())
+}
+
+/// A compass that stands still, or has parted from the gyro on board, is not described
+/// by any model.
+fn not_suspected(alerts: &[OpenAlert]) -> Result<(), Refusal> {
+    let blocks = |alert: &&OpenAlert| alert.cause.effect_on_card() == Effect::Block;
+    match alerts.iter().find(blocks) {
+        Some(alert) => Err(Refusal::CompassSuspected {
+            summary: alert.summary.clone(),
+        }),
+        None => Ok(()),
+    }
+}
+
+fn not_too_old(data_until: Time, at: Time) -> Result<(), Refusal> {
+    let days = at.0.seconds_since(data_until.0) / 86_400.0;
+    if days > OLDEST_DAYS {
+        return Err(Refusal::TooOld { data_until, days });
+    }
+    Ok(())
+}
+
+fn widest(curve: &[Row], limit_deg: f64) -> Result<f64, Refusal> {
+    let (mut widest_deg, mut compass_deg) = (0.0, 0.0);
+    for row in curve {
+        // A model without a covariance knows nothing of the band.
+        let band95_deg = row.band95_deg.unwrap_or(NO_BAND_DEG);
+        if band95_deg > widest_deg {
+            (widest_deg, compass_deg) = (band95_deg, row.compass_deg);
+        }
+    }
+    if widest_deg > limit_deg {
+        return Err(Refusal::BandTooWide {
+            band95_deg: widest_deg,
+            compass_deg,
+            limit_deg,
+        });
+    }
+    Ok(widest_deg)
+}
+
+fn line((row, observed): (&Row, Observed)) -> CardRow {
+    CardRow {
+        compass_deg: row.compass_deg,
+        magnetic_deg: row.magnetic_deg,
+        deviation_deg: row.deviation_deg,
+        band95_deg: row.band95_deg.unwrap_or(NO_BAND_DEG),
+        samples: observed.samples,
+        residual_deg: observed.residual_deg,
+    }
+}
+
+/// Who did the last adjustment, where it was by a work order.
+fn adjusted_by(completed: &[CompletedOrder], adjusted_at: Option<Time>) -> Option<AdjustedBy> {
+    let by = completed
+        .iter()
+        .rev()
+        .find(|order| Some(order.at) == adjusted_at)?;
+    Some(AdjustedBy {
+        order: by.order,
+        adjuster: by.adjuster_name.clone(),
+        licence: by.adjuster_licence.clone(),
+        firm: by.firm.clone(),
+    })
+}
+
+fn missing<const N: usize>(known: [(NotRecorded, bool); N]) -> Vec<NotRecorded> {
+    let wanted = known.into_iter().filter(|(_, is_missing)| *is_missing);
+    wanted.map(|(what, _)| what).collect()
+}
+
+fn correctors(found: &Revised) -> Correctors {
+    let binnacle = &found.binnacle.0;
+    let design = &binnacle.design;
+    Correctors {
+        revision: found.revision,
+        at: found.at,
+        binnacle: format!("{} {}, no. {}", design.maker, design.model, binnacle.serial),
+        shape: binnacle.setting.quadrantal.as_ref().and_then(|pair| {
+            let sizes = &design.quadrantal.as_ref()?.sizes;
+            Some(sizes.iter().find(|size| size.name == pair.size)?.shape)
+        }),
+        setting: binnacle.setting.clone(),
+    }
+}
+
+fn cargo_at(logbook: &[LogbookEntry], at: Time) -> Vec<CargoAboard> {
+    let aboard = logbook.iter().filter(|entry| {
+        entry.kind == LogbookKind::MagneticCargo
+            && entry.from <= at.0
+            && entry.to.is_none_or(|to| to >= at.0)
+    });
+    let words = |entry: &LogbookEntry| {
+        let cargo = serde_json::to_value(entry.cargo?).ok()?;
+        cargo.as_str().map(str::to_owned)
+    };
+    aboard
+        .map(|entry| CargoAboard {
+            since: Time(entry.from),
+            cargo: words(entry),
+        })
+        .collect()
+}
+
+fn last(logbook: &[LogbookEntry], kind: LogbookKind, at: Time) -> Option<Time> {
+    let of_kind = logbook.iter().filter(|entry| entry.kind == kind);
+    let before = of_kind.map(|entry| Time(entry.to.unwrap_or(entry.from)));
+    before.filter(|time| *time <= at).max()
+}
+
+fn notes(model: &StoredModel, alerts: &[OpenAlert], cargo: &[CargoAboard]) -> Vec<String> {
+    let mut notes = Vec::new();
+    if let Some(replaced) = model.replaces() {
+        notes.push(sentence(&replaced.of_older_cards()));
+    }
+    notes.extend(
+        alerts
+            .iter()
+            .filter(|alert| alert.cause.effect_on_card() == Effect::Note)
+            .map(|alert| alert.summary.clone()),
+    );
+    if !cargo.is_empty() {
+        notes.push(
+            "The logbook has magnetic cargo on board at this date: observe the deviation before \
+             this card is used."
+                .to_owned(),
+        );
+    }
+    let quality = model.model.0.quality.as_ref();
+    let cautions = quality.iter().flat_map(|quality| &quality.cautions);
+    notes.extend(cautions.map(|caution| sentence(&caution.to_string())));
+    notes
+}
+
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    format!("{}{}.", first.collect::<String>(), letters.as_str())
+}

@@ -1,0 +1,287 @@
+//! Deviation cards: what a compass's model says on each heading at a place, with all
+//! that belongs on a card, as PDF, SVG, CSV and JSON.
+//!
+//! What always holds:
+//!
+//! - A card says whether it is predicted, or verified by headings at sea, and that it is
+//!   no certificate; what nobody has recorded is said to be so, or left blank for a
+//!   person's pen.
+//! - Each compass has a card of its own.
+//! - Where a card would mislead, there is none: the answer says why.
+//! - The same model, place and date make the same card, to the byte.
+
+mod contents;
+mod csv;
+mod due;
+mod layout;
+mod make;
+mod observed;
+mod refusal;
+
+pub use contents::{Card, Status};
+pub use refusal::Refusal;
+
+use crate::adjustments;
+use crate::alerts;
+use crate::analysis;
+use crate::binnacles;
+use crate::compasses;
+use crate::deviation;
+use crate::logbook;
+use crate::models::{self, StoredModel};
+use crate::settings::{self, VesselSettings};
+use crate::vessels;
+use axum::extract::{FromRef, State};
+use axum::response::Response;
+use binnacle_compass::field::field;
+use binnacle_compass::position::Position;
+use binnacle_platform::access::Reader;
+use binnacle_platform::app::App;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Params, file, file_name, time};
+use binnacle_platform::ids::{CompassId, VesselId};
+use binnacle_platform::time::Time;
+use contents::{Place, Ship};
+use make::{Basis, make};
+use observed::{Seen, observed};
+use serde::Deserialize;
+use utoipa::IntoParams;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(card_json))
+        .routes(routes!(card_pdf))
+        .routes(routes!(card_svg))
+        .routes(routes!(card_csv))
+}
+
+/// Of which compass, where and when.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+struct Query {
+    /// A compass of the vessel's; its first one if not said.
+    compass: Option<CompassId>,
+    /// Degrees north; where the vessel was last if not said.
+    #[param(example = 43.4)]
+    lat: Option<f64>,
+    /// Degrees east; where the vessel was last if not said.
+    #[param(example = -3.1)]
+    lon: Option<f64>,
+    /// RFC 3339; the time of the last sample, or of the model, if not said.
+    #[param(value_type = Option<String>, format = DateTime)]
+    at: Option<String>,
+}
+
+/// See a compass's deviation card
+///
+/// By the compass's model, at a place and a date. `predicted` until headings at sea have
+/// verified the adjustment that the model comes from: then `verified`, and `verified` says
+/// by which order, when, and by how many headings. A change that ends the adjustment's epoch
+/// ends that too. In no case a certificate. Besides the usual problems: `no-model-yet` (404) where there is no model, also because the
+/// last one holds no more; and 409 where there is one that makes no card:
+/// `model-too-old`, `band-too-wide`, `field-too-weak`, `headings-ambiguous` or
+/// `compass-suspected`.
+#[utoipa::path(get, path = "/vessels/{id}/card.json", tag = "fleet",
+    params(("id" = VesselId, Path), Query),
+    responses((status = 200, body = Card), (status = 401, body = Problem),
+              (status = 404, description = "Also when there is no model, or it holds no more", body = Problem),
+              (status = 409, description = "The model makes no card: the detail says why", body = Problem),
+              (status = 422, body = Problem)))]
+async fn card_json(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(query): Params<Query>,
+) -> Result<Json<Card>> {
+    Ok(Json(find(&app, reader, id, &query).await?))
+}
+
+/// Print a compass's deviation card
+///
+/// One sheet of A4, upright; refused as `card.json` is.
+#[utoipa::path(get, path = "/vessels/{id}/card.pdf", tag = "fleet",
+    params(("id" = VesselId, Path), Query),
+    responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
+              (status = 401, body = Problem),
+              (status = 404, description = "Also when there is no model, or it holds no more", body = Problem),
+              (status = 409, description = "The model makes no card: the detail says why", body = Problem),
+              (status = 422, body = Problem)))]
+async fn card_pdf(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(query): Params<Query>,
+) -> Result<Response> {
+    let card = find(&app, reader, id, &query).await?;
+    let name = name(&card, "pdf");
+    let drawn = move || binnacle_drawing::pdf(&[layout::sheet(&card)], &layout::about(&card));
+    let bytes = tokio::task::spawn_blocking(drawn).await??;
+    Ok(file("application/pdf", &name, bytes))
+}
+
+/// Draw a compass's deviation card
+///
+/// The sheet of `card.pdf` as a picture; refused as `card.json` is.
+#[utoipa::path(get, path = "/vessels/{id}/card.svg", tag = "fleet",
+    params(("id" = VesselId, Path), Query),
+    responses((status = 200, content_type = "image/svg+xml", body = String),
+              (status = 401, body = Problem),
+              (status = 404, description = "Also when there is no model, or it holds no more", body = Problem),
+              (status = 409, description = "The model makes no card: the detail says why", body = Problem),
+              (status = 422, body = Problem)))]
+async fn card_svg(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(query): Params<Query>,
+) -> Result<Response> {
+    let card = find(&app, reader, id, &query).await?;
+    let svg = binnacle_drawing::svg(&[layout::sheet(&card)], &layout::about(&card).title);
+    Ok(file("image/svg+xml", &name(&card, "svg"), svg))
+}
+
+/// A compass's deviation card as CSV
+///
+/// A line for each 15° of compass heading; each says whether it is predicted or verified, by
+/// which model, and by which work order. Refused as `card.json` is.
+#[utoipa::path(get, path = "/vessels/{id}/card.csv", tag = "fleet",
+    params(("id" = VesselId, Path), Query),
+    responses((status = 200, content_type = "text/csv", body = String),
+              (status = 401, body = Problem),
+              (status = 404, description = "Also when there is no model, or it holds no more", body = Problem),
+              (status = 409, description = "The model makes no card: the detail says why", body = Problem),
+              (status = 422, body = Problem)))]
+async fn card_csv(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(query): Params<Query>,
+) -> Result<Response> {
+    let card = find(&app, reader, id, &query).await?;
+    let bytes = csv::csv(&card).map_err(|error| Error::Internal(error.into()))?;
+    Ok(file("text/csv; charset=utf-8", &name(&card, "csv"), bytes))
+}
+
+async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<Card> {
+    let db = &app.db;
+    let vessel = vessels::must_be_in_fleet(db, reader.operator, id).await?;
+    let compass = compasses::find(db, id, query.compass).await?;
+    let model = models::must_have(app, id, compass.id).await?;
+    let settings = settings::find(db, id).await?;
+    let last = vessel.last_position();
+    let last_at = last.map_or(model.place_at, |last| last.at);
+    let last = last.map_or((model.lat, model.lon), |last| (last.lat, last.lon));
+    let position = deviation::position(query.lat, query.lon, last)?;
+    let place = place(position, query.at(&model, last_at)?, &settings)?;
+    let now = app.clock.now().into();
+    let (from, until) = match (model.foretold_by, model.epoch_from) {
+        // Nothing is in it of what was observed since.
+        (Some(_), Some(from)) => (from, now),
+        _ => (model.data_from, model.data_until.0.plus_seconds(1.0).into()),
+    };
+    let data = data_of(app, &model).await?;
+    let samples = analysis::chunks(db, id, compass.id, Some(from), Some(until)).await?;
+    let completed = adjustments::completed(db, id, compass.id).await?;
+    let binnacle = binnacles::current(db, id, compass.id).await?;
+    let logbook = logbook::of_compass(db, id, compass.id).await?;
+    let alerts = alerts::list_in_force(db, id, compass.id).await?;
+    let made = tokio::task::spawn_blocking(move || {
+        let seen = match model.foretold_by {
+            Some(_) => Seen::Foretold(&model.model.0),
+            None => Seen::Fitted,
+        };
+        let basis = Basis {
+            observed: observed(&samples, from, seen)?,
+            vessel: Ship {
+                id,
+                name: vessel.name,
+                imo_number: vessel.imo_number,
+                call_sign: vessel.call_sign,
+                flag: vessel.flag,
+                degaussing: vessel.degaussing,
+            },
+            compass,
+            place,
+            model,
+            data,
+            completed,
+            binnacle,
+            logbook,
+            alerts,
+            limit_deg: settings.alerts.band95_deg,
+            own_limit_deg: settings.alerts.deviation_deg,
+            now,
+        };
+        make(basis).map_err(Error::from)
+    });
+    made.await?
+}
+
+/// The first and the last sample that a model rests on: of one that was foretold, those
+/// of the model before the adjustment.
+async fn data_of(app: &App, model: &StoredModel) -> Result<(Time, Time)> {
+    let from = match model.foretold_by {
+        Some(order) => adjustments::foretold_from(&app.db, model.vessel_id, order).await?,
+        None => None,
+    };
+    let behind = match from {
+        Some(version) => {
+            models::of_version(&app.db, model.vessel_id, model.compass_id, version).await?
+        }
+        None => None,
+    };
+    let behind = behind.as_ref().unwrap_or(model);
+    Ok((behind.data_from, behind.data_until))
+}
+
+impl Query {
+    /// When the card is for: a model tells nothing of the time before its epoch.
+    fn at(&self, model: &StoredModel, last_at: Time) -> Result<Time> {
+        let at = time("at", self.at.as_deref())?.map(Time);
+        let at = at.unwrap_or(model.place_at.max(last_at));
+        if let Some(from) = model.epoch_from.filter(|from| at < *from) {
+            return Err(Error::Invalid {
+                field: "at",
+                detail: format!("the model holds from {} on, not before", from.0),
+            });
+        }
+        Ok(at)
+    }
+}
+
+fn place(position: Position, at: Time, settings: &VesselSettings) -> Result<Place> {
+    let source = settings.analysis.field_model;
+    let earth = field(source, position, 0.0, at.0).map_err(|error| Error::Invalid {
+        field: "at",
+        detail: error.to_string(),
+    })?;
+    Ok(Place {
+        lat: position.lat_deg(),
+        lon: position.lon_deg(),
+        at,
+        variation_deg: earth.declination().degrees_east(),
+        variation_source: source.to_string(),
+        h_nt: earth.h_nt(),
+        z_nt: earth.z_nt,
+    })
+}
+
+fn name(card: &Card, ending: &str) -> String {
+    let version = format!("v{}", card.model.version);
+    file_name(
+        &[
+            "deviation-card",
+            &card.vessel.name,
+            &card.compass.name,
+            &version,
+        ],
+        ending,
+    )
+}

@@ -1,0 +1,153 @@
+//! What was observed near each heading of a card, beside what the card says.
+
+use binnacle_compass::angle::{CompassHeading, wrap_180};
+use binnacle_compass::model::Model;
+use binnacle_compass::result::SampleReason;
+use binnacle_compass::ship::EarthField;
+use binnacle_platform::error::Result;
+use binnacle_platform::time::Time;
+use serde::Deserialize;
+
+/// Degrees of compass heading from one line of a card to the next.
+pub(super) const STEP_DEG: f64 = 15.0;
+const SECTORS: usize = 24;
+
+/// Observations within half a step of a heading.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Observed {
+    /// How many samples carried weight.
+    pub(super) samples: u64,
+    /// Their mean of measured less predicted deviation, by weight, degrees; none
+    /// without samples.
+    pub(super) residual_deg: Option<f64>,
+}
+
+/// What the samples are to a card's model.
+#[derive(Clone, Copy)]
+pub(super) enum Seen<'a> {
+    /// It was fitted to those that carried weight.
+    Fitted,
+    /// It was foretold before them: what counts is what it says of each.
+    Foretold(&'a Model),
+}
+
+/// What of a sample is looked at.
+#[derive(Deserialize)]
+struct Sample {
+    time: Time,
+    compass_deg: f64,
+    #[serde(default)]
+    h_nt: Option<f64>,
+    #[serde(default)]
+    z_nt: Option<f64>,
+    #[serde(default)]
+    deviation_deg: Option<f64>,
+    residual_deg: Option<f64>,
+    weight: f64,
+    used: bool,
+    #[serde(default)]
+    reason: Option<SampleReason>,
+}
+
+/// What was observed in an epoch from `from` on, by lines of the card; `chunks` are
+/// JSON arrays of samples.
+pub(super) fn observed(
+    chunks: &[String],
+    from: Time,
+    seen: Seen<'_>,
+) -> Result<[Observed; SECTORS]> {
+    let mut sums = [(0_u64, 0.0_f64, 0.0_f64); SECTORS];
+    for chunk in chunks {
+        for sample in serde_json::from_str::<Vec<Sample>>(chunk)? {
+            if sample.time < from {
+                continue;
+            }
+            let Some((residual_deg, weighs)) = seen.residual(&sample) else {
+                continue;
+            };
+            let (samples, weight, sum) = &mut sums[sector(sample.compass_deg)];
+            *samples += 1;
+            *weight += weighs;
+            *sum += weighs * residual_deg;
+        }
+    }
+    Ok(sums.map(|(samples, weight, sum)| Observed {
+        samples,
+        residual_deg: (weight > 0.0).then(|| sum / weight),
+    }))
+}
+
+impl Seen<'_> {
+    /// Measured less predicted deviation, and its weight.
+    fn residual(self, sample: &Sample) -> Option<(f64, f64)> {
+        match self {
+            Seen::Fitted => Some((sample.residual_deg?, sample.weight)).filter(|_| sample.used),
+            Seen::Foretold(model) => {
+                if !matches!(sample.reason, None | Some(SampleReason::NoModel)) {
+                    return None;
+                }
+                let earth = EarthField {
+                    h_nt: sample.h_nt?,
+                    z_nt: sample.z_nt?,
+                };
+                let compass = CompassHeading::new(sample.compass_deg)?;
+                let foretold = model.deviation(compass, earth).ok()?.deviation;
+                let residual_deg = sample.deviation_deg? - foretold.degrees_east();
+                Some((wrap_180(residual_deg), 1.0))
+            }
+        }
+    }
+}
+
+fn sector(compass_deg: f64) -> usize {
+    (compass_deg / STEP_DEG).round() as usize % SECTORS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use binnacle_compass::time::Timestamp;
+
+    fn from(text: &str) -> Time {
+        Time(Timestamp::parse(text).unwrap())
+    }
+
+    fn chunk(samples: &[(f64, Option<f64>, f64, bool)]) -> String {
+        let samples = samples
+            .iter()
+            .map(|(compass_deg, residual_deg, weight, used)| {
+                serde_json::json!({
+                    "time": "2026-11-21T07:00:00Z", "compass_deg": compass_deg,
+                    "residual_deg": residual_deg, "weight": weight, "used": used,
+                })
+            });
+        serde_json::Value::from(samples.collect::<Vec<_>>()).to_string()
+    }
+
+    #[test]
+    fn a_sample_belongs_to_the_nearest_line_also_across_north() {
+        let chunks = [chunk(&[
+            (352.6, Some(1.0), 1.0, true),
+            (7.4, Some(3.0), 1.0, true),
+            (7.6, Some(-1.0), 0.5, true),
+        ])];
+        let found = observed(&chunks, from("2026-11-01T00:00:00Z"), Seen::Fitted).unwrap();
+        assert_eq!((found[0].samples, found[0].residual_deg), (2, Some(2.0)));
+        assert_eq!((found[1].samples, found[1].residual_deg), (1, Some(-1.0)));
+        assert_eq!(found[2], Observed::default());
+    }
+
+    #[test]
+    fn what_the_model_does_not_rest_on_is_no_observation() {
+        let chunks = [chunk(&[
+            (90.0, Some(9.0), 0.0, false),
+            (90.0, None, 1.0, true),
+            (90.0, Some(1.0), 1.0, true),
+            (90.0, Some(4.0), 0.5, true),
+        ])];
+        let found = observed(&chunks, from("2026-11-01T00:00:00Z"), Seen::Fitted).unwrap();
+        assert_eq!((found[6].samples, found[6].residual_deg), (2, Some(2.0)));
+        let later = observed(&chunks, from("2026-11-21T07:00:01Z"), Seen::Fitted).unwrap();
+        assert_eq!(later[6], Observed::default());
+    }
+}

@@ -1,0 +1,218 @@
+//! A vessel's compasses.
+
+mod amendment;
+mod store;
+
+pub use store::{ids, insert_standard, of_fleet, of_vessel};
+
+use crate::vessels;
+use amendment::{Amendment, AmendmentSchema};
+use axum::extract::{FromRef, State};
+use axum::http::StatusCode;
+use binnacle_platform::access::{Reader, Writer};
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::db::Db;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Page, Valid, optional_text, text};
+use binnacle_platform::idempotency::{self, Key};
+use binnacle_platform::ids::{CompassId, VesselId};
+use binnacle_platform::time::Time;
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(list_compasses, create_compass))
+        .routes(routes!(amend_compass))
+}
+
+/// A magnetic element aboard.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+pub struct Compass {
+    /// The compass's id.
+    pub id: CompassId,
+    /// The vessel it belongs to.
+    #[serde(skip)]
+    pub vessel_id: VesselId,
+    /// Its name.
+    pub name: String,
+    /// What it serves as.
+    pub role: Role,
+    /// Maker and type.
+    #[schema(required, example = "Cassens & Plath Reflecta 1")]
+    pub make: Option<String>,
+    /// Its serial number.
+    #[schema(required, example = "34871")]
+    pub serial_number: Option<String>,
+    /// The binnacle that it stands in: maker, type and number.
+    #[schema(required)]
+    pub binnacle: Option<String>,
+    /// When it was entered.
+    pub created_at: Time,
+}
+
+/// What a compass serves as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+#[schema(as = CompassRole)]
+pub enum Role {
+    /// The standard compass that every ship must carry.
+    Standard,
+    /// The one at the wheel.
+    Steering,
+    /// An element that sends its heading elsewhere.
+    Transmitting,
+}
+
+/// A compass to be entered.
+#[derive(Deserialize, Serialize, ToSchema)]
+pub struct NewCompass {
+    /// Its name.
+    #[schema(min_length = 1, max_length = 200)]
+    pub name: String,
+    /// What it serves as.
+    pub role: Role,
+    /// Maker and type.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(max_length = 200)]
+    pub make: Option<String>,
+    /// Its serial number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(max_length = 200)]
+    pub serial_number: Option<String>,
+    /// The binnacle that it stands in: maker, type and number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(max_length = 200)]
+    pub binnacle: Option<String>,
+}
+
+/// A page of compasses.
+#[derive(Serialize, ToSchema)]
+pub struct CompassList {
+    /// In the order in which they were entered.
+    pub items: Vec<Compass>,
+    /// `after` of the next page.
+    #[schema(required)]
+    pub next: Option<String>,
+}
+
+/// Which of the vessel's compasses.
+#[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct WhichCompass {
+    /// A compass of the vessel's; its first one if not said.
+    pub compass: Option<CompassId>,
+}
+
+/// The compass that was asked for, or the vessel's first.
+///
+/// # Errors
+/// [`Error::NotFound`] when the vessel has no such compass.
+pub async fn find(db: &Db, vessel: VesselId, compass: Option<CompassId>) -> Result<Compass> {
+    of_vessel(db, vessel)
+        .await?
+        .into_iter()
+        .find(|found| compass.is_none_or(|wanted| found.id == wanted))
+        .ok_or(Error::NotFound("compass"))
+}
+
+/// List a vessel's compasses
+#[utoipa::path(get, path = "/vessels/{id}/compasses", tag = "fleet",
+    params(("id" = VesselId, Path), Page),
+    responses((status = 200, body = CompassList), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn list_compasses(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    page: Page,
+) -> Result<Json<CompassList>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
+    let after = page.after_id()?.unwrap_or_default();
+    let mut found = of_vessel(&app.db, id).await?;
+    found.retain(|compass| compass.id.0 > after);
+    let listed = page.cut(found, |compass| compass.id.to_string());
+    Ok(Json(CompassList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// Enter a compass
+#[utoipa::path(post, path = "/vessels/{id}/compasses", tag = "fleet",
+    params(("id" = VesselId, Path), Key), request_body = NewCompass,
+    responses((status = 201, body = Compass), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn create_compass(
+    State(app): State<App>,
+    request: RequestContext,
+    writer: Writer,
+    Id(id): Id<VesselId>,
+    key: Key,
+    Valid(new): Valid<NewCompass>,
+) -> Result<(StatusCode, Json<Compass>)> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, id).await?;
+    let request_hash = idempotency::request_hash(&format!("compass of {id}"), &new)?;
+    let compass = Compass {
+        id: CompassId::new(),
+        vessel_id: id,
+        name: text("name", &new.name)?,
+        role: new.role,
+        make: optional_text("make", new.make.as_deref())?,
+        serial_number: optional_text("serial_number", new.serial_number.as_deref())?,
+        binnacle: optional_text("binnacle", new.binnacle.as_deref())?,
+        created_at: app.clock.now().into(),
+    };
+    let mut tx = request.begin().await?;
+    let made = key
+        .once(
+            &mut tx,
+            writer.operator,
+            &request_hash,
+            compass.id.0,
+            compass.created_at,
+        )
+        .await?;
+    if made == compass.id.0 {
+        store::insert(&mut tx, &compass).await?;
+    }
+    tx.commit().await?;
+    let compass = find(&app.db, id, Some(CompassId(made))).await?;
+    Ok((StatusCode::CREATED, Json(compass)))
+}
+
+/// Amend what is written of a compass
+///
+/// What is left out stays as it is; null takes a value away.
+#[utoipa::path(patch, path = "/vessels/{id}/compasses/{compass}", tag = "fleet",
+    params(("id" = VesselId, Path), ("compass" = CompassId, Path)), request_body = AmendmentSchema,
+    responses((status = 200, body = Compass), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn amend_compass(
+    State(app): State<App>,
+    request: RequestContext,
+    writer: Writer,
+    Id((vessel, id)): Id<(VesselId, CompassId)>,
+    Valid(amendment): Valid<Amendment>,
+) -> Result<Json<Compass>> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
+    let mut tx = request.begin().await?;
+    let compass = store::lock(&mut tx, vessel, id)
+        .await?
+        .ok_or(Error::NotFound("compass"))?;
+    let amended = amendment.applied_to(compass)?;
+    store::update(&mut tx, &amended).await?;
+    tx.commit().await?;
+    Ok(Json(amended))
+}

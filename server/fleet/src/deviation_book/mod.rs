@@ -1,0 +1,232 @@
+//! The compass deviation book: compass errors as they were observed under way, one in
+//! each watch and one after each large alteration of course, beside what the card of
+//! the time said.
+//!
+//! What always holds: the book is what the samples say, and has no entry that nobody
+//! observed; a card counts only for what was observed after it was made.
+
+mod csv;
+mod entry;
+mod layout;
+mod select;
+mod source;
+
+use crate::compasses;
+use crate::vessels;
+use axum::body::{Body, Bytes};
+use axum::extract::{FromRef, State};
+use axum::response::Response;
+use binnacle_compass::time::Timestamp;
+use binnacle_drawing::{self, About};
+use binnacle_platform::access::Reader;
+use binnacle_platform::app::App;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Page, Params, file, file_name, time};
+use binnacle_platform::ids::{CompassId, VesselId};
+use binnacle_platform::time::Time;
+use entry::Entry;
+use futures_util::{StreamExt, stream};
+use layout::Book;
+use serde::{Deserialize, Serialize};
+use source::Source;
+use tracing::error;
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// Entries of a printed book: some 150 sheets.
+const MOST_PRINTED: usize = 5_000;
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(list_book))
+        .routes(routes!(book_csv))
+        .routes(routes!(book_pdf))
+}
+
+/// Of which compass, and of when.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+struct Range {
+    /// The first instant, RFC 3339.
+    #[param(value_type = Option<String>, format = DateTime, example = "2026-11-01T00:00:00Z")]
+    from: Option<String>,
+    /// The instant after the last, RFC 3339.
+    #[param(value_type = Option<String>, format = DateTime, example = "2026-12-01T00:00:00Z")]
+    to: Option<String>,
+    /// A compass of the vessel's; its first one if not said.
+    compass: Option<CompassId>,
+}
+
+/// A page of a deviation book.
+#[derive(Serialize, ToSchema)]
+#[schema(as = DeviationBook)]
+struct BookPage {
+    /// In order of time.
+    items: Vec<Entry>,
+    /// `after` of the next page.
+    #[schema(required)]
+    next: Option<String>,
+}
+
+/// Read a compass's deviation book
+///
+/// An entry for the first settled stretch of heading in each watch of four hours, and
+/// for the first after each alteration of course by 20° or more. Watches in which none
+/// was observed, as in port, have none. `card_status` says what the card of the time was
+/// worth then: `predicted`, or `verified` from when headings at sea had verified the
+/// adjustment that it comes from.
+#[utoipa::path(get, path = "/vessels/{id}/deviation-book", tag = "fleet",
+    params(("id" = VesselId, Path), Range, Page),
+    responses((status = 200, body = BookPage), (status = 401, body = Problem),
+              (status = 404, body = Problem), (status = 422, body = Problem)))]
+async fn list_book(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(range): Params<Range>,
+    page: Page,
+) -> Result<Json<BookPage>> {
+    let (mut wanted, _) = range.find(&app, reader, id).await?;
+    // No two entries have one time: it is the cursor.
+    if let Some(after) = page.after_number()? {
+        wanted.begin_after(after)?;
+    }
+    let mut source = wanted.open(&app, id).await?;
+    let (found, _) = source.at_most(page.limit() + 1).await?;
+    let listed = page.cut(found, |entry| entry.time.0.micros().to_string());
+    Ok(Json(BookPage {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// A compass's deviation book as CSV
+#[utoipa::path(get, path = "/vessels/{id}/deviation-book.csv", tag = "fleet",
+    params(("id" = VesselId, Path), Range),
+    responses((status = 200, content_type = "text/csv", body = String), (status = 401, body = Problem),
+              (status = 404, body = Problem), (status = 422, body = Problem)))]
+async fn book_csv(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(range): Params<Range>,
+) -> Result<Response> {
+    let (wanted, book) = range.find(&app, reader, id).await?;
+    let source = wanted.open(&app, id).await?;
+    let head = stream::iter([Ok(Bytes::from(csv::head()))]);
+    let rest = stream::try_unfold(source, next_lines);
+    let body = Body::from_stream(head.chain(rest));
+    Ok(file("text/csv; charset=utf-8", &book.name("csv"), body))
+}
+
+/// Print a compass's deviation book
+///
+/// Sheets of A4, lying; at most 5000 entries.
+#[utoipa::path(get, path = "/vessels/{id}/deviation-book.pdf", tag = "fleet",
+    params(("id" = VesselId, Path), Range),
+    responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 422, description = "Also when there are more entries than are printed", body = Problem)))]
+async fn book_pdf(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(range): Params<Range>,
+) -> Result<Response> {
+    let (wanted, book) = range.find(&app, reader, id).await?;
+    let (entries, all) = wanted.open(&app, id).await?.at_most(MOST_PRINTED).await?;
+    if !all {
+        return Err(Error::Invalid {
+            field: "from, to",
+            detail: format!("more than {MOST_PRINTED} entries lie between them"),
+        });
+    }
+    let about = About {
+        title: format!("Compass deviation book: {}, {}", book.vessel, book.compass),
+        created: entries.last().map_or(wanted.entered, |last| last.time).0,
+    };
+    let name = book.name("pdf");
+    let drawn = move || binnacle_drawing::pdf(&layout::sheets(&book, &entries), &about);
+    let bytes = tokio::task::spawn_blocking(drawn).await??;
+    Ok(file("application/pdf", &name, bytes))
+}
+
+/// Which entries, read and checked.
+struct Wanted {
+    compass: CompassId,
+    from: Option<Time>,
+    to: Option<Time>,
+    /// When the vessel was entered.
+    entered: Time,
+}
+
+impl Range {
+    async fn find(&self, app: &App, reader: Reader, id: VesselId) -> Result<(Wanted, Book)> {
+        let vessel = vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
+        let compass = compasses::find(&app.db, id, self.compass).await?;
+        let from = time("from", self.from.as_deref())?.map(Time);
+        let to = time("to", self.to.as_deref())?.map(Time);
+        if from.zip(to).is_some_and(|(from, to)| to < from) {
+            return Err(Error::Invalid {
+                field: "to",
+                detail: "it is before from".to_owned(),
+            });
+        }
+        let wanted = Wanted {
+            compass: compass.id,
+            from,
+            to,
+            entered: vessel.created_at,
+        };
+        let book = Book {
+            vessel: vessel.name,
+            imo_number: vessel.imo_number,
+            compass: compass.name,
+            from,
+            to,
+        };
+        Ok((wanted, book))
+    }
+}
+
+impl Wanted {
+    async fn open(&self, app: &App, vessel: VesselId) -> Result<Source> {
+        Source::open(&app.db, vessel, self.compass, self.from, self.to).await
+    }
+
+    /// Leaves out what the pages up to an entry's time had.
+    fn begin_after(&mut self, micros: i64) -> Result<()> {
+        let after = Timestamp::from_micros(micros.saturating_add(1))
+            .map_err(|_| Error::BadRequest(format!("after: {micros} is no time of an entry")))?;
+        self.from = self.from.max(Some(Time(after)));
+        Ok(())
+    }
+}
+
+impl Book {
+    fn name(&self, ending: &str) -> String {
+        file_name(&["deviation-book", &self.vessel, &self.compass], ending)
+    }
+}
+
+/// The next month's lines; what fails half-way is cut off, and logged.
+async fn next_lines(mut source: Source) -> Result<Option<(Bytes, Source)>> {
+    let lines = async {
+        let entries = source.next().await?;
+        entries.map(|entries| csv::lines(&entries)).transpose()
+    };
+    match lines.await {
+        Ok(None) => Ok(None),
+        Ok(Some(lines)) => Ok(Some((Bytes::from(lines), source))),
+        Err(cause) => {
+            error!(error = format!("{cause:?}"), "a deviation book was cut off");
+            Err(cause)
+        }
+    }
+}

@@ -1,0 +1,321 @@
+//! How an agent comes to belong to a compass: a one-time code, exchanged for a
+//! token.
+//!
+//! What always holds: a code works once, before it expires, and opens exactly one
+//! installation; code and token are stored only as hashes. A token that was revoked is
+//! never known again.
+
+mod agent;
+mod store;
+
+pub use agent::Agent;
+pub use store::{open_stream, revoke};
+
+use crate::compasses;
+use crate::vessels;
+use axum::extract::{FromRef, State};
+use axum::http::StatusCode;
+use binnacle_platform::access::{Reader, Writer};
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Page, Valid, text};
+use binnacle_platform::ids::{AgentId, CompassId, VesselId};
+use binnacle_platform::secret;
+use binnacle_platform::time::Time;
+use binnacle_wire::messages::{EnrolAnswer, EnrolRequest, NewToken};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use uuid::Uuid;
+
+/// What is told of how the link did is of so many seconds.
+const WEEK_S: f64 = 7.0 * 86_400.0;
+/// Made on a Friday ashore, it can be typed on board after the weekend.
+const DEFAULT_VALID_FOR_S: u32 = 3 * 86_400;
+const LONGEST_VALID_FOR_S: u32 = 14 * 86_400;
+
+/// The routes that people use.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(list_agents, create_code))
+        .routes(routes!(revoke_agent))
+}
+
+/// The routes that agents use.
+pub fn agent_router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(enrol))
+        .routes(routes!(propose_token, replace_token))
+}
+
+/// A stream: one compass as one installation of the agent reports it.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct AgentStream {
+    /// The stream's id.
+    pub stream: Uuid,
+    /// The installation, which may have opened several streams.
+    pub agent_id: AgentId,
+    /// When its token was revoked.
+    #[schema(required)]
+    pub revoked_at: Option<Time>,
+    /// The compass.
+    pub compass_id: CompassId,
+    /// Its name.
+    pub compass_name: String,
+    /// The agent's version when it was enrolled.
+    pub agent_version: String,
+    /// When the stream was opened.
+    pub opened_at: Time,
+    /// When its last batch came.
+    #[schema(required)]
+    pub last_upload_at: Option<Time>,
+    /// Every batch up to this one is here.
+    pub contiguous_seq: i64,
+    /// Batches here.
+    pub batches: i64,
+    /// Samples in them.
+    pub samples: i64,
+    /// Ten-second windows by outcome: `accepted`, or why they were refused; `thinned` are
+    /// those that were accepted and left out for want of room or budget.
+    pub tally: BTreeMap<String, u64>,
+    /// How the link did of late.
+    pub last_week: LinkWeek,
+    /// How it was on board when an agent last said so, with a batch; none before.
+    #[schema(required)]
+    pub aboard: Option<Aboard>,
+}
+
+/// What an agent says of its spool and budget, with a batch.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[schema(as = AgentAboard)]
+pub struct Aboard {
+    /// Batches that waited on board besides the one that was sent.
+    pub batches_waiting: i64,
+    /// What was left of the link's budget where that was less than a day's, in hundredths of
+    /// it, less than none when overdrawn; none where there was enough, or is no limit.
+    #[schema(required)]
+    pub budget_left_percent: Option<i64>,
+    /// When it was said.
+    pub at: Time,
+}
+
+/// What came over a stream's link in the last seven days.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+pub struct LinkWeek {
+    /// Batches that came.
+    pub batches: i64,
+    /// Octets in them, without what the protocols below add.
+    pub octets: i64,
+    /// How long the latest sample of a batch was on its way, at most, seconds: what had to
+    /// wait for the link. None of no samples.
+    #[schema(required)]
+    pub longest_wait_s: Option<i64>,
+}
+
+/// A page of streams.
+#[derive(Serialize, ToSchema)]
+pub struct AgentStreamList {
+    /// In the order in which they were opened.
+    pub items: Vec<AgentStream>,
+    /// `after` of the next page.
+    #[schema(required)]
+    pub next: Option<String>,
+}
+
+/// An enrolment code to be made.
+#[derive(Default, Deserialize, ToSchema)]
+#[serde(default)]
+pub struct NewCode {
+    /// The compass that the agent will report; the vessel's first if not said.
+    pub compass_id: Option<CompassId>,
+    /// How long the code is valid, seconds; three days if not said.
+    #[schema(minimum = 1, maximum = 1_209_600)]
+    pub valid_for_s: Option<u32>,
+}
+
+/// An enrolment code.
+#[derive(Serialize, ToSchema)]
+pub struct EnrolmentCode {
+    /// To be typed on board; works once and is never shown again.
+    pub code: String,
+    /// When it stops working.
+    pub expires_at: Time,
+}
+
+/// A one-time code, to be exchanged for a token.
+#[derive(ToSchema)]
+#[schema(as = EnrolRequest)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::EnrolRequest")]
+struct EnrolRequestSchema {
+    /// The code the operator was shown.
+    code: String,
+    /// The agent's own version.
+    agent_version: String,
+}
+
+/// Everything the agent needs to send.
+#[derive(ToSchema)]
+#[schema(as = EnrolAnswer)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::EnrolAnswer")]
+struct EnrolAnswerSchema {
+    /// Bearer token; shown this once.
+    token: String,
+    /// A new stream, opened for this installation.
+    stream: Uuid,
+    vessel_name: String,
+    compass_name: String,
+    /// The shore's clock.
+    server_time: Time,
+}
+
+/// An agent's next token.
+#[derive(ToSchema)]
+#[schema(as = NewToken)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::NewToken")]
+struct NewTokenSchema {
+    /// Bearer token.
+    token: String,
+}
+
+/// List the streams of a vessel's agents
+#[utoipa::path(get, path = "/vessels/{id}/agents", tag = "fleet",
+    params(("id" = VesselId, Path), Page),
+    responses((status = 200, body = AgentStreamList), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn list_agents(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    page: Page,
+) -> Result<Json<AgentStreamList>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
+    let week_ago = app.clock.now().plus_seconds(-WEEK_S);
+    let after = page.after_id()?;
+    let found = store::list_streams(&app.db, id, after, week_ago.into(), page.fetch()).await?;
+    let listed = page.cut(found, |row| row.stream.to_string());
+    let items: Result<Vec<AgentStream>> = listed
+        .items
+        .into_iter()
+        .map(store::StreamRow::read)
+        .collect();
+    Ok(Json(AgentStreamList {
+        items: items?,
+        next: listed.next,
+    }))
+}
+
+/// Make an enrolment code
+#[utoipa::path(post, path = "/vessels/{id}/agents", tag = "fleet",
+    params(("id" = VesselId, Path)), request_body = NewCode,
+    responses((status = 201, body = EnrolmentCode), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn create_code(
+    State(app): State<App>,
+    request: RequestContext,
+    writer: Writer,
+    Id(id): Id<VesselId>,
+    Valid(new): Valid<NewCode>,
+) -> Result<(StatusCode, Json<EnrolmentCode>)> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, id).await?;
+    let compass = compasses::find(&app.db, id, new.compass_id).await?;
+    let valid_for_s = new.valid_for_s.unwrap_or(DEFAULT_VALID_FOR_S);
+    if !(1..=LONGEST_VALID_FOR_S).contains(&valid_for_s) {
+        return Err(Error::Invalid {
+            field: "valid_for_s",
+            detail: format!("{valid_for_s} is outside 1 to {LONGEST_VALID_FOR_S}"),
+        });
+    }
+    let now = app.clock.now();
+    let expires_at = Time(now.plus_seconds(f64::from(valid_for_s)));
+    let code = secret::new_code();
+    store::insert_code(&request, &code, &compass, now.into(), expires_at).await?;
+    Ok((
+        StatusCode::CREATED,
+        Json(EnrolmentCode { code, expires_at }),
+    ))
+}
+
+/// Revoke an agent's token
+///
+/// What it has sent stays. It goes on sampling, and goes on sending when it is enrolled
+/// again. Revoking it again changes nothing.
+#[utoipa::path(delete, path = "/vessels/{id}/agents/{agent}", tag = "fleet",
+    params(("id" = VesselId, Path), ("agent" = AgentId, Path)),
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
+              (status = 404, body = Problem)))]
+async fn revoke_agent(
+    State(app): State<App>,
+    request: RequestContext,
+    writer: Writer,
+    Id((vessel, agent)): Id<(VesselId, AgentId)>,
+) -> Result<StatusCode> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
+    if let Some(event) = store::revoke(&request, vessel, agent, app.clock.now().into()).await? {
+        app.publish(event);
+    }
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Exchange a one-time code for a token and a stream
+#[utoipa::path(post, path = "/agents/enrol", tag = "agents", security(()),
+    request_body = EnrolRequestSchema,
+    responses((status = 200, body = EnrolAnswerSchema), (status = 404, body = Problem),
+              (status = 410, body = Problem)))]
+async fn enrol(
+    State(app): State<App>,
+    request: RequestContext,
+    Valid(sent): Valid<EnrolRequest>,
+) -> Result<Json<EnrolAnswer>> {
+    let version = text("agent_version", &sent.agent_version)?;
+    let now = app.clock.now();
+    let enrolled = store::enrol(&request, &sent.code, &version, now.into()).await?;
+    Ok(Json(EnrolAnswer {
+        token: enrolled.token,
+        stream: enrolled.stream,
+        vessel_name: enrolled.vessel_name,
+        compass_name: enrolled.compass_name,
+        server_time: now,
+    }))
+}
+
+/// Make a token that is to take the place of the agent's
+///
+/// It is not valid before it is put in place; nothing is stored of it here.
+#[utoipa::path(post, path = "/agents/token", tag = "agents", security(("token" = [])),
+    responses((status = 200, body = NewTokenSchema), (status = 401, body = Problem)))]
+async fn propose_token(agent: Agent) -> Json<NewToken> {
+    Json(NewToken {
+        token: secret::new_vessel_token(agent.vessel_id.0),
+    })
+}
+
+/// Put another token in place of the one that this request comes with
+#[utoipa::path(put, path = "/agents/token", tag = "agents", security(("token" = [])),
+    request_body = NewTokenSchema,
+    responses((status = 204), (status = 401, body = Problem), (status = 422, body = Problem)))]
+async fn replace_token(
+    request: RequestContext,
+    agent: Agent,
+    Valid(new): Valid<NewToken>,
+) -> Result<StatusCode> {
+    if !secret::is_vessel_token(&new.token, agent.vessel_id.0) {
+        return Err(Error::Invalid {
+            field: "token",
+            detail: "is not one that was made for this agent".to_owned(),
+        });
+    }
+    store::replace_token(&request, agent, &new.token).await?;
+    Ok(StatusCode::NO_CONTENT)
+}

@@ -1,0 +1,135 @@
+//! Batches that came as short-burst messages, over whatever gateway.
+//!
+//! They are stored as if the ship had sent them over an ordinary link, each frame in a
+//! transaction of its own: the same messages again, or the same batch over both links,
+//! change nothing. A message that cannot be read keeps no other back.
+
+use super::take;
+use crate::enrolment::Agent;
+use binnacle_platform::db::{Db, row};
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::ids::VesselId;
+use binnacle_platform::time::Time;
+use binnacle_wire::burst::{Ack, Joiner, StreamTag, write_ack};
+use serde::Serialize;
+use std::collections::BTreeSet;
+use uuid::Uuid;
+
+/// What messages came to.
+#[derive(Debug, Default, Serialize)]
+pub struct Imported {
+    /// Batches that were not there before.
+    pub stored: usize,
+    /// Batches that were there already.
+    pub repeated: usize,
+    /// Batches of which messages are missing.
+    pub incomplete: Vec<Incomplete>,
+    /// Messages, and the batches that they completed, that were not taken.
+    pub refused: Vec<Refused>,
+    /// What to send to the ship, by stream.
+    #[serde(skip)]
+    pub answers: Vec<(Uuid, Vec<u8>)>,
+}
+
+/// A batch of which messages are missing.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+pub struct Incomplete {
+    /// Its number in its stream.
+    pub seq: u64,
+    /// Messages that are there.
+    pub messages: usize,
+    /// Messages that there are to be.
+    pub of: usize,
+}
+
+/// Why a message, or the batch that it completed, was not taken.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+pub struct Refused {
+    /// As the caller calls the message.
+    pub message: String,
+    /// In one line.
+    pub problem: String,
+}
+
+/// Joins a vessel's messages, by name, and stores the batches.
+///
+/// # Errors
+/// When the database cannot be used; what was stored by then stays.
+pub async fn import(
+    db: &Db,
+    vessel: VesselId,
+    messages: &[(String, Vec<u8>)],
+    now: Time,
+) -> Result<Imported> {
+    let mut imported = Imported::default();
+    let mut joiner = Joiner::default();
+    let mut streams = BTreeSet::new();
+    for (name, octets) in messages {
+        let refuse = |problem: String| Refused {
+            message: name.clone(),
+            problem,
+        };
+        let frame = match joiner.push(octets) {
+            Ok(Some(frame)) => frame,
+            Ok(None) => continue,
+            Err(error) => {
+                imported.refused.push(refuse(error.to_string()));
+                continue;
+            }
+        };
+        match store(db, vessel, &frame, now).await {
+            Ok((stream, is_new)) => {
+                streams.insert(stream);
+                imported.stored += usize::from(is_new);
+                imported.repeated += usize::from(!is_new);
+            }
+            Err(error @ Error::Internal(_)) => return Err(error),
+            Err(error) => imported.refused.push(refuse(error.to_string())),
+        }
+    }
+    imported.incomplete = joiner
+        .incomplete()
+        .map(|(_, seq, messages, of)| Incomplete { seq, messages, of })
+        .collect();
+    for stream in streams {
+        imported
+            .answers
+            .push((stream, answer(db, vessel, stream).await?));
+    }
+    Ok(imported)
+}
+
+async fn store(db: &Db, vessel: VesselId, frame: &[u8], now: Time) -> Result<(Uuid, bool)> {
+    let stated =
+        binnacle_wire::decode(frame).map_err(|error| Error::BadRequest(error.to_string()))?;
+    // The same bounds as for a batch that came by its path.
+    let batch = super::read(frame, stated.stream, stated.seq)?;
+    let mut tx = db.begin().await?;
+    let agent = row!(
+        in &mut tx,
+        Agent,
+        "SELECT vessel_id, agent_id, compass_id FROM streams
+         WHERE vessel_id = $1 AND id = $2 ORDER BY id",
+        vessel,
+        batch.stream.0
+    )?
+    .ok_or(Error::NotFound("stream of this vessel"))?;
+    let taken = take(&mut tx, agent, &batch, frame, now, 0.0).await?;
+    tx.commit().await?;
+    Ok((batch.stream.0, taken.is_new))
+}
+
+async fn answer(db: &Db, vessel: VesselId, stream: Uuid) -> Result<Vec<u8>> {
+    let (contiguous_seq,) = row!(
+        db,
+        (i64,),
+        "SELECT contiguous_seq FROM streams WHERE vessel_id = $1 AND id = $2 ORDER BY id",
+        vessel,
+        stream
+    )?
+    .ok_or(Error::NotFound("stream"))?;
+    Ok(write_ack(Ack {
+        stream: StreamTag::from_stream(binnacle_wire::batch::StreamId(stream)),
+        contiguous_seq: contiguous_seq.unsigned_abs(),
+    }))
+}

@@ -1,0 +1,178 @@
+//! What goes back to the ship: only what it does not have.
+
+use crate::enrolment::Agent;
+use crate::models::{self, ModelSchema, StoredModel};
+use crate::settings::{self, AgentSettings};
+use axum::Json;
+use axum::body::Body;
+use axum::response::{IntoResponse, Response};
+use binnacle_compass::model::Model;
+use binnacle_platform::app::App;
+use binnacle_platform::db::row;
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::time::Time;
+use binnacle_wire::downlink::{self, FORM, card_tag};
+use binnacle_wire::messages::{Downlink, ModelDownlink};
+use serde::Deserialize;
+use utoipa::{IntoParams, ToSchema};
+use uuid::Uuid;
+
+/// What the agent has.
+#[derive(Clone, Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(super) struct Has {
+    /// The model version it uses; what follows it comes at once.
+    model: Option<Uuid>,
+    /// The same by the last eight digits of its id; what follows comes when it matters.
+    card: Option<String>,
+    /// The settings it uses.
+    settings: Option<u32>,
+    /// The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent.
+    form: Option<u8>,
+    /// With a batch: how many others wait on board; none when `wait` says that it is the last.
+    pub(super) waits: Option<u32>,
+    /// With a batch: what is left of the link's budget where that is less than a day's, in
+    /// hundredths of it; less than none when overdrawn.
+    pub(super) budget: Option<i32>,
+    /// So many seconds at most, and no more than 55, the answer to a batch may wait for the
+    /// analysis of its samples, and then tells what that found: of the last batch for now.
+    pub(super) wait: Option<u16>,
+}
+
+/// An answer in the form that the agent asked for.
+pub(super) struct Answer {
+    downlink: Downlink,
+    form: Option<u8>,
+}
+
+impl IntoResponse for Answer {
+    fn into_response(self) -> Response {
+        let reads_compact = self.form.is_some_and(|form| form >= FORM);
+        let compact = reads_compact.then(|| downlink::encode(&self.downlink));
+        match compact.flatten() {
+            // What has no content type is octets (RFC 9110, 8.3): forty of them saved.
+            Some(octets) => Body::from(octets).into_response(),
+            None => Json(self.downlink).into_response(),
+        }
+    }
+}
+
+/// The acknowledgement, and what the agent does not have.
+#[derive(ToSchema)]
+#[schema(as = Downlink)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::Downlink")]
+pub(super) struct DownlinkSchema {
+    /// Every batch up to this one is durable; 0 for none.
+    contiguous_seq: u64,
+    /// The current model, when the agent has another one or none.
+    #[schema(required = false)]
+    model: Option<ModelDownlinkSchema>,
+    /// Since when the card that the agent has holds no more; none while it holds.
+    #[schema(required = false)]
+    card_withdrawn: Option<CardWithdrawnSchema>,
+    /// The current settings, when the agent has others.
+    #[schema(required = false)]
+    settings: Option<AgentSettings>,
+    /// The shore's clock.
+    server_time: Time,
+}
+
+/// A model as it is sent to the bridge.
+#[derive(ToSchema)]
+#[schema(as = ModelDownlink)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::ModelDownlink")]
+pub(super) struct ModelDownlinkSchema {
+    id: Uuid,
+    /// Counts the compass's models from 1.
+    version: u32,
+    /// The time of the last sample in it.
+    data_until: Time,
+    /// Why no card from before its epoch holds; none in the first epoch.
+    #[schema(required = false)]
+    replaces: Option<CardWithdrawnSchema>,
+    model: ModelSchema,
+}
+
+/// That cards from before hold no more.
+#[derive(ToSchema)]
+#[schema(as = CardWithdrawn)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::CardWithdrawn")]
+pub struct CardWithdrawnSchema {
+    /// Since when.
+    since: Time,
+    /// What altered the ship's magnetism or the compass: a kind of logbook entry, a cause
+    /// that was found, or `ship_as_before`.
+    #[schema(example = "adjustment")]
+    reason: String,
+}
+
+/// A stream just opened.
+#[derive(ToSchema)]
+#[schema(as = OpenStreamAnswer)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_wire::messages::OpenStreamAnswer"
+)]
+pub(super) struct OpenStreamSchema {
+    stream: Uuid,
+}
+
+pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> Result<Answer> {
+    let (contiguous_seq,) = row!(
+        &app.db,
+        (i64,),
+        "SELECT contiguous_seq FROM streams
+         WHERE vessel_id = $1 AND id = $2 AND agent_id = $3
+         ORDER BY id",
+        agent.vessel_id,
+        stream,
+        agent.agent_id
+    )?
+    .ok_or(Error::NotFound("stream"))?;
+    let current = models::current(&app.db, agent.vessel_id, agent.compass_id).await?;
+    let has_card = has.model.is_some() || has.card.is_some();
+    let card_withdrawn = if has_card {
+        models::card_withdrawn(&app.db, agent.vessel_id, agent.compass_id).await?
+    } else {
+        None
+    };
+    let news = match current {
+        Some(model) if Some(model.id.0) == has.model => None,
+        Some(model) if !is_news(app, &model, has.card.as_deref()).await? => None,
+        current => current,
+    };
+    let settings = settings::find(&app.db, agent.vessel_id).await?.agent;
+    let downlink = Downlink {
+        contiguous_seq: contiguous_seq as u64,
+        model: news.map(|model| ModelDownlink {
+            id: model.id.0,
+            version: model.version as u32,
+            data_until: model.data_until.0,
+            replaces: model.replaces(),
+            // What the model rests on is for the shore; the bridge has its band.
+            model: Model {
+                quality: None,
+                ..model.model.0
+            },
+        }),
+        unread: None,
+        card_withdrawn,
+        settings: Some(settings).filter(|current| current.version != has.settings.unwrap_or(0)),
+        server_time: app.clock.now(),
+    };
+    let form = has.form;
+    Ok(Answer { downlink, form })
+}
+
+/// Whether a ship should have this model instead of the one that she names.
+async fn is_news(app: &App, model: &StoredModel, card: Option<&str>) -> Result<bool> {
+    let Some(card) = card else {
+        return Ok(true);
+    };
+    if card == card_tag(model.id.0) {
+        return Ok(false);
+    }
+    let known = models::lately(&app.db, model.vessel_id, model.compass_id).await?;
+    let known = known.iter().find(|known| card == card_tag(known.id.0));
+    Ok(known.is_none_or(|known| model.matters_after(known)))
+}

@@ -1,0 +1,214 @@
+//! Ingest: batches in, acknowledgement and downlink out.
+//!
+//! What always holds:
+//!
+//! - A batch is acknowledged only when it and the job to analyse it are on disk,
+//!   in one transaction.
+//! - The same batch again changes nothing; other bytes under the same number are
+//!   refused and change nothing.
+//! - An alert of the ship's own is taken in that transaction too, and so is the sign of
+//!   another computer that sends as the same agent.
+//! - `contiguous_seq` covers only batches that are here, all from 1 on.
+//! - An agent reaches its own streams and nothing else.
+
+mod bursts;
+mod downlink;
+mod store;
+
+pub use bursts::{Imported, Incomplete, Refused, import};
+
+use crate::enrolment;
+use crate::enrolment::Agent;
+use crate::{alerts, analysis};
+use axum::body::Bytes;
+use axum::extract::rejection::BytesRejection;
+use axum::extract::{DefaultBodyLimit, FromRef, State};
+use axum::http::StatusCode;
+use binnacle_platform::app::App;
+use binnacle_platform::audit::{self, RequestContext};
+use binnacle_platform::db::Tx;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::events;
+use binnacle_platform::http::{Id, Json, Params};
+use binnacle_platform::time::Time;
+use binnacle_wire::batch::{Batch, StreamId};
+use binnacle_wire::codec::MAX_BYTES;
+use binnacle_wire::messages::OpenStreamAnswer;
+pub use downlink::CardWithdrawnSchema;
+use downlink::{Answer, DownlinkSchema, Has, OpenStreamSchema};
+use metrics::counter;
+use std::time::Duration;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use uuid::Uuid;
+
+/// No batch has this number or a higher one: up to here JSON's numbers are exact,
+/// and one more fits into the database.
+const SEQ_END: u64 = 1 << 53;
+/// No answer waits longer for an analysis: proxies give up after a minute.
+const LONGEST_WAIT: Duration = Duration::from_secs(55);
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(put_batch))
+        .route_layer(axum::middleware::from_fn(audit::leave_out))
+        .layer(DefaultBodyLimit::max(MAX_BYTES))
+        .routes(routes!(open_stream))
+        .routes(routes!(downlink))
+}
+
+/// Open a new stream for the same compass
+#[utoipa::path(post, path = "/streams", tag = "agents", security(("token" = [])),
+    responses((status = 201, body = OpenStreamSchema), (status = 401, body = Problem)))]
+async fn open_stream(
+    State(app): State<App>,
+    request: RequestContext,
+    agent: Agent,
+) -> Result<(StatusCode, Json<OpenStreamAnswer>)> {
+    let mut tx = request.begin().await?;
+    let stream = enrolment::open_stream(&mut tx, agent, app.clock.now().into()).await?;
+    tx.commit().await?;
+    Ok((StatusCode::CREATED, Json(OpenStreamAnswer { stream })))
+}
+
+/// Send a batch
+///
+/// Answers when the batch is durable. The same batch again is answered alike.
+#[utoipa::path(put, path = "/streams/{stream}/batches/{seq}", tag = "agents",
+    security(("token" = [])),
+    params(("stream" = Uuid, Path), ("seq" = u64, Path, minimum = 1), Has),
+    request_body(content = Vec<u8>, content_type = "application/octet-stream",
+                 description = "The frame, as crates/wire/FORMAT.md has it"),
+    responses((status = 200, description = "As JSON, or in the compact form asked for",
+               content((DownlinkSchema = "application/json"),
+                       (Vec<u8> = "application/octet-stream"))),
+              (status = 400, body = Problem), (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "Other bytes are stored under this number", body = Problem),
+              (status = 413, body = Problem), (status = 422, body = Problem)))]
+async fn put_batch(
+    State(app): State<App>,
+    request: RequestContext,
+    agent: Agent,
+    Id((stream, seq)): Id<(Uuid, u64)>,
+    Params(has): Params<Has>,
+    body: std::result::Result<Bytes, BytesRejection>,
+) -> Result<Answer> {
+    let bytes = body.map_err(|rejection| too_large(&rejection))?;
+    let batch = read(&bytes, StreamId(stream), seq)?;
+    let now = app.clock.now().into();
+    let mut tx = request.begin().await?;
+    let delay_s = match has.wait {
+        None => analysis_delay_s(&app, &batch),
+        // No other follows.
+        Some(_) => 0.0,
+    };
+    let taken = take(&mut tx, agent, &batch, &bytes, now, delay_s).await?;
+    if let Some(waits) = has.waits.or(has.wait.map(|_| 0)) {
+        store::note_aboard(&mut tx, agent.vessel_id, stream, (waits, has.budget), now).await?;
+    }
+    tx.commit().await?;
+    for event in taken.told {
+        app.publish(event);
+    }
+    let result = if taken.is_new { "stored" } else { "repeated" };
+    counter!("binnacle_batches_total", "result" => result).increment(1);
+    if let Some(wait_s) = has.wait.filter(|_| !batch.samples.is_empty()) {
+        let at_most = Duration::from_secs(wait_s.into()).min(LONGEST_WAIT);
+        analysis::done(&app, agent.vessel_id, at_most).await?;
+    }
+    downlink::answer(&app, agent, stream, has).await
+}
+
+/// What a batch came to.
+struct Taken {
+    /// Whether it was not there already.
+    is_new: bool,
+    told: Vec<events::Event>,
+}
+
+/// Stores a batch and all that follows from it, whichever way it came.
+async fn take(
+    tx: &mut Tx,
+    agent: Agent,
+    batch: &Batch,
+    bytes: &[u8],
+    now: Time,
+    delay_s: f64,
+) -> Result<Taken> {
+    let is_new = store::insert(tx, agent, batch, bytes, now).await?;
+    let mut told = Vec::new();
+    if is_new {
+        let (vessel, compass) = (agent.vessel_id, agent.compass_id);
+        told.extend(alerts::record_agent_alerts(tx, vessel, compass, &batch.alerts, now).await?);
+        told.extend(
+            alerts::check_duplicate_agent(tx, agent, batch.stream.0, batch.seq, now).await?,
+        );
+        if !batch.samples.is_empty() || !batch.alerts.is_empty() {
+            analysis::enqueue(tx, vessel, now, delay_s).await?;
+        }
+        told.push(events::insert(tx, vessel, events::Kind::Batch, now).await?);
+    }
+    Ok(Taken { is_new, told })
+}
+
+/// Ask for what the shore has
+#[utoipa::path(get, path = "/streams/{stream}/downlink", tag = "agents", security(("token" = [])),
+    params(("stream" = Uuid, Path), Has),
+    responses((status = 200, description = "As JSON, or in the compact form asked for",
+               content((DownlinkSchema = "application/json"),
+                       (Vec<u8> = "application/octet-stream"))),
+              (status = 401, body = Problem), (status = 404, body = Problem)))]
+async fn downlink(
+    State(app): State<App>,
+    agent: Agent,
+    Id(stream): Id<Uuid>,
+    Params(has): Params<Has>,
+) -> Result<Answer> {
+    downlink::answer(&app, agent, stream, has).await
+}
+
+/// Other batches may follow soon, and are analysed with it; what the ship raised an
+/// alert of is not kept waiting.
+fn analysis_delay_s(app: &App, batch: &Batch) -> f64 {
+    if batch.alerts.is_empty() {
+        return f64::from(app.config.analysis_delay_s);
+    }
+    0.0
+}
+
+/// Reads a frame and makes sure that it is the one that the path names.
+fn read(bytes: &[u8], stream: StreamId, seq: u64) -> Result<Batch> {
+    let batch =
+        binnacle_wire::decode(bytes).map_err(|error| Error::BadRequest(error.to_string()))?;
+    if batch.stream != stream {
+        return Err(Error::Invalid {
+            field: "stream",
+            detail: format!("the frame is of stream {}", batch.stream),
+        });
+    }
+    if batch.seq >= SEQ_END {
+        return Err(Error::BadRequest(format!(
+            "seq: {} is not below {SEQ_END}",
+            batch.seq
+        )));
+    }
+    if batch.seq != seq {
+        return Err(Error::Invalid {
+            field: "seq",
+            detail: format!("the frame is number {}", batch.seq),
+        });
+    }
+    Ok(batch)
+}
+
+fn too_large(rejection: &BytesRejection) -> Error {
+    if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE {
+        return Error::TooLarge(MAX_BYTES);
+    }
+    Error::BadRequest(rejection.body_text())
+}

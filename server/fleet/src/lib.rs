@@ -1,0 +1,33 @@
+//! The fleet: operators, vessels, compasses, their samples, models, alerts and documents.
+
+#![allow(
+    clippy::missing_errors_doc,
+    reason = "a function that asks the database errs when that does; others say more"
+)]
+#![allow(
+    clippy::cast_possible_wrap,
+    reason = "counts go into BIGINT and are far from its end"
+)]
+
+pub mod binnacles;
+pub mod compasses;
+pub mod operators;
+pub mod overview;
+pub mod particulars;
+pub mod settings;
+pub mod vessels;
+
+pub mod enrolment;
+pub mod ingest;
+pub mod samples;
+
+pub mod adjustments;
+pub mod alerts;
+pub mod analysis;
+pub mod changes;
+pub mod deviation;
+pub mod models;
+
+pub mod card;
+pub mod deviation_book;
+pub mod logbook;

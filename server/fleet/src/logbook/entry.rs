@@ -1,0 +1,239 @@
+//! An entry of the logbook, as it is asked for, written and shown.
+
+use super::schema::{KindSchema, ReportSchema};
+use binnacle_compass::logbook::{Cargo, LogbookKind};
+use binnacle_compass::time::Timestamp;
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::http::time;
+use binnacle_platform::ids::{CompassId, EntryId};
+use binnacle_platform::time::Time;
+use binnacle_wire::logbook::{Report, ReportError};
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+
+/// An entry to be written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(from = "Written")]
+pub(super) struct NewEntry {
+    /// What happened.
+    #[serde(flatten)]
+    #[schema(value_type = ReportSchema)]
+    pub(super) report: Report,
+    /// The compass that it concerns; the whole ship if none is named. Only work on a
+    /// compass, and a note, may name one.
+    pub(super) compass_id: Option<CompassId>,
+}
+
+/// An entry to be written, field by field. One that is not known may be a known one
+/// misspelt, and is refused; reports from on board, which newer agents write, are not
+/// read by this.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a logbook entry")]
+struct Written {
+    kind: LogbookKind,
+    from: Timestamp,
+    to: Option<Timestamp>,
+    cargo: Option<Cargo>,
+    hatch: Option<String>,
+    port: Option<String>,
+    #[serde(default)]
+    note: String,
+    compass_id: Option<CompassId>,
+}
+
+impl From<Written> for NewEntry {
+    fn from(written: Written) -> NewEntry {
+        NewEntry {
+            report: Report {
+                kind: written.kind,
+                from: written.from,
+                to: written.to,
+                cargo: written.cargo,
+                hatch: written.hatch,
+                port: written.port,
+                note: written.note,
+            },
+            compass_id: written.compass_id,
+        }
+    }
+}
+
+/// An entry of a vessel's logbook.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub(super) struct LogbookEntry {
+    /// The entry's id.
+    pub(super) id: EntryId,
+    /// What happened.
+    #[serde(flatten)]
+    #[schema(value_type = ReportSchema)]
+    pub(super) report: Report,
+    /// The compass that it concerns; none for the whole ship.
+    #[schema(required)]
+    pub(super) compass_id: Option<CompassId>,
+    /// When it came here.
+    pub(super) created_at: Time,
+    /// The reporter's name; empty when a report from on board gives none.
+    pub(super) created_by: String,
+    /// Where it was reported.
+    pub(super) author: AuthorKind,
+    /// Counts from 1.
+    pub(super) revision: u32,
+    /// When it was last amended.
+    #[schema(required)]
+    pub(super) revised_at: Option<Time>,
+    /// Who amended it last.
+    #[schema(required)]
+    pub(super) revised_by: Option<String>,
+    /// When it was withdrawn; from then on it counts no more.
+    #[schema(required)]
+    pub(super) withdrawn_at: Option<Time>,
+    /// Who withdrew it.
+    #[schema(required)]
+    pub(super) withdrawn_by: Option<String>,
+    /// Why.
+    #[schema(required)]
+    pub(super) withdrawal_reason: Option<String>,
+}
+
+/// Where an entry was reported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+#[schema(as = LogbookAuthor)]
+pub(super) enum AuthorKind {
+    /// Ashore, by one of the operator's people or a program of theirs.
+    User,
+    /// On board, on the agent's page.
+    Agent,
+    /// By an adjuster firm.
+    Firm,
+}
+
+/// A page of a logbook.
+#[derive(Serialize, ToSchema)]
+pub(super) struct LogbookList {
+    /// What happened last comes first.
+    pub(super) items: Vec<LogbookEntry>,
+    /// `after` of the next page.
+    #[schema(required)]
+    pub(super) next: Option<String>,
+}
+
+/// An entry as it is, and as it was.
+#[derive(Serialize, ToSchema)]
+pub(super) struct RevisedEntry {
+    /// As it is.
+    #[serde(flatten)]
+    pub(super) entry: LogbookEntry,
+    /// As it was written each time, the first time first.
+    pub(super) revisions: Vec<Revision>,
+}
+
+/// An entry as it was written once.
+#[derive(Serialize, ToSchema)]
+pub(super) struct Revision {
+    /// Counts from 1.
+    pub(super) number: u32,
+    /// When.
+    pub(super) at: Time,
+    /// Where it was written.
+    pub(super) author: AuthorKind,
+    /// Who wrote it; empty when a report from on board does not say.
+    pub(super) author_name: String,
+    /// What it said.
+    pub(super) entry: NewEntry,
+}
+
+/// Why an entry is withdrawn.
+#[derive(Default, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Withdrawal {
+    /// In a few words.
+    #[schema(max_length = 200)]
+    pub(super) reason: Option<String>,
+}
+
+/// Which entries.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(super) struct Filter {
+    /// Of this kind only.
+    #[param(value_type = Option<KindSchema>)]
+    kind: Option<LogbookKind>,
+    /// What had not ended before this instant, RFC 3339.
+    #[param(value_type = Option<String>, format = DateTime)]
+    from: Option<String>,
+    /// What began before this instant, RFC 3339.
+    #[param(value_type = Option<String>, format = DateTime)]
+    to: Option<String>,
+    /// Whether withdrawn entries are listed too; they are if not said.
+    withdrawn: Option<bool>,
+}
+
+/// Which entries, read.
+pub(super) struct CheckedFilter {
+    pub(super) kind: Option<LogbookKind>,
+    pub(super) from: Option<Time>,
+    pub(super) to: Option<Time>,
+    pub(super) withdrawn: bool,
+}
+
+impl NewEntry {
+    /// The entry, if it can be one at this time.
+    pub(super) fn checked(self, now: Timestamp) -> Result<NewEntry> {
+        let report = self.report.checked(now).map_err(invalid_report)?;
+        let report = report.ending_within_a_year(now).map_err(invalid_report)?;
+        if self.compass_id.is_some() && !may_name_a_compass(report.kind) {
+            return Err(Error::Invalid {
+                field: "compass_id",
+                detail: "what is reported concerns the whole ship".to_owned(),
+            });
+        }
+        Ok(NewEntry { report, ..self })
+    }
+}
+
+impl LogbookEntry {
+    /// What it says.
+    pub(super) fn content(&self) -> NewEntry {
+        NewEntry {
+            report: self.report.clone(),
+            compass_id: self.compass_id,
+        }
+    }
+
+    /// `after` of a page that begins behind it.
+    pub(super) fn cursor(&self) -> String {
+        format!("{}.{}", self.report.from.micros(), self.id)
+    }
+}
+
+impl Filter {
+    pub(super) fn checked(self) -> Result<CheckedFilter> {
+        Ok(CheckedFilter {
+            kind: self.kind,
+            from: time("from", self.from.as_deref())?.map(Time),
+            to: time("to", self.to.as_deref())?.map(Time),
+            withdrawn: self.withdrawn.unwrap_or(true),
+        })
+    }
+}
+
+/// Refusal of a report that cannot be.
+pub(super) fn invalid_report(error: ReportError) -> Error {
+    Error::Invalid {
+        field: error.field,
+        detail: error.detail,
+    }
+}
+
+fn may_name_a_compass(kind: LogbookKind) -> bool {
+    matches!(
+        kind,
+        LogbookKind::Adjustment
+            | LogbookKind::CorrectorChange
+            | LogbookKind::CompassMoved
+            | LogbookKind::Repair
+            | LogbookKind::Note
+    )
+}

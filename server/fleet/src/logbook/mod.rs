@@ -1,0 +1,186 @@
+//! The magnetic logbook: what operators and officers report about a vessel.
+//!
+//! What always holds:
+//!
+//! - An entry is never removed and no revision of it is lost. One that was wrong is
+//!   withdrawn: it stays in its place, marked, and counts no more.
+//! - Each change is stored together with its revision, a job to analyse the vessel
+//!   anew, and an event for the dashboards, in one transaction.
+//! - A report from on board has the id that it was given there: the same again, or
+//!   an older revision that comes late, changes nothing.
+
+mod aboard;
+mod amendment;
+mod entry;
+mod schema;
+mod store;
+
+pub use aboard::router as agent_router;
+pub use schema::KindSchema as LogbookKindSchema;
+pub use store::{Adjusted, of_compass, write_adjustment};
+
+use crate::vessels;
+use amendment::{Amendment, AmendmentSchema};
+use axum::extract::{FromRef, State};
+use axum::http::StatusCode;
+use binnacle_platform::access::{Reader, Writer};
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Page, Params, Valid, ValidOrNone, text};
+use binnacle_platform::idempotency::{self, Key};
+use binnacle_platform::ids::{EntryId, VesselId};
+use entry::{Filter, LogbookEntry, LogbookList, NewEntry, RevisedEntry, Withdrawal};
+use store::{Author, Change};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(list_logbook, report_entry))
+        .routes(routes!(find_entry, amend_entry))
+        .routes(routes!(withdraw_entry))
+}
+
+/// Read a vessel's logbook
+///
+/// Withdrawn entries stay in it, marked.
+#[utoipa::path(get, path = "/vessels/{id}/logbook", tag = "fleet",
+    params(("id" = VesselId, Path), Filter, Page),
+    responses((status = 200, body = LogbookList), (status = 401, body = Problem),
+              (status = 404, body = Problem), (status = 422, body = Problem)))]
+async fn list_logbook(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(filter): Params<Filter>,
+    page: Page,
+) -> Result<Json<LogbookList>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
+    let filter = filter.checked()?;
+    let after = page.after_time()?;
+    let found = store::list(&app.db, id, &filter, after, page.fetch()).await?;
+    let listed = page.cut(found, LogbookEntry::cursor);
+    Ok(Json(LogbookList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// Report what bears on a vessel's magnetism
+#[utoipa::path(post, path = "/vessels/{id}/logbook", tag = "fleet",
+    params(("id" = VesselId, Path), Key), request_body = NewEntry,
+    responses((status = 201, body = LogbookEntry), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn report_entry(
+    State(app): State<App>,
+    request: RequestContext,
+    writer: Writer,
+    Id(vessel): Id<VesselId>,
+    key: Key,
+    Valid(new): Valid<NewEntry>,
+) -> Result<(StatusCode, Json<LogbookEntry>)> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
+    let request_hash = idempotency::request_hash(&format!("logbook entry of {vessel}"), &new)?;
+    let now = app.clock.now();
+    let new = new.checked(now)?;
+    let wanted = EntryId::new();
+    let mut change = Change::begin(&app, &request, vessel, now.into()).await?;
+    let tx = change.tx();
+    let made = key
+        .once(tx, writer.operator, &request_hash, wanted.0, now.into())
+        .await?;
+    if made == wanted.0 {
+        let author = Author::user(tx, writer.user, now.into()).await?;
+        store::insert(tx, vessel, wanted, &new, &author).await?;
+        change.commit().await?;
+    }
+    let entry = store::must_find(&app.db, vessel, EntryId(made)).await?;
+    Ok((StatusCode::CREATED, Json(entry)))
+}
+
+/// See an entry with all its revisions
+#[utoipa::path(get, path = "/vessels/{id}/logbook/{entry}", tag = "fleet",
+    params(("id" = VesselId, Path), ("entry" = EntryId, Path)),
+    responses((status = 200, body = RevisedEntry), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn find_entry(
+    State(app): State<App>,
+    reader: Reader,
+    Id((vessel, id)): Id<(VesselId, EntryId)>,
+) -> Result<Json<RevisedEntry>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, vessel).await?;
+    Ok(Json(RevisedEntry {
+        entry: store::must_find(&app.db, vessel, id).await?,
+        revisions: store::revisions(&app.db, vessel, id).await?,
+    }))
+}
+
+/// Amend an entry
+///
+/// What is left out stays as it is; null takes a value away. The entry as it was
+/// is kept among its revisions.
+#[utoipa::path(patch, path = "/vessels/{id}/logbook/{entry}", tag = "fleet",
+    params(("id" = VesselId, Path), ("entry" = EntryId, Path)), request_body = AmendmentSchema,
+    responses((status = 200, body = LogbookEntry), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 410, description = "The entry is withdrawn", body = Problem),
+              (status = 422, body = Problem)))]
+async fn amend_entry(
+    State(app): State<App>,
+    request: RequestContext,
+    writer: Writer,
+    Id((vessel, id)): Id<(VesselId, EntryId)>,
+    Valid(amendment): Valid<Amendment>,
+) -> Result<Json<LogbookEntry>> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
+    let now = app.clock.now();
+    let mut change = Change::begin(&app, &request, vessel, now.into()).await?;
+    let current = store::lock(change.tx(), vessel, id).await?;
+    if current.withdrawn_at.is_some() {
+        return Err(Error::Gone("this entry is withdrawn"));
+    }
+    let amended = amendment.applied_to(current.content.clone()).checked(now)?;
+    if amended != current.content {
+        let author = Author::user(change.tx(), writer.user, now.into()).await?;
+        store::revise(change.tx(), &current, &amended, &author).await?;
+        change.commit().await?;
+    }
+    Ok(Json(store::must_find(&app.db, vessel, id).await?))
+}
+
+/// Withdraw an entry
+///
+/// It stays in the logbook, marked, and counts no more. Withdrawing it again
+/// changes nothing.
+#[utoipa::path(post, path = "/vessels/{id}/logbook/{entry}/withdraw", tag = "fleet",
+    params(("id" = VesselId, Path), ("entry" = EntryId, Path)), request_body = Option<Withdrawal>,
+    responses((status = 200, body = LogbookEntry), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn withdraw_entry(
+    State(app): State<App>,
+    request: RequestContext,
+    writer: Writer,
+    Id((vessel, id)): Id<(VesselId, EntryId)>,
+    ValidOrNone(withdrawal): ValidOrNone<Withdrawal>,
+) -> Result<Json<LogbookEntry>> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
+    let given = withdrawal.reason.filter(|reason| !reason.trim().is_empty());
+    let reason = given.map(|reason| text("reason", &reason)).transpose()?;
+    let now = app.clock.now().into();
+    let mut change = Change::begin(&app, &request, vessel, now).await?;
+    let current = store::lock(change.tx(), vessel, id).await?;
+    if current.withdrawn_at.is_none() {
+        let author = Author::user(change.tx(), writer.user, now).await?;
+        store::withdraw(change.tx(), &current, reason.as_deref(), &author).await?;
+        change.commit().await?;
+    }
+    Ok(Json(store::must_find(&app.db, vessel, id).await?))
+}

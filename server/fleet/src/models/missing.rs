@@ -1,0 +1,72 @@
+//! Why a compass has no model, and since when its last one holds no more.
+
+use crate::analysis::{LeftOut, RefusalSchema};
+use crate::ingest::CardWithdrawnSchema;
+use axum::http::StatusCode;
+use binnacle_compass::result::FitError;
+use binnacle_platform::error::{DomainProblem, Error};
+use binnacle_wire::messages::CardWithdrawn;
+use serde::Serialize;
+use std::fmt;
+use utoipa::ToSchema;
+
+/// What there is to say in place of a model.
+#[derive(Clone, Debug)]
+pub struct NoModel {
+    /// Why the samples make none; without a reason, none has been analysed.
+    pub refusal: Option<FitError>,
+    /// The samples that the logbook leaves out.
+    pub left_out: LeftOut,
+    /// That there was one, and it must not be used.
+    pub card_withdrawn: Option<CardWithdrawn>,
+}
+
+impl fmt::Display for NoModel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(withdrawn) = &self.card_withdrawn {
+            write!(f, "{withdrawn}: ")?;
+        }
+        match &self.refusal {
+            Some(refusal) => write!(f, "{refusal}{}", self.left_out),
+            None => f.write_str("no samples have been analysed yet"),
+        }
+    }
+}
+
+/// Fields of the problem `no-model-yet`.
+#[derive(Serialize, ToSchema)]
+pub struct NoModelFields {
+    /// What a model is refused for; only in `no-model-yet`, and not before the
+    /// first samples have been analysed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, value_type = Option<RefusalSchema>)]
+    refusal: Option<FitError>,
+    /// The samples that the logbook leaves out of the current epoch; only in
+    /// `no-model-yet`, and only if there are any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false)]
+    left_out: Option<LeftOut>,
+    /// That the last model holds no more; only in `no-model-yet`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, value_type = Option<CardWithdrawnSchema>)]
+    card_withdrawn: Option<CardWithdrawn>,
+}
+
+impl From<NoModel> for Error {
+    fn from(missing: NoModel) -> Error {
+        let detail = missing.to_string();
+        let fields = NoModelFields {
+            refusal: missing.refusal,
+            left_out: Some(missing.left_out).filter(LeftOut::any),
+            card_withdrawn: missing.card_withdrawn,
+        };
+        let problem = DomainProblem {
+            status: StatusCode::NOT_FOUND,
+            kind: "no-model-yet",
+            title: "No model yet",
+            detail,
+            extra: serde_json::Map::new(),
+        };
+        problem.with(&fields).into()
+    }
+}

@@ -1,0 +1,232 @@
+//! The models of a vessel's compasses: every version is kept, the highest is current,
+//! but while a change has ended its epoch and no other model has taken its place.
+
+mod missing;
+mod news;
+mod schema;
+mod store;
+
+pub use missing::{NoModel, NoModelFields};
+pub use schema::{IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema};
+pub use store::{
+    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, foretold, in_force,
+    insert, lately, of_version, withdrawn,
+};
+
+use crate::compasses::{self, WhichCompass};
+use crate::deviation::{HandbookSchema, Worst};
+use crate::{analysis, vessels};
+use axum::extract::{FromRef, State};
+use binnacle_compass::handbook::Handbook;
+use binnacle_compass::ship::EarthField;
+use binnacle_platform::access::Reader;
+use binnacle_platform::app::App;
+use binnacle_platform::error::{Problem, Result};
+use binnacle_platform::http::{Id, Json, Page, Params};
+use binnacle_platform::ids::{CompassId, ModelId, OrderId, VesselId};
+use binnacle_platform::time::Time;
+use binnacle_wire::messages::CardWithdrawn;
+use serde::Serialize;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(current_model))
+        .routes(routes!(list_models))
+}
+
+/// A model in a line.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct ModelSummary {
+    /// The model version's id.
+    pub id: ModelId,
+    /// Counts the compass's models from 1.
+    pub version: i64,
+    /// The compass.
+    pub compass_id: CompassId,
+    /// When it was fitted.
+    pub created_at: Time,
+    /// The time of the last sample in it.
+    pub data_until: Time,
+    /// Root mean square of the residuals, degrees.
+    #[schema(required)]
+    pub rms_deg: Option<f64>,
+    /// Samples that carried weight.
+    pub samples_used: u64,
+}
+
+/// A model version, whole.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct ModelVersion {
+    /// The model version's id.
+    pub id: ModelId,
+    /// Counts the compass's models from 1.
+    pub version: i64,
+    /// The compass.
+    pub compass_id: CompassId,
+    /// Since when it holds; none reaches back without end.
+    #[schema(required)]
+    pub epoch_from: Option<Time>,
+    /// Until when it holds; none goes on.
+    #[schema(required)]
+    pub epoch_to: Option<Time>,
+    /// The time of the first sample in it.
+    pub data_from: Time,
+    /// The time of the last sample in it.
+    pub data_until: Time,
+    /// When it was fitted.
+    pub created_at: Time,
+    /// SHA-256 of everything that it was made from.
+    pub input_hash: String,
+    /// The estimator that made it.
+    pub estimator: String,
+    /// The work order that foretold it; none for a model that was fitted.
+    #[schema(required)]
+    pub foretold_by: Option<OrderId>,
+    /// The place of the last sample, degrees north.
+    pub lat: f64,
+    /// The place of the last sample, degrees east.
+    pub lon: f64,
+    /// Horizontal field there, nT.
+    pub h_nt: f64,
+    /// Vertical field there, nT, down positive.
+    pub z_nt: f64,
+    /// The handbook's coefficients there; none where headings are ambiguous.
+    #[schema(required, value_type = Option<HandbookSchema>)]
+    pub handbook: Option<Handbook>,
+    /// The fit.
+    #[schema(value_type = ModelSchema)]
+    pub model: ModelJson,
+}
+
+/// A page of model versions.
+#[derive(Serialize, ToSchema)]
+pub struct ModelVersionList {
+    /// The newest first.
+    pub items: Vec<ModelVersion>,
+    /// `after` of the next page.
+    #[schema(required)]
+    pub next: Option<String>,
+}
+
+/// Find a compass's current model
+#[utoipa::path(get, path = "/vessels/{id}/model", tag = "fleet",
+    params(("id" = VesselId, Path), WhichCompass),
+    responses((status = 200, body = ModelVersion), (status = 401, body = Problem),
+              (status = 404, description = "Also when there is no model yet: detail and refusal say what is missing", body = Problem)))]
+async fn current_model(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(which): Params<WhichCompass>,
+) -> Result<Json<ModelVersion>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
+    let compass = compasses::find(&app.db, id, which.compass).await?;
+    let model = must_have(&app, id, compass.id).await?;
+    Ok(Json(model.version()))
+}
+
+/// List a compass's model versions
+#[utoipa::path(get, path = "/vessels/{id}/models", tag = "fleet",
+    params(("id" = VesselId, Path), WhichCompass, Page),
+    responses((status = 200, body = ModelVersionList), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn list_models(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(which): Params<WhichCompass>,
+    page: Page,
+) -> Result<Json<ModelVersionList>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
+    let compass = compasses::find(&app.db, id, which.compass).await?;
+    let before = page.after_number()?;
+    let found = store::list(&app.db, id, compass.id, before, page.fetch()).await?;
+    let listed = page.cut(found, |model| model.version.to_string());
+    Ok(Json(ModelVersionList {
+        items: listed.items.into_iter().map(StoredModel::version).collect(),
+        next: listed.next,
+    }))
+}
+
+/// The current model, or why there is none.
+///
+/// # Errors
+/// [`NoModel`] with what is missing.
+pub async fn must_have(app: &App, vessel: VesselId, compass: CompassId) -> Result<StoredModel> {
+    if let Some(model) = current(&app.db, vessel, compass).await? {
+        return Ok(model);
+    }
+    let (refusal, left_out) = analysis::refusal(&app.db, vessel, compass).await?;
+    Err(NoModel {
+        refusal,
+        left_out,
+        card_withdrawn: card_withdrawn(&app.db, vessel, compass).await?,
+    }
+    .into())
+}
+
+impl StoredModel {
+    /// The model in a line.
+    pub fn summary(&self) -> ModelSummary {
+        ModelSummary {
+            id: self.id,
+            version: self.version,
+            compass_id: self.compass_id,
+            created_at: self.created_at,
+            data_until: self.data_until,
+            rms_deg: self.model.0.rms_deg,
+            samples_used: self.model.0.samples_used,
+        }
+    }
+
+    /// The heading with the greatest deviation, at the last sample's place.
+    pub fn worst(&self) -> Option<Worst> {
+        crate::deviation::worst(&self.model.0, self.earth())
+    }
+
+    /// Why no card from before the model's epoch holds.
+    pub fn replaces(&self) -> Option<CardWithdrawn> {
+        Some(CardWithdrawn {
+            since: self.epoch_from?.0,
+            reason: self.epoch_begun_by.clone()?,
+        })
+    }
+
+    fn earth(&self) -> EarthField {
+        EarthField {
+            h_nt: self.h_nt,
+            z_nt: self.z_nt,
+        }
+    }
+
+    /// The version, whole.
+    pub fn version(self) -> ModelVersion {
+        ModelVersion {
+            handbook: crate::deviation::handbook(&self.model.0, self.earth()),
+            id: self.id,
+            version: self.version,
+            compass_id: self.compass_id,
+            epoch_from: self.epoch_from,
+            epoch_to: self.epoch_to,
+            data_from: self.data_from,
+            data_until: self.data_until,
+            created_at: self.created_at,
+            input_hash: self.input_hash,
+            estimator: self.estimator,
+            foretold_by: self.foretold_by,
+            lat: self.lat,
+            lon: self.lon,
+            h_nt: self.h_nt,
+            z_nt: self.z_nt,
+            model: self.model,
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! Companies with a fleet: the tenants that see vessels.
+//!
+//! What always holds: only a platform admin sees that there are others.
+
+mod store;
+
+pub use store::{all, create, exists};
+
+use axum::extract::{FromRef, State};
+use axum::http::StatusCode;
+use binnacle_platform::access::Platform;
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Page, Valid, text};
+use binnacle_platform::idempotency::{self, Key};
+use binnacle_platform::ids::OperatorId;
+use binnacle_platform::time::Time;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(list_operators, create_operator))
+        .routes(routes!(find_operator))
+}
+
+/// A company with a fleet.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+struct Operator {
+    /// Its id.
+    id: OperatorId,
+    /// Its name.
+    #[schema(example = "Armada del Sur")]
+    name: String,
+    /// When it was entered here.
+    created_at: Time,
+}
+
+/// A company to be entered.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({ "name": "Armada del Sur" }))]
+pub struct NewCompany {
+    /// Its name.
+    #[schema(min_length = 1, max_length = 200)]
+    pub name: String,
+}
+
+/// A page of operators.
+#[derive(Serialize, ToSchema)]
+struct OperatorList {
+    /// In the order in which they were entered.
+    items: Vec<Operator>,
+    /// `after` of the next page.
+    #[schema(required)]
+    next: Option<String>,
+}
+
+/// List the operators
+///
+/// For platform admins.
+#[utoipa::path(get, path = "/operators", tag = "platform", params(Page),
+    responses((status = 200, body = OperatorList), (status = 401, body = Problem),
+              (status = 403, body = Problem)))]
+async fn list_operators(
+    State(app): State<App>,
+    _admin: Platform,
+    page: Page,
+) -> Result<Json<OperatorList>> {
+    let found = store::list(&app.db, page.after_id()?, page.fetch()).await?;
+    let listed = page.cut(found, |operator| operator.id.to_string());
+    Ok(Json(OperatorList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// Enter an operator
+///
+/// For platform admins. Its first people are made by `binnacle-server admin create user`.
+#[utoipa::path(post, path = "/operators", tag = "platform", params(Key),
+    request_body = NewCompany,
+    responses((status = 201, body = Operator), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 422, body = Problem)))]
+async fn create_operator(
+    State(app): State<App>,
+    request: RequestContext,
+    admin: Platform,
+    key: Key,
+    Valid(new): Valid<NewCompany>,
+) -> Result<(StatusCode, Json<Operator>)> {
+    let admin = admin.who_may_write()?;
+    let request_hash = idempotency::request_hash("operator", &new)?;
+    let name = text("name", &new.name)?;
+    let now = app.clock.now().into();
+    let wanted = OperatorId::new();
+    let mut tx = request.begin().await?;
+    let made = key
+        .once(&mut tx, admin, &request_hash, wanted.0, now)
+        .await?;
+    if made == wanted.0 {
+        store::insert(&mut tx, wanted, &name, now).await?;
+    }
+    tx.commit().await?;
+    Ok((StatusCode::CREATED, found(&app, OperatorId(made)).await?))
+}
+
+/// See an operator
+///
+/// For platform admins.
+#[utoipa::path(get, path = "/operators/{id}", tag = "platform",
+    params(("id" = OperatorId, Path)),
+    responses((status = 200, body = Operator), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem)))]
+async fn find_operator(
+    State(app): State<App>,
+    _admin: Platform,
+    Id(id): Id<OperatorId>,
+) -> Result<Json<Operator>> {
+    found(&app, id).await
+}
+
+async fn found(app: &App, id: OperatorId) -> Result<Json<Operator>> {
+    let operator = store::find(&app.db, id).await?;
+    Ok(Json(operator.ok_or(Error::NotFound("operator"))?))
+}

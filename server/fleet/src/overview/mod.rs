@@ -1,0 +1,274 @@
+//! The fleet at a glance: every vessel in one answer, for a map and a table side by side.
+//!
+//! What always holds: it is one operator's whole fleet, or the one vessel of it that was
+//! asked for, in the order in which they were entered. It says nothing that the vessel's
+//! own pages do not say; it says it in few words, because a slow link carries them.
+
+mod store;
+
+use crate::alerts::{Cause, State};
+use crate::analysis::Track;
+use crate::deviation::{self, Worst};
+use crate::models::StoredModel;
+use crate::vessels::LastPosition;
+use axum::extract;
+use axum::extract::FromRef;
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_platform::access::Reader;
+use binnacle_platform::app::App;
+use binnacle_platform::error::{Problem, Result};
+use binnacle_platform::http::{Json, Params};
+use binnacle_platform::ids::{AlertId, VesselId};
+use binnacle_platform::severity::Severity;
+use binnacle_platform::time::Time;
+use binnacle_schedule::ports::{self, PortCode};
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use store::{Call, Row, WorstAlert};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// Of more vessels than this an answer has no tracks.
+const MOST_WITH_TRACKS: usize = 200;
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new().routes(routes!(find_fleet))
+}
+
+/// Which vessels.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+struct Which {
+    /// The only one, for a page that has the others already.
+    vessel: Option<VesselId>,
+}
+
+/// An operator's vessels.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Fleet {
+    /// In the order in which they were entered.
+    pub vessels: Vec<FleetVessel>,
+}
+
+/// How a vessel stands, in a line of a table and a mark on a map.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct FleetVessel {
+    /// The vessel's id.
+    pub id: VesselId,
+    /// Her name.
+    pub name: String,
+    /// Her IMO number, seven digits.
+    #[schema(required)]
+    pub imo_number: Option<String>,
+    /// Her call sign.
+    #[schema(required)]
+    pub call_sign: Option<String>,
+    /// When her last batch came.
+    #[schema(required)]
+    pub last_upload_at: Option<Time>,
+    /// Where her latest sample was taken.
+    #[schema(required)]
+    pub position: Option<LastPosition>,
+    /// Where she was in the month before, degrees north and east, a place for each twelve
+    /// hours, the oldest first. Empty in an answer of more than 200 vessels, where a map of
+    /// them would be a tangle: ask for the vessel.
+    #[schema(value_type = Vec<[f64; 2]>)]
+    pub track: Track,
+    /// The current model of her first compass that has one.
+    #[schema(required)]
+    pub model: Option<FleetModel>,
+    /// The heading with the greatest deviation by that model, where it was made.
+    #[schema(required)]
+    pub worst: Option<Worst>,
+    /// Alerts that nobody has acknowledged.
+    pub open_alerts: u32,
+    /// Her first port call that is not over.
+    #[schema(required)]
+    pub next_call: Option<NextCall>,
+    /// What most needs someone: of her alerts that are not cleared the worst, those that
+    /// nobody has acknowledged first, then the latest.
+    #[schema(required)]
+    pub alert: Option<FleetAlert>,
+}
+
+/// How good a model is, in short.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct FleetModel {
+    /// Counts the compass's models from 1.
+    pub version: i64,
+    /// Root mean square of the residuals, degrees.
+    #[schema(required)]
+    pub rms_deg: Option<f64>,
+    /// The time of the last sample in it.
+    pub data_until: Time,
+    /// For how many reasons it should not be trusted everywhere.
+    pub cautions: usize,
+}
+
+/// A port call, in short, and what awaits the compass there.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct NextCall {
+    /// Its UN/LOCODE.
+    pub port: String,
+    /// Its name; empty where the code is unknown.
+    pub port_name: &'static str,
+    /// When she arrives.
+    pub eta: Time,
+    /// When she leaves.
+    pub etd: Time,
+    /// The heading with the greatest deviation there and then, by her model.
+    #[schema(required)]
+    pub worst: Option<Worst>,
+}
+
+/// An alert, in short.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct FleetAlert {
+    /// Its id.
+    pub id: AlertId,
+    /// What it is about.
+    pub cause: Cause,
+    /// How bad it is.
+    pub severity: Severity,
+    /// How far people have come with it.
+    pub state: State,
+    /// What is so, in a sentence.
+    pub summary: String,
+}
+
+/// The fleet at a glance
+#[utoipa::path(get, path = "/fleet", tag = "fleet", params(Which),
+    responses((status = 200, body = Fleet), (status = 401, body = Problem)))]
+async fn find_fleet(
+    extract::State(app): extract::State<App>,
+    reader: Reader,
+    Params(which): Params<Which>,
+) -> Result<Json<Fleet>> {
+    let now = app.clock.now().into();
+    let found = store::find(&app.db, reader.operator, which.vessel, now).await?;
+    // A thousand models on every heading: not for a thread that others wait for.
+    let fleet = tokio::task::spawn_blocking(move || assemble(found));
+    Ok(Json(fleet.await.map_err(anyhow::Error::from)?))
+}
+
+fn assemble(found: store::Found) -> Fleet {
+    let mut alerts: HashMap<VesselId, Vec<WorstAlert>> = HashMap::new();
+    for alert in found.alerts {
+        alerts.entry(alert.vessel_id).or_default().push(alert);
+    }
+    let mut models = by_vessel(found.models, |model| model.vessel_id);
+    let tracks = match found.vessels.len() {
+        ..=MOST_WITH_TRACKS => found.tracks,
+        _ => Vec::new(),
+    };
+    let mut tracks = by_vessel(tracks, |track| track.vessel_id);
+    let mut calls = by_vessel(found.calls, |call| call.vessel_id);
+    let vessels = found.vessels.into_iter().map(|row| {
+        let model = models.remove(&row.id);
+        let track = tracks.remove(&row.id).map(|stored| stored.track);
+        let hers = alerts.remove(&row.id).unwrap_or_default();
+        let call = calls.remove(&row.id);
+        let call = call.map(|call| NextCall::of(call, model.as_ref()));
+        row.with(model.as_ref(), track.unwrap_or_default(), call, hers)
+    });
+    Fleet {
+        vessels: vessels.collect(),
+    }
+}
+
+/// The first of each vessel's.
+fn by_vessel<T>(items: Vec<T>, vessel: impl Fn(&T) -> VesselId) -> HashMap<VesselId, T> {
+    let mut found = HashMap::with_capacity(items.len());
+    for item in items {
+        found.entry(vessel(&item)).or_insert(item);
+    }
+    found
+}
+
+impl Row {
+    fn with(
+        self,
+        model: Option<&StoredModel>,
+        track: Track,
+        next_call: Option<NextCall>,
+        alerts: Vec<WorstAlert>,
+    ) -> FleetVessel {
+        FleetVessel {
+            position: self.position(),
+            id: self.id,
+            name: self.name,
+            imo_number: self.imo_number,
+            call_sign: self.call_sign,
+            last_upload_at: self.last_upload_at,
+            track,
+            next_call,
+            worst: model.and_then(StoredModel::worst).map(in_short),
+            model: model.map(FleetModel::of),
+            open_alerts: alerts.iter().filter(|alert| alert.is_raised()).count() as u32,
+            alert: alerts
+                .into_iter()
+                .max_by_key(WorstAlert::urgency)
+                .map(FleetAlert::from),
+        }
+    }
+}
+
+impl NextCall {
+    fn of(call: Call, model: Option<&StoredModel>) -> NextCall {
+        let port = PortCode::parse(&call.port).ok().and_then(ports::find);
+        let worst = port.zip(model).and_then(|(port, model)| {
+            let earth = field(FieldModel::Igrf14, port.position, 0.0, call.eta.0).ok()?;
+            deviation::worst(&model.model.0, earth.for_ship())
+        });
+        NextCall {
+            port: call.port,
+            port_name: port.map_or("", |port| port.name),
+            eta: call.eta,
+            etd: call.etd,
+            worst: worst.map(in_short),
+        }
+    }
+}
+
+/// Without the digits that nobody reads and every link carries.
+fn in_short(worst: Worst) -> Worst {
+    Worst {
+        compass_deg: worst.compass_deg,
+        deviation_deg: thousandth(worst.deviation_deg),
+        band95_deg: worst.band95_deg.map(thousandth),
+    }
+}
+
+fn thousandth(degrees: f64) -> f64 {
+    (degrees * 1000.0).round() / 1000.0
+}
+
+impl FleetModel {
+    fn of(model: &StoredModel) -> FleetModel {
+        let quality = model.model.0.quality.as_ref();
+        FleetModel {
+            version: model.version,
+            rms_deg: model.model.0.rms_deg.map(thousandth),
+            data_until: model.data_until,
+            cautions: quality.map_or(0, |quality| quality.cautions.len()),
+        }
+    }
+}
+
+impl From<WorstAlert> for FleetAlert {
+    fn from(alert: WorstAlert) -> FleetAlert {
+        FleetAlert {
+            id: alert.id,
+            cause: alert.cause,
+            severity: alert.severity,
+            state: alert.state,
+            summary: alert.summary,
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! What the database holds of a whole fleet, in five questions.
+
+use crate::alerts::{Cause, State};
+use crate::analysis::Track;
+use crate::models::{self, StoredModel};
+use crate::vessels::LastPosition;
+use binnacle_platform::db::{Db, Result, rows};
+use binnacle_platform::ids::{AlertId, OperatorId, VesselId};
+use binnacle_platform::severity::Severity;
+use binnacle_platform::time::Time;
+use uuid::Uuid;
+
+/// What there is to be put together.
+pub(super) struct Found {
+    pub(super) vessels: Vec<Row>,
+    /// The current ones, a vessel's first compass first.
+    pub(super) models: Vec<StoredModel>,
+    /// In the same order.
+    pub(super) tracks: Vec<StoredTrack>,
+    /// Those that are not cleared.
+    pub(super) alerts: Vec<WorstAlert>,
+    /// Each vessel's first that is not over.
+    pub(super) calls: Vec<Call>,
+}
+
+/// A vessel's own columns.
+#[derive(sqlx::FromRow)]
+pub(super) struct Row {
+    pub(super) id: VesselId,
+    pub(super) name: String,
+    pub(super) imo_number: Option<String>,
+    pub(super) call_sign: Option<String>,
+    pub(super) last_upload_at: Option<Time>,
+    last_sample_at: Option<Time>,
+    last_lat: Option<f64>,
+    last_lon: Option<f64>,
+}
+
+/// A compass's track.
+#[derive(sqlx::FromRow)]
+pub(super) struct StoredTrack {
+    pub(super) vessel_id: VesselId,
+    #[sqlx(try_from = "String")]
+    pub(super) track: Track,
+}
+
+/// An alert that is not cleared.
+#[derive(sqlx::FromRow)]
+pub(super) struct WorstAlert {
+    pub(super) id: AlertId,
+    pub(super) vessel_id: VesselId,
+    pub(super) cause: Cause,
+    pub(super) severity: Severity,
+    pub(super) state: State,
+    pub(super) summary: String,
+}
+
+/// A port call, in short.
+#[derive(sqlx::FromRow)]
+pub(super) struct Call {
+    pub(super) vessel_id: VesselId,
+    pub(super) port: String,
+    pub(super) eta: Time,
+    pub(super) etd: Time,
+}
+
+impl Row {
+    pub(super) fn position(&self) -> Option<LastPosition> {
+        Some(LastPosition {
+            lat: self.last_lat?,
+            lon: self.last_lon?,
+            at: self.last_sample_at?,
+        })
+    }
+}
+
+impl WorstAlert {
+    pub(super) fn is_raised(&self) -> bool {
+        self.state == State::Raised
+    }
+
+    /// The greatest comes first.
+    pub(super) fn urgency(&self) -> (Severity, bool, AlertId) {
+        (self.severity, self.is_raised(), self.id)
+    }
+}
+
+/// An operator's vessels, or the one that is named.
+pub(super) async fn find(
+    db: &Db,
+    operator: OperatorId,
+    only: Option<VesselId>,
+    now: Time,
+) -> Result<Found> {
+    let first = only.unwrap_or(VesselId(Uuid::nil()));
+    let last = only.unwrap_or(VesselId(Uuid::max()));
+    Ok(Found {
+        vessels: vessels(db, operator, first, last).await?,
+        models: models::current_of_fleet(db, operator, first, last).await?,
+        tracks: tracks(db, operator, first, last).await?,
+        alerts: open_alerts(db, operator, first, last).await?,
+        calls: next_calls(db, operator, first, last, now).await?,
+    })
+}
+
+async fn vessels(
+    db: &Db,
+    operator: OperatorId,
+    first: VesselId,
+    last: VesselId,
+) -> Result<Vec<Row>> {
+    rows!(
+        db,
+        Row,
+        "SELECT id, name, imo_number, call_sign, last_upload_at, last_sample_at, last_lat, last_lon
+         FROM vessels
+         WHERE operator_id = $1 AND id BETWEEN $2 AND $3
+           AND (out_of_service_at IS NULL OR $2 = $3)
+         ORDER BY id",
+        operator,
+        first,
+        last
+    )
+}
+
+async fn tracks(
+    db: &Db,
+    operator: OperatorId,
+    first: VesselId,
+    last: VesselId,
+) -> Result<Vec<StoredTrack>> {
+    rows!(
+        db,
+        StoredTrack,
+        "SELECT a.vessel_id, a.track
+         FROM analyses a
+         JOIN vessels v ON v.id = a.vessel_id
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3 AND a.track IS NOT NULL
+         ORDER BY a.vessel_id, a.compass_id",
+        operator,
+        first,
+        last
+    )
+}
+
+async fn open_alerts(
+    db: &Db,
+    operator: OperatorId,
+    first: VesselId,
+    last: VesselId,
+) -> Result<Vec<WorstAlert>> {
+    rows!(
+        db,
+        WorstAlert,
+        "SELECT a.id, a.vessel_id, a.cause, a.severity, a.state, a.summary
+         FROM alerts a
+         JOIN vessels v ON v.id = a.vessel_id
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3 AND a.state <> 'cleared'
+         ORDER BY a.vessel_id, a.id",
+        operator,
+        first,
+        last
+    )
+}
+
+async fn next_calls(
+    db: &Db,
+    operator: OperatorId,
+    first: VesselId,
+    last: VesselId,
+    now: Time,
+) -> Result<Vec<Call>> {
+    rows!(
+        db,
+        Call,
+        "SELECT c.vessel_id, c.port, c.eta, c.etd
+         FROM port_calls c
+         JOIN vessels v ON v.id = c.vessel_id
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
+           AND c.etd > $4 AND c.withdrawn_at IS NULL
+           AND NOT EXISTS (SELECT 1 FROM port_calls e
+                           WHERE e.vessel_id = c.vessel_id AND e.eta < c.eta
+                             AND e.etd > $4 AND e.withdrawn_at IS NULL)
+         ORDER BY c.vessel_id, c.id",
+        operator,
+        first,
+        last,
+        now
+    )
+}

@@ -1,0 +1,296 @@
+//! `/vessels/{id}/particulars`: what rules on adjusting ask about a vessel.
+//!
+//! What always holds: what is not known of a vessel binds her as if it were; so nothing
+//! here is needed, and everything that is said can only give her time.
+
+use crate::vessels;
+use axum::extract::{FromRef, State};
+use binnacle_platform::access::{Reader, Writer};
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::db::{Db, DomainEvent, Tx, execute, row};
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Valid, optional_text};
+use binnacle_platform::ids::{OperatorId, VesselId};
+use binnacle_platform::session;
+use binnacle_platform::time::Time;
+use binnacle_schedule::needs::{Ship, Transit};
+use binnacle_schedule::rules::{Canal, DeviationRecord, Flag, Trade};
+use chrono::NaiveDate;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// Nobody plans more of them.
+const MOST_TRANSITS: usize = 50;
+const MOST_TONNAGE: u32 = 1_000_000;
+
+/// What rules ask about a vessel is about to change.
+pub struct ParticularsChanged {
+    /// Whose vessel.
+    pub operator: OperatorId,
+    /// When.
+    pub at: Time,
+}
+
+impl DomainEvent for ParticularsChanged {}
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new().routes(routes!(find_particulars, set_particulars))
+}
+
+/// What rules on adjusting ask about a vessel.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(default, deny_unknown_fields)]
+#[schema(as = VesselParticulars, example = json!({
+    "flag_state": "PA", "gross_tonnage": 24000, "trade": "bulk", "deviation_record": "kept",
+    "licence": null, "transits": [{ "canal": "panama", "on": "2027-02-10" }]
+}))]
+pub struct Particulars {
+    /// Her flag, ISO 3166; where it is not said, what the vessel's own `flag` tells.
+    #[schema(value_type = Option<String>, required, pattern = "^[A-Z]{2}$")]
+    pub flag_state: Option<Flag>,
+    /// Her gross tonnage.
+    #[schema(required, maximum = 1_000_000)]
+    pub gross_tonnage: Option<u32>,
+    /// What she carries for her living.
+    #[schema(value_type = Option<TradeSchema>, required)]
+    pub trade: Option<Trade>,
+    /// Whether the compass deviation book is kept.
+    #[schema(value_type = Option<RecordSchema>, required)]
+    pub deviation_record: Option<DeviationRecord>,
+    /// A licence that an adjuster must hold.
+    #[schema(required, max_length = 200)]
+    pub licence: Option<String>,
+    /// Transits of canals with a rule of their own that are planned.
+    #[schema(value_type = Vec<TransitSchema>)]
+    pub transits: Vec<Transit>,
+}
+
+/// What a ship carries for her living.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = Trade)]
+#[allow(dead_code, reason = "describes binnacle_schedule::rules::Trade")]
+enum TradeSchema {
+    Bulk,
+    Container,
+    Tanker,
+    GeneralCargo,
+    RoRo,
+    Passenger,
+    Fishing,
+    Offshore,
+    Other,
+}
+
+/// Whether the compass deviation book is kept.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = DeviationRecordKept)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_schedule::rules::DeviationRecord"
+)]
+enum RecordSchema {
+    Kept,
+    NotKept,
+}
+
+/// A planned transit.
+#[derive(ToSchema)]
+#[schema(as = CanalTransit)]
+#[allow(dead_code, reason = "describes binnacle_schedule::needs::Transit")]
+struct TransitSchema {
+    /// `panama`.
+    #[schema(example = "panama")]
+    canal: String,
+    /// On which day.
+    on: NaiveDate,
+}
+
+/// See what rules on adjusting ask about a vessel
+#[utoipa::path(get, path = "/vessels/{id}/particulars", tag = "adjusting",
+    params(("id" = VesselId, Path)),
+    responses((status = 200, body = Particulars), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn find_particulars(
+    State(app): State<App>,
+    reader: Reader,
+    Id(vessel): Id<VesselId>,
+) -> Result<Json<Particulars>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, vessel).await?;
+    Ok(Json(find(&app.db, vessel).await?))
+}
+
+/// Say what rules on adjusting ask about a vessel
+///
+/// What is left out or null is not known, and binds her: to adjust too early costs a fee,
+/// to adjust too late a detention.
+#[utoipa::path(put, path = "/vessels/{id}/particulars", tag = "adjusting",
+    params(("id" = VesselId, Path)), request_body = Particulars,
+    responses((status = 200, body = Particulars), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn set_particulars(
+    State(app): State<App>,
+    request: RequestContext,
+    writer: Writer,
+    Id(vessel): Id<VesselId>,
+    Valid(particulars): Valid<Particulars>,
+) -> Result<Json<Particulars>> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
+    let particulars = particulars.checked()?;
+    let now = app.clock.now().into();
+    let mut tx = request.begin().await?;
+    let name = session::name_of(&mut tx, writer.user).await?;
+    put(&mut tx, vessel, &particulars, &name, now).await?;
+    tx.publish(&ParticularsChanged {
+        operator: writer.operator,
+        at: now,
+    })
+    .await?;
+    tx.commit().await?;
+    Ok(Json(particulars))
+}
+
+async fn find(db: &Db, vessel: VesselId) -> Result<Particulars> {
+    let found = row!(
+        db,
+        (String,),
+        "SELECT particulars FROM vessel_particulars WHERE vessel_id = $1 ORDER BY vessel_id",
+        vessel
+    )?;
+    Ok(found.map_or_else(
+        || Ok(Particulars::default()),
+        |(text,)| serde_json::from_str(&text),
+    )?)
+}
+
+/// A vessel's flag, and the licence that her operator asks an adjuster to hold.
+///
+/// # Errors
+/// When the database fails.
+pub async fn asked_of_adjusters(
+    tx: &mut Tx,
+    vessel: VesselId,
+) -> Result<(Option<Flag>, Option<String>)> {
+    let found = row!(
+        in tx,
+        (Option<String>, Option<String>),
+        "SELECT v.flag, p.particulars FROM vessels v
+         LEFT JOIN vessel_particulars p ON p.vessel_id = v.id
+         WHERE v.id = $1 ORDER BY v.id",
+        vessel
+    )?;
+    let (flag, particulars) = found.unwrap_or_default();
+    let said: Particulars = match particulars {
+        Some(text) => serde_json::from_str(&text)?,
+        None => Particulars::default(),
+    };
+    Ok((said.ship(flag.as_deref()).flag, said.licence))
+}
+
+async fn put(
+    tx: &mut Tx,
+    vessel: VesselId,
+    particulars: &Particulars,
+    by: &str,
+    now: Time,
+) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO vessel_particulars (vessel_id, particulars, changed_at, changed_by)
+         VALUES ($1, $2, $3, $4)
+         ON CONFLICT (vessel_id) DO UPDATE
+         SET particulars = excluded.particulars, changed_at = excluded.changed_at,
+             changed_by = excluded.changed_by",
+        vessel,
+        serde_json::to_string(particulars)?,
+        now,
+        by
+    )?;
+    Ok(())
+}
+
+impl Particulars {
+    fn checked(self) -> Result<Particulars> {
+        let invalid = |field, detail: String| Err(Error::Invalid { field, detail });
+        if self
+            .gross_tonnage
+            .is_some_and(|tonnage| tonnage == 0 || tonnage > MOST_TONNAGE)
+        {
+            return invalid("gross_tonnage", format!("is outside 1 to {MOST_TONNAGE}"));
+        }
+        if self.transits.len() > MOST_TRANSITS {
+            return invalid("transits", format!("are more than {MOST_TRANSITS}"));
+        }
+        Ok(Particulars {
+            licence: optional_text("licence", self.licence.as_deref())?,
+            ..self
+        })
+    }
+
+    /// The ship as rules see her; `flag` is what is written of the vessel herself.
+    pub fn ship(&self, flag: Option<&str>) -> Ship {
+        Ship {
+            flag: self.flag_state.or_else(|| flag.and_then(flag_of)),
+            gross_tonnage: self.gross_tonnage,
+            trade: self.trade,
+            deviation_record: self.deviation_record,
+            transits: self.transits.clone(),
+        }
+    }
+}
+
+/// The field of a canal is that of its middle, degrees north and east.
+pub fn place_of(canal: Canal) -> (f64, f64) {
+    match canal {
+        Canal::Panama => (9.1, -79.7),
+    }
+}
+
+/// A flag as people write it: two letters, or the name of one of the great registers.
+fn flag_of(text: &str) -> Option<Flag> {
+    const NAMES: [(&str, &str); 16] = [
+        ("panama", "PA"),
+        ("liberia", "LR"),
+        ("marshall islands", "MH"),
+        ("hong kong", "HK"),
+        ("singapore", "SG"),
+        ("malta", "MT"),
+        ("bahamas", "BS"),
+        ("china", "CN"),
+        ("greece", "GR"),
+        ("japan", "JP"),
+        ("cyprus", "CY"),
+        ("norway", "NO"),
+        ("united kingdom", "GB"),
+        ("australia", "AU"),
+        ("spain", "ES"),
+        ("portugal", "PT"),
+    ];
+    let lower = text.trim().to_lowercase();
+    let code = NAMES.iter().find(|(name, _)| *name == lower);
+    let code = code.map_or_else(|| text.trim().to_owned(), |(_, code)| (*code).to_owned());
+    Flag::try_from(code).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flag_is_known_by_its_letters_or_by_a_great_registers_name() {
+        let letters = |text| flag_of(text).map(|flag| flag.letters().to_owned());
+        assert_eq!(letters(" Panama ").as_deref(), Some("PA"));
+        assert_eq!(letters("NO").as_deref(), Some("NO"));
+        assert_eq!(letters("Ruritania"), None);
+    }
+}

@@ -1,0 +1,256 @@
+//! A compass's samples and what became of each in the last analysis.
+
+mod coverage;
+mod export;
+mod picture;
+
+use crate::analysis;
+use crate::compasses;
+use crate::vessels;
+use axum::extract::{FromRef, State};
+use axum::response::Response;
+use binnacle_compass::result::SampleDiagnostic;
+use binnacle_platform::access::Reader;
+use binnacle_platform::app::App;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Page, Params, time};
+use binnacle_platform::ids::{CompassId, VesselId};
+use binnacle_platform::time::Time;
+use picture::SamplePicture;
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(list_samples))
+        .routes(routes!(samples_csv))
+        .routes(routes!(samples_ndjson))
+        .routes(routes!(draw_samples))
+        .merge(coverage::router())
+}
+
+/// Which samples.
+#[derive(Clone, Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+struct Range {
+    /// The first instant, RFC 3339.
+    #[param(value_type = Option<String>, format = DateTime)]
+    from: Option<String>,
+    /// The instant after the last, RFC 3339.
+    #[param(value_type = Option<String>, format = DateTime)]
+    to: Option<String>,
+    /// A compass of the vessel's; its first one if not said.
+    compass: Option<CompassId>,
+}
+
+/// A sample and what became of it.
+#[derive(Serialize, ToSchema)]
+#[schema(as = Sample)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_compass::result::SampleDiagnostic"
+)]
+struct SampleSchema {
+    /// The middle of the stretch.
+    time: Time,
+    /// Degrees north.
+    lat: f64,
+    /// Degrees east.
+    lon: f64,
+    /// Mean raw compass heading.
+    compass_deg: f64,
+    /// Mean gyro heading, as the gyro gave it.
+    #[schema(required)]
+    gyro_deg: Option<f64>,
+    /// Mean satellite-compass heading.
+    #[schema(required)]
+    satellite_deg: Option<f64>,
+    /// Speed over ground, knots.
+    #[schema(required)]
+    sog_kn: Option<f64>,
+    /// Mean rate of turn, degrees a minute, starboard positive.
+    #[schema(required)]
+    rate_of_turn_deg_min: Option<f64>,
+    /// Standard deviation of compass less reference among the windows, degrees.
+    #[schema(required)]
+    spread_deg: Option<f64>,
+    /// How many settled ten-second windows the means are of.
+    windows: u16,
+    /// The earth's variation, degrees, east positive.
+    #[schema(required)]
+    variation_deg: Option<f64>,
+    /// Horizontal field, nT.
+    #[schema(required)]
+    h_nt: Option<f64>,
+    /// Vertical field, nT, down positive.
+    #[schema(required)]
+    z_nt: Option<f64>,
+    /// Reference less variation less compass, degrees.
+    #[schema(required)]
+    deviation_deg: Option<f64>,
+    /// The model's deviation on this heading, here, degrees.
+    #[schema(required)]
+    predicted_deg: Option<f64>,
+    /// Measured less predicted, degrees.
+    #[schema(required)]
+    residual_deg: Option<f64>,
+    /// Robust weight, 0 to 1.
+    weight: f64,
+    /// Whether it carried weight in a model.
+    used: bool,
+    /// Why it was left out or doubted.
+    #[schema(required, value_type = Option<SampleReasonSchema>)]
+    reason: Option<SampleReasonSchema>,
+}
+
+/// Why a sample was left out, or counted for less.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = SampleReason)]
+#[allow(dead_code, reason = "describes binnacle_compass::result::SampleReason")]
+pub enum SampleReasonSchema {
+    /// Neither gyro nor satellite compass.
+    NoReference,
+    /// Gyro and satellite compass contradict each other, or one repeated itself.
+    ReferenceFailed,
+    /// The compass repeated itself while the ship turned.
+    CompassStuck,
+    /// Before or after the years that the field model covers.
+    OutsideFieldModel,
+    /// The horizontal field is too weak for a compass.
+    FieldTooWeak,
+    /// Taken with magnetic cargo on board.
+    MagneticCargo,
+    /// Taken alongside.
+    Berth,
+    /// Taken in a magnetic storm, over a local anomaly, or near other iron.
+    Disturbance,
+    /// It disagrees with the rest.
+    Outlier,
+    /// Its epoch has no model.
+    NoModel,
+}
+
+/// A page of samples.
+#[derive(Serialize, ToSchema)]
+struct SampleList {
+    /// In order of time.
+    #[schema(value_type = Vec<SampleSchema>)]
+    items: Vec<SampleDiagnostic>,
+    /// `after` of the next page.
+    #[schema(required)]
+    next: Option<String>,
+}
+
+/// List a compass's samples
+#[utoipa::path(get, path = "/vessels/{id}/samples", tag = "fleet",
+    params(("id" = VesselId, Path), Range, Page),
+    responses((status = 200, body = SampleList), (status = 401, body = Problem),
+              (status = 404, body = Problem), (status = 422, body = Problem)))]
+async fn list_samples(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(range): Params<Range>,
+    page: Page,
+) -> Result<Json<SampleList>> {
+    let after = page.after_shared()?;
+    let mut samples = find(&app, reader, id, &range).await?;
+    let micros = |found: &SampleDiagnostic| found.sample.time.micros();
+    let before =
+        |samples: &[SampleDiagnostic], at: i64| samples.partition_point(|found| micros(found) < at);
+    // Two installations may have sampled at the same instant.
+    let begin = after.map_or(0, |(at, listed)| {
+        before(&samples, at)
+            .saturating_add(listed)
+            .min(samples.len())
+    });
+    let end = (begin + page.limit()).min(samples.len());
+    let last = samples[begin..end].last().map(micros);
+    let next = last.map(|at| format!("{at}.{}", end - before(&samples, at)));
+    let listed = page.cut(samples.split_off(begin), |_| {
+        next.clone().unwrap_or_default()
+    });
+    Ok(Json(SampleList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// A compass's samples as CSV, as `fit` reads it
+#[utoipa::path(get, path = "/vessels/{id}/samples.csv", tag = "fleet",
+    params(("id" = VesselId, Path), Range),
+    responses((status = 200, content_type = "text/csv", body = String), (status = 401, body = Problem),
+              (status = 404, body = Problem), (status = 422, body = Problem)))]
+async fn samples_csv(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(range): Params<Range>,
+) -> Result<Response> {
+    export::csv(&find(&app, reader, id, &range).await?)
+}
+
+/// A compass's samples as lines of JSON
+#[utoipa::path(get, path = "/vessels/{id}/samples.ndjson", tag = "fleet",
+    params(("id" = VesselId, Path), Range),
+    responses((status = 200, content_type = "application/x-ndjson", body = String),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn samples_ndjson(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(range): Params<Range>,
+) -> Result<Response> {
+    export::ndjson(&find(&app, reader, id, &range).await?)
+}
+
+/// A compass's samples as a picture shows them
+///
+/// Dots that are few enough to draw, and the residuals' means by day or week.
+#[utoipa::path(get, path = "/vessels/{id}/samples/picture", tag = "fleet",
+    params(("id" = VesselId, Path), Range),
+    responses((status = 200, body = SamplePicture), (status = 401, body = Problem),
+              (status = 404, body = Problem), (status = 422, body = Problem)))]
+async fn draw_samples(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(range): Params<Range>,
+) -> Result<Json<SamplePicture>> {
+    let samples = find(&app, reader, id, &range).await?;
+    Ok(Json(picture::picture(&samples)))
+}
+
+async fn find(
+    app: &App,
+    reader: Reader,
+    id: VesselId,
+    range: &Range,
+) -> Result<Vec<SampleDiagnostic>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
+    let compass = compasses::find(&app.db, id, range.compass).await?;
+    let from = time("from", range.from.as_deref())?.map(Time);
+    let to = time("to", range.to.as_deref())?.map(Time);
+    let chunks = analysis::chunks(&app.db, id, compass.id, from, to).await?;
+    let parsed = tokio::task::spawn_blocking(move || {
+        let mut samples: Vec<SampleDiagnostic> = Vec::new();
+        for chunk in &chunks {
+            samples.extend(serde_json::from_str::<Vec<SampleDiagnostic>>(chunk)?);
+        }
+        samples.retain(|found| {
+            let at = Time(found.sample.time);
+            from.is_none_or(|from| at >= from) && to.is_none_or(|to| at < to)
+        });
+        Ok::<_, Error>(samples)
+    });
+    parsed.await?
+}

@@ -1,0 +1,161 @@
+//! What an operator decides for a vessel: how her agents sample and send, how her
+//! samples are read, and from when on there are alerts.
+//!
+//! What always holds: a change makes a new version, which agents get with their
+//! next downlink, and a new analysis. Without a row the defaults hold, version 0.
+
+mod store;
+
+pub use store::find;
+
+use crate::alerts::AlertLimits;
+use crate::analysis;
+use crate::vessels;
+use axum::extract::{FromRef, State};
+use binnacle_compass::settings::AnalysisSettings;
+use binnacle_platform::access::{Reader, Writer};
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Valid};
+use binnacle_platform::ids::VesselId;
+use binnacle_wire::messages::Settings;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new().routes(routes!(find_settings, change_settings))
+}
+
+/// A vessel's settings.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+pub struct VesselSettings {
+    /// How her agents sample and send; `version` rises with every change and is
+    /// ignored in a request.
+    #[schema(value_type = AgentSettings)]
+    pub agent: Settings,
+    /// How her samples are read.
+    #[schema(value_type = ReadingSettings)]
+    pub analysis: AnalysisSettings,
+    /// From when on alerts are raised; the defaults if not said.
+    #[serde(default)]
+    pub alerts: AlertLimits,
+}
+
+/// How an agent samples and sends.
+#[derive(ToSchema)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::Settings")]
+pub struct AgentSettings {
+    /// Rises with every change; 0 are the defaults.
+    version: u32,
+    /// Speed over ground below which nothing is sampled, knots.
+    min_sog_kn: f64,
+    /// Rate of turn above which a window is refused, degrees a minute.
+    max_rate_of_turn_deg_min: f64,
+    /// Seconds after a turn in which nothing is sampled.
+    settle_s: u32,
+    /// How far heading may swing to either side within 30 s, degrees.
+    max_swing_deg: f64,
+    /// The longest stretch that one sample is the mean of, seconds.
+    sample_s: u32,
+    /// A batch is sealed when its first sample is this old, seconds.
+    seal_s: u32,
+}
+
+/// How samples are read.
+#[derive(ToSchema)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_compass::settings::AnalysisSettings"
+)]
+pub struct ReadingSettings {
+    /// The model of the earth's field.
+    #[schema(value_type = FieldModelSchema)]
+    field_model: FieldModelSchema,
+    /// Whether the gyro takes its speed error out itself.
+    #[schema(value_type = GyroSpeedErrorSchema)]
+    gyro_speed_error: GyroSpeedErrorSchema,
+    /// Standard deviation of a reference's constant error, degrees.
+    reference_constant_sd_deg: f64,
+}
+
+/// Whether the gyro takes its speed error out itself.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = GyroSpeedError)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_compass::settings::GyroSpeedError"
+)]
+pub enum GyroSpeedErrorSchema {
+    /// It does.
+    Corrected,
+    /// It does not: the analysis does.
+    Uncorrected,
+}
+
+/// The model of the earth's field.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+#[schema(as = FieldModel)]
+#[allow(dead_code, reason = "describes binnacle_compass::field::FieldModel")]
+pub enum FieldModelSchema {
+    /// International Geomagnetic Reference Field, 1900 to 2030.
+    Igrf14,
+    /// World Magnetic Model, 2025 to 2030.
+    Wmm2025,
+}
+
+/// See a vessel's settings
+#[utoipa::path(get, path = "/vessels/{id}/settings", tag = "fleet",
+    params(("id" = VesselId, Path)),
+    responses((status = 200, body = VesselSettings), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn find_settings(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+) -> Result<Json<VesselSettings>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
+    Ok(Json(find(&app.db, id).await?))
+}
+
+/// Change a vessel's settings
+#[utoipa::path(put, path = "/vessels/{id}/settings", tag = "fleet",
+    params(("id" = VesselId, Path)), request_body = VesselSettings,
+    responses((status = 200, body = VesselSettings), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn change_settings(
+    State(app): State<App>,
+    request: RequestContext,
+    writer: Writer,
+    Id(id): Id<VesselId>,
+    Valid(wanted): Valid<VesselSettings>,
+) -> Result<Json<VesselSettings>> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, id).await?;
+    if !(0.0..=10.0).contains(&wanted.analysis.reference_constant_sd_deg) {
+        return Err(Error::Invalid {
+            field: "analysis.reference_constant_sd_deg",
+            detail: format!(
+                "{} is outside 0 to 10",
+                wanted.analysis.reference_constant_sd_deg
+            ),
+        });
+    }
+    wanted.alerts.checked()?;
+    let now = app.clock.now().into();
+    let mut tx = request.begin().await?;
+    store::change(&mut tx, id, &wanted, now).await?;
+    analysis::enqueue(&mut tx, id, now, 0.0).await?;
+    tx.commit().await?;
+    app.work.notify_one();
+    Ok(Json(find(&app.db, id).await?))
+}

@@ -1,0 +1,59 @@
+//! A vessel goes out of service, or comes back.
+
+use super::store::{Row, set_out_of_service};
+use crate::{alerts, analysis};
+use binnacle_platform::db::{DomainEvent, Tx};
+use binnacle_platform::error::Result;
+use binnacle_platform::events::{self, Event};
+use binnacle_platform::ids::{OperatorId, VesselId};
+use binnacle_platform::time::Time;
+
+/// A vessel is about to go out of service, or to come back.
+pub struct ServiceChanged {
+    /// Whose vessel.
+    pub operator: OperatorId,
+    /// Which vessel.
+    pub vessel: VesselId,
+    /// The vessel's name.
+    pub vessel_name: String,
+    /// Whether it comes back.
+    pub in_service: bool,
+    /// When.
+    pub at: Time,
+}
+
+impl DomainEvent for ServiceChanged {}
+
+/// Takes a vessel out of service, or back into it; no change where it is so already.
+///
+/// # Errors
+/// When a subscriber refuses, as work orders do while one of the vessel's is under way.
+pub(super) async fn set(
+    tx: &mut Tx,
+    operator: OperatorId,
+    vessel: &Row,
+    in_service: bool,
+    now: Time,
+) -> Result<Vec<Event>> {
+    if in_service == vessel.out_of_service_at.is_none() {
+        return Ok(Vec::new());
+    }
+    let change = ServiceChanged {
+        operator,
+        vessel: vessel.id,
+        vessel_name: vessel.name.clone(),
+        in_service,
+        at: now,
+    };
+    tx.publish(&change).await?;
+    let mut told = vec![events::insert(tx, vessel.id, events::Kind::Need, now).await?];
+    if in_service {
+        set_out_of_service(tx, vessel.id, None).await?;
+        // It raises what alerts there were again, if they still are called for.
+        analysis::enqueue(tx, vessel.id, now, 0.0).await?;
+        return Ok(told);
+    }
+    set_out_of_service(tx, vessel.id, Some(now)).await?;
+    told.extend(alerts::end_all(tx, vessel.id, now).await?);
+    Ok(told)
+}

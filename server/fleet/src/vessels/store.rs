@@ -1,0 +1,193 @@
+//! Vessels in the database.
+
+use super::{LastPosition, NewVessel};
+use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
+use binnacle_platform::error::{self, Error};
+use binnacle_platform::ids::{OperatorId, VesselId};
+use binnacle_platform::time::Time;
+use uuid::Uuid;
+
+/// A vessel's own columns.
+#[derive(Clone, Debug, sqlx::FromRow)]
+pub struct Row {
+    /// The vessel's id.
+    pub id: VesselId,
+    /// Its name.
+    pub name: String,
+    /// Its IMO number.
+    pub imo_number: Option<String>,
+    /// Its call sign.
+    pub call_sign: Option<String>,
+    /// Its flag state.
+    pub flag: Option<String>,
+    /// How its degaussing coils are.
+    pub degaussing: Option<String>,
+    /// When it was entered.
+    pub created_at: Time,
+    /// When its last batch came.
+    pub last_upload_at: Option<Time>,
+    /// When its latest sample was taken.
+    pub last_sample_at: Option<Time>,
+    /// Where, degrees north.
+    pub last_lat: Option<f64>,
+    /// Where, degrees east.
+    pub last_lon: Option<f64>,
+    /// Since when it is out of service.
+    pub out_of_service_at: Option<Time>,
+}
+
+impl Row {
+    /// Where its latest sample was taken.
+    pub fn last_position(&self) -> Option<LastPosition> {
+        Some(LastPosition {
+            lat: self.last_lat?,
+            lon: self.last_lon?,
+            at: self.last_sample_at?,
+        })
+    }
+}
+
+pub(super) async fn list(
+    db: &Db,
+    operator: OperatorId,
+    in_service: bool,
+    after: Option<Uuid>,
+    limit: i64,
+) -> Result<Vec<Row>> {
+    rows!(
+        db,
+        Row,
+        "SELECT id, name, imo_number, call_sign, flag, degaussing, created_at,
+                last_upload_at, last_sample_at, last_lat, last_lon, out_of_service_at
+         FROM vessels
+         WHERE operator_id = $1 AND id > $2 AND (out_of_service_at IS NULL) = $3
+         ORDER BY id
+         LIMIT $4",
+        operator,
+        after.unwrap_or_default(),
+        in_service,
+        limit
+    )
+}
+
+/// A vessel of the operator's; of nobody else's.
+pub async fn find_row(db: &Db, operator: OperatorId, id: VesselId) -> Result<Option<Row>> {
+    row!(
+        db,
+        Row,
+        "SELECT id, name, imo_number, call_sign, flag, degaussing, created_at,
+                last_upload_at, last_sample_at, last_lat, last_lon, out_of_service_at
+         FROM vessels
+         WHERE id = $2 AND operator_id = $1
+         ORDER BY id",
+        operator,
+        id
+    )
+}
+
+/// The same, or the answer that it does not exist.
+///
+/// # Errors
+/// [`Error::NotFound`] when it does not exist or is another operator's.
+pub async fn must_be_in_fleet(db: &Db, operator: OperatorId, id: VesselId) -> error::Result<Row> {
+    find_row(db, operator, id)
+        .await?
+        .ok_or(Error::NotFound("vessel"))
+}
+
+/// The fleet's vessels, with their names and IMO numbers.
+pub async fn names(
+    db: &Db,
+    operator: OperatorId,
+) -> Result<Vec<(VesselId, String, Option<String>)>> {
+    rows!(
+        db,
+        (VesselId, String, Option<String>),
+        "SELECT id, name, imo_number FROM vessels WHERE operator_id = $1 ORDER BY id",
+        operator
+    )
+}
+
+pub(super) async fn insert(
+    tx: &mut Tx,
+    operator: OperatorId,
+    id: VesselId,
+    new: &NewVessel,
+    now: Time,
+) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO vessels (id, operator_id, name, imo_number, call_sign, flag, degaussing,
+                              created_at)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
+        id,
+        operator,
+        new.name.as_str(),
+        new.imo_number.as_deref(),
+        new.call_sign.as_deref(),
+        new.flag.as_deref(),
+        new.degaussing.as_deref(),
+        now
+    )?;
+    Ok(())
+}
+
+/// The vessel, to be changed: others who would change it wait.
+///
+/// # Errors
+/// [`Error::NotFound`] when it does not exist or is another operator's.
+pub(super) async fn lock(tx: &mut Tx, operator: OperatorId, id: VesselId) -> error::Result<Row> {
+    let found = row!(
+        in tx,
+        Row,
+        "UPDATE vessels SET name = name
+         WHERE id = $2 AND operator_id = $1
+         RETURNING id, name, imo_number, call_sign, flag, degaussing, created_at,
+                   last_upload_at, last_sample_at, last_lat, last_lon, out_of_service_at",
+        operator,
+        id
+    )?;
+    found.ok_or(Error::NotFound("vessel"))
+}
+
+/// Writes a vessel's particulars anew.
+pub(super) async fn update(tx: &mut Tx, id: VesselId, amended: &NewVessel) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE vessels SET name = $2, imo_number = $3, call_sign = $4, flag = $5, degaussing = $6
+         WHERE id = $1",
+        id,
+        amended.name.as_str(),
+        amended.imo_number.as_deref(),
+        amended.call_sign.as_deref(),
+        amended.flag.as_deref(),
+        amended.degaussing.as_deref()
+    )?;
+    Ok(())
+}
+
+/// Writes since when a vessel is out of service, or that she is in it.
+pub(super) async fn set_out_of_service(
+    tx: &mut Tx,
+    id: VesselId,
+    since: Option<Time>,
+) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE vessels SET out_of_service_at = $2 WHERE id = $1",
+        id,
+        since
+    )?;
+    Ok(())
+}
+
+/// Whether a vessel is in service, within a transaction.
+pub async fn is_in_service(tx: &mut Tx, id: VesselId) -> Result<bool> {
+    let found = row!(
+        in tx,
+        (i64,),
+        "SELECT COUNT(*) FROM vessels WHERE id = $1 AND out_of_service_at IS NULL",
+        id
+    )?;
+    Ok(found.is_some_and(|(vessels,)| vessels > 0))
+}

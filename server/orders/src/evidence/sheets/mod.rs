@@ -1,0 +1,356 @@
+//! The record for people, on paper: drawn from the record's own text and nothing else.
+//!
+//! What always holds: it says on each sheet that it is a prediction and no certificate, of
+//! which order it is, and the SHA-256 of the record that it is drawn from.
+
+mod tables;
+
+use crate::work_orders::entry::sha256_hex;
+use anyhow::Context;
+use binnacle_compass::time::Timestamp;
+use binnacle_drawing::paper::{LEFT, Paper, RIGHT};
+use binnacle_drawing::words::{east_west, heading_to_a_tenth, latitude, longitude};
+use binnacle_drawing::{About, Sheet, Style, pdf, svg};
+use binnacle_platform::time::Time;
+use serde_json::Value;
+
+/// The record as PDF.
+///
+/// # Errors
+/// When the text is no record of ours.
+pub fn record_pdf(text: &str) -> anyhow::Result<Vec<u8>> {
+    let (sheets, about) = drawn(text)?;
+    pdf(&sheets, &about)
+}
+
+/// The record as a picture, its sheets one below the other.
+///
+/// # Errors
+/// When the text is no record of ours.
+pub fn record_svg(text: &str) -> anyhow::Result<String> {
+    let (sheets, about) = drawn(text)?;
+    Ok(svg(&sheets, &about.title))
+}
+
+fn drawn(text: &str) -> anyhow::Result<(Vec<Sheet>, About)> {
+    let record: Value = serde_json::from_str(text)?;
+    let at = record["adjusted_at"].as_str().context("adjusted_at")?;
+    let mut paper = Paper::new();
+    head(&mut paper, &record);
+    rests_on(&mut paper, &record);
+    tables::correctors(&mut paper, &record)?;
+    plan(&mut paper, &record);
+    tables::steps(&mut paper, &record);
+    tables::settings_said(&mut paper, &record)?;
+    tables::second_readings(&mut paper, &record);
+    tables::predicted(&mut paper, &record);
+    tables::parameters(&mut paper, &record);
+    photos(&mut paper, &record);
+    signed(&mut paper, &record);
+    let foot = [
+        format!(
+            "A prediction, and no certificate. Work order {}; what headings at sea said since \
+             stands in its log.",
+            word(&record["order"])
+        ),
+        format!("SHA-256 of record.json: {}", sha256_hex(text.as_bytes())),
+    ];
+    let about = About {
+        title: format!("Adjustment record: {}", word(&record["vessel"]["name"])),
+        created: Timestamp::parse(at)?,
+    };
+    Ok((paper.finish(&foot), about))
+}
+
+/// The residuals that the record foretells, a row to a place and heading.
+///
+/// # Errors
+/// When the text is no record of ours.
+pub fn predicted_csv(text: &str) -> anyhow::Result<String> {
+    let record: Value = serde_json::from_str(text)?;
+    let tables = record["predicted_after"].as_array();
+    let mut lines = vec!["place,compass_deg,predicted_deviation_deg,band95_deg".to_owned()];
+    for table in tables.into_iter().flatten() {
+        for row in table["rows"].as_array().into_iter().flatten() {
+            let band = row["band95_deg"].as_f64();
+            let band = band.map_or(String::new(), |band| format!("{band:.2}"));
+            lines.push(format!(
+                "{},{:.0},{:.2},{band}",
+                word(&table["place"]),
+                number(&row["compass_deg"]),
+                number(&row["deviation_deg"])
+            ));
+        }
+    }
+    lines.push(String::new());
+    Ok(lines.join("\n"))
+}
+
+fn word(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Null => String::new(),
+        other => other.to_string(),
+    }
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_default()
+}
+
+/// A time for people; as it stands where it is none.
+fn minute(value: &Value) -> String {
+    let text = word(value);
+    Timestamp::parse(&text).map_or(text, |time| Time(time).to_the_minute())
+}
+
+fn joined(parts: &[String]) -> String {
+    let given: Vec<&str> = parts.iter().map(String::as_str).collect();
+    let given: Vec<&str> = given.into_iter().filter(|part| !part.is_empty()).collect();
+    given.join(", ")
+}
+
+fn head(paper: &mut Paper, record: &Value) {
+    paper.put(LEFT, Style::bold(18.0), "Adjustment record");
+    let says = "PREDICTED – NOT A CERTIFICATE";
+    paper.put(RIGHT, Style::bold(11.0).end(), says);
+    paper.down(20.0);
+    let (vessel, compass) = (&record["vessel"], &record["compass"]);
+    let numbered = |label: &str, value: &Value| match word(value).as_str() {
+        "" => String::new(),
+        number => format!("{label} {number}"),
+    };
+    for (label, value) in [
+        ("Ship", word(&vessel["name"])),
+        ("IMO number", word(&vessel["imo_number"])),
+        (
+            "Call sign, flag",
+            joined(&[word(&vessel["call_sign"]), word(&vessel["flag"])]),
+        ),
+        (
+            "Compass",
+            joined(&[
+                word(&compass["name"]),
+                word(&compass["make"]),
+                numbered("no.", &compass["serial_number"]),
+            ]),
+        ),
+        (
+            "Port, berth",
+            joined(&[word(&record["port"]), word(&record["berth"])]),
+        ),
+        ("Adjusted at", minute(&record["adjusted_at"])),
+        ("Work order", word(&record["order"])),
+    ] {
+        paper.fact(label, &value);
+    }
+}
+
+fn rests_on(paper: &mut Paper, record: &Value) {
+    let (read, check) = (&record["reading"], &record["berth_check"]);
+    let (earth, data) = (&record["earth_at_berth"], &record["data"]);
+    paper.title("What it rests on");
+    paper.fact(
+        "Model",
+        &format!(
+            "version {} by {}, data up to {}",
+            data["model_version"],
+            word(&data["estimator"]),
+            minute(&data["until"])
+        ),
+    );
+    paper.fact("its data", &format!("SHA-256 {}", word(&data["sha256"])));
+    paper.fact(
+        "Berth",
+        &format!(
+            "{}, {}; variation {}, horizontal {:.1} µT, vertical {:.1} µT ({})",
+            latitude(number(&read["lat"])),
+            longitude(number(&read["lon"])),
+            east_west(number(&earth["variation_deg"])),
+            number(&earth["h_nt"]) / 1e3,
+            number(&earth["z_nt"]) / 1e3,
+            word(&earth["model"])
+        ),
+    );
+    paper.fact(
+        "Heading",
+        &format!(
+            "{} true, {}; heel {}°",
+            heading_to_a_tenth(number(&read["heading_true_deg"])),
+            match read["heading_from"].as_str() {
+                Some("ashore") => "from ashore",
+                _ => "by the reference of the model",
+            },
+            read["heel_deg"]
+        ),
+    );
+    paper.fact("Magnetometer", &magnetometer(read));
+    paper.fact(
+        "Read",
+        &joined(&[
+            minute(&read["at"]),
+            if read["steel_nearby"] == true {
+                "steel nearby".to_owned()
+            } else {
+                String::new()
+            },
+            if read["cargo_on_board"] == true {
+                "magnetic cargo on board".to_owned()
+            } else {
+                String::new()
+            },
+        ]),
+    );
+    paper.fact(
+        "Shielding factor",
+        &format!(
+            "{:.3} ± {:.3}; the field points {:.1}° from where the model has it: {}",
+            number(&check["lambda"]),
+            number(&check["lambda_sd"]),
+            number(&check["consistency_deg"]).abs(),
+            word(&check["verdict"])
+        ),
+    );
+}
+
+fn magnetometer(read: &Value) -> String {
+    let (unit, microtesla) = match read["unit"].as_str() {
+        Some("nanotesla") => ("nT", 1e-3),
+        Some("microtesla") => ("µT", 1.0),
+        Some("gauss") => ("G", 100.0),
+        _ => ("mG", 0.1),
+    };
+    let part = |name: &str, to: &str| {
+        let value = read[name].as_f64();
+        value.map_or(String::new(), |value| {
+            format!("{:.2} µT {to}", value * microtesla).replace('-', "−")
+        })
+    };
+    let read_in = match unit {
+        "µT" => String::new(),
+        other => format!("read in {other}"),
+    };
+    joined(&[
+        word(&read["magnetometer"]),
+        word(&read["magnetometer_serial"]),
+        part("forward", "forward"),
+        part("starboard", "to starboard"),
+        part("down", "down"),
+        read_in,
+    ])
+}
+
+fn plan(paper: &mut Paper, record: &Value) {
+    let (plan, limits) = (&record["plan"], &record["limits"]);
+    paper.title("The plan");
+    paper.fact(
+        "Followed",
+        &format!(
+            "{}; worst residual {:.1}°, weighted over the waters; widest band ±{:.1}°",
+            steps_done(record),
+            number(&plan["worst_residual_deg"]),
+            number(&plan["widest_band_deg"])
+        ),
+    );
+    let optimality = &plan["optimality"];
+    if optimality.is_object() {
+        let proven = if optimality["proven"] == true {
+            "proven: no setting of what is on board is better"
+        } else {
+            "not proven: another setting may be better"
+        };
+        let gap = number(&optimality["gap_deg"]);
+        paper.fact("Search", &format!("{proven} by more than {gap:.3}°"));
+    }
+    if limits.is_object() {
+        paper.fact(
+            "Limits",
+            &format!(
+                "residual with its band {}°, band {}°, model {} days",
+                limits["residual_deg"], limits["band_deg"], limits["model_age_days"]
+            ),
+        );
+    }
+    let heeling = &plan["heeling"];
+    let heel = |value: &Value| {
+        value
+            .as_f64()
+            .map(|value| format!("{value:.2}").replace('-', "−"))
+    };
+    match (
+        heel(&heeling["before_deg_per_deg"]),
+        heel(&heeling["after_deg_per_deg"]),
+    ) {
+        (Some(before), Some(after)) => paper.fact(
+            "Heeling error",
+            &format!("{before}° for each degree of heel before, {after}° after"),
+        ),
+        _ => paper.fact(
+            "Heeling magnets",
+            "left as found: the vertical field was not read, or cannot be right",
+        ),
+    }
+    for note in plan["notes"].as_array().into_iter().flatten() {
+        paper.fact("Note", &word(note));
+    }
+}
+
+/// How many steps there were, those before a new plan with the rest, and how many of them
+/// moved something.
+fn steps_done(record: &Value) -> String {
+    let steps = record["steps_as_read"].as_array().into_iter().flatten();
+    let (moved, read): (Vec<&Value>, Vec<&Value>) = steps.partition(|step| step["moved"] == true);
+    let said = |steps: usize| match steps {
+        1 => "1 step".to_owned(),
+        steps => format!("{steps} steps"),
+    };
+    match (moved.len(), read.len()) {
+        (moved, 0) => said(moved),
+        (moved, read) => format!("{}, {moved} of which moved correctors", said(moved + read)),
+    }
+}
+
+fn photos(paper: &mut Paper, record: &Value) {
+    let photos = record["photos"].as_array();
+    let photos = photos.filter(|photos| !photos.is_empty());
+    let Some(photos) = photos else {
+        return;
+    };
+    paper.title("Photographs");
+    for (index, photo) in photos.iter().enumerate() {
+        let caption = match word(&photo["caption"]) {
+            none if none.is_empty() => "without words".to_owned(),
+            words => words,
+        };
+        let says = format!("{caption}; SHA-256 {}", word(&photo["sha256"]));
+        paper.fact(&format!("{}", index + 1), &says);
+    }
+}
+
+fn signed(paper: &mut Paper, record: &Value) {
+    let adjuster = &record["adjuster"];
+    paper.room_for(8);
+    paper.title("Signed");
+    paper.fact(
+        "Adjuster",
+        &format!(
+            "{}, licence {}",
+            word(&adjuster["name"]),
+            word(&adjuster["licence"])
+        ),
+    );
+    paper.fact("Firm", &word(&adjuster["firm"]));
+    paper.fact(
+        "Signature",
+        &format!("typed: {}", word(&adjuster["signature"])),
+    );
+    paper.fact("Given by", &word(&adjuster["account"]));
+    paper.fact(
+        "Log",
+        &format!(
+            "{} entries before this record, the last with SHA-256 {}",
+            record["log"]["entries"],
+            word(&record["log"]["last_sha256"])
+        ),
+    );
+}

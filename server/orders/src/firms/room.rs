@@ -1,0 +1,277 @@
+//! Which ships a firm is to see on a day, by orders of all operators, and whether its teams
+//! suffice for one more.
+//!
+//! What always holds: whoever books a firm holds its lock until the transaction ends, so that
+//! of two who want its last team one has it. A team is in one port a day. An operator learns
+//! of others' orders only that no team is left; the firm sees its own. An operator asks no firm
+//! for a time at which it does not work by the operator's own terms. A firm whose terms nobody
+//! has said can be asked anything.
+
+use super::{Terms, store};
+use binnacle_fleet::particulars;
+use binnacle_platform::db::{Db, Tx, execute, rows};
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::ids::{FirmId, OperatorId, OrderId, VesselId};
+use binnacle_platform::time::Time;
+use binnacle_schedule::ports::{self, Port, PortCode};
+use binnacle_schedule::time::Instant;
+use binnacle_schedule::zone::Zone;
+use chrono::NaiveDate;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A port's day is within so many hours of any of its instants, in whatever zone.
+const AROUND_H: f64 = 40.0;
+
+/// An order that a firm is asked for, or has.
+#[derive(Clone, Debug, sqlx::FromRow)]
+pub struct Booking {
+    /// Whose vessel it is.
+    pub operator_id: OperatorId,
+    /// The vessel.
+    pub vessel_id: VesselId,
+    /// Her name.
+    pub vessel_name: String,
+    /// The order.
+    pub order_id: OrderId,
+    port: String,
+    planned_at: Time,
+    /// Whether the firm has it; it is only asked otherwise.
+    pub is_taken: bool,
+}
+
+/// A visit that a firm is to make.
+pub struct Visit<'a> {
+    /// By whose order.
+    pub operator: OperatorId,
+    /// To which vessel.
+    pub vessel: VesselId,
+    /// Where, as the order has it.
+    pub port: &'a str,
+    /// When.
+    pub at: Time,
+}
+
+/// Who is told that there is no room.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Told {
+    /// The operator who asks, for whom what it has asked the firm already counts.
+    Operator,
+    /// The firm that says yes.
+    Firm,
+}
+
+/// The port that an order's words mean: its code, alone or behind its name, or its name.
+pub fn port_meant(words: &str) -> Option<&'static Port> {
+    let code = words
+        .rsplit_once('(')
+        .and_then(|(_, code)| code.strip_suffix(')'));
+    let by_code = |text: &str| PortCode::parse(text).ok().and_then(ports::find);
+    let named = |port: &&Port| {
+        let words = words.trim();
+        port.name.eq_ignore_ascii_case(words) || port.plain_name.eq_ignore_ascii_case(words)
+    };
+    code.and_then(by_code)
+        .or_else(|| by_code(words))
+        .or_else(|| {
+            // A name that several ports have tells nothing.
+            let mut all = ports::all().iter().filter(named);
+            all.next().filter(|_| all.next().is_none())
+        })
+}
+
+/// One port is one place, however it is written.
+fn place(words: &str) -> String {
+    port_meant(words).map_or_else(|| words.trim().to_lowercase(), |port| port.code.to_string())
+}
+
+/// The day of an instant in a port's time.
+fn day(words: &str, at: Time) -> NaiveDate {
+    Instant(at.0).date(port_meant(words).map_or_else(Zone::utc, |port| port.zone))
+}
+
+impl Booking {
+    /// The day, in the port's time.
+    pub fn day(&self) -> NaiveDate {
+        day(&self.port, self.planned_at)
+    }
+}
+
+/// How many teams it takes to be at all these ships on one day.
+fn teams(at: impl IntoIterator<Item = (String, VesselId)>, jobs_a_team: u32) -> u32 {
+    let mut there: BTreeMap<String, BTreeSet<VesselId>> = BTreeMap::new();
+    for (place, vessel) in at {
+        there.entry(place).or_default().insert(vessel);
+    }
+    let ships = there.values().map(|ships| u32::try_from(ships.len()));
+    ships
+        .map(|ships| ships.unwrap_or(u32::MAX).div_ceil(jobs_a_team.max(1)))
+        .fold(0, u32::saturating_add)
+}
+
+/// Teams that orders take which a plan does not hold itself, day by day.
+pub fn teams_taken<'a>(
+    bookings: impl IntoIterator<Item = &'a Booking>,
+    jobs_a_team: u32,
+) -> BTreeMap<NaiveDate, u32> {
+    let mut days: BTreeMap<NaiveDate, Vec<(String, VesselId)>> = BTreeMap::new();
+    for booking in bookings {
+        let there = (place(&booking.port), booking.vessel_id);
+        days.entry(booking.day()).or_default().push(there);
+    }
+    let taken = days.into_iter();
+    taken
+        .map(|(day, there)| (day, teams(there, jobs_a_team)))
+        .collect()
+}
+
+macro_rules! bookings_sql {
+    ($where:literal) => {
+        concat!(
+            "SELECT v.operator_id, o.vessel_id, v.name AS vessel_name, o.id AS order_id,
+                    COALESCE(c.port, o.port) AS port, o.planned_at,
+                    CASE WHEN f.state = 'accepted' THEN TRUE ELSE FALSE END AS is_taken
+             FROM work_order_offers f
+             JOIN work_orders o ON o.vessel_id = f.vessel_id AND o.id = f.order_id
+             JOIN vessels v ON v.id = o.vessel_id
+             LEFT JOIN schedule_orders l ON l.vessel_id = o.vessel_id AND l.order_id = o.id
+             LEFT JOIN port_calls c ON c.vessel_id = l.vessel_id AND c.id = l.call_id
+             WHERE f.firm_id = $1 AND f.state IN ('open', 'proposed', 'accepted')
+               AND o.state <> 'cancelled' ",
+            $where,
+            " ORDER BY o.planned_at, o.vessel_id, o.id"
+        )
+    };
+}
+
+/// What a firm is asked for and has, from some time on.
+pub async fn bookings(db: &Db, firm: FirmId, from: Time) -> Result<Vec<Booking>> {
+    Ok(rows!(
+        db,
+        Booking,
+        bookings_sql!("AND o.planned_at >= $2"),
+        firm,
+        from
+    )?)
+}
+
+/// Refuses a visit at a time at which a firm is closed, or to a ship that it may not adjust.
+async fn must_suit(tx: &mut Tx, firm_name: &str, terms: &Terms, visit: &Visit<'_>) -> Result<()> {
+    let wrong = |why: String, instead: &str| {
+        Err(Error::WrongState(format!(
+            "by the terms that you have said, {firm_name} {why}: choose another {instead}, or \
+             change the terms"
+        )))
+    };
+    if let Some(why) = terms.closed_at(visit.at, port_meant(visit.port)) {
+        return wrong(why, "time");
+    }
+    let (flag, licence) = particulars::asked_of_adjusters(tx, visit.vessel).await?;
+    match terms.not_accepted(flag, licence.as_deref()) {
+        Some(why) => wrong(why, "firm"),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a visit for which a firm has no team left, or by its terms does not work.
+///
+/// # Errors
+/// [`Error::WrongState`], in words for whom it is told.
+pub async fn must_have_room(
+    tx: &mut Tx,
+    (firm, firm_name): (FirmId, &str),
+    visit: &Visit<'_>,
+    told: Told,
+) -> Result<()> {
+    // Whoever books the firm meanwhile waits.
+    execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
+    let said = store::terms_of(tx, firm).await?;
+    let said: Vec<(OperatorId, Terms)> = said
+        .into_iter()
+        .map(|(operator, text)| Ok((operator, serde_json::from_str(&text)?)))
+        .collect::<Result<_>>()?;
+    if said.is_empty() {
+        return Ok(());
+    }
+    let (from, to) = (
+        Time(visit.at.0.plus_seconds(-AROUND_H * 3600.0)),
+        Time(visit.at.0.plus_seconds(AROUND_H * 3600.0)),
+    );
+    let around = rows!(
+        in tx,
+        Booking,
+        bookings_sql!("AND o.planned_at >= $2 AND o.planned_at <= $3 AND o.vessel_id <> $4"),
+        firm,
+        from,
+        to,
+        visit.vessel
+    )?;
+    let mine = said
+        .iter()
+        .find(|(operator, _)| *operator == visit.operator);
+    // When and for whom it works is the operator's word of the firm, which may know better
+    // itself.
+    if told == Told::Operator
+        && let Some((_, terms)) = mine
+    {
+        must_suit(tx, firm_name, terms, visit).await?;
+    }
+    let that_day = day(visit.port, visit.at);
+    let there = (place(visit.port), visit.vessel);
+    let others: Vec<&Booking> = around.iter().filter(|one| one.day() == that_day).collect();
+    let counts =
+        |one: &Booking| one.is_taken || told == Told::Operator && one.operator_id == visit.operator;
+    // Each operator knows how many teams work for it: the most that anybody knows of are all.
+    let most = |figure: fn(&Terms) -> u32| said.iter().map(|(_, terms)| figure(terms)).max();
+    let all = (
+        most(|terms| terms.teams),
+        most(|terms| terms.jobs_a_team_day),
+    );
+    let mine = mine.map(|(_, terms)| (terms.teams, terms.jobs_a_team_day));
+    let needed = |whose: &dyn Fn(&Booking) -> bool, jobs: u32| {
+        let ships = others.iter().filter(|one| counts(one) && whose(one));
+        let ships = ships.map(|one| (place(&one.port), one.vessel_id));
+        teams(ships.chain([there.clone()]), jobs)
+    };
+    let is_full = needed(&|_| true, all.1.unwrap_or(1)) > all.0.unwrap_or(0)
+        || mine.is_some_and(|(teams, jobs)| {
+            needed(&|one| one.operator_id == visit.operator, jobs) > teams
+        });
+    if !is_full {
+        return Ok(());
+    }
+    Err(Error::WrongState(match told {
+        Told::Operator => {
+            let mine = others
+                .iter()
+                .filter(|one| counts(one) && one.operator_id == visit.operator);
+            let mine: Vec<String> = mine
+                .map(|one| {
+                    let Booking {
+                        order_id,
+                        vessel_name,
+                        port,
+                        ..
+                    } = one;
+                    format!("work order {order_id} of {vessel_name} at {port}")
+                })
+                .collect();
+            let holding = if mine.is_empty() {
+                String::new()
+            } else {
+                format!(": you have {}", mine.join(", "))
+            };
+            format!("{firm_name} has no team left on {that_day}{holding}")
+        }
+        Told::Firm => {
+            let ships = others.iter().filter(|one| one.is_taken);
+            let ships: BTreeSet<String> = ships
+                .map(|one| format!("{} at {}", one.vessel_name, one.port))
+                .collect();
+            let ships: Vec<String> = ships.into_iter().collect();
+            format!(
+                "your firm has no team left on {that_day}: it goes to {}",
+                ships.join(", ")
+            )
+        }
+    }))
+}

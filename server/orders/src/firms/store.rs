@@ -1,0 +1,202 @@
+//! Firms in the database, and which operators they work for.
+
+use super::Firm;
+use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
+use binnacle_platform::ids::{FirmId, OperatorId};
+use binnacle_platform::tenants::Tenant;
+use binnacle_platform::time::Time;
+use uuid::Uuid;
+
+/// Creates a firm.
+pub async fn create(tx: &mut Tx, name: &str, now: Time) -> Result<FirmId> {
+    let id = FirmId::new();
+    insert(tx, id, name, now).await?;
+    Ok(id)
+}
+
+pub(super) async fn insert(tx: &mut Tx, id: FirmId, name: &str, now: Time) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO firms (id, name, created_at) VALUES ($1, $2, $3)",
+        id,
+        name,
+        now
+    )?;
+    Ok(())
+}
+
+/// Whether there is such a firm.
+pub async fn exists(tx: &mut Tx, id: FirmId) -> Result<bool> {
+    let found = row!(
+        in tx,
+        (FirmId,),
+        "SELECT id FROM firms WHERE id = $1 ORDER BY id",
+        id
+    )?;
+    Ok(found.is_some())
+}
+
+/// The name of a firm that an operator works with; none of any other.
+pub async fn name_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<String>> {
+    let found = row!(
+        in tx,
+        (String,),
+        "SELECT f.name FROM firms f
+         JOIN operator_firms w ON w.firm_id = f.id AND w.operator_id = $1
+         WHERE f.id = $2
+         ORDER BY f.id",
+        operator,
+        firm
+    )?;
+    Ok(found.map(|(name,)| name))
+}
+
+/// Has an operator work with a firm; once is enough.
+pub async fn engage(tx: &mut Tx, operator: OperatorId, firm: FirmId, now: Time) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO operator_firms (operator_id, firm_id, created_at) VALUES ($1, $2, $3)
+         ON CONFLICT (operator_id, firm_id) DO NOTHING",
+        operator,
+        firm,
+        now
+    )?;
+    Ok(())
+}
+
+/// Has an operator work with a firm no more; whether it did.
+pub(super) async fn dismiss(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<bool> {
+    let ended = execute!(
+        tx,
+        "DELETE FROM operator_firms WHERE operator_id = $1 AND firm_id = $2",
+        operator,
+        firm
+    )?;
+    Ok(ended > 0)
+}
+
+/// How many of an operator's orders that are not done a firm is asked for or has. Whoever
+/// books the firm meanwhile waits.
+pub(super) async fn orders_between(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<i64> {
+    execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
+    let found = row!(
+        in tx,
+        (i64,),
+        "SELECT COUNT(*) FROM work_order_offers f
+         JOIN work_orders o ON o.vessel_id = f.vessel_id AND o.id = f.order_id
+         JOIN vessels v ON v.id = o.vessel_id
+         WHERE f.firm_id = $1 AND v.operator_id = $2
+           AND f.state IN ('waiting', 'open', 'proposed', 'accepted')
+           AND o.state IN ('offered', 'proposed', 'accepted', 'on_board', 'measured', 'adjusting')",
+        firm,
+        operator
+    )?;
+    Ok(found.map_or(0, |(orders,)| orders))
+}
+
+/// Keeps the terms on which a firm works for an operator.
+pub(super) async fn put_terms(
+    tx: &mut Tx,
+    operator: OperatorId,
+    firm: FirmId,
+    terms: &str,
+    by: &str,
+    now: Time,
+) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO firm_terms (operator_id, firm_id, terms, changed_at, changed_by)
+         VALUES ($1, $2, $3, $4, $5)
+         ON CONFLICT (operator_id, firm_id) DO UPDATE
+         SET terms = excluded.terms, changed_at = excluded.changed_at,
+             changed_by = excluded.changed_by",
+        operator,
+        firm,
+        terms,
+        now,
+        by
+    )?;
+    Ok(())
+}
+
+/// Forgets them; whether there were any.
+pub(super) async fn remove_terms(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<bool> {
+    let removed = execute!(
+        tx,
+        "DELETE FROM firm_terms WHERE operator_id = $1 AND firm_id = $2",
+        operator,
+        firm
+    )?;
+    Ok(removed > 0)
+}
+
+/// The firms that an operator works with: id, name, and terms where they are said.
+pub(super) async fn with_terms(
+    db: &Db,
+    operator: OperatorId,
+) -> Result<Vec<(FirmId, String, Option<String>)>> {
+    rows!(
+        db,
+        (FirmId, String, Option<String>),
+        "SELECT f.id, f.name, t.terms FROM firms f
+         JOIN operator_firms w ON w.firm_id = f.id AND w.operator_id = $1
+         LEFT JOIN firm_terms t ON t.firm_id = f.id AND t.operator_id = $1
+         ORDER BY f.id",
+        operator
+    )
+}
+
+/// The terms on which a firm works, for whomever it does.
+pub(super) async fn terms_of(tx: &mut Tx, firm: FirmId) -> Result<Vec<(OperatorId, String)>> {
+    rows!(
+        in tx,
+        (OperatorId, String),
+        "SELECT t.operator_id, t.terms FROM firm_terms t
+         JOIN operator_firms w ON w.firm_id = t.firm_id AND w.operator_id = t.operator_id
+         WHERE t.firm_id = $1
+         ORDER BY t.operator_id",
+        firm
+    )
+}
+
+/// The firms that someone sees: all, those an operator works with, or a firm itself.
+pub(super) async fn list(
+    db: &Db,
+    who: Option<Tenant>,
+    after: Option<Uuid>,
+    limit: i64,
+) -> Result<Vec<Firm>> {
+    let (operator, firm) = (who.and_then(Tenant::operator), who.and_then(Tenant::firm));
+    rows!(
+        db,
+        Firm,
+        "SELECT id, name, created_at FROM firms
+         WHERE ($1 IS NULL OR EXISTS (SELECT 1 FROM operator_firms w
+                                      WHERE w.operator_id = $1 AND w.firm_id = firms.id))
+           AND ($2 IS NULL OR id = $2)
+           AND id > $3
+         ORDER BY id
+         LIMIT $4",
+        operator,
+        firm,
+        after.unwrap_or_default(),
+        limit
+    )
+}
+
+/// A firm, if someone sees it.
+pub(super) async fn find(db: &Db, who: Option<Tenant>, id: FirmId) -> Result<Option<Firm>> {
+    row!(
+        db,
+        Firm,
+        "SELECT id, name, created_at FROM firms
+         WHERE ($1 IS NULL OR EXISTS (SELECT 1 FROM operator_firms w
+                                      WHERE w.operator_id = $1 AND w.firm_id = firms.id))
+           AND ($2 IS NULL OR id = $2)
+           AND id = $3
+         ORDER BY id",
+        who.and_then(Tenant::operator),
+        who.and_then(Tenant::firm),
+        id
+    )
+}

@@ -1,0 +1,14 @@
+//! Adjusters' firms and work orders, from the offer to the evidence.
+
+#![allow(
+    clippy::missing_errors_doc,
+    reason = "a function that asks the database errs when that does; others say more"
+)]
+#![allow(
+    clippy::cast_possible_wrap,
+    reason = "counts go into BIGINT and are far from its end"
+)]
+
+pub mod evidence;
+pub mod firms;
+pub mod work_orders;

@@ -1,0 +1,121 @@
+//! Why there is no plan, or a reading is not taken, and what would cure it.
+
+use axum::http::StatusCode;
+use binnacle_adjustment::adjust::{Cure as Cured, Refused};
+use binnacle_platform::error::{DomainProblem, Error};
+use serde::{Deserialize, Serialize};
+use serde_json::Map;
+use utoipa::ToSchema;
+
+/// Why there is no plan, or a reading is not taken.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = AdjustmentRefusal)]
+pub struct Refusal {
+    /// In a word.
+    #[schema(example = "inconsistent_berth")]
+    pub refusal: String,
+    /// What is wrong.
+    pub words: String,
+    /// Mistakes each of which alone would explain it.
+    pub could_be: Vec<String>,
+    /// What would cure it, the easiest first.
+    pub cures: Vec<Cure>,
+}
+
+/// What would cure a refusal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = AdjustmentCure)]
+pub enum Cure {
+    /// Read again: heading, axes, unit, away from steel.
+    ReadAgain,
+    /// A few settled headings at sea, so that the model is of today.
+    HeadingsAtSea,
+    /// Headings in waters with another dip.
+    OtherWaters,
+    /// Wait until the cargo is ashore.
+    AfterDischarge,
+    /// A magnetometer with less error.
+    BetterMagnetometer,
+    /// Another berth, or farther from steel.
+    AnotherBerth,
+    /// Magnets, spheres or pieces of bar that are not on board.
+    OtherCorrectors,
+    /// Look after the lubber line and how the reference stands.
+    Alignment,
+    /// Swing the ship.
+    Swing,
+}
+
+impl Refusal {
+    /// Returns what is wrong, and the mistakes that would explain it, as one sentence.
+    fn with_explanations(&self) -> String {
+        match self.could_be.join(", or ").as_str() {
+            "" => self.words.clone(),
+            explained => format!("{}; it could be that {explained}", self.words),
+        }
+    }
+
+    /// The same, a doubt of the place before all else that could explain it.
+    pub(super) fn doubted(mut self, doubt: Option<Refusal>) -> Refusal {
+        if let Some(doubt) = doubt {
+            self.could_be.insert(0, doubt.words);
+        }
+        self
+    }
+}
+
+impl From<&Refused> for Refusal {
+    fn from(refused: &Refused) -> Refusal {
+        let word = serde_json::to_value(&refused.refusal).ok();
+        let word = word.and_then(|value| Some(value.get("refusal")?.as_str()?.to_owned()));
+        Refusal {
+            refusal: word.unwrap_or_else(|| "refused".to_owned()),
+            // What could explain it stands beside it.
+            words: refused.refusal.found(),
+            could_be: refused.refusal.could_be(),
+            cures: refused.cures.iter().copied().map(Cure::from).collect(),
+        }
+    }
+}
+
+impl From<Cured> for Cure {
+    fn from(cure: Cured) -> Cure {
+        match cure {
+            Cured::ReadAgain => Cure::ReadAgain,
+            Cured::HeadingsAtSea => Cure::HeadingsAtSea,
+            Cured::OtherWaters => Cure::OtherWaters,
+            Cured::AfterDischarge => Cure::AfterDischarge,
+            Cured::BetterMagnetometer => Cure::BetterMagnetometer,
+            Cured::AnotherBerth => Cure::AnotherBerth,
+            Cured::OtherCorrectors => Cure::OtherCorrectors,
+            Cured::Alignment => Cure::Alignment,
+            Cured::Swing => Cure::Swing,
+        }
+    }
+}
+
+/// Fields of the problem `not-adjustable`.
+#[derive(Serialize, ToSchema)]
+pub struct NotAdjustableFields {
+    /// What is wrong at the berth and what would cure it; only in `not-adjustable`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false)]
+    refusals: Option<Vec<Refusal>>,
+}
+
+/// Returns the problem `not-adjustable`: there is no plan, or a reading is not taken.
+pub(super) fn not_adjustable(refusals: Vec<Refusal>) -> Error {
+    let detail = refusals.iter().map(Refusal::with_explanations);
+    let problem = DomainProblem {
+        status: StatusCode::UNPROCESSABLE_ENTITY,
+        kind: "not-adjustable",
+        title: "No plan as it stands",
+        detail: detail.collect::<Vec<_>>().join("; "),
+        extra: Map::new(),
+    };
+    let fields = NotAdjustableFields {
+        refusals: Some(refusals),
+    };
+    problem.with(&fields).into()
+}

@@ -1,0 +1,257 @@
+//! Orders, port calls and due dates as iCalendar events (RFC 5545).
+//!
+//! What always holds: each keeps its UID, and its SEQUENCE grows with an order's log, a
+//! call's revisions or the versions of a due date; times are UTC, due dates days; the same
+//! make the same octets.
+
+use super::store::{Appointment, Call, Due};
+use anyhow::Context;
+use binnacle_orders::work_orders::{CallFit, State};
+use binnacle_platform::time::Time;
+use binnacle_schedule::input::JOB_H;
+use binnacle_schedule::ports::{self, PortCode};
+use chrono::{DateTime, NaiveDate, TimeDelta, Utc};
+use icalendar::{Calendar, Component, Event, EventLike, EventStatus, Property};
+use serde::Deserialize;
+
+/// The calendar of these events.
+pub(super) fn write(name: &str, events: impl Iterator<Item = Event>) -> String {
+    let mut calendar = Calendar {
+        properties: Vec::new(),
+        components: Vec::new(),
+    };
+    for (key, value) in [
+        ("VERSION", "2.0"),
+        ("PRODID", "-//Binnacle//Work orders//EN"),
+        ("CALSCALE", "GREGORIAN"),
+        ("METHOD", "PUBLISH"),
+        ("X-WR-CALNAME", name),
+        ("X-PUBLISHED-TTL", "PT1H"),
+    ] {
+        calendar.append_property(Property::new(key, value));
+    }
+    for event in events {
+        calendar.push(event);
+    }
+    calendar.to_string()
+}
+
+/// Work orders as events.
+///
+/// # Errors
+/// When a time is beyond the calendar's, here and below.
+pub(super) fn orders(
+    orders: &[Appointment],
+    public_url: Option<&str>,
+) -> anyhow::Result<impl Iterator<Item = Event>> {
+    let all: anyhow::Result<Vec<Event>> = orders.iter().map(|one| event(one, public_url)).collect();
+    Ok(all?.into_iter())
+}
+
+/// Port calls as events.
+pub(super) fn calls(calls: &[Call]) -> anyhow::Result<impl Iterator<Item = Event>> {
+    let all: anyhow::Result<Vec<Event>> = calls.iter().map(call).collect();
+    Ok(all?.into_iter())
+}
+
+/// Due dates as days.
+pub(super) fn due_dates(
+    due: &[Due],
+    public_url: Option<&str>,
+) -> anyhow::Result<impl Iterator<Item = Event>> {
+    let all: anyhow::Result<Vec<Event>> = due.iter().map(|one| day(one, public_url)).collect();
+    Ok(all?.into_iter())
+}
+
+fn call(call: &Call) -> anyhow::Result<Event> {
+    let port = PortCode::parse(&call.port).ok().and_then(ports::find);
+    let port = port.map_or_else(
+        || call.port.clone(),
+        |port| format!("{} ({})", port.name, call.port),
+    );
+    let place = match &call.berth {
+        Some(berth) => format!("{port}, {berth}"),
+        None => port.clone(),
+    };
+    let at = utc(call
+        .withdrawn_at
+        .or(call.revised_at)
+        .unwrap_or(call.created_at))?;
+    // Withdrawing is no revision, and comes after the revision that it withdraws.
+    let sequence = 2 * call.revision + i64::from(call.withdrawn_at.is_some());
+    let mut lines = vec![
+        expected("ETA", call.eta, call.eta_uncertainty_h),
+        expected("ETD", call.etd, call.etd_uncertainty_h),
+    ];
+    if call.withdrawn_at.is_some() {
+        let why = call.withdrawal_reason.as_deref();
+        lines.push(why.map_or_else(|| "Withdrawn".to_owned(), |why| format!("Withdrawn: {why}")));
+    }
+    let mut event = Event::new();
+    event
+        .uid(&format!("call-{}@binnacle", call.id))
+        .add_property("SEQUENCE", sequence.to_string())
+        .timestamp(at)
+        .last_modified(at)
+        .starts(utc(call.eta)?)
+        .ends(utc(call.etd)?)
+        .summary(&format!("{} at {port}", call.vessel_name))
+        .location(&place)
+        .description(&lines.join("\n"))
+        .add_property("TRANSP", "TRANSPARENT")
+        .status(if call.withdrawn_at.is_some() {
+            EventStatus::Cancelled
+        } else {
+            EventStatus::Tentative
+        });
+    Ok(event.done())
+}
+
+fn expected(what: &str, at: Time, uncertainty_h: f64) -> String {
+    let at = at.to_the_minute();
+    if uncertainty_h > 0.0 {
+        format!("{what}: {at}, within {uncertainty_h} h nineteen times in twenty")
+    } else {
+        format!("{what}: {at}")
+    }
+}
+
+fn day(due: &Due, public_url: Option<&str>) -> anyhow::Result<Event> {
+    let on: NaiveDate = due.day.parse().context("a stored due date")?;
+    let at = utc(due.changed_at)?;
+    let mut event = Event::new();
+    event
+        .uid(&format!("due-{}@binnacle", due.compass_id))
+        .add_property("SEQUENCE", due.version.to_string())
+        .timestamp(at)
+        .last_modified(at)
+        .starts(on)
+        .summary(&format!(
+            "{}, {}: adjustment due ({})",
+            due.vessel_name, due.compass_name, due.urgency
+        ))
+        .description(&due.reason)
+        .add_property("TRANSP", "TRANSPARENT")
+        .status(EventStatus::Confirmed);
+    if let Some(url) = public_url {
+        let url = url.trim_end_matches('/');
+        event.url(&format!("{url}/vessels/{}", due.vessel_id));
+    }
+    Ok(event.done())
+}
+
+/// What an entry of the log says of itself.
+#[derive(Deserialize)]
+struct Written {
+    at: Time,
+}
+
+fn event(order: &Appointment, public_url: Option<&str>) -> anyhow::Result<Event> {
+    let starts = utc(order.planned_at)?;
+    let written: Written = serde_json::from_str(&order.line)?;
+    let place = match &order.berth {
+        Some(berth) => format!("{}, {berth}", order.port),
+        None => order.port.clone(),
+    };
+    let state = in_words(order.state);
+    let mut event = Event::new();
+    event
+        .uid(&format!("{}@binnacle", order.id))
+        .add_property("SEQUENCE", order.last_seq.to_string())
+        .timestamp(utc(written.at)?)
+        .last_modified(utc(written.at)?)
+        .starts(starts)
+        .ends(starts + takes())
+        .summary(&format!(
+            "Adjust {}, {} ({state})",
+            order.compass_name, order.vessel_name
+        ))
+        .location(&place)
+        .description(&description(order))
+        .status(status(order));
+    if let Some(url) = public_url {
+        let url = url.trim_end_matches('/');
+        event.url(&format!("{url}/work-orders/{}", order.id));
+    }
+    Ok(event.done())
+}
+
+fn description(order: &Appointment) -> String {
+    let mut lines = vec![format!("Operator: {}", order.operator_name)];
+    if let Some(firm) = &order.firm {
+        lines.push(format!("Firm: {firm}"));
+    }
+    if let Some(adjuster) = &order.adjuster_name {
+        lines.push(format!("Adjuster: {adjuster}"));
+    }
+    lines.extend(unfit(order).map(str::to_owned));
+    lines.join("\n")
+}
+
+/// An adjustment at the berth takes about so long.
+fn takes() -> TimeDelta {
+    #[allow(clippy::cast_possible_truncation, reason = "a few hours")]
+    TimeDelta::seconds((JOB_H * 3600.0) as i64)
+}
+
+/// What is wrong with the time of an order whose work is still to be done, and whose port call
+/// is not where it was.
+fn unfit(order: &Appointment) -> Option<&'static str> {
+    let is_ahead = matches!(
+        order.state,
+        State::Offered
+            | State::Proposed
+            | State::Accepted
+            | State::OnBoard
+            | State::Measured
+            | State::Adjusting
+    );
+    match order.call_fit.filter(|_| is_ahead)? {
+        CallFit::Fits => None,
+        CallFit::OtherHour => Some(
+            "The port call has moved since this time was agreed: another hour of that day is \
+             needed.",
+        ),
+        CallFit::NeedsNewDay => {
+            Some("The port call has moved since this time was agreed: a new day is needed.")
+        }
+        CallFit::NoCall => Some(
+            "The port call that this time was agreed for is withdrawn, or is at another port: \
+             another time is needed.",
+        ),
+    }
+}
+
+fn status(order: &Appointment) -> EventStatus {
+    match order.state {
+        State::Planned | State::Offered | State::Proposed | State::Declined => {
+            EventStatus::Tentative
+        }
+        State::Cancelled => EventStatus::Cancelled,
+        _ if unfit(order).is_some() => EventStatus::Tentative,
+        _ => EventStatus::Confirmed,
+    }
+}
+
+fn in_words(state: State) -> &'static str {
+    match state {
+        State::Planned => "planned",
+        State::Offered => "offered",
+        State::Proposed => "other terms proposed",
+        State::Declined => "no firm has taken it",
+        State::Accepted => "accepted",
+        State::OnBoard => "on board",
+        State::Measured => "measured",
+        State::Adjusting => "adjusting",
+        State::Adjusted => "adjusted",
+        State::Verified => "verified",
+        State::Failed => "not confirmed at sea",
+        State::Closed => "closed",
+        State::ClosedUnverified => "closed without verification",
+        State::Cancelled => "cancelled",
+    }
+}
+
+fn utc(time: Time) -> anyhow::Result<DateTime<Utc>> {
+    DateTime::from_timestamp_micros(time.0.micros()).context("a time beyond the calendar's")
+}

@@ -1,0 +1,289 @@
+//! What needs are found from, out of the database: a few queries for a whole fleet.
+
+use super::facts::{Completed, Facts, Stored, Waypoint, Work, compass};
+use super::since::{self, Since};
+use crate::port_calls;
+use binnacle_compass::logbook::LogbookKind;
+use binnacle_fleet::alerts::AlertLimits;
+use binnacle_fleet::analysis::Findings;
+use binnacle_fleet::compasses::{self, Compass};
+use binnacle_fleet::models::{self, StoredModel};
+use binnacle_fleet::particulars::Particulars;
+use binnacle_orders::work_orders::State;
+use binnacle_platform::app::App;
+use binnacle_platform::db::{Db, rows};
+use binnacle_platform::error::Result;
+use binnacle_platform::ids::{CompassId, OperatorId, OrderId, VesselId};
+use binnacle_platform::time::Time;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use uuid::Uuid;
+
+type Of = (VesselId, CompassId);
+
+/// Everything, by vessel or by compass.
+struct Loaded {
+    vessels: Vec<(VesselId, String, Option<String>)>,
+    compasses: Vec<Compass>,
+    particulars: BTreeMap<VesselId, Particulars>,
+    work: BTreeMap<VesselId, Vec<Work>>,
+    completed: BTreeMap<Of, Completed>,
+    failed: BTreeMap<Of, (Time, f64)>,
+    models: Vec<StoredModel>,
+    findings: BTreeMap<Of, Findings>,
+    limits: BTreeMap<VesselId, AlertLimits>,
+    calls: BTreeMap<VesselId, Vec<Waypoint>>,
+    since: BTreeMap<Of, Since>,
+}
+
+/// What is known of a fleet's compasses, or of one vessel's in it.
+pub async fn of_fleet(
+    app: &App,
+    operator: OperatorId,
+    vessel: Option<VesselId>,
+) -> Result<Vec<Facts>> {
+    let now = app.clock.now().into();
+    let loaded = Loaded::of(&app.db, operator, vessel, now).await?;
+    // Deviation at a thousand ships' calls takes a moment.
+    Ok(tokio::task::spawn_blocking(move || loaded.facts(now)).await?)
+}
+
+impl Loaded {
+    async fn of(
+        db: &Db,
+        operator: OperatorId,
+        vessel: Option<VesselId>,
+        now: Time,
+    ) -> Result<Loaded> {
+        let (first, last) = vessel.map_or((VesselId(Uuid::nil()), VesselId(Uuid::max())), |one| {
+            (one, one)
+        });
+        let mut calls: BTreeMap<VesselId, Vec<Waypoint>> = BTreeMap::new();
+        for call in port_calls::ahead(db, operator, now).await? {
+            let (port, at) = (call.content()?.port, call.eta);
+            let at = at.max(now);
+            let of = calls.entry(call.vessel_id).or_default();
+            of.push(Waypoint { port, at });
+        }
+        Ok(Loaded {
+            vessels: rows!(
+                db,
+                (VesselId, String, Option<String>),
+                "SELECT id, name, flag FROM vessels
+                 WHERE operator_id = $1 AND id BETWEEN $2 AND $3
+                   AND out_of_service_at IS NULL
+                 ORDER BY id",
+                operator,
+                first,
+                last
+            )?,
+            compasses: compasses::of_fleet(db, operator, first, last).await?,
+            particulars: particulars(db, operator).await?,
+            work: work(db, operator).await?,
+            completed: completed(db, operator).await?,
+            failed: failed(db, operator).await?,
+            models: models::current_of_fleet(db, operator, first, last).await?,
+            findings: findings(db, operator).await?,
+            limits: limits(db, operator).await?,
+            calls,
+            since: since::noted(db, operator).await?,
+        })
+    }
+
+    fn facts(&self, now: Time) -> Vec<Facts> {
+        let names: BTreeMap<VesselId, &(VesselId, String, Option<String>)> = self
+            .vessels
+            .iter()
+            .map(|vessel| (vessel.0, vessel))
+            .collect();
+        let models: BTreeMap<Of, &StoredModel> = self
+            .models
+            .iter()
+            .map(|model| ((model.vessel_id, model.compass_id), model))
+            .collect();
+        let (default, none, never) = (Particulars::default(), Vec::new(), Since::default());
+        let facts = self.compasses.iter().filter_map(|one| {
+            let vessel = one.vessel_id;
+            let of = (vessel, one.id);
+            let (_, name, flag) = names.get(&vessel)?;
+            let particulars = self.particulars.get(&vessel).unwrap_or(&default);
+            let hers = self.work.get(&vessel).unwrap_or(&none).iter();
+            let stored = Stored {
+                work: hers
+                    .filter(|work| work.compass_id.is_none_or(|only| only == one.id))
+                    .collect(),
+                completed: self.completed.get(&of).copied(),
+                failed: self.failed.get(&of).copied(),
+                model: models.get(&of).copied(),
+                findings: self.findings.get(&of),
+                limits: self.limits.get(&vessel).copied().unwrap_or_default(),
+                calls: self.calls.get(&vessel).map_or(&[], Vec::as_slice),
+                since: self.since.get(&of).unwrap_or(&never),
+            };
+            let (compass, ahead, since) = compass(&stored, particulars, now);
+            let since = Some(since).filter(|since| since != stored.since);
+            Some(Facts {
+                vessel_id: vessel,
+                vessel_name: name.clone(),
+                compass_id: one.id,
+                compass_name: one.name.clone(),
+                ship: particulars.ship(flag.as_deref()),
+                licence: particulars.licence.clone(),
+                compass,
+                ahead,
+                since,
+            })
+        });
+        facts.collect()
+    }
+}
+
+async fn particulars(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Particulars>> {
+    let found = rows!(
+        db,
+        (VesselId, String),
+        "SELECT p.vessel_id, p.particulars FROM vessel_particulars p
+         JOIN vessels v ON v.id = p.vessel_id
+         WHERE v.operator_id = $1
+         ORDER BY p.vessel_id",
+        operator
+    )?;
+    let read = |(vessel, text): (VesselId, String)| Ok((vessel, serde_json::from_str(&text)?));
+    found.into_iter().map(read).collect()
+}
+
+/// What the logbooks tell of work; but not what a cancelled order left behind, which was
+/// no adjustment.
+async fn work(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Vec<Work>>> {
+    let cancelled: BTreeSet<String> = rows!(
+        db,
+        (OrderId,),
+        "SELECT o.id FROM work_orders o JOIN vessels v ON v.id = o.vessel_id
+         WHERE v.operator_id = $1 AND o.completed_at IS NULL
+         ORDER BY o.id",
+        operator
+    )?
+    .into_iter()
+    .map(|(order,)| format!("work order {order}"))
+    .collect();
+    let found = rows!(
+        db,
+        (
+            VesselId,
+            Option<CompassId>,
+            String,
+            Time,
+            Option<Time>,
+            String
+        ),
+        "SELECT e.vessel_id, e.compass_id, e.kind, e.from_at, e.to_at, e.note
+         FROM logbook_entries e JOIN vessels v ON v.id = e.vessel_id
+         WHERE v.operator_id = $1 AND e.withdrawn_at IS NULL
+           AND e.kind IN ('adjustment', 'compass_moved', 'dry_docking', 'repair', 'welding')
+         ORDER BY e.vessel_id, e.from_at, e.id",
+        operator
+    )?;
+    let mut work: BTreeMap<VesselId, Vec<Work>> = BTreeMap::new();
+    for (vessel, compass_id, kind, from, to, note) in found {
+        let kind: LogbookKind = serde_json::from_value(Value::String(kind))?;
+        if kind == LogbookKind::Adjustment && cancelled.contains(&note) {
+            continue;
+        }
+        work.entry(vessel).or_default().push(Work {
+            compass_id,
+            kind,
+            from,
+            to,
+        });
+    }
+    Ok(work)
+}
+
+/// Each compass's last.
+async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Completed>> {
+    let found = rows!(
+        db,
+        (VesselId, CompassId, Time, State),
+        "SELECT o.vessel_id, o.compass_id, o.completed_at, o.state
+         FROM work_orders o JOIN vessels v ON v.id = o.vessel_id
+         WHERE v.operator_id = $1 AND o.completed_at IS NOT NULL
+         ORDER BY o.vessel_id, o.completed_at, o.id",
+        operator
+    )?;
+    let by = |(vessel, compass, at, state)| {
+        // What is closed without a word from the sea is never more than foretold.
+        let awaits_verification = matches!(state, State::Adjusted | State::ClosedUnverified);
+        let completed = Completed {
+            at,
+            awaits_verification,
+        };
+        ((vessel, compass), completed)
+    };
+    // Of one compass the last stays.
+    Ok(found.into_iter().map(by).collect())
+}
+
+/// Orders that stand failed, or did when they were closed, where no other of the compass was
+/// completed later: until when headings at sea were looked at, and by how much the worst of
+/// them was off.
+async fn failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, (Time, f64)>> {
+    let found = rows!(
+        db,
+        (VesselId, CompassId, Time, String),
+        "SELECT o.vessel_id, o.compass_id, o.completed_at, e.line
+         FROM work_orders o
+         JOIN vessels v ON v.id = o.vessel_id
+         JOIN work_order_entries e ON e.vessel_id = o.vessel_id AND e.order_id = o.id
+         WHERE v.operator_id = $1 AND o.completed_at IS NOT NULL
+           AND (o.state = 'failed' OR (o.state = 'closed' AND o.verified_at IS NULL))
+           AND NOT EXISTS (
+               SELECT 1 FROM work_orders later
+               WHERE later.vessel_id = o.vessel_id AND later.compass_id = o.compass_id
+                 AND later.completed_at > o.completed_at)
+         ORDER BY o.vessel_id, o.completed_at, e.seq",
+        operator
+    )?;
+    let mut failed = BTreeMap::new();
+    for (vessel, compass, _, line) in found {
+        let entry: Value = serde_json::from_str(&line)?;
+        let said = &entry["content"];
+        let off_deg = said["verification"]["off_deg"].as_f64();
+        if let Some(off_deg) = off_deg {
+            let until: Time = serde_json::from_value(said["until"].clone())?;
+            failed.insert((vessel, compass), (until, off_deg));
+        }
+    }
+    Ok(failed)
+}
+
+async fn findings(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Findings>> {
+    let found = rows!(
+        db,
+        (VesselId, CompassId, Option<String>),
+        "SELECT a.vessel_id, a.compass_id, a.findings
+         FROM analyses a JOIN vessels v ON v.id = a.vessel_id
+         WHERE v.operator_id = $1
+         ORDER BY a.vessel_id, a.compass_id",
+        operator
+    )?;
+    let mut findings = BTreeMap::new();
+    for (vessel, compass, text) in found {
+        if let Some(text) = text {
+            findings.insert((vessel, compass), serde_json::from_str(&text)?);
+        }
+    }
+    Ok(findings)
+}
+
+async fn limits(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, AlertLimits>> {
+    let found = rows!(
+        db,
+        (VesselId, String),
+        "SELECT s.vessel_id, s.alerts FROM vessel_settings s JOIN vessels v ON v.id = s.vessel_id
+         WHERE v.operator_id = $1
+         ORDER BY s.vessel_id",
+        operator
+    )?;
+    let read = |(vessel, text): (VesselId, String)| Ok((vessel, serde_json::from_str(&text)?));
+    found.into_iter().map(read).collect()
+}

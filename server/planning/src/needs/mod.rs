@@ -1,0 +1,122 @@
+//! Which compasses are to be adjusted by when, and why.
+//!
+//! What always holds: a need is found anew each time it is asked for, from what is stored
+//! then, and nothing of it is stored but since when a deviation has been as great as it is; the rules and what follows from them are
+//! `binnacle_schedule`'s.
+
+mod facts;
+mod load;
+mod need;
+mod schema;
+mod since;
+
+pub use facts::Facts;
+pub use load::of_fleet;
+pub use need::Need;
+pub use schema::UrgencySchema;
+
+use crate::schedule;
+use axum::extract::{FromRef, State};
+use binnacle_fleet::vessels;
+use binnacle_platform::access::Reader;
+use binnacle_platform::app::App;
+use binnacle_platform::error::{Problem, Result};
+use binnacle_platform::http::{Id, Json, Page, Params};
+use binnacle_platform::ids::{CompassId, OperatorId, VesselId};
+use binnacle_schedule::needs::{Terms, due};
+use binnacle_schedule::rules::built_in_rules;
+use chrono::{Datelike, NaiveDate};
+use need::{Filter, NeedList};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(list_needs))
+        .routes(routes!(list_vessel_needs))
+}
+
+/// List the fleet's needs
+///
+/// When each compass is to be adjusted by the rules that bind its ship, brought forward by
+/// predicted deviation over a limit, a change of the ship's magnetism, or an adjustment
+/// that the sea does not confirm.
+#[utoipa::path(get, path = "/needs", tag = "adjusting", params(Filter, Page),
+    responses((status = 200, body = NeedList), (status = 401, body = Problem)))]
+async fn list_needs(
+    State(app): State<App>,
+    reader: Reader,
+    Params(filter): Params<Filter>,
+    page: Page,
+) -> Result<Json<NeedList>> {
+    listed(&app, reader.operator, None, &filter, &page).await
+}
+
+/// List a vessel's needs
+#[utoipa::path(get, path = "/vessels/{id}/needs", tag = "adjusting",
+    params(("id" = VesselId, Path), Filter, Page),
+    responses((status = 200, body = NeedList), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn list_vessel_needs(
+    State(app): State<App>,
+    reader: Reader,
+    Id(vessel): Id<VesselId>,
+    Params(filter): Params<Filter>,
+    page: Page,
+) -> Result<Json<NeedList>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, vessel).await?;
+    listed(&app, reader.operator, Some(vessel), &filter, &page).await
+}
+
+async fn listed(
+    app: &App,
+    operator: OperatorId,
+    vessel: Option<VesselId>,
+    filter: &Filter,
+    page: &Page,
+) -> Result<Json<NeedList>> {
+    let after = page.after_time()?.map(|(day, id)| (day, CompassId(id)));
+    let facts = of_fleet(app, operator, vessel).await?;
+    let terms = schedule::terms(&app.db, operator).await?;
+    let today = app.clock.now().to_chrono().date_naive();
+    let mut needs: Vec<Need> = facts
+        .iter()
+        .filter_map(|facts| need(facts, &terms, today))
+        .filter(|need| filter.urgency.is_none_or(|only| need.urgency == only))
+        .filter(|need| filter.due_by.is_none_or(|last| need.due_on <= last))
+        .filter(|need| after.is_none_or(|after| (day_number(need.due_on), need.compass_id) > after))
+        .collect();
+    needs.sort_by_key(|need| (need.due_on, need.compass_id));
+    let listed = page.cut(needs, Need::cursor);
+    Ok(Json(NeedList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// The need of a compass; none when no rule binds its ship and nothing is wrong.
+pub fn need(facts: &Facts, terms: &Terms, today: NaiveDate) -> Option<Need> {
+    let due = due(&facts.ship, &facts.compass, built_in_rules(), terms, today)?;
+    Some(Need::new(facts, due))
+}
+
+/// Notes since when deviations have been as great as they are, where that is news.
+pub async fn note_since(app: &App, facts: &[Facts]) -> Result<()> {
+    for facts in facts {
+        if let Some(news) = &facts.since {
+            let mut tx = app.db.begin().await?;
+            since::note(&mut tx, (facts.vessel_id, facts.compass_id), news).await?;
+            tx.commit().await?;
+        }
+    }
+    Ok(())
+}
+
+fn day_number(day: NaiveDate) -> i64 {
+    i64::from(day.num_days_from_ce())
+}

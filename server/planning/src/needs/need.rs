@@ -1,0 +1,154 @@
+//! A need, as it is shown.
+
+use super::schema::{CauseKindSchema, SideSchema, UrgencySchema};
+use binnacle_platform::ids::{CompassId, VesselId};
+use binnacle_schedule::needs::{CauseKind, Due, Side, Urgency};
+use binnacle_schedule::rules::{Rule, built_in_rules};
+use chrono::NaiveDate;
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+
+/// A compass, and when and why it is to be adjusted next.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(as = AdjustmentNeed)]
+pub struct Need {
+    /// The vessel.
+    pub vessel_id: VesselId,
+    /// Her name.
+    pub vessel_name: String,
+    /// The compass.
+    pub compass_id: CompassId,
+    /// Its name.
+    pub compass_name: String,
+    /// The last day on which it may be adjusted.
+    pub due_on: NaiveDate,
+    /// How much that presses.
+    #[schema(value_type = UrgencySchema)]
+    pub urgency: Urgency,
+    /// Why, in words.
+    #[schema(
+        example = "24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G, \
+                        read second-hand)"
+    )]
+    pub reason: String,
+    /// All causes, the earliest first.
+    pub causes: Vec<Cause>,
+    /// The day of the last adjustment on record.
+    #[schema(required)]
+    pub adjusted_on: Option<NaiveDate>,
+    /// The greatest deviation predicted for the places and days ahead, where the model is
+    /// sure enough to tell.
+    pub predicted: Vec<Ahead>,
+    /// What is not known of the vessel, and so binds her as if it were.
+    #[schema(example = json!(["gross_tonnage"]))]
+    pub not_known: Vec<&'static str>,
+}
+
+/// One cause, with its own due date.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(as = NeedCause)]
+pub struct Cause {
+    /// What it is.
+    #[schema(value_type = CauseKindSchema)]
+    pub kind: CauseKind,
+    /// By when it wants the compass adjusted.
+    pub due_on: NaiveDate,
+    /// In words.
+    pub reason: String,
+    /// The rule, where it is one.
+    #[schema(required)]
+    pub rule: Option<RuleCited>,
+}
+
+/// A rule, and where it is written.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct RuleCited {
+    /// Its name here, which stays when its words change.
+    #[schema(example = "iso-25862-interval")]
+    pub id: String,
+    /// Issuer and name of the document.
+    pub document: String,
+    /// Where in it.
+    #[schema(required)]
+    pub section: Option<String>,
+    /// Whether a copy or a report of it was read, rather than the document itself.
+    pub second_hand: bool,
+}
+
+/// The greatest deviation at a place and on a day.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[schema(as = DeviationAhead)]
+pub struct Ahead {
+    /// On which day.
+    pub on: NaiveDate,
+    /// Where: `here`, a port's name, or a canal's.
+    #[schema(example = "Rotterdam")]
+    pub place: String,
+    /// The largest deviation on any heading, either way, degrees.
+    pub worst_deviation_deg: f64,
+    /// Which way that is.
+    #[schema(value_type = SideSchema)]
+    pub side: Side,
+}
+
+/// A page of needs.
+#[derive(Serialize, ToSchema)]
+#[schema(as = AdjustmentNeedList)]
+pub(super) struct NeedList {
+    /// The first due first.
+    pub(super) items: Vec<Need>,
+    /// `after` of the next page.
+    #[schema(required)]
+    pub(super) next: Option<String>,
+}
+
+/// Which needs.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(super) struct Filter {
+    /// Of this urgency only.
+    #[param(value_type = Option<UrgencySchema>)]
+    pub(super) urgency: Option<Urgency>,
+    /// Due on this day or before.
+    pub(super) due_by: Option<NaiveDate>,
+}
+
+impl Need {
+    /// Puts a need together.
+    pub(super) fn new(facts: &super::facts::Facts, due: Due) -> Need {
+        let causes = due.causes.into_iter().map(|cause| Cause {
+            kind: cause.kind,
+            due_on: cause.due,
+            reason: cause.reason,
+            rule: cause.rule.as_deref().and_then(cited),
+        });
+        Need {
+            vessel_id: facts.vessel_id,
+            vessel_name: facts.vessel_name.clone(),
+            compass_id: facts.compass_id,
+            compass_name: facts.compass_name.clone(),
+            due_on: due.on,
+            urgency: due.urgency,
+            reason: due.reason,
+            causes: causes.collect(),
+            adjusted_on: facts.compass.adjusted_on,
+            predicted: facts.ahead.clone(),
+            not_known: facts.not_known(),
+        }
+    }
+
+    /// `after` of a page that begins behind it.
+    pub(super) fn cursor(&self) -> String {
+        format!("{}.{}", super::day_number(self.due_on), self.compass_id)
+    }
+}
+
+fn cited(id: &str) -> Option<RuleCited> {
+    let rule: &Rule = built_in_rules().iter().find(|rule| rule.id == id)?;
+    Some(RuleCited {
+        id: rule.id.clone(),
+        document: rule.citation.document.clone(),
+        section: rule.citation.section.clone(),
+        second_hand: rule.citation.read == binnacle_schedule::rules::Read::SecondHand,
+    })
+}

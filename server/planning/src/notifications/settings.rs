@@ -1,0 +1,332 @@
+//! How a person wants to be told: by which ways, when not, and when together.
+//!
+//! What always holds: times of day are those of the person's own time zone, also when its
+//! clocks change.
+
+use super::way::Way;
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::notices::Kind;
+use binnacle_platform::session::Role;
+use binnacle_platform::time::Time;
+use binnacle_schedule::time::Instant;
+use binnacle_schedule::zone::Zone;
+use chrono::{Datelike, Days, NaiveDate, NaiveDateTime, NaiveTime};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use utoipa::ToSchema;
+
+/// How a person wants to be told.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = NotificationSettings, example = json!({
+    "time_zone": "Europe/Madrid",
+    "ways": { "due_soon": "digest", "answered": "mail", "on_board": "list", "alert": "mail" },
+    "quiet_hours": { "from": "22:00", "to": "07:00" },
+    "digest": { "every": "week", "on": "monday", "at": "07:30" }
+}))]
+pub(super) struct Settings {
+    /// The time zone by its IANA name; UTC if not said.
+    #[serde(default = "Zone::utc")]
+    #[schema(value_type = String, example = "Europe/Madrid")]
+    pub(super) time_zone: Zone,
+    /// How to tell of each kind; what is left out is told in the way that is usual.
+    #[serde(default)]
+    pub(super) ways: BTreeMap<Kind, Way>,
+    /// When no mail is to come, except of a critical alert. What comes then is kept for
+    /// the end.
+    #[serde(default)]
+    #[schema(required)]
+    pub(super) quiet_hours: Option<QuietHours>,
+    /// When what is told together is sent; each day at 07:00 if not said.
+    #[serde(default)]
+    pub(super) digest: Digest,
+}
+
+/// A time of day, to the minute.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub(super) struct TimeOfDay(NaiveTime);
+
+/// Hours without mail; over midnight if `to` is before `from`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct QuietHours {
+    /// From then on.
+    #[schema(value_type = String, example = "22:00")]
+    pub(super) from: TimeOfDay,
+    /// Until then.
+    #[schema(value_type = String, example = "07:00")]
+    pub(super) to: TimeOfDay,
+}
+
+/// When a digest is sent, if there is anything in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(tag = "every", rename_all = "snake_case", deny_unknown_fields)]
+pub(super) enum Digest {
+    /// Each day.
+    Day {
+        /// At this time of day.
+        #[schema(value_type = String, example = "07:00")]
+        at: TimeOfDay,
+    },
+    /// Once a week.
+    Week {
+        /// On this day.
+        on: Weekday,
+        /// At this time of day.
+        #[schema(value_type = String, example = "07:00")]
+        at: TimeOfDay,
+    },
+}
+
+/// A day of the week.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Weekday {
+    Monday,
+    Tuesday,
+    Wednesday,
+    Thursday,
+    Friday,
+    Saturday,
+    Sunday,
+}
+
+impl Default for Digest {
+    fn default() -> Digest {
+        let seven = NaiveTime::from_hms_opt(7, 0, 0).expect("seven is an hour");
+        Digest::Day {
+            at: TimeOfDay(seven),
+        }
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings {
+            time_zone: Zone::utc(),
+            ways: BTreeMap::new(),
+            quiet_hours: None,
+            digest: Digest::default(),
+        }
+    }
+}
+
+impl TryFrom<String> for TimeOfDay {
+    type Error = String;
+
+    fn try_from(text: String) -> std::result::Result<TimeOfDay, String> {
+        let read = NaiveTime::parse_from_str(&text, "%H:%M").ok();
+        let whole = read.filter(|_| text.len() == 5).map(TimeOfDay);
+        whole.ok_or_else(|| format!("{text:?} is no time of day like 07:30"))
+    }
+}
+
+impl From<TimeOfDay> for String {
+    fn from(time: TimeOfDay) -> String {
+        time.0.format("%H:%M").to_string()
+    }
+}
+
+impl Settings {
+    /// The same, if it makes sense for someone of that role.
+    ///
+    /// # Errors
+    /// When it does not.
+    pub(super) fn checked(self, role: Role) -> Result<Settings> {
+        let invalid = |field, detail: &str| {
+            Err(Error::Invalid {
+                field,
+                detail: detail.to_owned(),
+            })
+        };
+        if !self.ways.keys().all(|kind| kind.concerns(role)) {
+            return invalid("ways", "has a kind that you are never told of");
+        }
+        if let Some(quiet) = self.quiet_hours {
+            if quiet.from == quiet.to {
+                return invalid("quiet_hours", "begin and end at the same time");
+            }
+            if quiet.contains(self.digest.at()) {
+                return invalid("digest", "comes in the quiet hours");
+            }
+        }
+        Ok(self)
+    }
+
+    /// How to tell of a kind.
+    pub(super) fn way(&self, kind: Kind, role: Role) -> Way {
+        let said = self.ways.get(&kind).copied();
+        said.unwrap_or_else(|| Way::default_for(kind, role))
+    }
+
+    /// When a letter is to tell of something that happens now; none when none is.
+    pub(super) fn mail_at(&self, way: Way, urgent: bool, now: Time) -> Option<Time> {
+        match way {
+            Way::Mail | Way::Digest if urgent => Some(now),
+            Way::Mail => Some(self.after_quiet_hours(now)),
+            Way::Digest => Some(self.next_digest(now)),
+            Way::List | Way::Off => None,
+        }
+    }
+
+    /// Now, or when the quiet hours end.
+    fn after_quiet_hours(&self, now: Time) -> Time {
+        let local = self.local(now);
+        let Some(quiet) = self.quiet_hours else {
+            return now;
+        };
+        if !quiet.contains(TimeOfDay(local.time())) {
+            return now;
+        }
+        let ends_today = local.time() < quiet.to.0;
+        let day = if ends_today {
+            local.date()
+        } else {
+            local.date() + Days::new(1)
+        };
+        self.instant(day, quiet.to).max(now)
+    }
+
+    /// When the next digest is sent.
+    pub(super) fn next_digest(&self, now: Time) -> Time {
+        let today = self.local(now).date();
+        let days = (0..=8).filter_map(|ahead| today.checked_add_days(Days::new(ahead)));
+        let mut digests = days
+            .filter(|day| self.digest.is_on(*day))
+            .map(|day| self.instant(day, self.digest.at()));
+        digests.find(|at| *at > now).unwrap_or(now)
+    }
+
+    fn local(&self, at: Time) -> NaiveDateTime {
+        self.time_zone.local(Instant(at.0))
+    }
+
+    /// The instant at which a clock there shows a time: the first, where it does so twice;
+    /// the first after it, where it never does.
+    fn instant(&self, day: NaiveDate, at: TimeOfDay) -> Time {
+        Time(self.time_zone.instant(day.and_time(at.0)).0)
+    }
+}
+
+impl QuietHours {
+    fn contains(&self, time: TimeOfDay) -> bool {
+        if self.from < self.to {
+            (self.from..self.to).contains(&time)
+        } else {
+            time >= self.from || time < self.to
+        }
+    }
+}
+
+impl Digest {
+    fn at(&self) -> TimeOfDay {
+        match self {
+            Digest::Day { at } | Digest::Week { at, .. } => *at,
+        }
+    }
+
+    fn is_on(&self, day: NaiveDate) -> bool {
+        match self {
+            Digest::Day { .. } => true,
+            Digest::Week { on, .. } => *on as u32 == day.weekday().num_days_from_monday(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use binnacle_compass::time::Timestamp;
+    use serde_json::json;
+
+    fn settings(value: serde_json::Value) -> Settings {
+        serde_json::from_value(value).unwrap()
+    }
+
+    fn time(text: &str) -> Time {
+        Time(Timestamp::parse(text).unwrap())
+    }
+
+    #[test]
+    fn quiet_hours_hold_mail_until_they_end_where_the_person_is() {
+        let madrid = settings(json!({
+            "time_zone": "Europe/Madrid", "quiet_hours": { "from": "22:00", "to": "07:00" }
+        }));
+        for (now, then) in [
+            // In winter Madrid is an hour ahead of UTC, in summer two.
+            ("2026-11-21T20:59:00Z", "2026-11-21T20:59:00Z"),
+            ("2026-11-21T21:00:00Z", "2026-11-22T06:00:00Z"),
+            ("2026-11-22T05:59:59Z", "2026-11-22T06:00:00Z"),
+            ("2026-11-22T06:00:00Z", "2026-11-22T06:00:00Z"),
+            ("2026-07-01T21:30:00Z", "2026-07-02T05:00:00Z"),
+            // The night in which clocks go forward is an hour shorter.
+            ("2026-03-28T22:00:00Z", "2026-03-29T05:00:00Z"),
+        ] {
+            let found = madrid.mail_at(Way::Mail, false, time(now));
+            assert_eq!(found, Some(time(then)), "{now}");
+            assert_eq!(madrid.mail_at(Way::Mail, true, time(now)), Some(time(now)));
+        }
+        let noon = settings(json!({
+            "time_zone": "Pacific/Auckland", "quiet_hours": { "from": "12:00", "to": "13:00" }
+        }));
+        let found = noon.mail_at(Way::Mail, false, time("2026-11-20T23:30:00Z"));
+        assert_eq!(found, Some(time("2026-11-21T00:00:00Z")));
+    }
+
+    #[test]
+    fn a_time_that_a_clock_skips_is_the_first_after_it() {
+        let madrid = settings(json!({
+            "time_zone": "Europe/Madrid", "digest": { "every": "day", "at": "02:30" }
+        }));
+        let next = madrid.next_digest(time("2026-03-28T12:00:00Z"));
+        assert_eq!(next, time("2026-03-29T01:00:00Z"));
+        // And the first of two where it is put back.
+        let next = madrid.next_digest(time("2026-10-24T12:00:00Z"));
+        assert_eq!(next, time("2026-10-25T00:30:00Z"));
+    }
+
+    #[test]
+    fn a_digest_comes_on_its_day_and_never_now() {
+        let weekly = settings(json!({
+            "time_zone": "Asia/Singapore",
+            "digest": { "every": "week", "on": "monday", "at": "07:30" }
+        }));
+        for (now, then) in [
+            ("2026-11-21T07:00:00Z", "2026-11-22T23:30:00Z"),
+            ("2026-11-22T23:29:59Z", "2026-11-22T23:30:00Z"),
+            ("2026-11-22T23:30:00Z", "2026-11-29T23:30:00Z"),
+        ] {
+            assert_eq!(weekly.next_digest(time(now)), time(then), "{now}");
+        }
+        let daily = Settings::default();
+        let next = daily.next_digest(time("2026-11-21T07:00:00Z"));
+        assert_eq!(next, time("2026-11-22T07:00:00Z"));
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_not_read() {
+        for bad in [
+            json!({ "time_zone": "Europe/Atlantis" }),
+            json!({ "time_zone": "UTC", "quiet_hours": { "from": "24:00", "to": "07:00" } }),
+            json!({ "quiet_hours": { "from": "7:00", "to": "22:00" } }),
+            json!({ "digest": { "every": "month", "at": "07:00" } }),
+            json!({ "digest": { "every": "week", "at": "07:00" } }),
+            json!({ "ways": { "gossip": "mail" } }),
+            json!({ "ways": { "alert": "pigeon" } }),
+            json!({ "colour": "blue" }),
+        ] {
+            assert!(
+                serde_json::from_value::<Settings>(bad.clone()).is_err(),
+                "{bad}"
+            );
+        }
+        for bad in [
+            json!({ "quiet_hours": { "from": "07:00", "to": "07:00" } }),
+            json!({ "quiet_hours": { "from": "22:00", "to": "08:00" } }),
+            json!({ "ways": { "offered": "mail" } }),
+        ] {
+            assert!(settings(bad.clone()).checked(Role::Admin).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! Notifications and people's settings in the database.
+
+use super::settings::Settings;
+use super::{Filter, Notification};
+use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
+use binnacle_platform::error::Result;
+use binnacle_platform::ids::{CompassId, NotificationId, OperatorId, UserId, VesselId};
+use binnacle_platform::notices::Kind;
+use binnacle_platform::notices::Notice;
+use binnacle_platform::time::Time;
+use uuid::Uuid;
+
+/// So long they are kept.
+const KEPT_FOR_S: f64 = 90.0 * 86_400.0;
+
+/// What someone has said of how to be told; the usual, if nothing.
+pub(super) async fn settings(db: &Db, user: UserId) -> Result<Settings> {
+    let found = row!(
+        db,
+        (String,),
+        "SELECT settings FROM notification_settings WHERE user_id = $1 ORDER BY user_id",
+        user
+    )?;
+    Ok(found.map_or_else(
+        || Ok(Settings::default()),
+        |(text,)| serde_json::from_str(&text),
+    )?)
+}
+
+pub(super) async fn put_settings(
+    tx: &mut Tx,
+    user: UserId,
+    settings: &Settings,
+    now: Time,
+) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO notification_settings (user_id, settings, changed_at) VALUES ($1, $2, $3)
+         ON CONFLICT (user_id) DO UPDATE
+         SET settings = excluded.settings, changed_at = excluded.changed_at",
+        user,
+        serde_json::to_string(settings)?,
+        now
+    )?;
+    Ok(())
+}
+
+pub(super) async fn insert(
+    tx: &mut Tx,
+    user: UserId,
+    news: &Notice,
+    mail_at: Option<Time>,
+    now: Time,
+) -> DbResult<()> {
+    execute!(
+        tx,
+        "INSERT INTO notifications (user_id, id, kind, urgent, subject, text, path, vessel_id,
+                                    order_id, alert_id, created_at, mail_at)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12)",
+        user,
+        NotificationId::new(),
+        news.kind,
+        news.urgent,
+        news.subject.as_str(),
+        news.text.as_str(),
+        news.path.as_str(),
+        news.vessel,
+        news.order,
+        news.alert,
+        now,
+        mail_at
+    )?;
+    Ok(())
+}
+
+/// The newest first, from before an id.
+pub(super) async fn list(
+    db: &Db,
+    user: UserId,
+    filter: &Filter,
+    before: Option<Uuid>,
+    limit: i64,
+) -> DbResult<Vec<Notification>> {
+    rows!(
+        db,
+        Notification,
+        "SELECT id, kind, urgent, subject, text, path, vessel_id, order_id, alert_id, created_at,
+                read_at
+         FROM notifications
+         WHERE user_id = $1 AND id < $2
+           AND ($3 IS NULL OR (read_at IS NULL) = $3)
+           AND ($4 IS NULL OR kind = $4)
+         ORDER BY id DESC
+         LIMIT $5",
+        user,
+        before.unwrap_or(Uuid::max()),
+        filter.unread,
+        filter.kind,
+        limit
+    )
+}
+
+/// How many someone has not read.
+pub(super) async fn unread(db: &Db, user: UserId) -> DbResult<i64> {
+    let found = row!(
+        db,
+        (i64,),
+        "SELECT COUNT(*) FROM notifications WHERE user_id = $1 AND read_at IS NULL",
+        user
+    )?;
+    Ok(found.map_or(0, |(unread,)| unread))
+}
+
+/// Marks one as read, or as unread; whether there is such a one.
+pub(super) async fn mark(
+    tx: &mut Tx,
+    user: UserId,
+    id: NotificationId,
+    read_at: Option<Time>,
+) -> DbResult<bool> {
+    let marked = execute!(
+        tx,
+        "UPDATE notifications SET read_at = $3 WHERE user_id = $1 AND id = $2",
+        user,
+        id,
+        read_at
+    )?;
+    Ok(marked > 0)
+}
+
+/// Marks those up to one as read, all if it is not said which.
+pub(super) async fn mark_read(
+    tx: &mut Tx,
+    user: UserId,
+    until: Option<NotificationId>,
+    now: Time,
+) -> DbResult<()> {
+    execute!(
+        tx,
+        "UPDATE notifications SET read_at = $3
+         WHERE user_id = $1 AND id <= $2 AND read_at IS NULL",
+        user,
+        until.map_or(Uuid::max(), |id| id.0),
+        now
+    )?;
+    Ok(())
+}
+
+/// What waits for its letter: which, of what kind, and whether urgent.
+pub(super) async fn waiting(
+    tx: &mut Tx,
+    user: UserId,
+) -> DbResult<Vec<(NotificationId, Kind, bool)>> {
+    rows!(
+        in tx,
+        (NotificationId, Kind, bool),
+        "SELECT id, kind, urgent FROM notifications
+         WHERE user_id = $1 AND mail_at IS NOT NULL
+         ORDER BY id",
+        user
+    )
+}
+
+pub(super) async fn put_off(
+    tx: &mut Tx,
+    user: UserId,
+    id: NotificationId,
+    mail_at: Option<Time>,
+) -> DbResult<()> {
+    execute!(
+        tx,
+        "UPDATE notifications SET mail_at = $3 WHERE user_id = $1 AND id = $2",
+        user,
+        id,
+        mail_at
+    )?;
+    Ok(())
+}
+
+/// To whom a letter is due.
+pub(super) async fn due(db: &Db, now: Time) -> DbResult<Vec<(UserId,)>> {
+    rows!(
+        db,
+        (UserId,),
+        "SELECT DISTINCT user_id FROM notifications WHERE mail_at <= $1 ORDER BY user_id",
+        now
+    )
+}
+
+/// Takes what is due to a person for a letter: nobody else gets it.
+pub(super) async fn take_due(tx: &mut Tx, user: UserId, now: Time) -> DbResult<Vec<Notification>> {
+    let mut taken = rows!(
+        in tx,
+        Notification,
+        "UPDATE notifications SET mail_at = NULL
+         WHERE user_id = $1 AND mail_at <= $2
+         RETURNING id, kind, urgent, subject, text, path, vessel_id, order_id, alert_id,
+                   created_at, read_at",
+        user,
+        now
+    )?;
+    // RETURNING promises no order.
+    taken.sort_by_key(|notification| notification.id);
+    Ok(taken)
+}
+
+/// Forgets what is old.
+pub(super) async fn prune(db: &Db, now: Time) -> DbResult<()> {
+    let mut tx = db.begin().await?;
+    execute!(
+        &mut tx,
+        "DELETE FROM notifications WHERE created_at < $1",
+        Time(now.0.plus_seconds(-KEPT_FOR_S))
+    )?;
+    tx.commit().await
+}
+
+/// What was last noted of a compass's need.
+#[derive(Clone, Debug, PartialEq, sqlx::FromRow)]
+pub(super) struct Noted {
+    pub(super) vessel_id: VesselId,
+    pub(super) compass_id: CompassId,
+    pub(super) due_on: String,
+    pub(super) urgency: String,
+    pub(super) reason: String,
+}
+
+/// What was last noted of an operator's compasses' needs.
+pub(super) async fn needs_told(db: &Db, operator: OperatorId) -> DbResult<Vec<Noted>> {
+    rows!(
+        db,
+        Noted,
+        "SELECT t.vessel_id, t.compass_id, t.due_on, t.urgency, t.reason FROM needs_told t
+         JOIN vessels v ON v.id = t.vessel_id
+         WHERE v.operator_id = $1
+         ORDER BY t.vessel_id, t.compass_id",
+        operator
+    )
+}
+
+/// Notes how a compass's need stands; false when another process has meanwhile.
+pub(super) async fn note_need(
+    tx: &mut Tx,
+    before: Option<&Noted>,
+    stands: &Noted,
+    now: Time,
+) -> DbResult<bool> {
+    let noted = match before {
+        None => execute!(
+            tx,
+            "INSERT INTO needs_told (vessel_id, compass_id, due_on, urgency, reason, version,
+                                     changed_at)
+             VALUES ($1, $2, $3, $4, $5, 1, $6)
+             ON CONFLICT (vessel_id, compass_id) DO NOTHING",
+            stands.vessel_id,
+            stands.compass_id,
+            stands.due_on.as_str(),
+            stands.urgency.as_str(),
+            stands.reason.as_str(),
+            now
+        )?,
+        Some(before) => execute!(
+            tx,
+            "UPDATE needs_told
+             SET due_on = $6, urgency = $7, reason = $8, version = version + 1, changed_at = $9
+             WHERE vessel_id = $1 AND compass_id = $2
+               AND due_on = $3 AND urgency = $4 AND reason = $5",
+            stands.vessel_id,
+            stands.compass_id,
+            before.due_on.as_str(),
+            before.urgency.as_str(),
+            before.reason.as_str(),
+            stands.due_on.as_str(),
+            stands.urgency.as_str(),
+            stands.reason.as_str(),
+            now
+        )?,
+    };
+    Ok(noted > 0)
+}
+
+/// Forgets the need of a compass that has none any more.
+pub(super) async fn forget_need(tx: &mut Tx, of: &Noted) -> DbResult<()> {
+    execute!(
+        tx,
+        "DELETE FROM needs_told WHERE vessel_id = $1 AND compass_id = $2",
+        of.vessel_id,
+        of.compass_id
+    )?;
+    Ok(())
+}

@@ -1,0 +1,33 @@
+//! Ways in which a person gets notifications of a kind.
+
+use binnacle_platform::notices::Kind;
+use binnacle_platform::session::Role;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// How a person is told of something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = NotificationWay)]
+pub(super) enum Way {
+    /// On the list, and by mail, after quiet hours if it comes during them.
+    Mail,
+    /// On the list, and with the next digest.
+    Digest,
+    /// On the list only.
+    List,
+    /// Not at all.
+    Off,
+}
+
+impl Way {
+    /// Returns the way for a kind of a person who has not chosen one. Alerts have the
+    /// operator's mailing list, and a viewer gets no mail unasked.
+    pub(super) fn default_for(kind: Kind, role: Role) -> Way {
+        match (role, kind) {
+            (Role::Viewer, _) | (_, Kind::Alert) => Way::List,
+            (_, Kind::DueSoon | Kind::Completed) => Way::Digest,
+            _ => Way::Mail,
+        }
+    }
+}

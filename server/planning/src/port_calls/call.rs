@@ -1,0 +1,408 @@
+//! A port call, as it is asked for, written and shown.
+
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::http::{Amended, never_null, optional_text, text, time};
+use binnacle_platform::ids::{CallId, VesselId};
+use binnacle_platform::time::Time;
+use binnacle_schedule::calls::{self, BerthHeading, CallError, HeadingSource};
+use binnacle_schedule::ports::{self, PortCode};
+use binnacle_schedule::time::Instant;
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+
+/// A call to be entered.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = NewPortCall, example = json!({
+    "port": "NLRTM", "berth": "Maasvlakte 3", "eta": "2026-12-08T06:00:00Z",
+    "eta_uncertainty_h": 12, "etd": "2026-12-10T18:00:00Z"
+}))]
+pub(super) struct NewCall {
+    /// What it is called where it comes from; port and ETA where nothing is said.
+    #[schema(max_length = 200)]
+    pub(super) reference: Option<String>,
+    /// UN/LOCODE of the port.
+    #[schema(value_type = String, example = "NLRTM")]
+    pub(super) port: PortCode,
+    /// The berth.
+    #[schema(max_length = 200)]
+    pub(super) berth: Option<String>,
+    /// When she is expected alongside, with a time zone.
+    #[schema(value_type = Time)]
+    pub(super) eta: Instant,
+    /// She comes within so many hours of that, nineteen times in twenty.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 720)]
+    pub(super) eta_uncertainty_h: f64,
+    /// When she is expected to leave, 120 days later at most.
+    #[schema(value_type = Time)]
+    pub(super) etd: Instant,
+    /// She leaves within so many hours of that, nineteen times in twenty.
+    #[serde(default)]
+    #[schema(minimum = 0, maximum = 720)]
+    pub(super) etd_uncertainty_h: f64,
+    /// Her true heading alongside, where it is known.
+    #[schema(minimum = 0, maximum = 360)]
+    pub(super) berth_heading_deg: Option<f64>,
+}
+
+/// What is to be changed of a call.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Amendment {
+    #[serde(default, deserialize_with = "never_null")]
+    port: Option<PortCode>,
+    #[serde(default)]
+    berth: Amended<String>,
+    #[serde(default, deserialize_with = "never_null")]
+    eta: Option<Instant>,
+    #[serde(default, deserialize_with = "never_null")]
+    eta_uncertainty_h: Option<f64>,
+    #[serde(default, deserialize_with = "never_null")]
+    etd: Option<Instant>,
+    #[serde(default, deserialize_with = "never_null")]
+    etd_uncertainty_h: Option<f64>,
+    #[serde(default)]
+    berth_heading_deg: Amended<f64>,
+}
+
+/// What is to be changed of a call; what is left out stays, null takes the berth or her
+/// heading there away.
+#[derive(ToSchema)]
+#[schema(as = PortCallAmendment, example = json!({
+    "eta": "2026-12-09T02:00:00Z", "etd": "2026-12-11T12:00:00Z"
+}))]
+#[allow(dead_code, reason = "describes Amendment")]
+pub(super) struct AmendmentSchema {
+    /// UN/LOCODE.
+    #[schema(nullable = false)]
+    port: Option<String>,
+    #[schema(max_length = 200)]
+    berth: Option<String>,
+    #[schema(nullable = false)]
+    eta: Option<Time>,
+    #[schema(minimum = 0, maximum = 720, nullable = false)]
+    eta_uncertainty_h: Option<f64>,
+    #[schema(nullable = false)]
+    etd: Option<Time>,
+    #[schema(minimum = 0, maximum = 720, nullable = false)]
+    etd_uncertainty_h: Option<f64>,
+    #[schema(minimum = 0, maximum = 360)]
+    berth_heading_deg: Option<f64>,
+}
+
+/// What a call says, wherever it comes from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = PortCallContent)]
+pub struct Content {
+    /// What it is called where it comes from.
+    pub reference: String,
+    /// UN/LOCODE of the port.
+    #[schema(value_type = String)]
+    pub port: PortCode,
+    /// The berth.
+    #[schema(required)]
+    pub berth: Option<String>,
+    /// When she is expected alongside.
+    pub eta: Time,
+    /// She comes within so many hours of that, nineteen times in twenty.
+    pub eta_uncertainty_h: f64,
+    /// When she is expected to leave.
+    pub etd: Time,
+    /// She leaves within so many hours of that, nineteen times in twenty.
+    pub etd_uncertainty_h: f64,
+    /// Her true heading alongside, as it was given.
+    #[schema(required)]
+    pub berth_heading_deg: Option<f64>,
+}
+
+/// Where a call comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+#[schema(as = PortCallSource)]
+pub enum Source {
+    /// A request of its own.
+    Api,
+    /// A CSV file.
+    Csv,
+    /// A calendar.
+    Icalendar,
+}
+
+/// A vessel's call at a port.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+pub struct PortCall {
+    /// The call's id.
+    pub id: CallId,
+    /// The vessel.
+    pub vessel_id: VesselId,
+    /// Her name.
+    pub vessel_name: String,
+    /// What it says.
+    #[serde(flatten)]
+    pub content: Content,
+    /// The port's name.
+    pub port_name: &'static str,
+    /// Her heading alongside, given or learnt; none where neither tells.
+    #[schema(required)]
+    pub berth_heading: Option<LearntHeading>,
+    /// Where it comes from, as it is now.
+    pub source: Source,
+    /// Counts from 1.
+    pub revision: u32,
+    /// When it was entered.
+    pub created_at: Time,
+    /// Who entered it.
+    pub created_by: String,
+    /// When it was last amended.
+    #[schema(required)]
+    pub revised_at: Option<Time>,
+    /// Who amended it last.
+    #[schema(required)]
+    pub revised_by: Option<String>,
+    /// When it was withdrawn; from then on it counts no more.
+    #[schema(required)]
+    pub withdrawn_at: Option<Time>,
+    /// Who withdrew it.
+    #[schema(required)]
+    pub withdrawn_by: Option<String>,
+    /// Why.
+    #[schema(required)]
+    pub withdrawal_reason: Option<String>,
+}
+
+/// A heading alongside.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[schema(as = CallBerthHeading)]
+pub struct LearntHeading {
+    /// Degrees, true.
+    pub heading_deg: f64,
+    /// How it is known.
+    pub source: LearntFrom,
+}
+
+/// How a heading alongside is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = CallBerthHeadingSource)]
+pub enum LearntFrom {
+    /// It was given for this call.
+    Given,
+    /// It was read alongside, in this call.
+    Read,
+    /// From earlier calls of the fleet at the same berth.
+    Berth,
+    /// From earlier calls of the fleet at the same port.
+    Port,
+}
+
+/// A page of calls.
+#[derive(Serialize, ToSchema)]
+#[schema(as = PortCallList)]
+pub(super) struct CallList {
+    /// The first to begin comes first.
+    pub(super) items: Vec<PortCall>,
+    /// `after` of the next page.
+    #[schema(required)]
+    pub(super) next: Option<String>,
+}
+
+/// A call as it is, and as it was.
+#[derive(Serialize, ToSchema)]
+#[schema(as = RevisedPortCall)]
+pub(super) struct RevisedCall {
+    /// As it is.
+    #[serde(flatten)]
+    pub(super) call: PortCall,
+    /// As it was written each time, the first time first.
+    pub(super) revisions: Vec<Revision>,
+}
+
+/// A call as it was written once.
+#[derive(Serialize, ToSchema)]
+#[schema(as = PortCallRevision)]
+pub(super) struct Revision {
+    /// Counts from 1.
+    pub(super) number: u32,
+    /// When.
+    pub(super) at: Time,
+    /// Where it came from.
+    pub(super) source: Source,
+    /// Who sent it.
+    pub(super) author_name: String,
+    /// What it said.
+    pub(super) call: Content,
+}
+
+/// Why a call is withdrawn.
+#[derive(Default, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = PortCallWithdrawal, example = json!({ "reason": "Charter cancelled" }))]
+pub(super) struct Withdrawal {
+    /// In a few words.
+    #[schema(max_length = 200)]
+    pub(super) reason: Option<String>,
+}
+
+/// Which calls.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(super) struct Filter {
+    /// What has not ended before this instant, RFC 3339.
+    #[param(value_type = Option<String>, format = DateTime)]
+    from: Option<String>,
+    /// What begins before this instant, RFC 3339.
+    #[param(value_type = Option<String>, format = DateTime)]
+    to: Option<String>,
+    /// At this port only, UN/LOCODE.
+    port: Option<String>,
+    /// Whether withdrawn calls are listed too; they are not if not said.
+    withdrawn: Option<bool>,
+}
+
+/// Which calls, read.
+pub(super) struct CheckedFilter {
+    pub(super) from: Option<Time>,
+    pub(super) to: Option<Time>,
+    pub(super) port: Option<PortCode>,
+    pub(super) withdrawn: bool,
+}
+
+impl NewCall {
+    /// The call, if it can be one at this time.
+    pub(super) fn checked(self, now: Time) -> Result<Content> {
+        let named = optional_text("reference", self.reference.as_deref())?;
+        let content = Content {
+            reference: named.unwrap_or_else(|| format!("{} {}", self.port, self.eta)),
+            port: self.port,
+            berth: self.berth,
+            eta: Time(self.eta.0),
+            eta_uncertainty_h: self.eta_uncertainty_h,
+            etd: Time(self.etd.0),
+            etd_uncertainty_h: self.etd_uncertainty_h,
+            berth_heading_deg: self.berth_heading_deg,
+        };
+        content
+            .of("", "")
+            .must_be_near(Instant(now.0))
+            .map_err(invalid_call)?;
+        content.checked(now)
+    }
+}
+
+impl Amendment {
+    /// The call with what is to be changed. One that is over may be corrected, as long
+    /// as its times stay.
+    pub(super) fn applied_to(self, was: &Content, now: Time) -> Result<Content> {
+        let content = Content {
+            reference: was.reference.clone(),
+            port: self.port.unwrap_or(was.port),
+            berth: self.berth.over(was.berth.clone()),
+            eta: self.eta.map_or(was.eta, |eta| Time(eta.0)),
+            eta_uncertainty_h: self.eta_uncertainty_h.unwrap_or(was.eta_uncertainty_h),
+            etd: self.etd.map_or(was.etd, |etd| Time(etd.0)),
+            etd_uncertainty_h: self.etd_uncertainty_h.unwrap_or(was.etd_uncertainty_h),
+            berth_heading_deg: self.berth_heading_deg.over(was.berth_heading_deg),
+        };
+        let times_stay = (content.eta, content.etd) == (was.eta, was.etd);
+        if !times_stay {
+            content
+                .of("", "")
+                .must_be_near(Instant(now.0))
+                .map_err(invalid_call)?;
+        }
+        content.checked(if times_stay { was.eta } else { now })
+    }
+}
+
+impl Content {
+    /// The same with its words trimmed, if it can be so at this time.
+    pub(super) fn checked(mut self, now: Time) -> Result<Content> {
+        self.reference = text("reference", &self.reference)?;
+        self.berth = optional_text("berth", self.berth.as_deref())?;
+        if ports::find(self.port).is_none() {
+            return Err(Error::Invalid {
+                field: "port",
+                detail: ports::unknown(self.port),
+            });
+        }
+        self.of("", "")
+            .checked(Instant(now.0))
+            .map_err(invalid_call)?;
+        Ok(self)
+    }
+
+    /// As the schedule has it.
+    pub fn of(&self, id: &str, vessel: &str) -> calls::PortCall {
+        calls::PortCall {
+            id: id.to_owned(),
+            name: None,
+            vessel: vessel.to_owned(),
+            port: self.port,
+            berth: self.berth.clone(),
+            eta: Instant(self.eta.0),
+            eta_uncertainty_h: self.eta_uncertainty_h,
+            etd: Instant(self.etd.0),
+            etd_uncertainty_h: self.etd_uncertainty_h,
+            berth_heading_deg: self.berth_heading_deg,
+        }
+    }
+
+    /// As a file had it.
+    pub(super) fn from_file(call: calls::PortCall) -> Content {
+        Content {
+            reference: call.id,
+            port: call.port,
+            berth: call.berth,
+            eta: Time(call.eta.0),
+            eta_uncertainty_h: call.eta_uncertainty_h,
+            etd: Time(call.etd.0),
+            etd_uncertainty_h: call.etd_uncertainty_h,
+            berth_heading_deg: call.berth_heading_deg,
+        }
+    }
+}
+
+impl PortCall {
+    /// `after` of a page that begins behind it.
+    pub(super) fn cursor(&self) -> String {
+        format!("{}.{}", self.content.eta.0.micros(), self.id)
+    }
+}
+
+impl Filter {
+    pub(super) fn checked(self) -> Result<CheckedFilter> {
+        let port = self.port.as_deref().map(PortCode::parse).transpose();
+        Ok(CheckedFilter {
+            from: time("from", self.from.as_deref())?.map(Time),
+            to: time("to", self.to.as_deref())?.map(Time),
+            port: port.map_err(|error| Error::Invalid {
+                field: "port",
+                detail: error.to_string(),
+            })?,
+            withdrawn: self.withdrawn.unwrap_or(false),
+        })
+    }
+}
+
+/// Refusal of a port call that cannot be.
+pub(super) fn invalid_call(error: CallError) -> Error {
+    Error::Invalid {
+        field: error.field,
+        detail: error.detail,
+    }
+}
+
+impl From<BerthHeading> for LearntHeading {
+    fn from(learnt: BerthHeading) -> LearntHeading {
+        LearntHeading {
+            heading_deg: learnt.heading_deg,
+            source: match learnt.source {
+                HeadingSource::Given => LearntFrom::Given,
+                HeadingSource::Berth => LearntFrom::Berth,
+                HeadingSource::Port => LearntFrom::Port,
+            },
+        }
+    }
+}

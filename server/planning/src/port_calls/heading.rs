@@ -1,0 +1,58 @@
+//! How a ship lies at a berth: given, read alongside, or learnt from earlier calls.
+//!
+//! What always holds: an operator learns from its own fleet's calls only.
+
+use super::call::{Content, LearntFrom, LearntHeading};
+use anyhow::Context;
+use binnacle_platform::db::{Db, rows};
+use binnacle_platform::error::Result;
+use binnacle_platform::ids::OperatorId;
+use binnacle_platform::time::Time;
+use binnacle_schedule::calls::{Observed, berth_heading};
+use binnacle_schedule::ports::PortCode;
+
+/// Quays stay where they are; of more calls than this the latest tell enough.
+const MOST: i64 = 2000;
+
+/// The headings of the fleet's earlier calls.
+pub struct Earlier(Vec<Observed>);
+
+impl Earlier {
+    /// Of calls that have begun and whose heading is known.
+    pub async fn of_fleet(db: &Db, operator: OperatorId, now: Time) -> Result<Earlier> {
+        let found = rows!(
+            db,
+            (String, Option<String>, f64),
+            "SELECT c.port, c.berth, COALESCE(c.lay_heading_deg, c.berth_heading_deg)
+             FROM port_calls c JOIN vessels v ON v.id = c.vessel_id
+             WHERE v.operator_id = $1 AND c.eta <= $2 AND c.withdrawn_at IS NULL
+               AND COALESCE(c.lay_heading_deg, c.berth_heading_deg) IS NOT NULL
+             ORDER BY c.eta DESC, c.id
+             LIMIT $3",
+            operator,
+            now,
+            MOST
+        )?;
+        let read = |(port, berth, heading_deg): (String, Option<String>, f64)| {
+            Ok(Observed {
+                port: PortCode::parse(&port).context("a stored port")?,
+                berth,
+                heading_deg,
+            })
+        };
+        let observed: Result<Vec<Observed>> = found.into_iter().map(read).collect();
+        Ok(Earlier(observed?))
+    }
+}
+
+/// How she lies, or will; what was read alongside is better than what was given.
+pub fn heading(call: &Content, lay_deg: Option<f64>, earlier: &Earlier) -> Option<LearntHeading> {
+    if let Some(heading_deg) = lay_deg {
+        let source = LearntFrom::Read;
+        return Some(LearntHeading {
+            heading_deg,
+            source,
+        });
+    }
+    berth_heading(&call.of("", ""), &earlier.0).map(LearntHeading::from)
+}

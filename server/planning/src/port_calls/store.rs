@@ -1,0 +1,362 @@
+//! Port calls in the database.
+
+use super::call::{CheckedFilter, Content, PortCall, Revision, Source};
+use super::heading::{Earlier, heading};
+use anyhow::Context;
+use binnacle_orders::work_orders::Alongside;
+use binnacle_platform::db::{Db, Tx, execute, row, rows};
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::ids::{CallId, OperatorId, UserId, VesselId};
+use binnacle_platform::session;
+use binnacle_platform::time::Time;
+use binnacle_schedule::ports::{self, PortCode};
+use uuid::Uuid;
+
+/// A call's columns, with its vessel's name.
+#[derive(Clone, Debug, sqlx::FromRow)]
+#[allow(missing_docs, reason = "they are the columns")]
+pub struct Row {
+    pub vessel_id: VesselId,
+    pub vessel_name: String,
+    pub id: CallId,
+    pub reference: String,
+    pub port: String,
+    pub berth: Option<String>,
+    pub eta: Time,
+    pub eta_uncertainty_h: f64,
+    pub etd: Time,
+    pub etd_uncertainty_h: f64,
+    pub berth_heading_deg: Option<f64>,
+    pub lay_heading_deg: Option<f64>,
+    pub source: Source,
+    pub revision: i64,
+    pub created_at: Time,
+    pub created_by: String,
+    pub revised_at: Option<Time>,
+    pub revised_by: Option<String>,
+    pub withdrawn_at: Option<Time>,
+    pub withdrawn_by: Option<String>,
+    pub withdrawal_reason: Option<String>,
+}
+
+/// Who writes, and when.
+pub(super) struct Author {
+    pub(super) id: UserId,
+    pub(super) name: String,
+    pub(super) at: Time,
+}
+
+impl Author {
+    pub(super) async fn of(tx: &mut Tx, id: UserId, at: Time) -> Result<Author> {
+        let name = session::name_of(tx, id).await?;
+        Ok(Author { id, name, at })
+    }
+}
+
+impl Row {
+    /// What it says.
+    ///
+    /// # Errors
+    /// When the port is no code, which was checked before it was stored.
+    pub fn content(&self) -> Result<Content> {
+        Ok(Content {
+            reference: self.reference.clone(),
+            port: PortCode::parse(&self.port).context("a stored port")?,
+            berth: self.berth.clone(),
+            eta: self.eta,
+            eta_uncertainty_h: self.eta_uncertainty_h,
+            etd: self.etd,
+            etd_uncertainty_h: self.etd_uncertainty_h,
+            berth_heading_deg: self.berth_heading_deg,
+        })
+    }
+
+    /// Where and when she is alongside, as a work order has it.
+    ///
+    /// # Errors
+    /// As [`Row::content`] has it.
+    pub fn alongside(&self) -> Result<Alongside> {
+        let port = PortCode::parse(&self.port).context("a stored port")?;
+        Ok(Alongside::new(port, self.eta, self.etd))
+    }
+
+    pub(super) fn shown(self, earlier: &Earlier) -> Result<PortCall> {
+        let content = self.content()?;
+        Ok(PortCall {
+            berth_heading: heading(&content, self.lay_heading_deg, earlier),
+            port_name: ports::find(content.port).map_or("", |port| port.name),
+            content,
+            id: self.id,
+            vessel_id: self.vessel_id,
+            vessel_name: self.vessel_name,
+            source: self.source,
+            revision: u32::try_from(self.revision).context("a revision")?,
+            created_at: self.created_at,
+            created_by: self.created_by,
+            revised_at: self.revised_at,
+            revised_by: self.revised_by,
+            withdrawn_at: self.withdrawn_at,
+            withdrawn_by: self.withdrawn_by,
+            withdrawal_reason: self.withdrawal_reason,
+        })
+    }
+}
+
+/// Calls of the fleet in service, or of one vessel, in order of time.
+pub(super) async fn list(
+    db: &Db,
+    operator: OperatorId,
+    vessel: Option<VesselId>,
+    filter: &CheckedFilter,
+    after: Option<(i64, Uuid)>,
+    limit: i64,
+) -> Result<Vec<Row>> {
+    let (after, after_id) = after.unwrap_or((i64::MIN, Uuid::nil()));
+    Ok(rows!(
+        db,
+        Row,
+        "SELECT c.*, v.name AS vessel_name FROM port_calls c
+         JOIN vessels v ON v.id = c.vessel_id
+         WHERE v.operator_id = $1
+           AND (c.vessel_id = $2 OR ($2 IS NULL AND v.out_of_service_at IS NULL))
+           AND (c.eta, c.id) > ($3, $4)
+           AND c.etd > $5 AND c.eta < $6
+           AND ($7 IS NULL OR c.port = $7)
+           AND ($8 OR c.withdrawn_at IS NULL)
+         ORDER BY c.eta, c.id
+         LIMIT $9",
+        operator,
+        vessel,
+        after,
+        after_id,
+        filter.from.map_or(i64::MIN, |time| time.0.micros()),
+        filter.to.map_or(i64::MAX, |time| time.0.micros()),
+        filter.port.map(|port| port.to_string()),
+        filter.withdrawn,
+        limit
+    )?)
+}
+
+/// The calls of the fleet in service that are not over and not withdrawn, by vessel and time.
+pub async fn ahead(db: &Db, operator: OperatorId, now: Time) -> Result<Vec<Row>> {
+    Ok(rows!(
+        db,
+        Row,
+        "SELECT c.*, v.name AS vessel_name FROM port_calls c
+         JOIN vessels v ON v.id = c.vessel_id
+         WHERE v.operator_id = $1 AND v.out_of_service_at IS NULL
+           AND c.etd > $2 AND c.withdrawn_at IS NULL
+         ORDER BY c.vessel_id, c.eta",
+        operator,
+        now
+    )?)
+}
+
+/// The same of one vessel.
+pub(super) async fn ahead_of(db: &Db, vessel: VesselId, now: Time) -> Result<Vec<Row>> {
+    Ok(rows!(
+        db,
+        Row,
+        "SELECT c.*, v.name AS vessel_name FROM port_calls c
+         JOIN vessels v ON v.id = c.vessel_id
+         WHERE c.vessel_id = $1 AND c.etd > $2 AND c.withdrawn_at IS NULL
+         ORDER BY c.eta",
+        vessel,
+        now
+    )?)
+}
+
+/// A call of the vessel's.
+///
+/// # Errors
+/// [`Error::NotFound`] when it has no such call.
+pub(super) async fn must_find(db: &Db, vessel: VesselId, id: CallId) -> Result<Row> {
+    row!(
+        db,
+        Row,
+        "SELECT c.*, v.name AS vessel_name FROM port_calls c
+         JOIN vessels v ON v.id = c.vessel_id
+         WHERE c.vessel_id = $1 AND c.id = $2
+         ORDER BY c.id",
+        vessel,
+        id
+    )?
+    .ok_or(Error::NotFound("port call"))
+}
+
+/// All that was ever entered of a vessel, to be changed: others who would change it wait.
+///
+/// # Errors
+/// [`Error::NotFound`] when she does not exist or is another operator's.
+pub(super) async fn lock(tx: &mut Tx, operator: OperatorId, vessel: VesselId) -> Result<Vec<Row>> {
+    let held = execute!(
+        &mut *tx,
+        "UPDATE vessels SET name = name WHERE id = $2 AND operator_id = $1",
+        operator,
+        vessel
+    )?;
+    if held == 0 {
+        return Err(Error::NotFound("vessel"));
+    }
+    Ok(rows!(
+        in tx,
+        Row,
+        "SELECT c.*, v.name AS vessel_name FROM port_calls c
+         JOIN vessels v ON v.id = c.vessel_id
+         WHERE c.vessel_id = $1
+         ORDER BY c.eta, c.id",
+        vessel
+    )?)
+}
+
+pub(super) async fn insert(
+    tx: &mut Tx,
+    vessel: VesselId,
+    id: CallId,
+    call: &Content,
+    source: Source,
+    author: &Author,
+) -> Result<()> {
+    execute!(
+        &mut *tx,
+        "INSERT INTO port_calls (vessel_id, id, reference, port, berth, eta, eta_uncertainty_h,
+                                 etd, etd_uncertainty_h, berth_heading_deg, source, revision,
+                                 created_at, created_by)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, 1, $12, $13)",
+        vessel,
+        id,
+        call.reference.as_str(),
+        call.port.to_string(),
+        call.berth.as_deref(),
+        call.eta,
+        call.eta_uncertainty_h,
+        call.etd,
+        call.etd_uncertainty_h,
+        call.berth_heading_deg,
+        source,
+        author.at,
+        author.name.as_str()
+    )?;
+    keep(tx, vessel, id, 1, call, source, author).await
+}
+
+/// Writes a call anew; one that was withdrawn counts again.
+pub(super) async fn revise(
+    tx: &mut Tx,
+    was: &Row,
+    call: &Content,
+    source: Source,
+    author: &Author,
+) -> Result<()> {
+    let revision = was.revision + 1;
+    execute!(
+        &mut *tx,
+        "UPDATE port_calls
+         SET port = $3, berth = $4, eta = $5, eta_uncertainty_h = $6, etd = $7,
+             etd_uncertainty_h = $8, berth_heading_deg = $9, source = $10, revision = $11,
+             revised_at = $12, revised_by = $13, withdrawn_at = NULL, withdrawn_by = NULL,
+             withdrawal_reason = NULL
+         WHERE vessel_id = $1 AND id = $2",
+        was.vessel_id,
+        was.id,
+        call.port.to_string(),
+        call.berth.as_deref(),
+        call.eta,
+        call.eta_uncertainty_h,
+        call.etd,
+        call.etd_uncertainty_h,
+        call.berth_heading_deg,
+        source,
+        revision,
+        author.at,
+        author.name.as_str()
+    )?;
+    keep(tx, was.vessel_id, was.id, revision, call, source, author).await
+}
+
+async fn keep(
+    tx: &mut Tx,
+    vessel: VesselId,
+    id: CallId,
+    revision: i64,
+    call: &Content,
+    source: Source,
+    author: &Author,
+) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO port_call_revisions (vessel_id, call_id, revision, at, source, author_id,
+                                          author_name, call)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
+        vessel,
+        id,
+        revision,
+        author.at,
+        source,
+        author.id,
+        author.name.as_str(),
+        serde_json::to_string(call)?
+    )?;
+    Ok(())
+}
+
+/// Marks a call as withdrawn.
+pub(super) async fn withdraw(
+    tx: &mut Tx,
+    call: &Row,
+    reason: Option<&str>,
+    author: &Author,
+) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE port_calls SET withdrawn_at = $3, withdrawn_by = $4, withdrawal_reason = $5
+         WHERE vessel_id = $1 AND id = $2",
+        call.vessel_id,
+        call.id,
+        author.at,
+        author.name.as_str(),
+        reason
+    )?;
+    Ok(())
+}
+
+/// As a call was written each time.
+pub(super) async fn revisions(db: &Db, vessel: VesselId, id: CallId) -> Result<Vec<Revision>> {
+    let found = rows!(
+        db,
+        (i64, Time, Source, String, String),
+        "SELECT revision, at, source, author_name, call FROM port_call_revisions
+         WHERE vessel_id = $1 AND call_id = $2
+         ORDER BY revision",
+        vessel,
+        id
+    )?;
+    let read = |(number, at, source, author_name, call): (i64, Time, Source, String, String)| {
+        Ok(Revision {
+            number: u32::try_from(number).context("a revision")?,
+            at,
+            source,
+            author_name,
+            call: serde_json::from_str(&call)?,
+        })
+    };
+    found.into_iter().map(read).collect()
+}
+
+/// Notes how she lies in the call that she is in, as it was read alongside.
+pub(super) async fn set_lay_heading(
+    tx: &mut Tx,
+    vessel: VesselId,
+    at: Time,
+    heading_deg: f64,
+) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE port_calls SET lay_heading_deg = $3
+         WHERE vessel_id = $1 AND eta <= $2 AND etd >= $2 AND withdrawn_at IS NULL",
+        vessel,
+        at,
+        heading_deg
+    )?;
+    Ok(())
+}

@@ -1,0 +1,112 @@
+//! A report's tables as CSV: named as in JSON, a line for each compass or job.
+
+use super::Table;
+use super::report::{DueCompass, Job, Report, WorstDeviation};
+use binnacle_platform::error::{Error, Result};
+use serde_json::Value;
+
+/// What a spreadsheet would take for a formula.
+const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+
+/// One of a report's tables.
+pub(super) fn table(report: &Report, table: Table) -> Result<String> {
+    match table {
+        Table::Due => {
+            let columns = [
+                "vessel_name",
+                "compass_name",
+                "due_on",
+                "urgency",
+                "reason",
+                "adjusted_on",
+                "order_state",
+                "order_port",
+                "order_planned_at",
+                "order_firm",
+                "vessel_id",
+                "compass_id",
+            ];
+            written(&columns, report.due.iter().map(due))
+        }
+        Table::Deviation => {
+            let columns = [
+                "vessel_name",
+                "compass_name",
+                "compass_deg",
+                "deviation_deg",
+                "band95_deg",
+                "data_until",
+                "vessel_id",
+                "compass_id",
+            ];
+            written(&columns, report.deviation.iter().map(deviation))
+        }
+        Table::Jobs => {
+            let columns = [
+                "vessel_name",
+                "compass_name",
+                "port",
+                "completed_at",
+                "firm",
+                "state",
+                "fee_eur",
+                "fee_from",
+                "swing_eur",
+                "swing_h",
+                "order_id",
+                "vessel_id",
+                "compass_id",
+                "spared_swing",
+            ];
+            let saved = (report.saved.swing_eur, report.saved.swing_h);
+            written(&columns, report.jobs.iter().map(|one| job(one, saved)))
+        }
+    }
+}
+
+fn due(due: &DueCompass) -> Result<Value> {
+    let mut fields = serde_json::to_value(due)?;
+    let order = fields["order"].take();
+    for field in ["state", "port", "planned_at", "firm"] {
+        fields[format!("order_{field}")] = order[field].clone();
+    }
+    Ok(fields)
+}
+
+fn deviation(deviation: &WorstDeviation) -> Result<Value> {
+    Ok(serde_json::to_value(deviation)?)
+}
+
+fn job(job: &Job, (swing_eur, swing_h): (f64, f64)) -> Result<Value> {
+    let mut fields = serde_json::to_value(job)?;
+    fields["swing_eur"] = swing_eur.into();
+    fields["swing_h"] = swing_h.into();
+    Ok(fields)
+}
+
+fn written(columns: &[&str], rows: impl Iterator<Item = Result<Value>>) -> Result<String> {
+    let internal = |error: csv::Error| Error::Internal(error.into());
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(columns).map_err(internal)?;
+    for row in rows {
+        let row = row?;
+        let record = columns.iter().map(|column| cell(column, &row[*column]));
+        writer.write_record(record).map_err(internal)?;
+    }
+    let written = writer.into_inner();
+    let bytes = written.map_err(|error| Error::Internal(error.into_error().into()))?;
+    String::from_utf8(bytes).map_err(|error| Error::Internal(error.into()))
+}
+
+fn cell(column: &str, value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        // A name is never a formula to whoever opens the file.
+        Value::String(text) if text.starts_with(FORMULA) => format!("'{text}"),
+        Value::String(text) => text.clone(),
+        number if column.ends_with("_deg") => number
+            .as_f64()
+            .map_or_else(String::new, |degrees| format!("{degrees:.1}")),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,223 @@
+//! What a report is made of, out of the database.
+
+use super::report::{DueCompass, FeeFrom, Job, Report, Saving, UnderWay, WorstDeviation};
+use super::settings::{self, Settings};
+use crate::needs::{Facts, need, of_fleet};
+use crate::schedule;
+use binnacle_compass::time::Timestamp;
+use binnacle_fleet::models::{self, StoredModel};
+use binnacle_orders::firms;
+use binnacle_orders::work_orders::{self, Done, Span, State};
+use binnacle_platform::app::App;
+use binnacle_platform::db::{Db, row, rows};
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::ids::{CompassId, OperatorId, OrderId, VesselId};
+use binnacle_platform::time::Time;
+use chrono::{Days, NaiveDate, NaiveTime};
+use std::collections::{BTreeMap, BTreeSet};
+use uuid::Uuid;
+
+/// What is done on a ship in one port within so long of each other is done at one visit.
+const A_VISIT_S: f64 = 86_400.0;
+
+/// The report of a fleet, with the jobs from one day to another; also those of before that
+/// the server heard of after `late_since`.
+pub(super) async fn gather(
+    app: &App,
+    operator: OperatorId,
+    (from, to): (NaiveDate, NaiveDate),
+    late_since: Option<Time>,
+) -> Result<Report> {
+    let made_at: Time = app.clock.now().into();
+    let facts = of_fleet(app, operator, None).await?;
+    let all = (VesselId(Uuid::nil()), VesselId(Uuid::max()));
+    let models = models::current_of_fleet(&app.db, operator, all.0, all.1).await?;
+    let terms = schedule::terms(&app.db, operator).await?;
+    let under_way = under_way(&app.db, operator).await?;
+    let span = Span {
+        from: midnight("from", from)?,
+        until: midnight("to", to + Days::new(1))?,
+        late_since,
+        known_at: made_at,
+    };
+    let jobs = jobs(&app.db, operator, span).await?;
+    let settings = settings::find(&app.db, operator).await?;
+    let today = made_at.0.to_chrono().date_naive();
+    let mut due: Vec<DueCompass> = facts
+        .iter()
+        .filter_map(|facts| need(facts, &terms, today))
+        .map(|need| DueCompass {
+            order: under_way.get(&need.compass_id).cloned(),
+            vessel_id: need.vessel_id,
+            vessel_name: need.vessel_name,
+            compass_id: need.compass_id,
+            compass_name: need.compass_name,
+            due_on: need.due_on,
+            urgency: need.urgency,
+            reason: need.reason,
+            adjusted_on: need.adjusted_on,
+        })
+        .collect();
+    due.sort_by_key(|due| (due.due_on, due.compass_id));
+    let vessels: BTreeSet<VesselId> = facts.iter().map(|facts| facts.vessel_id).collect();
+    Ok(Report {
+        operator_name: name(&app.db, operator).await?,
+        from,
+        to,
+        made_at,
+        vessels: vessels.len(),
+        compasses: facts.len(),
+        due,
+        // A thousand models on every heading: not for a thread that others wait for.
+        deviation: tokio::task::spawn_blocking(move || deviations(&facts, &models)).await?,
+        saved: saved(&jobs, &settings),
+        jobs,
+    })
+}
+
+async fn name(db: &Db, operator: OperatorId) -> Result<String> {
+    let found = row!(
+        db,
+        (String,),
+        "SELECT name FROM operators WHERE id = $1 ORDER BY id",
+        operator
+    )?;
+    let (name,) = found.ok_or(Error::NotFound("operator"))?;
+    Ok(name)
+}
+
+/// The order under way of each compass that has one: there is one at most.
+async fn under_way(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassId, UnderWay>> {
+    let found = rows!(
+        db,
+        (CompassId, OrderId, State, String, Time, Option<String>),
+        "SELECT o.compass_id, o.id, o.state, o.port, o.planned_at, o.firm
+         FROM work_orders o
+         JOIN vessels v ON v.id = o.vessel_id
+         WHERE v.operator_id = $1
+           AND o.state NOT IN ('adjusted', 'verified', 'failed', 'closed',
+                             'closed_unverified', 'cancelled')
+         ORDER BY o.compass_id, o.id",
+        operator
+    )?;
+    let read = |(compass, id, state, port, planned_at, firm)| {
+        let order = UnderWay {
+            id,
+            state,
+            port,
+            planned_at,
+            firm,
+        };
+        (compass, order)
+    };
+    Ok(found.into_iter().map(read).collect())
+}
+
+fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
+    let models: BTreeMap<CompassId, &StoredModel> = models
+        .iter()
+        .map(|model| (model.compass_id, model))
+        .collect();
+    let of = |facts: &Facts| {
+        let model = models.get(&facts.compass_id);
+        let worst = model.and_then(|model| model.worst());
+        WorstDeviation {
+            vessel_id: facts.vessel_id,
+            vessel_name: facts.vessel_name.clone(),
+            compass_id: facts.compass_id,
+            compass_name: facts.compass_name.clone(),
+            compass_deg: worst.map(|worst| worst.compass_deg),
+            deviation_deg: worst.map(|worst| worst.deviation_deg),
+            band95_deg: worst.and_then(|worst| worst.band95_deg),
+            data_until: model.map(|model| model.data_until),
+        }
+    };
+    let mut all: Vec<WorstDeviation> = facts.iter().map(of).collect();
+    let size = |one: &WorstDeviation| one.deviation_deg.map_or(-1.0, f64::abs);
+    all.sort_by(|one, other| size(other).total_cmp(&size(one)));
+    all
+}
+
+async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
+    let done = work_orders::done(db, operator, span).await?;
+    let terms = firms::of_operator(db, operator).await?;
+    let visits = visits(&done);
+    let usual = |nth: usize| {
+        let firm = done[nth].firm_id?;
+        let (_, _, terms) = terms.iter().find(|(of, _, _)| *of == firm)?;
+        let terms = terms.as_ref()?;
+        let same =
+            |before: usize| visits[before] == visits[nth] && done[before].firm_id == Some(firm);
+        let is_further = (0..nth).any(same);
+        Some(if is_further {
+            f64::from(terms.extra_compass_eur)
+        } else {
+            f64::from(terms.fee_eur)
+        })
+    };
+    let fee = |nth: usize| {
+        let agreed = done[nth].agreed_eur.map(|eur| (eur, FeeFrom::Agreed));
+        agreed.or_else(|| usual(nth).map(|eur| (eur, FeeFrom::Terms)))
+    };
+    let fees: Vec<Option<(f64, FeeFrom)>> = (0..done.len()).map(fee).collect();
+    let job = |((done, visit), fee): ((Done, usize), Option<(f64, FeeFrom)>)| Job {
+        order_id: done.order_id,
+        vessel_id: done.vessel_id,
+        vessel_name: done.vessel_name,
+        compass_id: done.compass_id,
+        compass_name: done.compass_name,
+        port: done.port,
+        completed_at: done.completed_at,
+        firm: done.firm,
+        state: done.state,
+        spared_swing: !done.disproved,
+        fee_eur: fee.map(|(eur, _)| eur),
+        fee_from: fee.map(|(_, from)| from),
+        visit,
+    };
+    Ok(done.into_iter().zip(visits).zip(fees).map(job).collect())
+}
+
+/// Which visit each job belongs to, in the jobs' order: a ship's in one port, each within
+/// a day of the one before.
+fn visits(done: &[Done]) -> Vec<usize> {
+    let mut last: BTreeMap<VesselId, usize> = BTreeMap::new();
+    let mut visits: Vec<usize> = Vec::with_capacity(done.len());
+    for (nth, job) in done.iter().enumerate() {
+        let before = last.insert(job.vessel_id, nth).filter(|before| {
+            let before = &done[*before];
+            let since_s = job.completed_at.0.seconds_since(before.completed_at.0);
+            before.port == job.port && since_s < A_VISIT_S
+        });
+        visits.push(before.map_or(nth, |before| visits[before]));
+    }
+    visits
+}
+
+fn midnight(field: &'static str, day: NaiveDate) -> Result<Time> {
+    let midnight = day.and_time(NaiveTime::MIN).and_utc();
+    let at = Timestamp::from_micros(midnight.timestamp_micros());
+    at.map(Time).map_err(|error| Error::Invalid {
+        field,
+        detail: error.to_string(),
+    })
+}
+
+fn saved(jobs: &[Job], settings: &Settings) -> Saving {
+    let spared = || jobs.iter().filter(|job| job.spared_swing);
+    let swings: BTreeSet<usize> = spared().map(|job| job.visit).collect();
+    let swings = swings.len();
+    // A sum of none would be less than nothing by its sign.
+    let fees = jobs.iter().filter_map(|job| job.fee_eur);
+    let fees_eur = fees.fold(0.0, |sum: f64, fee| sum + fee);
+    Saving {
+        jobs: spared().count(),
+        swings,
+        swing_eur: settings.swing_eur,
+        swing_h: settings.swing_h,
+        fees_eur,
+        without_fee: jobs.iter().filter(|job| job.fee_eur.is_none()).count(),
+        saved_eur: swings as f64 * settings.swing_eur - fees_eur,
+        saved_h: swings as f64 * settings.swing_h,
+    }
+}

@@ -1,0 +1,331 @@
+//! A report on sheets of A4.
+
+use super::report::{DueCompass, FeeFrom, Job, Report};
+use binnacle_drawing::paper::{LEFT, LINE, Paper, RIGHT, SIZE};
+use binnacle_drawing::words::{east_west, heading};
+use binnacle_drawing::{Face, Sheet, Style, cut, wrap};
+use binnacle_schedule::needs::Urgency;
+
+/// More compasses than these are in the CSV.
+const MOST_DEVIATIONS: usize = 25;
+/// The least room that a title wants below it.
+const SOME_LINES: usize = 5;
+/// Space between two columns.
+const GAP: f32 = 6.0;
+
+/// A column: its title and where it begins.
+type Column = (&'static str, f32);
+
+const DUE: [Column; 5] = [
+    ("Vessel", LEFT),
+    ("Compass", 142.0),
+    ("Due", 222.0),
+    ("Why", 278.0),
+    ("Order", 440.0),
+];
+const DEVIATION: [Column; 6] = [
+    ("Vessel", LEFT),
+    ("Compass", 172.0),
+    ("On compass heading", 282.0),
+    ("Deviation", 366.0),
+    ("95 % band", 424.0),
+    ("Samples until", 482.0),
+];
+const JOBS: [Column; 6] = [
+    ("Vessel", LEFT),
+    ("Compass", 152.0),
+    ("Port", 232.0),
+    ("Completed", 326.0),
+    ("Firm", 388.0),
+    ("Fee, euros", 492.0),
+];
+
+pub(super) fn sheets(report: &Report) -> Vec<Sheet> {
+    let mut paper = Paper::new();
+    head(&mut paper, report);
+    due(&mut paper, report);
+    deviation(&mut paper, report);
+    jobs(&mut paper, report);
+    saved(&mut paper, report);
+    let made = format!("Made by Binnacle on {}.", report.made_at.to_the_minute());
+    let predicted = "Deviations are predicted by each compass's model, and are no certificate.";
+    paper.finish(&[format!("{made} {predicted}")])
+}
+
+fn head(paper: &mut Paper, report: &Report) {
+    paper.put(LEFT, Style::bold(15.0), "Compass report");
+    let time = format!("{} to {}", report.from, report.to);
+    paper.put(RIGHT, Style::plain(9.0).end(), &time);
+    paper.down(16.0);
+    let name = cut(&report.operator_name, Face::Bold, 10.0, RIGHT - LEFT);
+    paper.put(LEFT, Style::bold(10.0), &name);
+    paper.down(LINE + 8.0);
+    let count = |urgency| {
+        report
+            .due
+            .iter()
+            .filter(|due| due.urgency == urgency)
+            .count()
+    };
+    paper.fact(
+        "Fleet",
+        &format!(
+            "{} vessels with {} compasses",
+            report.vessels, report.compasses
+        ),
+    );
+    paper.fact(
+        "To be adjusted",
+        &format!(
+            "{} overdue, {} urgent, {} soon",
+            count(Urgency::Overdue),
+            count(Urgency::Urgent),
+            count(Urgency::Soon)
+        ),
+    );
+    let unknown = report
+        .deviation
+        .iter()
+        .filter(|one| one.deviation_deg.is_none());
+    let largest = report.deviation.first().and_then(|one| {
+        Some(format!(
+            "{} on {}",
+            east_west(one.deviation_deg?),
+            one.vessel_name
+        ))
+    });
+    paper.fact(
+        "Greatest deviation",
+        &largest.unwrap_or_else(|| "not known".to_owned()),
+    );
+    let unknown = unknown.count();
+    if unknown > 0 {
+        paper.fact("Without a model", &format!("{unknown} compasses"));
+    }
+    paper.fact(
+        "Adjusted",
+        &format!(
+            "{} compasses, {}",
+            report.jobs.len(),
+            saved_in_short(report)
+        ),
+    );
+}
+
+fn saved_in_short(report: &Report) -> String {
+    let saved = &report.saved;
+    format!(
+        "{} euros and {} hours saved against swinging",
+        euros(saved.saved_eur),
+        hours(saved.saved_h)
+    )
+}
+
+fn due(paper: &mut Paper, report: &Report) {
+    paper.room_for(SOME_LINES);
+    paper.title("Due within the terms for \"soon\", and overdue");
+    let (now, later): (Vec<&DueCompass>, Vec<&DueCompass>) =
+        report.due.iter().partition(|due| due.presses());
+    if now.is_empty() {
+        paper.lines(LEFT, Style::plain(SIZE), "No compass.");
+    } else {
+        titles(paper, &DUE);
+    }
+    for due in now {
+        let on = match due.urgency {
+            Urgency::Overdue => Style::bold(SIZE),
+            _ => Style::plain(SIZE),
+        };
+        let order = due.order.as_ref().map_or_else(
+            || "none".to_owned(),
+            |order| {
+                let firm = order.firm.as_deref();
+                let firm = firm.map_or_else(String::new, |firm| format!(", {firm}"));
+                format!("{}, {}{firm}", order.planned_at.day(), order.port)
+            },
+        );
+        let cells = [
+            (due.vessel_name.clone(), Style::plain(SIZE)),
+            (due.compass_name.clone(), Style::plain(SIZE)),
+            (due.due_on.to_string(), on),
+            (due.reason.clone(), Style::plain(SIZE)),
+            (order, Style::plain(SIZE)),
+        ];
+        row(paper, &DUE, &cells);
+    }
+    if !later.is_empty() {
+        let words = format!("{} more are due later.", later.len());
+        paper.lines(LEFT, Style::plain(SIZE).grey(90), &words);
+    }
+}
+
+fn deviation(paper: &mut Paper, report: &Report) {
+    paper.room_for(SOME_LINES);
+    paper.title("Greatest deviation");
+    let known = report
+        .deviation
+        .iter()
+        .filter(|one| one.deviation_deg.is_some());
+    let (all, shown) = (known.clone().count(), known.take(MOST_DEVIATIONS));
+    if all == 0 {
+        paper.lines(LEFT, Style::plain(SIZE), "No compass has a model.");
+    } else {
+        titles(paper, &DEVIATION);
+    }
+    for one in shown {
+        let band = one.band95_deg;
+        let cells = [
+            one.vessel_name.clone(),
+            one.compass_name.clone(),
+            one.compass_deg.map_or_else(String::new, heading),
+            one.deviation_deg.map_or_else(String::new, east_west),
+            band.map_or_else(|| "not known".to_owned(), |band| format!("±{band:.1}°")),
+            one.data_until
+                .map_or_else(String::new, binnacle_platform::time::Time::day),
+        ];
+        row(
+            paper,
+            &DEVIATION,
+            &cells.map(|cell| (cell, Style::plain(SIZE))),
+        );
+    }
+    if all > MOST_DEVIATIONS {
+        let words = format!("{} more have less.", all - MOST_DEVIATIONS);
+        paper.lines(LEFT, Style::plain(SIZE).grey(90), &words);
+    }
+}
+
+fn jobs(paper: &mut Paper, report: &Report) {
+    paper.room_for(SOME_LINES);
+    paper.title("Adjusted in this time");
+    if report.jobs.is_empty() {
+        paper.lines(LEFT, Style::plain(SIZE), "No compass.");
+        return;
+    }
+    titles(paper, &JOBS);
+    for job in &report.jobs {
+        let cells = [
+            job.vessel_name.clone(),
+            job.compass_name.clone(),
+            job.port.clone(),
+            job.completed_at.day(),
+            job.firm.clone().unwrap_or_default(),
+            fee(job),
+        ];
+        row(paper, &JOBS, &cells.map(|cell| (cell, Style::plain(SIZE))));
+    }
+}
+
+fn fee(job: &Job) -> String {
+    match (job.fee_eur, job.fee_from) {
+        (Some(eur), Some(FeeFrom::Terms)) => format!("{} (usual)", euros(eur)),
+        (Some(eur), _) => euros(eur),
+        (None, _) => "not known".to_owned(),
+    }
+}
+
+fn saved(paper: &mut Paper, report: &Report) {
+    let saved = &report.saved;
+    paper.room_for(SOME_LINES);
+    paper.title("Saved against swinging");
+    let failed = report.jobs.len() - saved.jobs;
+    let mut sentences = vec![format!(
+        "Adjustments at the berth: {}. Swings that they spared, one for all compasses of a ship \
+         at a visit: {}, of {} euros and {} hours each: {} euros, less {} euros of all fees \
+         leaves {} euros, and {} hours of ships' time.",
+        saved.jobs,
+        saved.swings,
+        euros(saved.swing_eur),
+        hours(saved.swing_h),
+        euros(saved.swings as f64 * saved.swing_eur),
+        euros(saved.fees_eur),
+        euros(saved.saved_eur),
+        hours(saved.saved_h)
+    )];
+    if failed > 0 {
+        sentences.push(format!(
+            "Not counted, but for their fees, as the sea does not confirm them: {failed}."
+        ));
+    }
+    if saved.without_fee > 0 {
+        sentences.push(format!(
+            "Jobs whose fees are not known: {}.",
+            saved.without_fee
+        ));
+    }
+    paper.lines(LEFT, Style::plain(SIZE), &sentences.join(" "));
+}
+
+fn titles(paper: &mut Paper, columns: &[Column]) {
+    paper.room_for(2);
+    for (title, x) in columns {
+        paper.put(*x, Style::plain(7.0).grey(90), title);
+    }
+    paper.down(LINE);
+}
+
+fn row(paper: &mut Paper, columns: &[Column], cells: &[(String, Style)]) {
+    let wrapped: Vec<Vec<String>> = columns
+        .iter()
+        .zip(cells)
+        .enumerate()
+        .map(|(index, ((_, x), (text, style)))| {
+            let end = columns.get(index + 1).map_or(RIGHT, |(_, next)| next - GAP);
+            wrap(text, style.face, style.size, end - x)
+        })
+        .collect();
+    let lines = wrapped.iter().map(Vec::len).max().unwrap_or(0).max(1);
+    paper.room_for(lines);
+    for line in 0..lines {
+        for (((_, x), (_, style)), cell) in columns.iter().zip(cells).zip(&wrapped) {
+            if let Some(text) = cell.get(line) {
+                paper.put(*x, *style, text);
+            }
+        }
+        paper.down(LINE);
+    }
+}
+
+/// Whole euros, in groups of three.
+fn euros(eur: f64) -> String {
+    let digits = format!("{:.0}", eur.abs());
+    let groups = digits.as_bytes().rchunks(3).rev();
+    let groups: Vec<String> = groups
+        .map(|group| String::from_utf8_lossy(group).into_owned())
+        .collect();
+    let sign = if eur <= -0.5 { "−" } else { "" };
+    format!("{sign}{}", groups.join(","))
+}
+
+fn hours(hours: f64) -> String {
+    let text = format!("{hours:.1}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_reason_is_printed_whole() {
+        let reason = "24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G, \
+                      read second-hand), brought forward by welding near the compass";
+        let plain = |text: &str| (text.to_owned(), Style::plain(SIZE));
+        let cells = ["Nao", "Standard compass", "2026-12-20", reason, "none"].map(plain);
+        let mut paper = Paper::new();
+        row(&mut paper, &DUE, &cells);
+        row(&mut paper, &DUE, &cells);
+        let printed = binnacle_drawing::svg(&paper.finish(&[]), "");
+        for word in reason.split_whitespace() {
+            assert!(printed.contains(word), "{word}: {printed}");
+        }
+        assert!(!printed.contains('…'), "{printed}");
+    }
+
+    #[test]
+    fn money_is_written_in_groups_with_its_sign() {
+        let all = [0.0, 12.4, 999.6, 6000.0, 1_234_567.0, -4200.0].map(euros);
+        assert_eq!(all, ["0", "12", "1,000", "6,000", "1,234,567", "−4,200"]);
+        assert_eq!([3.0, 7.5].map(hours), ["3", "7.5"]);
+    }
+}

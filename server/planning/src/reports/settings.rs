@@ -1,0 +1,198 @@
+//! `/reports/settings`: what a swing costs, and who gets the monthly report.
+//!
+//! What always holds: whoever gets the report by mail is a receiver of the outbox, added
+//! and removed with the settings.
+
+use axum::extract::{FromRef, State};
+use binnacle_platform::access::{Reader, Writer};
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::db::{Db, Tx, execute, row, rows};
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Json, Valid};
+use binnacle_platform::ids::{OperatorId, RecipientId};
+use binnacle_platform::mail;
+use binnacle_platform::outbox::{self, Channel};
+use binnacle_platform::session;
+use binnacle_platform::time::Time;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// So many get the monthly report at most.
+const MOST_RECIPIENTS: usize = 20;
+const MOST_EUR: f64 = 1e6;
+const LONGEST_SWING_H: f64 = 72.0;
+
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new().routes(routes!(find_report_settings, set_report_settings))
+}
+
+/// What reports reckon with, and who gets one each month.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(default, deny_unknown_fields)]
+#[schema(as = ReportSettings, example = json!({
+    "swing_eur": 6000.0, "swing_h": 3.0, "monthly_to": ["superintendent@example.com"]
+}))]
+pub(super) struct Settings {
+    /// What swinging a ship costs, euros: tugs, pilot, adjuster and the ship's time.
+    #[schema(minimum = 0, maximum = 1_000_000)]
+    pub(super) swing_eur: f64,
+    /// How long it takes, hours.
+    #[schema(minimum = 0, maximum = 72)]
+    pub(super) swing_h: f64,
+    /// Who gets the report of a month by mail after its end; at most 20 addresses.
+    pub(super) monthly_to: Vec<String>,
+}
+
+impl Default for Settings {
+    /// The figures of Basterretxea-Iribar, Sotés and Uriarte 2016.
+    fn default() -> Settings {
+        Settings {
+            swing_eur: 6000.0,
+            swing_h: 3.0,
+            monthly_to: Vec::new(),
+        }
+    }
+}
+
+/// See what reports reckon with
+#[utoipa::path(get, path = "/reports/settings", tag = "fleet",
+    responses((status = 200, body = Settings), (status = 401, body = Problem)))]
+async fn find_report_settings(State(app): State<App>, reader: Reader) -> Result<Json<Settings>> {
+    Ok(Json(find(&app.db, reader.operator).await?))
+}
+
+/// Say what reports reckon with
+///
+/// Who is added to `monthly_to` gets the report of the month that goes on, after its end,
+/// and of each one after it.
+#[utoipa::path(put, path = "/reports/settings", tag = "fleet", request_body = Settings,
+    responses((status = 200, body = Settings), (status = 401, body = Problem),
+              (status = 403, body = Problem),
+              (status = 409, description = "The server was not told how to send mail", body = Problem),
+              (status = 422, body = Problem)))]
+async fn set_report_settings(
+    State(app): State<App>,
+    request: RequestContext,
+    writer: Writer,
+    Valid(settings): Valid<Settings>,
+) -> Result<Json<Settings>> {
+    let settings = settings.checked()?;
+    if !settings.monthly_to.is_empty() {
+        mail::must_be_set_up(&app)?;
+    }
+    let now = app.clock.now().into();
+    let mut tx = request.begin().await?;
+    let by = session::name_of(&mut tx, writer.user).await?;
+    put(&mut tx, writer.operator, &settings, &by, now).await?;
+    bring_recipients_in_line(&mut tx, writer.operator, &settings.monthly_to, now).await?;
+    tx.commit().await?;
+    Ok(Json(settings))
+}
+
+/// An operator's settings, or the defaults.
+pub(super) async fn find(db: &Db, operator: OperatorId) -> Result<Settings> {
+    let found = row!(
+        db,
+        (String,),
+        "SELECT settings FROM report_settings WHERE operator_id = $1 ORDER BY operator_id",
+        operator
+    )?;
+    Ok(found.map_or_else(
+        || Ok(Settings::default()),
+        |(text,)| serde_json::from_str(&text),
+    )?)
+}
+
+async fn put(
+    tx: &mut Tx,
+    operator: OperatorId,
+    settings: &Settings,
+    by: &str,
+    now: Time,
+) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO report_settings (operator_id, settings, changed_at, changed_by)
+         VALUES ($1, $2, $3, $4)
+         ON CONFLICT (operator_id) DO UPDATE
+         SET settings = excluded.settings, changed_at = excluded.changed_at,
+             changed_by = excluded.changed_by",
+        operator,
+        serde_json::to_string(settings)?,
+        now,
+        by
+    )?;
+    Ok(())
+}
+
+/// Makes receivers of those who are new, and removes those who are not there any more.
+async fn bring_recipients_in_line(
+    tx: &mut Tx,
+    operator: OperatorId,
+    wanted: &[String],
+    now: Time,
+) -> Result<()> {
+    let known = rows!(
+        in &mut *tx,
+        (RecipientId, String),
+        "SELECT id, address FROM report_recipients WHERE operator_id = $1 ORDER BY id",
+        operator
+    )?;
+    for (id, address) in &known {
+        if !wanted.contains(address) {
+            outbox::forget(tx, id.0).await?;
+        }
+    }
+    for address in wanted {
+        if known.iter().any(|(_, known)| known == address) {
+            continue;
+        }
+        let id = RecipientId::new();
+        outbox::insert(tx, operator, id.0, Channel::Mail, true).await?;
+        execute!(
+            &mut *tx,
+            "INSERT INTO report_recipients (id, operator_id, address, created_at)
+             VALUES ($1, $2, $3, $4)",
+            id,
+            operator,
+            address.as_str(),
+            now
+        )?;
+    }
+    Ok(())
+}
+
+impl Settings {
+    fn checked(self) -> Result<Settings> {
+        let invalid = |field, detail: String| Err(Error::Invalid { field, detail });
+        if !(0.0..=MOST_EUR).contains(&self.swing_eur) {
+            let detail = format!("{} is outside 0 to {MOST_EUR}", self.swing_eur);
+            return invalid("swing_eur", detail);
+        }
+        if !(0.0..=LONGEST_SWING_H).contains(&self.swing_h) {
+            let detail = format!("{} is outside 0 to {LONGEST_SWING_H}", self.swing_h);
+            return invalid("swing_h", detail);
+        }
+        if self.monthly_to.len() > MOST_RECIPIENTS {
+            return invalid(
+                "monthly_to",
+                format!("has more than {MOST_RECIPIENTS} addresses"),
+            );
+        }
+        let mut monthly_to: Vec<String> = Vec::new();
+        for address in &self.monthly_to {
+            let address = mail::address("monthly_to", address)?;
+            if !monthly_to.contains(&address) {
+                monthly_to.push(address);
+            }
+        }
+        Ok(Settings { monthly_to, ..self })
+    }
+}

@@ -1,0 +1,421 @@
+//! Making a plan: gathered, solved on a blocking thread with no transaction open, kept.
+//!
+//! What always holds: a plan is kept as the next version after the one that it was made
+//! from, or not at all; who comes second gathers and solves anew.
+
+use super::at_risk::{aside, at_risk};
+use super::concurrency::{PlanLock, PlanSlots};
+use super::gather::{Agreed, Gathered, Names, gather};
+use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled};
+use super::store;
+use anyhow::Context;
+use binnacle_fleet::alerts;
+use binnacle_orders::work_orders;
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::db::Tx;
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::events;
+use binnacle_platform::ids::{CallId, CompassId, FirmId, OperatorId, OrderId, VesselId};
+use binnacle_platform::time::Time;
+use binnacle_schedule::input::{JobState, read};
+use binnacle_schedule::plan::{self as solved, ChangeKind, Schedule, plan};
+use binnacle_schedule::ports;
+use metrics::histogram;
+use std::collections::{BTreeMap, BTreeSet};
+use std::str::FromStr;
+use std::sync::Arc;
+use std::time::Instant;
+use tracing::info;
+use uuid::Uuid;
+
+/// Who comes second so often gives up.
+const MOST_TRIES: usize = 5;
+
+/// Makes the operator's plan anew, or finds that nothing has changed. Whoever asks for it
+/// meanwhile waits for the operator's lock, and takes no slot of other operators'.
+pub(super) async fn solve(
+    app: &App,
+    request: &RequestContext,
+    slots: &PlanSlots,
+    operator: OperatorId,
+) -> Result<Plan> {
+    let lock = slots.lock_of(operator).await;
+    solve_locked(app, Some(request), slots, operator, Arc::new(lock)).await
+}
+
+/// The same, unless somebody is at it.
+pub(super) async fn solve_unless_busy(
+    app: &App,
+    slots: &PlanSlots,
+    operator: OperatorId,
+) -> Result<Option<Plan>> {
+    match slots.try_lock_of(operator) {
+        Some(lock) => solve_locked(app, None, slots, operator, Arc::new(lock))
+            .await
+            .map(Some),
+        None => Ok(None),
+    }
+}
+
+async fn solve_locked(
+    app: &App,
+    request: Option<&RequestContext>,
+    slots: &PlanSlots,
+    operator: OperatorId,
+    lock: Arc<PlanLock>,
+) -> Result<Plan> {
+    for _ in 0..MOST_TRIES {
+        let gathered = gather(app, operator, &BTreeSet::new()).await?;
+        if let Some(former) = &gathered.former
+            && former.input_sha256 == gathered.sha256
+        {
+            let former = former.clone();
+            forget_asks(begin(app, request).await?, operator, &gathered).await?;
+            return Ok(former);
+        }
+        let begun = Instant::now();
+        let (schedule, gathered) = settled(app, slots, operator, gathered, &lock).await?;
+        let took_s = begun.elapsed().as_secs_f64();
+        histogram!("binnacle_schedule_seconds").record(took_s);
+        let plan = named(schedule, &gathered, app.clock.now().into(), took_s)?;
+        let tx = begin(app, request).await?;
+        if keep(app, tx, operator, &plan, &gathered).await? {
+            info!(%operator, version = plan.version, took_s, gap_percent = plan.gap_percent,
+                  "a schedule was made");
+            return Ok(plan);
+        }
+    }
+    Err(Error::WrongState(
+        "others make the schedule at the same time; try again".to_owned(),
+    ))
+}
+
+/// Begins a transaction, which carries the audit line of the request that asks for the plan.
+async fn begin(app: &App, request: Option<&RequestContext>) -> Result<Tx> {
+    Ok(match request {
+        Some(request) => request.begin().await?,
+        None => app.db.begin().await?,
+    })
+}
+
+/// The plan in which an order that a job was moved away from holds its team still, as it does
+/// until somebody cancels it; and what that plan was made from.
+async fn settled(
+    app: &App,
+    slots: &PlanSlots,
+    operator: OperatorId,
+    mut gathered: Gathered,
+    lock: &Arc<PlanLock>,
+) -> Result<(Schedule, Gathered)> {
+    let mut moved = BTreeSet::new();
+    let mut schedule = run(slots, gathered.text.clone(), lock).await?;
+    loop {
+        let more = moved_away(&schedule, &gathered)?;
+        if more.is_empty() {
+            return Ok((schedule, gathered));
+        }
+        moved.extend(more);
+        gathered = gather(app, operator, &moved).await?;
+        let mut next = run(slots, gathered.text.clone(), lock).await?;
+        // Why a job moved is what moved it first, not that its order is in its way now.
+        for change in &mut next.changes {
+            let mut known = schedule.changes.iter();
+            let known = known.find(|known| {
+                (&known.needs, &known.from, &known.to) == (&change.needs, &change.from, &change.to)
+            });
+            if let Some(known) = known {
+                change.why.clone_from(&known.why);
+            }
+        }
+        schedule = next;
+    }
+}
+
+/// Orders whose compass a plan does not have with their firm on their day.
+fn moved_away(schedule: &Schedule, gathered: &Gathered) -> Result<Vec<OrderId>> {
+    let mut planned = BTreeMap::new();
+    for job in &schedule.jobs {
+        for need in &job.needs {
+            planned.insert(CompassId(id(need)?), (FirmId(id(&job.firm)?), job.day));
+        }
+    }
+    let agreed = gathered.names.agreed.iter();
+    let moved = agreed
+        .filter(|(_, agreed)| gathered.held.contains_key(&agreed.order_id))
+        .filter(|(compass, agreed)| planned.get(*compass) != Some(&(agreed.firm_id, agreed.day)));
+    Ok(moved.map(|(_, agreed)| agreed.order_id).collect())
+}
+
+/// Forgets what asked, for an operator that has no firms to plan with.
+pub(super) async fn forget_asks(
+    mut tx: Tx,
+    operator: OperatorId,
+    gathered: &Gathered,
+) -> Result<()> {
+    store::answered(&mut tx, operator, &gathered.asks).await?;
+    tx.commit().await?;
+    Ok(())
+}
+
+async fn run(slots: &PlanSlots, text: String, lock: &Arc<PlanLock>) -> Result<Schedule> {
+    let slot = slots.acquire().await?;
+    // A request that is given up leaves its plan at work, which keeps the lock until it ends.
+    let lock = Arc::clone(lock);
+    let done = tokio::task::spawn_blocking(move || {
+        let checked = read(&text).context("what was gathered does not hang together")?;
+        let schedule = plan(&checked);
+        drop((slot, lock));
+        anyhow::Ok(schedule)
+    });
+    Ok(done.await??)
+}
+
+async fn keep(
+    app: &App,
+    mut tx: Tx,
+    operator: OperatorId,
+    plan: &Plan,
+    gathered: &Gathered,
+) -> Result<bool> {
+    if !store::keep(&mut tx, operator, plan, &gathered.text).await? {
+        return Ok(false);
+    }
+    store::answered(&mut tx, operator, &gathered.asks).await?;
+    for agreed in gathered.names.agreed.values() {
+        let (vessel, order, call) = (agreed.vessel_id, agreed.order_id, agreed.call_id);
+        work_orders::link_once(&mut tx, vessel, order, call).await?;
+    }
+    let mut wanted = at_risk(plan, &gathered.names);
+    let not_told = aside(plan, gathered, &mut wanted);
+    let mut told =
+        alerts::reconcile_jobs_at_risk(&mut tx, operator, &wanted, &not_told, plan.solved_at)
+            .await?;
+    for vessel in store::told(plan) {
+        let kind = events::Kind::Schedule;
+        told.push(events::insert(&mut tx, vessel, kind, plan.solved_at).await?);
+    }
+    tx.commit().await?;
+    for event in told {
+        app.publish(event);
+    }
+    Ok(true)
+}
+
+/// The solver's answer with everybody's names.
+fn named(schedule: Schedule, gathered: &Gathered, now: Time, took_s: f64) -> Result<Plan> {
+    let names = &gathered.names;
+    let former = gathered.former.as_ref();
+    let jobs: Result<Vec<Job>> = schedule
+        .jobs
+        .into_iter()
+        .map(|one| job(one, names))
+        .collect();
+    let jobs = jobs?;
+    let changes: Result<Vec<Change>> = schedule
+        .changes
+        .into_iter()
+        .map(|one| change(one, names, &jobs, former))
+        .collect();
+    let changes = changes?;
+    let unscheduled = schedule.unscheduled.into_iter().map(|one| {
+        let compasses = compasses(&one.needs, names)?;
+        let (vessel_id, vessel_name) = vessel(&compasses, names);
+        Ok(Unscheduled {
+            orders: orders_of(&compasses, names, |_| !one.planned_late),
+            vessel_id,
+            vessel_name,
+            compasses,
+            due_on: one.due,
+            urgency: one.urgency,
+            reason: one.reason,
+            planned_late: one.planned_late,
+            because: one.because,
+            would_help: one.would_help,
+        })
+    });
+    let unscheduled: Result<Vec<Unscheduled>> = unscheduled.collect();
+    let later = schedule.later.into_iter().map(|one| {
+        let compass = names.compass(CompassId(id(&one.need)?));
+        let (vessel_id, vessel_name) = vessel(std::slice::from_ref(&compass), names);
+        Ok(Later {
+            vessel_id,
+            vessel_name,
+            compass,
+            due_on: one.due,
+            reason: one.reason,
+        })
+    });
+    let later: Result<Vec<Later>> = later.collect();
+    let moved = changes
+        .iter()
+        .filter(|change| matches!(change.what, ChangeKind::Moved | ChangeKind::Dropped));
+    let against = former.map(|former| Against {
+        version: former.version,
+        cost_eur: rounded(schedule.cost_eur - former.cost_eur),
+        paid_eur: rounded(schedule.paid_eur - former.paid_eur),
+        moved: moved.count(),
+    });
+    Ok(Plan {
+        version: former.map_or(0, |former| former.version) + 1,
+        solved_at: now,
+        as_of: gathered.as_of,
+        solved_in_s: rounded(took_s),
+        input_sha256: gathered.sha256.clone(),
+        cost_eur: schedule.cost_eur,
+        bound_eur: schedule.bound_eur,
+        gap_percent: schedule.gap_percent,
+        proven_optimal: schedule.proven_optimal,
+        paid_eur: schedule.paid_eur,
+        against,
+        jobs,
+        unscheduled: unscheduled?,
+        changes,
+        later: later?,
+        under_way: gathered.under_way.clone(),
+        left_out: gathered.left_out.clone(),
+    })
+}
+
+fn job(one: solved::PlannedJob, names: &Names) -> Result<Job> {
+    let compasses = compasses(&one.needs, names)?;
+    let (vessel_id, vessel_name) = vessel(&compasses, names);
+    let (call_id, firm_id) = (CallId(id(&one.call)?), FirmId(id(&one.firm)?));
+    let here = |agreed: &Agreed| {
+        (agreed.call_id, agreed.firm_id, agreed.day) == (call_id, firm_id, one.day)
+    };
+    let pinned = compasses
+        .iter()
+        .any(|compass| names.pinned.contains(&compass.compass_id));
+    Ok(Job {
+        vessel_id,
+        vessel_name,
+        call_id,
+        port: one.port.to_string(),
+        port_name: one.port_name.to_owned(),
+        berth: names
+            .calls
+            .get(&call_id)
+            .and_then(|call| call.berth.clone()),
+        berth_heading: one.berth_heading,
+        firm_id,
+        firm_name: names.firm(firm_id),
+        day: one.day,
+        from: Time(one.from.0),
+        to: Time(one.to.0),
+        // What a person wants is held as if it were agreed, and is not.
+        state: match one.state {
+            JobState::Confirmed if pinned => JobState::Proposed,
+            state => state,
+        },
+        pinned: pinned && one.state == JobState::Confirmed,
+        orders: orders_of(&compasses, names, here),
+        instead_of: orders_of(&compasses, names, |agreed| !here(agreed))
+            .into_iter()
+            .chain(
+                compasses
+                    .iter()
+                    .filter_map(|one| names.declined.get(&one.compass_id).copied()),
+            )
+            .collect(),
+        due_on: one.due,
+        urgency: one.urgency,
+        reason: one.reason,
+        late_days: one.late_days,
+        chance_of_missing: one.chance_of_missing,
+        fee_eur: one.fee_eur,
+        travel_eur: rounded(one.travel_eur),
+        weighed: one.weighed,
+        compasses,
+    })
+}
+
+fn orders_of(
+    compasses: &[Compass],
+    names: &Names,
+    which: impl Fn(&Agreed) -> bool,
+) -> Vec<OrderId> {
+    let agreed = compasses
+        .iter()
+        .filter_map(|one| names.agreed.get(&one.compass_id));
+    agreed
+        .filter(|agreed| which(agreed))
+        .map(|agreed| agreed.order_id)
+        .collect()
+}
+
+fn change(
+    one: solved::Change,
+    names: &Names,
+    jobs: &[Job],
+    former: Option<&Plan>,
+) -> Result<Change> {
+    let compasses = compasses(&one.needs, names)?;
+    let (vessel_id, vessel_name) = vessel(&compasses, names);
+    let first = compasses.first().map(|compass| compass.compass_id);
+    let before = first.and_then(|first| former?.job_of(first));
+    let after = first.and_then(|first| jobs.iter().find(|job| job.is_for(first)));
+    // A call that is cancelled has no name any more but what the plan before said.
+    let why = match (&one.from, before) {
+        (Some(place), Some(job)) => one
+            .why
+            .replace(&place.call, &format!("at {}", job.port_name)),
+        _ => one.why,
+    };
+    let from = one.from.map(|place| placed(&place, names, before));
+    let to = one.to.map(|place| placed(&place, names, after));
+    Ok(Change {
+        vessel_id,
+        vessel_name,
+        compasses,
+        what: one.what,
+        from: from.transpose()?,
+        to: to.transpose()?,
+        why,
+    })
+}
+
+fn placed(place: &solved::Place, names: &Names, job: Option<&Job>) -> Result<Place> {
+    let (call_id, firm_id) = (CallId(id(&place.call)?), FirmId(id(&place.firm)?));
+    let job = job.filter(|job| (job.call_id, job.firm_id) == (call_id, firm_id));
+    let known = names.calls.get(&call_id).map(|call| call.port.as_str());
+    let port = known.or(job.map(|job| job.port.as_str()));
+    let found = port.and_then(|port| ports::PortCode::parse(port).ok());
+    Ok(Place {
+        call_id,
+        port_name: found
+            .and_then(ports::find)
+            .map_or("", |port| port.name)
+            .to_owned(),
+        firm_id,
+        firm_name: names.firm(firm_id),
+        day: place.day,
+        paid_eur: job
+            .filter(|job| job.day == place.day)
+            .map(|job| rounded(job.fee_eur + job.travel_eur)),
+    })
+}
+
+fn compasses(needs: &[String], names: &Names) -> Result<Vec<Compass>> {
+    let named = needs
+        .iter()
+        .map(|need| Ok(names.compass(CompassId(id(need)?))));
+    named.collect()
+}
+
+fn vessel(compasses: &[Compass], names: &Names) -> (VesselId, String) {
+    let first = compasses.first();
+    let known = first.and_then(|first| names.compasses.get(&first.compass_id));
+    known.map_or_else(
+        || (VesselId(Uuid::nil()), String::new()),
+        |(id, name, _)| (*id, name.clone()),
+    )
+}
+
+fn id(text: &str) -> Result<Uuid> {
+    Ok(Uuid::from_str(text).context("an id of the schedule's")?)
+}
+
+fn rounded(value: f64) -> f64 {
+    (value * 100.0).round() / 100.0
+}

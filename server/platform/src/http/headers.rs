@@ -1,0 +1,58 @@
+//! The headers that tell a browser what a page of ours may do.
+
+use axum::extract::Request;
+use axum::http::header::{
+    CACHE_CONTROL, CONTENT_SECURITY_POLICY, HeaderName, HeaderValue, REFERRER_POLICY,
+    STRICT_TRANSPORT_SECURITY, X_CONTENT_TYPE_OPTIONS, X_FRAME_OPTIONS,
+};
+use axum::middleware::Next;
+use axum::response::Response;
+
+/// Nothing but from ourselves, and of that only what a page of ours is made of; charts
+/// bring styles with their elements.
+const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
+    img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; manifest-src 'self'; \
+    worker-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
+/// Nothing of the machine that a compass's page needs.
+const PERMISSIONS: &str = "camera=(), geolocation=(), microphone=(), payment=(), usb=()";
+/// For a year a browser asks this host by https only (RFC 6797).
+const HTTPS_ONLY: &str = "max-age=31536000";
+
+/// Adds, besides, that only https will do.
+pub async fn add_https_only(request: Request, next: Next) -> Response {
+    let mut response = next.run(request).await;
+    let value = HeaderValue::from_static(HTTPS_ONLY);
+    response
+        .headers_mut()
+        .insert(STRICT_TRANSPORT_SECURITY, value);
+    response
+}
+
+/// Adds them to a response that does not say otherwise.
+pub async fn add(request: Request, next: Next) -> Response {
+    let is_api = request.uri().path().starts_with("/api/");
+    let mut response = next.run(request).await;
+    let headers = response.headers_mut();
+    let mut default = |name: HeaderName, value: &'static str| {
+        headers
+            .entry(name)
+            .or_insert(HeaderValue::from_static(value));
+    };
+    default(X_CONTENT_TYPE_OPTIONS, "nosniff");
+    default(CONTENT_SECURITY_POLICY, POLICY);
+    default(X_FRAME_OPTIONS, "DENY");
+    default(REFERRER_POLICY, "same-origin");
+    default(
+        HeaderName::from_static("cross-origin-opener-policy"),
+        "same-origin",
+    );
+    default(
+        HeaderName::from_static("cross-origin-resource-policy"),
+        "same-origin",
+    );
+    default(HeaderName::from_static("permissions-policy"), PERMISSIONS);
+    if is_api {
+        default(CACHE_CONTROL, "no-store");
+    }
+    response
+}

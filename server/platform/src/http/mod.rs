@@ -1,0 +1,18 @@
+//! HTTP kit: limits, headers, and the small types that read a request.
+
+mod amended;
+pub mod cross_site;
+mod file;
+pub mod headers;
+mod json;
+mod page;
+
+pub use amended::{Amended, never_null};
+pub use file::{file, file_name};
+pub use json::{
+    Id, Json, Params, Valid, ValidOrNone, degrees, is_control, optional_text, text, time,
+};
+pub use page::{Listed, Page};
+
+/// Largest JSON body, bytes.
+pub const MAX_JSON_BYTES: usize = 64 * 1024;

@@ -1,0 +1,45 @@
+//! Platform of the server: database, errors, HTTP kit, identity, audit log, messages, events.
+//!
+//! It knows no domain: what a domain refuses, announces or reacts to reaches it as a
+//! [`error::DomainProblem`], a message, or a handler of an event.
+
+#![allow(
+    clippy::missing_errors_doc,
+    reason = "a function that asks the database errs when that does; others say more"
+)]
+#![allow(
+    clippy::cast_possible_wrap,
+    reason = "counts go into BIGINT and are far from its end"
+)]
+
+pub mod app;
+pub mod clock;
+pub mod config;
+pub mod db;
+pub mod error;
+pub mod ids;
+pub mod severity;
+pub mod time;
+
+pub mod access;
+pub mod audit;
+pub mod client_address;
+pub mod ed25519;
+pub mod idempotency;
+pub mod oidc;
+pub mod password;
+pub mod second_factor;
+pub mod secret;
+pub mod session;
+pub mod tenants;
+pub mod tokens;
+pub mod users;
+
+pub mod events;
+pub mod mail;
+pub mod notices;
+pub mod outbox;
+pub mod webhooks;
+
+pub mod http;
+pub mod tls;

@@ -1,0 +1,310 @@
+//! The way to the provider, back from it, and through the second factor.
+
+use super::attempt::{self, Attempt};
+use super::claims::{self, Identity};
+use super::provider;
+use super::refusal::Refusal;
+use super::store::{self, Known};
+use crate::app::App;
+use crate::audit::RequestContext;
+use crate::client_address::Origin;
+use crate::config::Serve;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Json, Params, Valid};
+use crate::session::throttle::{self, Subjects};
+use crate::session::{self, User, normal_email};
+use crate::time::Time;
+use crate::{password, second_factor, secret};
+use axum::extract::{FromRef, State};
+use axum::http::header::{LOCATION, SET_COOKIE};
+use axum::http::{HeaderMap, HeaderValue, StatusCode};
+use binnacle_compass::time::Timestamp;
+use openidconnect::RedirectUrl;
+use serde::{Deserialize, Serialize};
+use tracing::info;
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// Where the provider sends people back to.
+pub const CALLBACK: &str = "/api/v1/session/provider/callback";
+/// Where the sign-in page is; what it is to say follows.
+const SIGN_IN_PAGE: &str = "/?sign-in=";
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(find_provider))
+        .routes(routes!(go_to_provider))
+        .routes(routes!(return_from_provider))
+        .routes(routes!(send_code))
+}
+
+/// By whose word one may sign in.
+#[derive(Serialize, ToSchema)]
+#[schema(as = SignInProvider, example = json!({ "name": "Example Lines" }))]
+struct Named {
+    /// What it is called; none when there is none.
+    #[schema(required)]
+    name: Option<String>,
+}
+
+/// What the provider sends the browser back with.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+struct Answer {
+    /// Stands for who signed in; we redeem it.
+    code: Option<String>,
+    /// As we gave it.
+    state: Option<String>,
+    /// Why nobody signed in.
+    error: Option<String>,
+}
+
+/// A code from the app.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = ProviderCode, example = json!({ "code": "287082" }))]
+struct Code {
+    /// Of the authenticator app, or a recovery code.
+    code: String,
+}
+
+/// Whether one may sign in by another's word
+///
+/// By that of an OpenID Connect provider, if this server was told of one.
+#[utoipa::path(get, path = "/session/provider", tag = "session", security(()),
+    responses((status = 200, body = Named)))]
+async fn find_provider(State(app): State<App>) -> Json<Named> {
+    let config = &app.config.oidc;
+    let name = config.is_set_up().then(|| config.oidc_name.clone());
+    Json(Named { name })
+}
+
+/// Go to the provider to sign in
+///
+/// For browsers: they come back to `/session/provider/callback`. While the provider cannot
+/// be reached they come to the sign-in page at once, which says so.
+#[utoipa::path(get, path = "/session/provider/start", tag = "session", security(()),
+    responses((status = 303, description = "To the provider, or to the sign-in page"),
+              (status = 409, description = "There is no provider", body = Problem)))]
+async fn go_to_provider(State(app): State<App>) -> Result<(StatusCode, HeaderMap)> {
+    must_be_set_up(&app)?;
+    let attempt = Attempt::new(&app);
+    let address = match provider::current(&app).await {
+        Ok(found) => claims::address(&app, &found, &attempt),
+        Err(refusal) => Err(refusal),
+    };
+    Ok(match address {
+        Ok(address) => redirect(address.as_str(), [attempt.kept(&app.config)]),
+        Err(refusal) => sent_away(&app, &refusal),
+    })
+}
+
+/// Come back from the provider
+///
+/// With a session the browser goes on to the dashboard; with a second factor, or a reason
+/// why nobody was signed in, to the sign-in page.
+#[utoipa::path(get, path = "/session/provider/callback", tag = "session", params(Answer),
+    security(()),
+    responses((status = 303, description = "To the dashboard, or to the sign-in page"),
+              (status = 409, description = "There is no provider", body = Problem)))]
+async fn return_from_provider(
+    State(app): State<App>,
+    request: RequestContext,
+    from: Origin,
+    headers: HeaderMap,
+    Params(answer): Params<Answer>,
+) -> Result<(StatusCode, HeaderMap)> {
+    // Whoever comes back from the provider signs in.
+    request.log_as_change();
+    must_be_set_up(&app)?;
+    Ok(
+        match conclude(&app, &request, &from, &headers, answer).await {
+            Ok(done) => done,
+            Err(refusal) => {
+                info!(why = refusal.word(), "nobody was signed in by the provider");
+                sent_away(&app, &refusal)
+            }
+        },
+    )
+}
+
+/// Send the second factor's code after the provider
+///
+/// For who has a second factor here, in the browser that came back from the provider.
+#[utoipa::path(post, path = "/session/provider/code", tag = "session", security(()),
+    request_body = Code,
+    responses((status = 200, body = User), (status = 401, body = Problem),
+              (status = 410, description = "The sign-in took too long", body = Problem),
+              (status = 429, body = Problem)))]
+async fn send_code(
+    State(app): State<App>,
+    request: RequestContext,
+    from: Origin,
+    headers: HeaderMap,
+    Valid(sent): Valid<Code>,
+) -> Result<(HeaderMap, Json<User>)> {
+    const OVER: Error = Error::Gone("this sign-in took too long; begin it again");
+    let attempt = Attempt::of(&app, &headers).ok_or(OVER)?;
+    let (state, now) = (attempt.state_hash(), app.clock.now());
+    let user = store::awaited(&app.db, &state, now.into()).await?;
+    let user = user.ok_or(OVER)?;
+    request.record_actor(&user);
+    let subjects = Subjects::person(&user.email, &from);
+    // As with passwords, guesses sent at once do not outrun the count.
+    let _place = password::place(&app).await?;
+    throttle::check(&app.db, &subjects, now).await?;
+    if !second_factor::use_code(&request, user.user_id, &sent.code, now).await? {
+        throttle::note_failure(&request, &subjects, now).await?;
+        return Err(Error::WrongCode);
+    }
+    if !store::take_awaited(&request, &state).await? {
+        return Err(OVER);
+    }
+    let mut cookies = open(&app, &request, &from, &user).await?;
+    cookies.append(SET_COOKIE, attempt::forgotten(&app.config));
+    Ok((cookies, Json(user)))
+}
+
+fn must_be_set_up(app: &App) -> Result<()> {
+    if app.config.oidc.is_set_up() {
+        return Ok(());
+    }
+    Err(Error::NotSetUp("this server was told of no provider"))
+}
+
+/// The address of [`CALLBACK`], as the provider knows it.
+pub(super) fn redirect_url(config: &Serve) -> Option<RedirectUrl> {
+    let public = config.mail.public_url.as_deref()?.trim_end_matches('/');
+    RedirectUrl::new(format!("{public}{CALLBACK}")).ok()
+}
+
+type Done = std::result::Result<(StatusCode, HeaderMap), Refusal>;
+
+async fn conclude(
+    app: &App,
+    request: &RequestContext,
+    from: &Origin,
+    headers: &HeaderMap,
+    answer: Answer,
+) -> Done {
+    let attempt = Attempt::of(app, headers).ok_or(Refusal::Over)?;
+    // Of hashes, so that how long it takes does not tell how much is right.
+    let state = answer.state.unwrap_or_default();
+    if secret::hash(&state) != attempt.state_hash() {
+        return Err(Refusal::Over);
+    }
+    let now = app.clock.now();
+    let subjects = Subjects::address(from);
+    throttle::check(&app.db, &subjects, now).await?;
+    let until = Timestamp::from_micros(attempt.ends_s() * 1_000_000).unwrap_or(now);
+    if !store::note_return(request, &attempt.state_hash(), now.into(), until.into()).await? {
+        return Err(Refusal::Over);
+    }
+    let (None, Some(code)) = (answer.error, answer.code) else {
+        return Err(Refusal::Cancelled);
+    };
+    let user = match who(app, request, &attempt, code).await {
+        Ok(user) => user,
+        Err(refusal) => {
+            if refusal.counts() {
+                throttle::note_failure(request, &subjects, now).await?;
+            }
+            return Err(refusal);
+        }
+    };
+    if user.second_factor {
+        store::await_code(request, &attempt.state_hash(), user.user_id).await?;
+        return Ok(redirect(&format!("{SIGN_IN_PAGE}code"), []));
+    }
+    let mut cookies = open(app, request, from, &user).await?;
+    cookies.append(SET_COOKIE, attempt::forgotten(&app.config));
+    cookies.insert(LOCATION, HeaderValue::from_static("/"));
+    Ok((StatusCode::SEE_OTHER, cookies))
+}
+
+/// The user whom the provider means.
+async fn who(
+    app: &App,
+    request: &RequestContext,
+    attempt: &Attempt,
+    code: String,
+) -> std::result::Result<User, Refusal> {
+    let issuer = app.config.oidc.oidc_issuer.as_deref().unwrap_or_default();
+    let identity = claims::redeem(app, attempt, code).await?;
+    let subject = identity.subject.as_str();
+    // PostgreSQL takes no NUL in a text, and no provider names anyone so.
+    if subject.chars().any(char::is_control) {
+        return Err(Refusal::Untrusted);
+    }
+    let user = match store::find_known(&app.db, issuer, subject).await? {
+        Some(Known::User(user)) => *user,
+        Some(Known::Disabled) => return Err(Refusal::Unknown),
+        None => return bound(app, request, issuer, &identity).await,
+    };
+    request.record_actor(&user);
+    Ok(user)
+}
+
+/// The user with the e-mail of someone who comes for the first time.
+async fn bound(
+    app: &App,
+    request: &RequestContext,
+    issuer: &str,
+    identity: &Identity,
+) -> std::result::Result<User, Refusal> {
+    let email = claims::verified_email(app, identity).await?;
+    // Nobody here has another; and what is alike in lower case is not the same.
+    if !email.is_ascii() || email.chars().any(char::is_control) {
+        return Err(Refusal::Unknown);
+    }
+    let user = store::find_by_email(&app.db, &normal_email(&email)).await?;
+    let user = user.ok_or(Refusal::Unknown)?;
+    let (subject, now) = (identity.subject.as_str(), Time(app.clock.now()));
+    let mut tx = request.begin().await?;
+    if store::bind(&mut tx, issuer, subject, user.user_id, now).await? {
+        request.record_actor(&user);
+        tx.commit().await?;
+        return Ok(user);
+    }
+    drop(tx);
+    // The same person may have come through two windows at once.
+    match store::find_known(&app.db, issuer, subject).await? {
+        Some(Known::User(known)) if known.user_id == user.user_id => {
+            request.record_actor(&user);
+            Ok(user)
+        }
+        _ => Err(Refusal::Taken),
+    }
+}
+
+async fn open(
+    app: &App,
+    request: &RequestContext,
+    from: &Origin,
+    user: &User,
+) -> Result<HeaderMap> {
+    session::open(app, request, from, user, Some(&app.config.oidc.oidc_name)).await
+}
+
+/// To the sign-in page, which says why.
+fn sent_away(app: &App, refusal: &Refusal) -> (StatusCode, HeaderMap) {
+    let page = format!("{SIGN_IN_PAGE}{}", refusal.word());
+    redirect(&page, [attempt::forgotten(&app.config)])
+}
+
+fn redirect<const N: usize>(to: &str, cookies: [HeaderValue; N]) -> (StatusCode, HeaderMap) {
+    let mut headers: HeaderMap = cookies
+        .map(|cookie| (SET_COOKIE, cookie))
+        .into_iter()
+        .collect();
+    if let Ok(to) = HeaderValue::try_from(to) {
+        headers.insert(LOCATION, to);
+    }
+    (StatusCode::SEE_OTHER, headers)
+}

@@ -1,0 +1,162 @@
+//! One's own sessions, and one's password.
+
+use super::store;
+use crate::access::Caller;
+use crate::app::App;
+use crate::audit::RequestContext;
+use crate::client_address::Origin;
+use crate::db::{self, Tx};
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Listed, Page, Valid};
+use crate::ids::{SessionId, UserId};
+use crate::password;
+use crate::time::Time;
+use axum::extract::{FromRef, State};
+use axum::http::StatusCode;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(list_sessions, end_other_sessions))
+        .routes(routes!(end_session))
+        .routes(routes!(change_password))
+}
+
+/// A time that you are signed in for.
+#[derive(Serialize, ToSchema, sqlx::FromRow)]
+pub(super) struct Session {
+    /// The session's id.
+    pub(super) id: SessionId,
+    /// When you signed in.
+    created_at: Time,
+    /// When a request last came, to ten minutes.
+    last_seen_at: Time,
+    /// When it ends at the latest.
+    expires_at: Time,
+    /// Where the sign-in came from; empty if that is not known.
+    #[schema(example = "198.51.100.7")]
+    address: String,
+    /// What the browser called itself.
+    user_agent: String,
+    /// By whose word it was opened; none if by your password.
+    #[schema(required, example = json!(null))]
+    provider: Option<String>,
+    /// Whether this request came with it.
+    current: bool,
+}
+
+/// A page of sessions.
+#[derive(Serialize, ToSchema)]
+struct SessionList {
+    /// In the order in which they were opened.
+    items: Vec<Session>,
+    /// `after` of the next page.
+    #[schema(required)]
+    next: Option<String>,
+}
+
+/// Another password.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "current": "seven gulls over the quay", "new": "a lantern astern at midnight"
+}))]
+struct ChangedPassword {
+    /// The one you sign in with now.
+    #[schema(format = Password)]
+    current: String,
+    /// At least 12 characters; neither common nor easily guessed of you.
+    #[schema(format = Password)]
+    new: String,
+}
+
+/// List your sessions
+#[utoipa::path(get, path = "/sessions", tag = "session", params(Page),
+    responses((status = 200, body = SessionList), (status = 401, body = Problem)))]
+async fn list_sessions(
+    State(app): State<App>,
+    caller: Caller,
+    page: Page,
+) -> Result<Json<SessionList>> {
+    let now = app.clock.now().into();
+    let (user, idle_s) = (caller.user.user_id, app.idle_s());
+    let found = store::list(&app.db, user, now, idle_s, page.after_id()?, page.fetch()).await?;
+    let Listed { mut items, next } = page.cut(found, |session| session.id.to_string());
+    for session in &mut items {
+        session.current = caller.session == Some(session.id);
+    }
+    Ok(Json(SessionList { items, next }))
+}
+
+/// End one of your sessions
+#[utoipa::path(delete, path = "/sessions/{id}", tag = "session", params(("id" = SessionId, Path)),
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
+              (status = 404, body = Problem)))]
+async fn end_session(
+    request: RequestContext,
+    caller: Caller,
+    Id(id): Id<SessionId>,
+) -> Result<StatusCode> {
+    caller.must_not_only_read()?;
+    if !store::end(&request, caller.user.user_id, id).await? {
+        return Err(Error::NotFound("session"));
+    }
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// End all your other sessions
+#[utoipa::path(delete, path = "/sessions", tag = "session",
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem)))]
+async fn end_other_sessions(request: RequestContext, caller: Caller) -> Result<StatusCode> {
+    caller.must_not_only_read()?;
+    let mut tx = request.begin().await?;
+    end_all(&mut tx, caller.user.user_id, caller.session).await?;
+    tx.commit().await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Change your password
+///
+/// All your other sessions end. API tokens go on.
+#[utoipa::path(put, path = "/me/password", tag = "session", request_body = ChangedPassword,
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
+              (status = 422, body = Problem), (status = 429, body = Problem)))]
+async fn change_password(
+    State(app): State<App>,
+    request: RequestContext,
+    caller: Caller,
+    from: Origin,
+    Valid(change): Valid<ChangedPassword>,
+) -> Result<StatusCode> {
+    let session = caller.must_be_signed_in()?;
+    let user = &caller.user;
+    let company = user.operator_name.as_ref().or(user.firm_name.as_ref());
+    let about = [&user.email, &user.name, company.unwrap_or(&user.name)];
+    password::check("new", &change.new, &about.map(String::as_str))?;
+    let is_the_same = change.new == change.current;
+    super::prove(&app, &request, user, &from, change.current).await?;
+    if is_the_same {
+        return Err(Error::Invalid {
+            field: "new",
+            detail: "is the password that you have".to_owned(),
+        });
+    }
+    let hash = password::hash(password::place(&app).await?, change.new).await?;
+    let mut tx = request.begin().await?;
+    store::set_password(&mut tx, user.user_id, &hash).await?;
+    end_all(&mut tx, user.user_id, Some(session)).await?;
+    tx.commit().await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Ends all of a user's sessions but the one to be kept.
+pub async fn end_all(tx: &mut Tx, user: UserId, kept: Option<SessionId>) -> db::Result<()> {
+    store::end_all(tx, user, kept).await.map(drop)
+}

@@ -1,0 +1,241 @@
+//! Users and sessions in the database.
+
+use super::own::Session;
+use super::user::{Role, User, normal_email, user_sql};
+use crate::audit::RequestContext;
+use crate::client_address::Origin;
+use crate::db::{Db, Result, Tx, execute, row, rows};
+use crate::error;
+use crate::ids::{SessionId, UserId};
+use crate::secret;
+use crate::tenants::Tenant;
+use crate::time::Time;
+
+/// How old `last_seen_at` may be before a request is noted: reading is not to write.
+const SEEN_NOTED_EVERY_S: f64 = 600.0;
+
+#[derive(sqlx::FromRow)]
+struct Stored {
+    #[sqlx(flatten)]
+    user: User,
+    password_hash: String,
+}
+
+#[derive(sqlx::FromRow)]
+struct Holder {
+    #[sqlx(flatten)]
+    user: User,
+    session_id: SessionId,
+    last_seen_at: Time,
+}
+
+/// The user whose session this is, if it has not ended and was not idle for so long.
+pub async fn find_user(
+    db: &Db,
+    token_hash: &[u8],
+    now: Time,
+    idle_s: f64,
+) -> Result<Option<(User, SessionId)>> {
+    let holder = row!(
+        db,
+        Holder,
+        concat!(
+            user_sql!(", s.id AS session_id, s.last_seen_at"),
+            "JOIN sessions s ON s.user_id = u.id
+             WHERE s.token_hash = $1 AND s.expires_at > $2 AND s.last_seen_at > $3
+               AND u.disabled_at IS NULL
+             ORDER BY u.id"
+        ),
+        token_hash,
+        now,
+        Time(now.0.plus_seconds(-idle_s))
+    )?;
+    let Some(holder) = holder else {
+        return Ok(None);
+    };
+    if now.0.seconds_since(holder.last_seen_at.0) >= SEEN_NOTED_EVERY_S {
+        let mut tx = db.begin().await?;
+        execute!(
+            &mut tx,
+            "UPDATE sessions SET last_seen_at = $2 WHERE id = $1",
+            holder.session_id,
+            now
+        )?;
+        tx.commit().await?;
+    }
+    Ok(Some((holder.user, holder.session_id)))
+}
+
+/// Whether a session that was good still is.
+///
+/// # Errors
+/// When the database does.
+pub async fn lasts(db: &Db, id: SessionId, now: Time) -> Result<bool> {
+    let found = row!(
+        db,
+        (SessionId,),
+        "SELECT s.id FROM sessions s
+         JOIN users u ON u.id = s.user_id
+         WHERE s.id = $1 AND s.expires_at > $2 AND u.disabled_at IS NULL
+         ORDER BY s.id",
+        id,
+        now
+    )?;
+    Ok(found.is_some())
+}
+
+/// A user's name.
+///
+/// # Errors
+/// When there is no such user.
+pub async fn name_of(tx: &mut Tx, id: UserId) -> error::Result<String> {
+    let found = row!(
+        in tx,
+        (String,),
+        "SELECT name FROM users WHERE id = $1 ORDER BY id",
+        id
+    )?;
+    let (name,) = found.ok_or_else(|| anyhow::anyhow!("user {id} is missing"))?;
+    Ok(name)
+}
+
+/// Who may sign in with an e-mail, and the hash of the password.
+pub(super) async fn find_by_email(db: &Db, email: &str) -> Result<Option<(User, String)>> {
+    let stored = row!(
+        db,
+        Stored,
+        concat!(
+            user_sql!(", u.password_hash"),
+            "WHERE u.email = $1 AND u.disabled_at IS NULL ORDER BY u.id"
+        ),
+        email
+    )?;
+    Ok(stored.map(|stored| (stored.user, stored.password_hash)))
+}
+
+/// A session to be opened.
+pub(super) struct NewSession<'a> {
+    pub(super) token: &'a str,
+    /// By whose word; none: by a password.
+    pub(super) provider: Option<&'a str>,
+    pub(super) now: Time,
+    pub(super) expires_at: Time,
+}
+
+/// Opens a session; clears away those that ended, and the e-mail's failures.
+pub(super) async fn open(
+    request: &RequestContext,
+    user: &User,
+    from: &Origin,
+    new: &NewSession<'_>,
+) -> Result<()> {
+    let now = new.now;
+    let mut tx = request.begin().await?;
+    execute!(&mut tx, "DELETE FROM sessions WHERE expires_at <= $1", now)?;
+    execute!(
+        &mut tx,
+        "DELETE FROM login_failures WHERE subject_hash = $1",
+        secret::hash(&user.email)
+    )?;
+    execute!(
+        &mut tx,
+        "INSERT INTO sessions (id, user_id, token_hash, created_at, last_seen_at, expires_at,
+                               address, user_agent, provider)
+         VALUES ($1, $2, $3, $4, $4, $5, $6, $7, $8)",
+        SessionId::new(),
+        user.user_id,
+        secret::hash(new.token),
+        now,
+        new.expires_at,
+        from.address_text(),
+        from.program.as_str(),
+        new.provider
+    )?;
+    tx.commit().await
+}
+
+pub(super) async fn list(
+    db: &Db,
+    user: UserId,
+    now: Time,
+    idle_s: f64,
+    after: Option<uuid::Uuid>,
+    limit: i64,
+) -> Result<Vec<Session>> {
+    rows!(
+        db,
+        Session,
+        "SELECT id, created_at, last_seen_at, expires_at, address, user_agent, provider,
+                FALSE AS current
+         FROM sessions
+         WHERE user_id = $1 AND expires_at > $2 AND last_seen_at > $3 AND id > $4
+         ORDER BY id
+         LIMIT $5",
+        user,
+        now,
+        Time(now.0.plus_seconds(-idle_s)),
+        after.unwrap_or_default(),
+        limit
+    )
+}
+
+/// Ends one of a user's sessions; false when it is none of theirs.
+pub(super) async fn end(request: &RequestContext, user: UserId, id: SessionId) -> Result<bool> {
+    let mut tx = request.begin().await?;
+    let ended = execute!(
+        &mut tx,
+        "DELETE FROM sessions WHERE user_id = $1 AND id = $2",
+        user,
+        id
+    )?;
+    tx.commit().await?;
+    Ok(ended > 0)
+}
+
+/// Ends all of a user's sessions but the one to be kept.
+pub(super) async fn end_all(tx: &mut Tx, user: UserId, kept: Option<SessionId>) -> Result<u64> {
+    execute!(
+        tx,
+        "DELETE FROM sessions WHERE user_id = $1 AND id <> $2",
+        user,
+        kept.map_or(uuid::Uuid::nil(), |kept| kept.0)
+    )
+}
+
+/// Puts another password in place.
+pub async fn set_password(tx: &mut Tx, user: UserId, password_hash: &str) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE users SET password_hash = $2 WHERE id = $1",
+        user,
+        password_hash
+    )?;
+    Ok(())
+}
+
+/// Stores a new user of a tenant, or of none; the e-mail must be new.
+pub async fn create_user(
+    tx: &mut Tx,
+    tenant: Option<Tenant>,
+    email: &str,
+    name: &str,
+    role: Role,
+    password_hash: &str,
+    now: Time,
+) -> Result<UserId> {
+    let id = UserId::new();
+    execute!(
+        tx,
+        "INSERT INTO users (id, operator_id, firm_id, email, name, role, password_hash, created_at)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
+        id,
+        tenant.and_then(Tenant::operator),
+        tenant.and_then(Tenant::firm),
+        normal_email(email),
+        name,
+        role,
+        password_hash,
+        now
+    )?;
+    Ok(id)
+}

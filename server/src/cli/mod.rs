@@ -1,0 +1,219 @@
+//! The command line: every command with its flags.
+
+mod admin;
+
+pub use admin::{Admin, AdminCommand, Create, FleetRole, Person};
+
+use binnacle_platform::config::{Database, Serve};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use uuid::Uuid;
+
+/// The shore server: ingest, analysis, API and dashboard; and the science on the
+/// command line.
+#[derive(Debug, Parser)]
+#[command(version, name = "binnacle-server")]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Everything this program can do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Serve the API and the dashboard, and analyse what arrives
+    Serve(Box<Serve>),
+    /// Bring the database's schema up to date
+    Migrate(Database),
+    /// Create operators and users, revoke agents
+    Admin(Admin),
+    /// Store batches that came as short-burst messages
+    Bursts(Bursts),
+    /// Print the OpenAPI document
+    Openapi,
+    /// Print the earth's field at a place and time as JSON
+    Field(Field),
+    /// Fit a model to a CSV file
+    Fit(Fit),
+    /// Print the deviation that a model predicts
+    Deviation(Deviation),
+    /// Analyse a CSV file as the server analyses a vessel's uploads
+    Analyse(Analyse),
+    /// Check an archive of evidence of an adjustment
+    VerifyEvidence(VerifyEvidence),
+    /// Print how to set a binnacle's correctors, from a reading at the berth
+    Plan(Plan),
+    /// Plan who adjusts which compass, where and when
+    Schedule(Schedule),
+}
+
+/// `verify-evidence`.
+#[derive(Debug, Args)]
+pub struct VerifyEvidence {
+    /// The archive
+    pub file: PathBuf,
+}
+
+/// A model of the earth's field.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum FieldModel {
+    /// International Geomagnetic Reference Field, 1900 to 2030
+    #[default]
+    Igrf14,
+    /// World Magnetic Model, 2025 to 2030
+    Wmm2025,
+}
+
+/// `field`.
+#[derive(Debug, Args)]
+pub struct Field {
+    /// Degrees north
+    #[arg(long, allow_negative_numbers = true)]
+    pub lat: f64,
+    /// Degrees east
+    #[arg(long, allow_negative_numbers = true)]
+    pub lon: f64,
+    /// YYYY-MM-DD, RFC 3339 or a decimal year
+    #[arg(long)]
+    pub date: String,
+    /// Metres above the WGS 84 ellipsoid
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    pub altitude_m: f64,
+    /// Which model
+    #[arg(long, value_enum, default_value_t)]
+    pub model: FieldModel,
+}
+
+/// Which fit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// Equation 11 of Basterretxea-Iribar, Sotés and Uriarte 2016, for comparison
+    Paper,
+    /// Ordinary least squares on the exact deviation, every sample alike, for comparison
+    Ols,
+    /// The product's: noise that remembers, outliers, and what ships are like
+    #[default]
+    Robust,
+}
+
+/// Whether the gyro takes out the error that it has from the ship's own speed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum GyroSpeedError {
+    /// It does
+    #[default]
+    Corrected,
+    /// It does not: it is taken out here, from sog_kn and latitude
+    Uncorrected,
+}
+
+impl From<GyroSpeedError> for binnacle_compass::settings::GyroSpeedError {
+    fn from(said: GyroSpeedError) -> Self {
+        match said {
+            GyroSpeedError::Corrected => Self::Corrected,
+            GyroSpeedError::Uncorrected => Self::Uncorrected,
+        }
+    }
+}
+
+/// `fit`.
+#[derive(Debug, Args)]
+pub struct Fit {
+    /// Samples, a line each; columns by the names in the first line
+    pub file: PathBuf,
+    /// Print JSON rather than a table
+    #[arg(long)]
+    pub json: bool,
+    /// Which fit
+    #[arg(long, value_enum, default_value_t)]
+    pub method: Method,
+    /// Whether the gyro takes the error of the ship's own speed out of its headings
+    #[arg(long, value_enum, default_value_t)]
+    pub gyro_speed_error: GyroSpeedError,
+}
+
+/// `deviation`.
+#[derive(Debug, Args)]
+pub struct Deviation {
+    /// What `fit --json` printed
+    #[arg(long)]
+    pub model: PathBuf,
+    /// Degrees north
+    #[arg(long, allow_negative_numbers = true, requires_all = ["lon", "date"], conflicts_with = "h_nt")]
+    pub lat: Option<f64>,
+    /// Degrees east
+    #[arg(long, allow_negative_numbers = true, requires = "lat")]
+    pub lon: Option<f64>,
+    /// YYYY-MM-DD, RFC 3339 or a decimal year
+    #[arg(long, requires = "lat")]
+    pub date: Option<String>,
+    /// Horizontal field in nT, instead of place and date
+    #[arg(long, requires = "z_nt", required_unless_present = "lat")]
+    pub h_nt: Option<f64>,
+    /// Vertical field in nT, down positive
+    #[arg(long, allow_negative_numbers = true, requires = "h_nt")]
+    pub z_nt: Option<f64>,
+    /// Degrees of compass heading between rows
+    #[arg(long, default_value_t = 15.0)]
+    pub step_deg: f64,
+    /// Print JSON rather than a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `bursts`.
+#[derive(Debug, Args)]
+pub struct Bursts {
+    /// Which database.
+    #[command(flatten)]
+    pub database: Database,
+    /// The vessel whose messages they are
+    #[arg(long)]
+    pub vessel: Uuid,
+    /// A folder for answers to the ship, one message a stream
+    #[arg(long)]
+    pub answers: Option<PathBuf>,
+    /// Messages as they came, one a file, in any order; again with those before, until
+    /// a batch is whole
+    #[arg(required = true)]
+    pub messages: Vec<PathBuf>,
+}
+
+/// `schedule`.
+#[derive(Debug, Args)]
+pub struct Schedule {
+    /// Ships, needs, port calls and firms (docs/schedule.md)
+    #[arg(long)]
+    pub input: PathBuf,
+}
+
+/// `plan`.
+#[derive(Debug, Args)]
+pub struct Plan {
+    /// What `fit --json` prints
+    #[arg(long)]
+    pub model: PathBuf,
+    /// The binnacle and its correctors (docs/binnacle.md)
+    #[arg(long)]
+    pub binnacle: PathBuf,
+    /// What was found at the berth (docs/plan.md)
+    #[arg(long)]
+    pub berth: PathBuf,
+    /// What the magnetometer read after the steps: says whether they were done as planned
+    #[arg(long)]
+    pub after: Option<PathBuf>,
+}
+
+/// `analyse`.
+#[derive(Debug, Args)]
+pub struct Analyse {
+    /// Samples, as `fit` reads them, with time and place; a field or a weight of their own is
+    /// not used
+    pub file: PathBuf,
+    /// Logbook entries: a JSON array, or a page of them as the API answers it
+    #[arg(long)]
+    pub logbook: Option<PathBuf>,
+    /// Whether the gyro takes the error of the ship's own speed out of its headings
+    #[arg(long, value_enum, default_value_t)]
+    pub gyro_speed_error: GyroSpeedError,
+}

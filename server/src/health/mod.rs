@@ -1,0 +1,117 @@
+//! Health and metrics.
+
+use axum::extract::{FromRef, MatchedPath, Request, State};
+use axum::http::header::{AUTHORIZATION, FORWARDED};
+use axum::http::{HeaderMap, HeaderName, StatusCode};
+use axum::middleware::Next;
+use axum::response::Response;
+use binnacle_platform::app::App;
+use binnacle_platform::client_address::Origin;
+use binnacle_platform::error::{Error, Problem, Result};
+use metrics::{counter, histogram};
+use metrics_exporter_prometheus::{PrometheusBuilder, PrometheusHandle};
+use std::time::Instant;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(healthz))
+        .routes(routes!(readyz))
+        .routes(routes!(metrics_page))
+}
+
+/// Sets up the process's metrics.
+///
+/// # Errors
+/// When it is done twice.
+pub fn install_metrics() -> anyhow::Result<PrometheusHandle> {
+    let handle = PrometheusBuilder::new()
+        .set_buckets(&[0.001, 0.01, 0.1, 1.0, 10.0])?
+        .install_recorder()?;
+    Ok(handle)
+}
+
+/// Whether the process runs
+#[utoipa::path(get, path = "/healthz", tag = "operations", security(()),
+    responses((status = 200, body = String)))]
+async fn healthz() -> &'static str {
+    "ok"
+}
+
+/// Whether requests can be served
+#[utoipa::path(get, path = "/readyz", tag = "operations", security(()),
+    responses((status = 200, body = String), (status = 503, body = String)))]
+async fn readyz(State(app): State<App>) -> (StatusCode, &'static str) {
+    if app.stopping.is_cancelled() {
+        return (StatusCode::SERVICE_UNAVAILABLE, "stopping");
+    }
+    match app.db.ping().await {
+        Ok(()) => (StatusCode::OK, "ready"),
+        Err(_) => (
+            StatusCode::SERVICE_UNAVAILABLE,
+            "the database does not answer",
+        ),
+    }
+}
+
+/// Metrics for Prometheus
+///
+/// For who sends the token that the server was started with (`BINNACLE_METRICS_TOKEN`); where
+/// it was started without one, for programs on the same machine.
+#[utoipa::path(get, path = "/metrics", tag = "operations", security((), ("token" = [])),
+    responses((status = 200, body = String), (status = 401, body = Problem)))]
+async fn metrics_page(
+    State(app): State<App>,
+    origin: Origin,
+    headers: HeaderMap,
+) -> Result<String> {
+    if !may_read_metrics(&app, &origin, &headers) {
+        return Err(Error::Unauthenticated);
+    }
+    let waiting = binnacle_fleet::analysis::count_jobs(&app.db).await?;
+    for (state, jobs) in waiting {
+        metrics::gauge!("binnacle_jobs", "state" => state).set(jobs as f64);
+    }
+    app.metrics.run_upkeep();
+    Ok(app.metrics.render())
+}
+
+fn may_read_metrics(app: &App, origin: &Origin, headers: &HeaderMap) -> bool {
+    if let Some(token) = &app.config.metrics_token {
+        let sent = headers
+            .get(AUTHORIZATION)
+            .and_then(|sent| sent.to_str().ok());
+        let sent = sent.and_then(|sent| sent.strip_prefix("Bearer "));
+        return sent.is_some_and(|sent| token.is(sent));
+    }
+    // Who comes by way of a proxy that the server was not told of may be anybody.
+    let is_forwarded = [FORWARDED, HeaderName::from_static("x-forwarded-for")]
+        .iter()
+        .any(|name| headers.contains_key(name));
+    let is_here = origin.address.is_some_and(|address| address.is_loopback());
+    is_here && !is_forwarded
+}
+
+/// Counts and times every request by its route, never by its ids.
+pub async fn measure(request: Request, next: Next) -> Response {
+    let route = request
+        .extensions()
+        .get::<MatchedPath>()
+        .map_or("dashboard", MatchedPath::as_str)
+        .to_owned();
+    let method = request.method().as_str().to_owned();
+    let begun = Instant::now();
+    let response = next.run(request).await;
+    let status = response.status().as_u16().to_string();
+    histogram!("binnacle_http_request_seconds", "route" => route.clone())
+        .record(begun.elapsed().as_secs_f64());
+    counter!("binnacle_http_requests_total", "method" => method, "route" => route, "status" => status)
+        .increment(1);
+    response
+}

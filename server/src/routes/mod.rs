@@ -1,0 +1,205 @@
+//! Every route, the document that describes them, and what surrounds them.
+
+mod docs;
+mod document;
+
+use crate::state::ServerState;
+use crate::{dashboard, health};
+use axum::Router;
+use axum::extract::{DefaultBodyLimit, MatchedPath, Request};
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use binnacle_fleet::models::NoModelFields;
+use binnacle_fleet::{
+    alerts, binnacles, card, changes, compasses, deviation, deviation_book, enrolment, ingest,
+    logbook, models, operators, overview, particulars, samples, settings, vessels,
+};
+use binnacle_orders::work_orders::NotAdjustableFields;
+use binnacle_orders::{firms, work_orders};
+use binnacle_planning::{calendar, needs, notifications, port_calls, reports, schedule};
+use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers};
+use binnacle_platform::{
+    audit, error, events, mail, oidc, second_factor, session, tokens, users, webhooks,
+};
+use std::time::Duration;
+use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::compression::CompressionLayer;
+use tower_http::timeout::TimeoutLayer;
+use tower_http::trace::TraceLayer;
+use tracing::{Span, debug_span};
+use utoipa::OpenApi;
+use utoipa::openapi::security::{ApiKey, ApiKeyValue, Http, HttpAuthScheme, SecurityScheme};
+use utoipa_axum::router::OpenApiRouter;
+
+/// A batch over a satellite link may take its time; nothing takes longer.
+const PATIENCE: Duration = Duration::from_mins(2);
+
+#[derive(OpenApi)]
+#[openapi(
+    info(
+        title = "Binnacle",
+        description = "Magnetic compass deviation of a fleet. Errors are RFC 9457 problem \
+            documents; lists page by cursor; times are RFC 3339 UTC; deviation and variation are \
+            east-positive degrees; fields are nanotesla. Absence and refusal look the same (404) \
+            across operators and firms.",
+    ),
+    components(schemas(error::Problem)),
+    security(("session" = []), ("token" = [])),
+    modifiers(&Security),
+    tags(
+        (name = "session", description = "Signing in; one's sessions, second factor, API tokens"),
+        (name = "people", description = "Who may sign in, and how"),
+        (name = "platform", description = "Operators and firms, for platform admins"),
+        (name = "agents", description = "What the agents aboard talk to"),
+        (name = "fleet", description = "Vessels, compasses, models"),
+        (name = "adjusting", description = "Binnacles, port calls and work orders. What is foretold here is \
+            a prediction, not a certificate"),
+        (name = "alerts", description = "What people must know of, and how they are told"),
+        (name = "notifications", description = "What you yourself are told, and in which ways"),
+        (name = "operations", description = "Health and metrics"),
+    )
+)]
+struct Document;
+
+struct Security;
+
+impl utoipa::Modify for Security {
+    fn modify(&self, document: &mut utoipa::openapi::OpenApi) {
+        let components = document.components.get_or_insert_default();
+        components.add_security_scheme(
+            "session",
+            SecurityScheme::ApiKey(ApiKey::Cookie(ApiKeyValue::new(session::cookie::PLAIN))),
+        );
+        components.add_security_scheme(
+            "token",
+            SecurityScheme::Http(Http::new(HttpAuthScheme::Bearer)),
+        );
+    }
+}
+
+/// What ships talk to: no headers but the needed, they cross the satellite link.
+fn for_agents() -> OpenApiRouter<ServerState> {
+    OpenApiRouter::new()
+        .merge(enrolment::agent_router())
+        .merge(ingest::router())
+        .merge(logbook::agent_router())
+}
+
+fn for_people() -> OpenApiRouter<ServerState> {
+    OpenApiRouter::new()
+        .merge(session::router())
+        .merge(oidc::router())
+        .merge(second_factor::router())
+        .merge(tokens::router())
+        .merge(users::router())
+        .merge(audit::router())
+        .merge(operators::router())
+        .merge(firms::router())
+        .merge(overview::router())
+        .merge(vessels::router())
+        .merge(compasses::router())
+        .merge(binnacles::router())
+        .merge(work_orders::router())
+        .merge(port_calls::router())
+        .merge(particulars::router())
+        .merge(needs::router())
+        .merge(schedule::router())
+        .merge(calendar::router())
+        .merge(enrolment::router())
+        .merge(settings::router())
+        .merge(logbook::router())
+        .merge(models::router())
+        .merge(deviation::router())
+        .merge(card::router())
+        .merge(deviation_book::router())
+        .merge(changes::router())
+        .merge(samples::router())
+        .merge(reports::router())
+        .merge(alerts::router())
+        .merge(webhooks::router())
+        .merge(mail::router())
+        .merge(notifications::router())
+        .merge(events::router())
+}
+
+/// The OpenAPI document.
+pub fn openapi() -> utoipa::openapi::OpenApi {
+    let (_, _, document) = parts();
+    document
+}
+
+/// The routes of agents, those of people, and the document of both.
+fn parts() -> (
+    Router<ServerState>,
+    Router<ServerState>,
+    utoipa::openapi::OpenApi,
+) {
+    let (people, described) = OpenApiRouter::with_openapi(Document::openapi())
+        .nest("/api/v1", for_people())
+        .merge(health::router())
+        .split_for_parts();
+    let (agents, more) = OpenApiRouter::new()
+        .nest("/api/v1", for_agents())
+        .split_for_parts();
+    let mut document = described;
+    document.merge(more);
+    document::add_problem_fields::<NoModelFields>(&mut document);
+    document::add_problem_fields::<NotAdjustableFields>(&mut document);
+    document::complete(&mut document);
+    let people = people
+        .route("/api/openapi.json", get(docs::document))
+        .route("/api/docs", get(docs::page))
+        .route("/api/{*rest}", get(no_such_route).fallback(no_such_route))
+        .fallback(get(dashboard::serve))
+        .layer(CompressionLayer::new())
+        .layer(axum::middleware::from_fn(headers::add));
+    (agents, people, document)
+}
+
+async fn no_such_method() -> error::Error {
+    error::Error::MethodNotAllowed
+}
+
+/// What a bug answers; the panic itself is on standard error.
+fn panicked(_: Box<dyn std::any::Any + Send>) -> Response {
+    error::Error::Internal(anyhow::anyhow!("a handler panicked")).into_response()
+}
+
+async fn no_such_route() -> error::Error {
+    error::Error::NotFound("page")
+}
+
+/// What log lines of a request say of it: never the query, which may hold a secret.
+fn span(request: &Request) -> Span {
+    let route = request.extensions().get::<MatchedPath>();
+    let route = route.map_or("dashboard", MatchedPath::as_str);
+    debug_span!("http", method = %request.method(), route)
+}
+
+/// The whole server.
+pub fn router(state: ServerState) -> Router {
+    let app = state.app.clone();
+    let (agents, mut people, _) = parts();
+    if app.config.is_on_https() {
+        people = people.layer(axum::middleware::from_fn(headers::add_https_only));
+    }
+    let refuse = axum::middleware::from_fn_with_state(app.clone(), cross_site::refuse);
+    Router::new()
+        .merge(agents)
+        .merge(people.layer(refuse))
+        .method_not_allowed_fallback(no_such_method)
+        .layer(axum::middleware::from_fn_with_state(
+            app.clone(),
+            audit::log_request,
+        ))
+        .layer(DefaultBodyLimit::max(MAX_JSON_BYTES))
+        .layer(TimeoutLayer::with_status_code(
+            StatusCode::REQUEST_TIMEOUT,
+            PATIENCE,
+        ))
+        .layer(CatchPanicLayer::custom(panicked))
+        .layer(axum::middleware::from_fn(health::measure))
+        .layer(TraceLayer::new_for_http().make_span_with(span))
+        .with_state(state)
+}

@@ -1,0 +1,184 @@
+//! Takes jobs from the queue, one after the other.
+
+use binnacle_analysis::advice::sail_next;
+use binnacle_analysis::analyse::analyse;
+use binnacle_fleet::analysis::Findings;
+use binnacle_fleet::analysis::{Covered, Found, input, queue, store};
+use binnacle_fleet::{alerts, compasses, settings};
+use binnacle_orders::work_orders;
+use binnacle_platform::app::App;
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::events;
+use binnacle_platform::ids::{CompassId, VesselId};
+use binnacle_platform::time::Time;
+use metrics::{counter, histogram};
+use std::convert::Infallible;
+use std::time::{Duration, Instant};
+use tracing::{error, info, warn};
+
+/// How often to look for jobs that nobody was told of.
+const LOOK_EVERY: Duration = Duration::from_secs(1);
+/// How often to renew the lease of the job at hand: thrice before it ends.
+const RENEW_EVERY: Duration = Duration::from_secs(20);
+/// How often to forget old events.
+const PRUNE_EVERY: Duration = Duration::from_hours(1);
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Worked {
+    /// A vessel was analysed; so many compasses had news.
+    Analysed(VesselId, usize),
+    /// A job failed, and was put back or given up.
+    Failed(VesselId),
+}
+
+/// Works until the server stops; what was begun is finished.
+pub async fn run(app: App) {
+    let mut pruned = Instant::now();
+    while !app.stopping.is_cancelled() {
+        match step(&app).await {
+            Ok(Some(_)) => continue,
+            Ok(None) => {}
+            Err(error) => error!(
+                error = format!("{error:#}"),
+                "the worker cannot reach its queue"
+            ),
+        }
+        if pruned.elapsed() > PRUNE_EVERY {
+            pruned = Instant::now();
+            if let Err(error) = events::prune(&app.db, app.clock.now().into()).await {
+                warn!(%error, "old events were not removed");
+            }
+        }
+        tokio::select! {
+            () = app.stopping.cancelled() => {}
+            () = app.work.notified() => {}
+            () = tokio::time::sleep(LOOK_EVERY) => {}
+        }
+    }
+}
+
+/// Does one job, if one is due.
+///
+/// # Errors
+/// When the queue cannot be reached; a job that fails is not an error here.
+pub async fn step(app: &App) -> anyhow::Result<Option<Worked>> {
+    let Some(job) = queue::claim(&app.db, app.clock.now().into()).await? else {
+        return Ok(None);
+    };
+    let vessel = job.vessel_id;
+    let begun = Instant::now();
+    let outcome = match job.attempts {
+        // Its worker died each time: whatever it is, it takes the process with it.
+        ..=queue::MOST_ATTEMPTS => tokio::select! {
+            done = work(app, job) => done,
+            never = keep_lease(app, job) => match never {},
+        },
+        _ => Err(Error::Internal(anyhow::anyhow!(
+            "its lease ended too often"
+        ))),
+    };
+    histogram!("binnacle_analysis_seconds").record(begun.elapsed().as_secs_f64());
+    let error = match outcome {
+        Ok(news) => {
+            counter!("binnacle_analyses_total", "result" => "done").increment(1);
+            info!(%vessel, compasses_with_news = news, "vessel analysed");
+            return Ok(Some(Worked::Analysed(vessel, news)));
+        }
+        Err(Error::Internal(error)) => format!("{error:#}"),
+        Err(error) => error.to_string(),
+    };
+    counter!("binnacle_analyses_total", "result" => "failed").increment(1);
+    let dead = queue::fail(&app.db, job, &error, app.clock.now().into()).await?;
+    if dead {
+        error!(%vessel, error, "the analysis failed too often and was given up");
+    } else {
+        warn!(%vessel, error, "the analysis failed and will be tried again");
+    }
+    Ok(Some(Worked::Failed(vessel)))
+}
+
+/// Renews a job's lease for as long as it is waited for.
+async fn keep_lease(app: &App, job: queue::Job) -> Infallible {
+    loop {
+        tokio::time::sleep(RENEW_EVERY).await;
+        if let Err(error) = queue::renew(&app.db, job, app.clock.now().into()).await {
+            warn!(vessel = %job.vessel_id, %error, "a lease was not renewed");
+        }
+    }
+}
+
+/// Analyses a vessel's compasses and stores what is new.
+async fn work(app: &App, job: queue::Job) -> Result<usize> {
+    let mut news = Vec::new();
+    let mut comes_true = None;
+    let now: Time = app.clock.now().into();
+    let compasses = compasses::of_vessel(&app.db, job.vessel_id).await?;
+    for compass in &compasses {
+        let stored = input::load(&app.db, job.vessel_id, compass.id, now.0).await?;
+        comes_true = comes_true.into_iter().chain(stored.comes_true).min();
+        news.extend(analyse_compass(app, job.vessel_id, compass.id, stored).await?);
+    }
+    let limits = settings::find(&app.db, job.vessel_id).await?.alerts;
+    let now: Time = app.clock.now().into();
+    let mut tx = app.db.begin().await?;
+    if !queue::finish(&mut tx, job).await? {
+        return Err(Error::Internal(anyhow::anyhow!("the lease was lost")));
+    }
+    if let Some(time) = comes_true {
+        let delay_s = time.seconds_since(now.0).max(0.0);
+        queue::enqueue(&mut tx, job.vessel_id, now, delay_s).await?;
+    }
+    let mut events = Vec::new();
+    for found in &news {
+        let (compass, samples) = (found.compass_id, &found.analysis.samples);
+        let held = work_orders::after_analysis(&mut tx, job.vessel_id, compass, samples, now);
+        let held = Box::pin(held);
+        events.extend(held.await?);
+        events.extend(store::save(&mut tx, found, now).await?);
+    }
+    // Also where nothing new was found: the limits may be others.
+    for compass in &compasses {
+        let (vessel, compass) = (job.vessel_id, compass.id);
+        let unconfirmed = work_orders::unconfirmed_adjustment(&mut tx, vessel, compass).await?;
+        let told = alerts::reconcile_analysis(&mut tx, vessel, compass, &limits, unconfirmed, now);
+        events.extend(told.await?);
+    }
+    tx.commit().await?;
+    for event in events {
+        app.publish(event);
+    }
+    Ok(news.len())
+}
+
+/// What is new about a compass; none when its input is what it was.
+async fn analyse_compass(
+    app: &App,
+    vessel_id: VesselId,
+    compass_id: CompassId,
+    stored: input::Stored,
+) -> Result<Option<Found>> {
+    let last_hash = store::last_hash(&app.db, vessel_id, compass_id).await?;
+    let found = tokio::task::spawn_blocking(move || -> anyhow::Result<Option<Found>> {
+        let input = stored.decode()?;
+        let input_hash = input::input_hash(&input)?;
+        if input.samples.is_empty() || last_hash.as_ref() == Some(&input_hash) {
+            return Ok(None);
+        }
+        let analysis = analyse(&input.samples, &input.logbook, &input.settings);
+        let covered = Covered {
+            coverage: analysis.coverage.clone(),
+            sail_next: sail_next(&analysis),
+            references: analysis.current_epoch().and_then(|epoch| epoch.references),
+        };
+        Ok(Some(Found {
+            vessel_id,
+            compass_id,
+            input_hash,
+            findings: Findings::from_analysis(&analysis, &input.logbook),
+            analysis,
+            covered,
+        }))
+    });
+    Ok(found.await??)
+}
