@@ -5,7 +5,7 @@ use binnacle_analysis::analyse::analyse;
 use binnacle_fleet::analysis::Findings;
 use binnacle_fleet::analysis::{Covered, Found, input, queue, store};
 use binnacle_fleet::{alerts, compasses, settings};
-use binnacle_orders::work_orders;
+use binnacle_orders::verification;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::events;
@@ -132,7 +132,7 @@ async fn work(app: &App, job: queue::Job) -> Result<usize> {
     let mut events = Vec::new();
     for found in &news {
         let (compass, samples) = (found.compass_id, &found.analysis.samples);
-        let held = work_orders::after_analysis(&mut tx, job.vessel_id, compass, samples, now);
+        let held = verification::after_analysis(&mut tx, job.vessel_id, compass, samples, now);
         let held = Box::pin(held);
         events.extend(held.await?);
         events.extend(store::save(&mut tx, found, now).await?);
@@ -140,7 +140,7 @@ async fn work(app: &App, job: queue::Job) -> Result<usize> {
     // Also where nothing new was found: the limits may be others.
     for compass in &compasses {
         let (vessel, compass) = (job.vessel_id, compass.id);
-        let unconfirmed = work_orders::unconfirmed_adjustment(&mut tx, vessel, compass).await?;
+        let unconfirmed = verification::unconfirmed_adjustment(&mut tx, vessel, compass).await?;
         let told = alerts::reconcile_analysis(&mut tx, vessel, compass, &limits, unconfirmed, now);
         events.extend(told.await?);
     }

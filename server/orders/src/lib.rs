@@ -9,6 +9,11 @@
     reason = "counts go into BIGINT and are far from its end"
 )]
 
+pub mod api;
+pub mod berth_session;
+pub mod completion;
+pub mod dispatch;
 pub mod evidence;
 pub mod firms;
+pub mod verification;
 pub mod work_orders;

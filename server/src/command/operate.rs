@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use axum::extract::connect_info::Connected;
 use axum::serve::{IncomingStream, Listener};
 use binnacle_fleet::{alerts, analysis};
-use binnacle_orders::work_orders;
+use binnacle_orders::dispatch;
 use binnacle_planning::{notifications, reports, schedule};
 use binnacle_platform::app::App;
 use binnacle_platform::client_address::Peer;
@@ -88,7 +88,7 @@ where
         parts.spawn(alerts::watch(app.clone()));
         parts.spawn(audit::watch(app.clone()));
         parts.spawn(schedule::run(app.clone(), state.plan_slots.clone()));
-        parts.spawn(work_orders::watch(app.clone()));
+        parts.spawn(dispatch::watch(app.clone()));
         parts.spawn(notifications::watch(app.clone()));
         parts.spawn(reports::watch(app.clone()));
         match webhooks::Sender::new(app.config.webhooks.reach()) {

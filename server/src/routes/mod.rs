@@ -16,7 +16,7 @@ use binnacle_fleet::{
     logbook, models, operators, overview, particulars, samples, settings, vessels,
 };
 use binnacle_orders::work_orders::NotAdjustableFields;
-use binnacle_orders::{firms, work_orders};
+use binnacle_orders::{api as orders_api, firms};
 use binnacle_planning::{calendar, needs, notifications, port_calls, reports, schedule};
 use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers};
 use binnacle_platform::{
@@ -100,7 +100,7 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(vessels::router())
         .merge(compasses::router())
         .merge(binnacles::router())
-        .merge(work_orders::router())
+        .merge(orders_api::router())
         .merge(port_calls::router())
         .merge(particulars::router())
         .merge(needs::router())

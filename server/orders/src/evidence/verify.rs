@@ -2,9 +2,9 @@
 
 use super::archive::{File, Head, Manifest, write};
 use super::covered::{self, covered};
-use crate::work_orders::completion::{Completed, SignedBy};
-use crate::work_orders::entry::sha256_hex;
-use crate::work_orders::photos::PhotoTaken;
+use crate::berth_session::photos::PhotoTaken;
+use crate::completion::complete::{Completed, SignedBy};
+use crate::work_orders::log_entry::sha256_hex;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::BTreeMap;

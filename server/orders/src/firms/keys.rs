@@ -3,7 +3,7 @@
 //! What always holds: who registers a key has shown that they hold its private half; a
 //! key is one firm's, and once revoked it vouches for nothing signed afterwards.
 
-use crate::work_orders::completion::KnownKey;
+use crate::completion::complete::KnownKey;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_platform::access::{Caller, PartyWriter};

@@ -1,17 +1,17 @@
 //! An order to adjust a compass, as it is asked for and shown.
 
-use super::again::AgainSaid;
-use super::asked::{BerthReadingSchema, LimitsSchema};
-use super::completion::{Completed, KnownKey, SignedBy};
-use super::moved::{CallChange, CallFit};
-use super::offering::NewOffer;
-use super::offers::{Offer, OfferState};
-use super::photos::PhotoTaken;
-use super::plan::Planned;
-use super::reading::Checked;
-use super::schema::{ChosenPlanSchema, StepSchema, VerdictSchema};
-use super::standing::Standing;
-use super::verification::Verified;
+use crate::berth_session::berth_reading::Checked;
+use crate::berth_session::photos::PhotoTaken;
+use crate::berth_session::plan::Planned;
+use crate::berth_session::second_reading_api::AgainSaid;
+use crate::completion::complete::{Completed, KnownKey, SignedBy};
+use crate::dispatch::offer_requests::NewOffer;
+use crate::dispatch::port_call_changes::{CallChange, CallFit};
+use crate::verification::Verified;
+use crate::work_orders::offer_state::{Offer, OfferState};
+use crate::work_orders::order_state::Standing;
+use crate::work_orders::request_schema::{BerthReadingSchema, LimitsSchema};
+use crate::work_orders::schema::{ChosenPlanSchema, StepSchema, VerdictSchema};
 use binnacle_adjustment::adjust::{Limits, ReadingForm, Step};
 use binnacle_adjustment::binnacle::Setting;
 use binnacle_compass::angle::wrap_360;
@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
 /// What everything that comes from an order says of itself until the sea has spoken.
-pub(super) const NOT_A_CERTIFICATE: &str = "predicted, not a certificate";
+pub(crate) const NOT_A_CERTIFICATE: &str = "predicted, not a certificate";
 
 /// No order is for later.
 const MOST_DAYS_AHEAD: f64 = 730.0;
@@ -150,7 +150,7 @@ pub struct Opened {
 /// An order in a line.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 #[schema(as = WorkOrderSummary)]
-pub(super) struct Summary {
+pub(crate) struct Summary {
     /// The order's id.
     pub id: OrderId,
     /// Whose vessel it is.
@@ -211,7 +211,7 @@ pub(super) struct Summary {
 /// A page of orders.
 #[derive(Serialize, ToSchema)]
 #[schema(as = WorkOrderList)]
-pub(super) struct OrderList {
+pub(crate) struct OrderList {
     /// The newest first.
     pub items: Vec<Summary>,
     /// `after` of the next page.
@@ -222,7 +222,7 @@ pub(super) struct OrderList {
 /// Which orders.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-pub(super) struct Filter {
+pub(crate) struct Filter {
     /// Of this vessel only.
     pub vessel: Option<VesselId>,
     /// In this state only.
@@ -232,7 +232,7 @@ pub(super) struct Filter {
 /// An order, and all that the next thing to do depends on.
 #[derive(Serialize, ToSchema)]
 #[schema(as = WorkOrder)]
-pub(super) struct Order {
+pub(crate) struct Order {
     /// In a line.
     #[serde(flatten)]
     pub summary: Summary,
@@ -265,7 +265,7 @@ pub(super) struct Order {
     pub next_step: Option<Step>,
     /// What became of the last step.
     #[schema(required, value_type = Option<VerdictSchema>)]
-    pub last_step: Option<super::steps::StepSaid>,
+    pub last_step: Option<crate::berth_session::steps::StepSaid>,
     /// What the magnetometer said after the steps, the correctors standing as they stand.
     #[schema(required)]
     pub second_reading: Option<AgainSaid>,
@@ -295,7 +295,7 @@ pub(super) struct Order {
 /// A signature over the record.
 #[derive(Serialize, ToSchema)]
 #[schema(as = WorkOrderSignature)]
-pub(super) struct KeySignature {
+pub(crate) struct KeySignature {
     /// The public key, hexadecimal.
     pub public_key: String,
     /// The signature, hexadecimal.
@@ -317,7 +317,7 @@ impl From<SignedBy> for KeySignature {
 
 impl Summary {
     /// The order as a firm sees it that this offer is to.
-    pub(super) fn seen_with(&self, offer: &Offer) -> Summary {
+    pub(crate) fn seen_with(&self, offer: &Offer) -> Summary {
         let state = match offer.state {
             OfferState::Open => State::Offered,
             OfferState::Proposed => State::Proposed,
@@ -335,7 +335,7 @@ impl Summary {
 
 impl Order {
     /// The order with what follows from its log.
-    pub(super) fn new(summary: Summary, standing: Standing, tenant: Tenant) -> Order {
+    pub(crate) fn new(summary: Summary, standing: Standing, tenant: Tenant) -> Order {
         let setting = standing.setting().cloned();
         // Held against what the compass reads now, as the next step will be.
         let next_step = standing.next_step().map(|step| Step {
@@ -382,7 +382,7 @@ impl Order {
 }
 
 /// Refuses a time that nobody plans for.
-pub(super) fn must_be_near(planned_at: Time, now: Time) -> Result<()> {
+pub(crate) fn must_be_near(planned_at: Time, now: Time) -> Result<()> {
     if planned_at.0.seconds_since(now.0) <= MOST_DAYS_AHEAD * 86_400.0 {
         return Ok(());
     }

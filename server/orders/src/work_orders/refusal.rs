@@ -57,7 +57,7 @@ impl Refusal {
     }
 
     /// The same, a doubt of the place before all else that could explain it.
-    pub(super) fn doubted(mut self, doubt: Option<Refusal>) -> Refusal {
+    pub(crate) fn doubted(mut self, doubt: Option<Refusal>) -> Refusal {
         if let Some(doubt) = doubt {
             self.could_be.insert(0, doubt.words);
         }
@@ -105,7 +105,7 @@ pub struct NotAdjustableFields {
 }
 
 /// Returns the problem `not-adjustable`: there is no plan, or a reading is not taken.
-pub(super) fn not_adjustable(refusals: Vec<Refusal>) -> Error {
+pub(crate) fn not_adjustable(refusals: Vec<Refusal>) -> Error {
     let detail = refusals.iter().map(Refusal::with_explanations);
     let problem = DomainProblem {
         status: StatusCode::UNPROCESSABLE_ENTITY,

@@ -1,6 +1,6 @@
 //! How the OpenAPI document describes plans; they themselves are the science crate's.
 
-use super::steps::Verdict;
+use crate::berth_session::steps::Verdict;
 use binnacle_fleet::binnacles::{BarSchema, BucketSchema, PairSchema, SettingSchema, TraySchema};
 use serde::Serialize;
 use serde_json::Value;
@@ -10,7 +10,7 @@ use utoipa::ToSchema;
 #[derive(ToSchema)]
 #[schema(as = PlanOffer)]
 #[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Outcome")]
-pub(super) struct OfferSchema {
+pub(crate) struct OfferSchema {
     /// What the berth told, and how well each coefficient shows on this heading.
     #[schema(value_type = Option<Object>)]
     berth: Option<Value>,
@@ -29,7 +29,7 @@ pub(super) struct OfferSchema {
 #[derive(ToSchema)]
 #[schema(as = ChosenPlan)]
 #[allow(dead_code, reason = "describes Planned")]
-pub(super) struct ChosenPlanSchema {
+pub(crate) struct ChosenPlanSchema {
     /// Which of those that were offered, from 1.
     chosen: usize,
     /// All that were offered, in short.
@@ -59,7 +59,7 @@ struct InShortSchema {
 #[derive(ToSchema)]
 #[schema(as = CorrectorPlan)]
 #[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Plan")]
-pub(super) struct PlanSchema {
+pub(crate) struct PlanSchema {
     /// How they will stand.
     setting: SettingSchema,
     /// Movements of hand that it takes.
@@ -132,7 +132,7 @@ struct RowSchema {
 #[derive(ToSchema)]
 #[schema(as = PlanStep)]
 #[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Step")]
-pub(super) struct StepSchema {
+pub(crate) struct StepSchema {
     /// From 1.
     number: u32,
     /// What is moved.
@@ -246,7 +246,7 @@ struct OptimalitySchema {
     dead_code,
     reason = "describes binnacle_adjustment::adjust::Verification"
 )]
-pub(super) enum SeaVerdictSchema {
+pub(crate) enum SeaVerdictSchema {
     /// They agree, and are enough.
     Passed {
         /// Headings that counted.
@@ -278,7 +278,7 @@ pub(super) enum SeaVerdictSchema {
 #[derive(Serialize, ToSchema)]
 #[schema(as = NeededHeadings)]
 #[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Needed")]
-pub(super) struct NeededSchema {
+pub(crate) struct NeededSchema {
     /// How many.
     count: usize,
     /// Compass headings that would do, degrees, the best first.
@@ -289,7 +289,7 @@ pub(super) struct NeededSchema {
 #[derive(ToSchema)]
 #[schema(as = StepSaid)]
 #[allow(dead_code, reason = "describes StepSaid")]
-pub(super) struct VerdictSchema {
+pub(crate) struct VerdictSchema {
     /// The step's number in its plan.
     number: u32,
     before_deg: f64,
@@ -307,23 +307,23 @@ pub(super) struct VerdictSchema {
 /// An entry of an order's log: a line of canonical JSON with its hash.
 #[derive(serde::Serialize, ToSchema)]
 #[schema(as = WorkOrderEntry)]
-pub(super) struct LineSchema {
+pub(crate) struct LineSchema {
     /// Counts from 1.
-    pub(super) seq: i64,
+    pub(crate) seq: i64,
     /// SHA-256 of the line as it stands in the archive, hexadecimal.
-    pub(super) sha256: String,
+    pub(crate) sha256: String,
     /// What happened: `kind`, `at`, `author`, `previous_sha256` and `content`.
     #[schema(value_type = Object)]
-    pub(super) entry: Value,
+    pub(crate) entry: Value,
 }
 
 /// A page of an order's log.
 #[derive(serde::Serialize, ToSchema)]
 #[schema(as = WorkOrderEntryList)]
-pub(super) struct LineList {
+pub(crate) struct LineList {
     /// In order.
-    pub(super) items: Vec<LineSchema>,
+    pub(crate) items: Vec<LineSchema>,
     /// `after` of the next page.
     #[schema(required)]
-    pub(super) next: Option<String>,
+    pub(crate) next: Option<String>,
 }

@@ -1,10 +1,12 @@
 //! Orders and their logs on their way into the database.
 
-use super::entry::{Author, Content, Entry, canonical, sha256_hex};
-pub(super) use super::find::{lines, list, lock, overdue, summary, vessel_of_asked, whole};
-use super::offers::{Between, Offers};
-use super::order::{NewOrder, State, Summary};
-use super::standing::Standing;
+use crate::work_orders::log_entry::{Author, Content, Entry, canonical, sha256_hex};
+use crate::work_orders::offer_state::{Between, Offers};
+use crate::work_orders::order::{NewOrder, State, Summary};
+use crate::work_orders::order_state::Standing;
+pub(crate) use crate::work_orders::queries::{
+    lines, list, lock, overdue, summary, vessel_of_asked, whole,
+};
 use binnacle_platform::db::{Db, Tx, execute, row};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{CompassId, OperatorId, OrderId, PhotoId, VesselId};
@@ -12,14 +14,14 @@ use binnacle_platform::time::Time;
 use uuid::Uuid;
 
 /// An order with its log.
-pub(super) struct Whole {
-    pub(super) summary: Summary,
-    pub(super) log: Vec<Entry>,
+pub(crate) struct Whole {
+    pub(crate) summary: Summary,
+    pub(crate) log: Vec<Entry>,
 }
 
 impl Whole {
     /// How it stands.
-    pub(super) fn standing(&self) -> Standing {
+    pub(crate) fn standing(&self) -> Standing {
         Standing::of(self.log.iter().map(|entry| &entry.content))
     }
 
@@ -65,7 +67,7 @@ impl Summary {
     }
 }
 
-pub(super) fn read(lines: Vec<(String,)>) -> Result<Vec<Entry>> {
+pub(crate) fn read(lines: Vec<(String,)>) -> Result<Vec<Entry>> {
     let read = |(line,): (String,)| Ok(serde_json::from_str(&line)?);
     lines.into_iter().map(read).collect()
 }
@@ -85,7 +87,7 @@ pub async fn lock_compass(tx: &mut Tx, vessel: VesselId, compass: CompassId) -> 
 }
 
 /// Whether a compass has an order that is not done yet.
-pub(super) async fn is_under_way(
+pub(crate) async fn is_under_way(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
@@ -105,7 +107,7 @@ pub(super) async fn is_under_way(
 }
 
 /// Whether a compass's correctors are being moved.
-pub(super) async fn is_adjusting(
+pub(crate) async fn is_adjusting(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
@@ -124,7 +126,7 @@ pub(super) async fn is_adjusting(
 
 /// The compass's last order that was completed; one that was closed after headings at sea
 /// had spoken against it counts as failed still.
-pub(super) async fn last_completed(
+pub(crate) async fn last_completed(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
@@ -148,7 +150,7 @@ pub(super) async fn last_completed(
 ///
 /// # Errors
 /// [`Error::NotFound`] when there is no such vessel or compass.
-pub(super) async fn names(
+pub(crate) async fn names(
     tx: &mut Tx,
     operator: OperatorId,
     vessel: VesselId,
@@ -173,7 +175,7 @@ pub(super) async fn names(
     Ok((vessel_name, compass_name))
 }
 
-pub(super) async fn insert(
+pub(crate) async fn insert(
     tx: &mut Tx,
     id: OrderId,
     order: &NewOrder,
@@ -203,7 +205,7 @@ pub(super) async fn insert(
 }
 
 /// Writes the next entry of an order's log, and what follows from it.
-pub(super) async fn append(
+pub(crate) async fn append(
     tx: &mut Tx,
     whole: &mut Whole,
     id: Uuid,
@@ -294,7 +296,7 @@ async fn write_offers(tx: &mut Tx, whole: &Whole, offers: &Offers) -> Result<()>
 }
 
 /// Notes that an order was completed, with the record that was signed.
-pub(super) async fn complete(
+pub(crate) async fn complete(
     tx: &mut Tx,
     summary: &Summary,
     (completed_at, received_at): (Time, Time),
@@ -319,7 +321,7 @@ pub(super) async fn complete(
 }
 
 /// Notes that headings at sea verified an adjustment, and what they said.
-pub(super) async fn verified(
+pub(crate) async fn verified(
     tx: &mut Tx,
     summary: &Summary,
     verified_at: Time,
@@ -338,7 +340,7 @@ pub(super) async fn verified(
 }
 
 /// The record as it was signed; none before the order is completed.
-pub(super) async fn record(db: &Db, vessel: VesselId, id: OrderId) -> Result<Option<String>> {
+pub(crate) async fn record(db: &Db, vessel: VesselId, id: OrderId) -> Result<Option<String>> {
     let found = row!(
         db,
         (Option<String>,),
@@ -349,7 +351,7 @@ pub(super) async fn record(db: &Db, vessel: VesselId, id: OrderId) -> Result<Opt
     Ok(found.and_then(|(record,)| record))
 }
 
-pub(super) async fn insert_photo(
+pub(crate) async fn insert_photo(
     tx: &mut Tx,
     summary: &Summary,
     id: PhotoId,
@@ -372,7 +374,7 @@ pub(super) async fn insert_photo(
 }
 
 /// A photograph's media type and bytes.
-pub(super) async fn photo(
+pub(crate) async fn photo(
     db: &Db,
     vessel: VesselId,
     order: OrderId,

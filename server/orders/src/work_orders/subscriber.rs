@@ -1,6 +1,6 @@
 //! Handlers of events that orders under way do not allow.
 
-use super::store;
+use crate::work_orders::store;
 use binnacle_fleet::binnacles::BinnacleAmended;
 use binnacle_fleet::compasses;
 use binnacle_fleet::vessels::ServiceChanged;

@@ -1,7 +1,8 @@
 //! Calendars in the database, and the orders that they show.
 
 use super::{Feed, Subscriber};
-use binnacle_orders::work_orders::{CallFit, State};
+use binnacle_orders::dispatch::CallFit;
+use binnacle_orders::work_orders::State;
 use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
 use binnacle_platform::ids::{
     CallId, CompassId, FeedId, FirmId, OperatorId, OrderId, UserId, VesselId,

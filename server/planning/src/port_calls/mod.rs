@@ -27,7 +27,7 @@ pub use subscriber::note_berth_heading;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_fleet::vessels;
-use binnacle_orders::work_orders::{calls_come, calls_move};
+use binnacle_orders::dispatch::{calls_come, calls_move};
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;

@@ -3,7 +3,7 @@
 use super::call::Content;
 use super::file::Taken;
 use super::store::Row;
-use binnacle_orders::work_orders::{Alongside, Moving};
+use binnacle_orders::dispatch::{Alongside, Moving};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::CallId;
 use std::collections::BTreeMap;

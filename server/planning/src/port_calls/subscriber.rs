@@ -1,7 +1,7 @@
 //! Handler of events that port calls learn from.
 
 use super::store;
-use binnacle_orders::work_orders::BerthHeadingRead;
+use binnacle_orders::berth_session::BerthHeadingRead;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
 use futures_util::future::BoxFuture;

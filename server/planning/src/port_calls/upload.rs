@@ -9,7 +9,7 @@ use axum::body::Body;
 use axum::extract::{FromRef, State};
 use axum::response::Response;
 use binnacle_fleet::vessels;
-use binnacle_orders::work_orders::{calls_come, calls_move};
+use binnacle_orders::dispatch::{calls_come, calls_move};
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;

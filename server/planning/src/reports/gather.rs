@@ -6,8 +6,9 @@ use crate::needs::{Facts, need, of_fleet};
 use crate::schedule;
 use binnacle_compass::time::Timestamp;
 use binnacle_fleet::models::{self, StoredModel};
+use binnacle_orders::completion::{self, Done, Span};
 use binnacle_orders::firms;
-use binnacle_orders::work_orders::{self, Done, Span, State};
+use binnacle_orders::work_orders::State;
 use binnacle_platform::app::App;
 use binnacle_platform::db::{Db, row, rows};
 use binnacle_platform::error::{Error, Result};
@@ -139,7 +140,7 @@ fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
 }
 
 async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
-    let done = work_orders::done(db, operator, span).await?;
+    let done = completion::done(db, operator, span).await?;
     let terms = firms::of_operator(db, operator).await?;
     let visits = visits(&done);
     let usual = |nth: usize| {

@@ -8,8 +8,10 @@ use super::plan::{Job, Plan};
 use super::store;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
+use binnacle_orders::api;
+use binnacle_orders::dispatch::{self, NewOffer};
 use binnacle_orders::firms::{self, Terms};
-use binnacle_orders::work_orders::{self, NewOffer, NewOrder};
+use binnacle_orders::work_orders::{self, NewOrder};
 use binnacle_platform::access::Writer;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -104,8 +106,7 @@ async fn offer_job(
     }
     let (mut orders, mut told) = (Vec::new(), Vec::new());
     for order in &job.instead_of {
-        let (goes_on, news) =
-            work_orders::give_way(&app, tx, writer, job.vessel_id, *order).await?;
+        let (goes_on, news) = api::give_way(&app, tx, writer, job.vessel_id, *order).await?;
         (tx, told) = (goes_on, told.into_iter().chain(news).collect());
     }
     for (nth, compass) in job.compasses.iter().enumerate() {
@@ -120,9 +121,9 @@ async fn offer_job(
             fees_eur: terms.iter().map(fees).collect(),
         };
         let id = OrderId::new();
-        work_orders::link_once(&mut tx, job.vessel_id, id, job.call_id).await?;
+        dispatch::link_once(&mut tx, job.vessel_id, id, job.call_id).await?;
         let order = order_of(job, compass.compass_id, offer);
-        let (goes_on, news) = work_orders::write(&app, &request, tx, writer, id, order).await?;
+        let (goes_on, news) = api::write(&app, &request, tx, writer, id, order).await?;
         (tx, told) = (goes_on, told.into_iter().chain(news).collect());
         orders.push(OfferedOrder {
             order_id: id,

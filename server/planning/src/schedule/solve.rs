@@ -10,7 +10,7 @@ use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled
 use super::store;
 use anyhow::Context;
 use binnacle_fleet::alerts;
-use binnacle_orders::work_orders;
+use binnacle_orders::dispatch;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::db::Tx;
@@ -184,7 +184,7 @@ async fn keep(
     store::answered(&mut tx, operator, &gathered.asks).await?;
     for agreed in gathered.names.agreed.values() {
         let (vessel, order, call) = (agreed.vessel_id, agreed.order_id, agreed.call_id);
-        work_orders::link_once(&mut tx, vessel, order, call).await?;
+        dispatch::link_once(&mut tx, vessel, order, call).await?;
     }
     let mut wanted = at_risk(plan, &gathered.names);
     let not_told = aside(plan, gathered, &mut wanted);

@@ -8,7 +8,7 @@ use crate::mail::{deliver, subjects};
 use crate::offers::{HOUR_S, Trade};
 use crate::on_both;
 use crate::support::{Answer, Person, Relay, Shore};
-use binnacle_orders::work_orders::lapse;
+use binnacle_orders::dispatch::lapse;
 use binnacle_planning::notifications::post;
 use reqwest::Method;
 use serde_json::{Value, json};

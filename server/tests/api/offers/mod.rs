@@ -7,7 +7,7 @@ mod way;
 
 use crate::on_both;
 use crate::support::{Answer, Person, Shore};
-use binnacle_orders::work_orders::lapse;
+use binnacle_orders::dispatch::lapse;
 use binnacle_platform::ids::FirmId;
 use reqwest::Method;
 use serde_json::{Value, json};

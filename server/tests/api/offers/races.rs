@@ -3,7 +3,7 @@
 use super::{HOUR_S, Trade};
 use crate::on_both;
 use crate::support::Shore;
-use binnacle_orders::work_orders::lapse;
+use binnacle_orders::dispatch::lapse;
 use serde_json::json;
 
 on_both!(

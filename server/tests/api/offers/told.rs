@@ -5,7 +5,7 @@ use crate::on_both;
 use crate::support::Shore;
 use crate::webhooks::{DAY_S, Receiver, deliver, example_says, make, path};
 use axum::http::StatusCode;
-use binnacle_orders::work_orders::lapse;
+use binnacle_orders::dispatch::lapse;
 use binnacle_platform::outbox::Sent;
 use reqwest::Method;
 use serde_json::{Value, json};

@@ -10,7 +10,7 @@ use crate::on_both;
 use crate::port_calls;
 use crate::support::{Answer, Shore};
 use crate::webhooks::{Receiver, deliver, make};
-use binnacle_orders::work_orders::lapse;
+use binnacle_orders::dispatch::lapse;
 use icalendar::Component;
 use reqwest::Method;
 use serde_json::{Value, json};

@@ -5,7 +5,7 @@
 
 mod tables;
 
-use crate::work_orders::entry::sha256_hex;
+use crate::work_orders::log_entry::sha256_hex;
 use anyhow::Context;
 use binnacle_compass::time::Timestamp;
 use binnacle_drawing::paper::{LEFT, Paper, RIGHT};

@@ -1,0 +1,164 @@
+//! New work orders, and the withdrawal of one that every firm declined.
+
+use crate::dispatch::{offer_requests, port_call_check};
+use crate::work_orders::log_entry::{Author, Content, Said};
+use crate::work_orders::order::{NewOrder, Opened, Order, State};
+use crate::work_orders::order_update::Change;
+use crate::work_orders::{shown, store};
+use axum::extract::State as Shared;
+use axum::http::StatusCode;
+use binnacle_fleet::vessels;
+use binnacle_platform::access::Writer;
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::db::Tx;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::events::Event;
+use binnacle_platform::http::{Json, Valid};
+use binnacle_platform::idempotency::{self, Key};
+use binnacle_platform::ids::{OperatorId, OrderId, VesselId};
+use binnacle_platform::session;
+use uuid::Uuid;
+
+/// Order a compass to be adjusted
+///
+/// A compass has one order under way at a time. With an `offer` it is offered to firms at
+/// once.
+#[utoipa::path(post, path = "/work-orders", tag = "adjusting", params(Key),
+    request_body = NewOrder,
+    responses((status = 201, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "Another order of this compass is under way", body = Problem),
+              (status = 422, body = Problem)))]
+pub(super) async fn create_work_order(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: Writer,
+    key: Key,
+    Valid(new): Valid<NewOrder>,
+) -> Result<(StatusCode, Json<Order>)> {
+    let hash = idempotency::request_hash("work order", &new)?;
+    let now = app.clock.now().into();
+    let new = new.checked(now)?;
+    let wanted = OrderId::new();
+    let operator = writer.operator;
+    let mut tx = request.begin().await?;
+    let made = key.once(&mut tx, operator, &hash, wanted.0, now).await?;
+    if made == wanted.0 {
+        let author = author(&mut tx, writer).await?;
+        let change = open(&app, &request, tx, operator, wanted, new, author).await?;
+        change.commit().await?;
+    }
+    Ok((
+        StatusCode::CREATED,
+        shown(&app, operator, OrderId(made)).await?,
+    ))
+}
+
+/// Writes a new order, and offers it where that is asked for.
+///
+/// # Errors
+/// [`Error::WrongState`] when another order of the compass is under way or the vessel out of
+/// service, and what is wrong with the offer.
+async fn open<'a>(
+    app: &'a App,
+    request: &RequestContext,
+    mut tx: Tx,
+    operator: OperatorId,
+    id: OrderId,
+    mut new: NewOrder,
+    author: Author,
+) -> Result<Change<'a>> {
+    let (vessel, compass) = (new.vessel_id, new.compass_id);
+    let (vessel_name, compass_name) = store::names(&mut tx, operator, vessel, compass).await?;
+    if store::is_under_way(&mut tx, vessel, compass).await? {
+        return Err(Error::WrongState(
+            "another order of this compass is under way".to_owned(),
+        ));
+    }
+    if !vessels::is_in_service(&mut tx, vessel).await? {
+        return Err(Error::WrongState(format!(
+            "{vessel_name} is out of service: take her back into it first"
+        )));
+    }
+    // Whom it is offered to stands in entries of their own.
+    let offer = new.offer.take();
+    let now = app.clock.now().into();
+    request.concerns_vessel(vessel, Some(id));
+    store::insert(&mut tx, id, &new, &author, now).await?;
+    let whole = store::lock(&mut tx, vessel, id).await?;
+    let mut change = Change::new(app, tx, whole, author, now, Uuid::now_v7());
+    let opened = Opened {
+        order: new,
+        vessel_name,
+        compass_name,
+    };
+    change.append(Content::Opened(Box::new(opened))).await?;
+    let at = change.whole.summary.planned_at;
+    port_call_check::must_be_there(&mut change, at, "port").await?;
+    if let Some(offer) = offer {
+        let offered = offer.checked(&mut change.tx, operator).await?;
+        offer_requests::offer(&mut change, offered).await?;
+    }
+    Ok(change)
+}
+
+/// Writes an order under an id and offers it, as the schedule has it, in a transaction that
+/// goes on: what there is to be told when it is committed comes back with it.
+///
+/// # Errors
+/// [`Error::WrongState`] when another order of the compass is under way, and what is wrong
+/// with the order or its offer.
+pub async fn write(
+    app: &App,
+    request: &RequestContext,
+    mut tx: Tx,
+    writer: Writer,
+    id: OrderId,
+    new: NewOrder,
+) -> Result<(Tx, Vec<Event>)> {
+    let author = author(&mut tx, writer).await?;
+    let new = new.checked(app.clock.now().into())?;
+    let change = open(app, request, tx, writer.operator, id, new, author).await?;
+    change.settle().await
+}
+
+/// Cancels an order that every firm declined, for another in its place, in a transaction that
+/// goes on; one that is under way no more is in nobody's way.
+///
+/// # Errors
+/// [`Error::WrongState`] when firms are asked for it still, or one has it.
+pub async fn give_way(
+    app: &App,
+    mut tx: Tx,
+    writer: Writer,
+    vessel: VesselId,
+    id: OrderId,
+) -> Result<(Tx, Vec<Event>)> {
+    let author = author(&mut tx, writer).await?;
+    let whole = store::lock(&mut tx, vessel, id).await?;
+    let state = whole.summary.state;
+    if !state.is_under_way() {
+        return Ok((tx, Vec::new()));
+    }
+    if state != State::Declined {
+        return Err(Error::WrongState(format!(
+            "work order {id} is under way and says something else: cancel it, or agree on \
+             another time"
+        )));
+    }
+    let now = app.clock.now().into();
+    let mut change = Change::new(app, tx, whole, author, now, Uuid::now_v7());
+    let text = "declined by every firm, and offered anew as the schedule has it".to_owned();
+    change.append(Content::Cancelled(Said { text })).await?;
+    change.settle().await
+}
+
+/// An operator's person, as entries name them.
+async fn author(tx: &mut Tx, writer: Writer) -> Result<Author> {
+    Ok(Author {
+        id: Some(writer.user.0),
+        name: session::name_of(tx, writer.user).await?,
+        firm_id: None,
+    })
+}

@@ -1,0 +1,137 @@
+//! Routes of work orders: creating, reading, cancelling and closing them.
+
+mod actions;
+mod create;
+
+pub use create::{give_way, write};
+
+use crate::berth_session::{berth_api, firm_vessel_view, second_reading_api};
+use crate::completion::completion_api;
+use crate::dispatch::{messages, offer_api, reschedule};
+use crate::work_orders::log_entry::Entry;
+use crate::work_orders::order::{Filter, Order, OrderList};
+use crate::work_orders::schema::{LineList, LineSchema};
+use crate::work_orders::{firm_view, queries, shown, store};
+use axum::extract::{FromRef, RawPathParams, Request, State as Shared};
+use axum::middleware::{Next, from_fn};
+use axum::response::Response;
+use binnacle_platform::access::PartyReader;
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::error::{Problem, Result};
+use binnacle_platform::http::{Id, Json, Page, Params};
+use binnacle_platform::ids::OrderId;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use uuid::Uuid;
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(list_work_orders, create::create_work_order))
+        .merge(router_of_one())
+}
+
+/// The routes of one order. In the audit log each request has its order, and what firms read
+/// is logged.
+fn router_of_one<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    completion_api::router()
+        .routes(routes!(find_work_order))
+        .routes(routes!(list_entries))
+        .routes(routes!(actions::remark))
+        .routes(routes!(actions::cancel_work_order))
+        .routes(routes!(actions::close_work_order))
+        .merge(berth_api::router())
+        .merge(second_reading_api::router())
+        .merge(offer_api::router())
+        .merge(reschedule::router())
+        .merge(messages::router())
+        .merge(firm_vessel_view::router())
+        .route_layer(from_fn(log_order))
+}
+
+/// Tells the audit log which order a request is about.
+async fn log_order(
+    context: RequestContext,
+    path: RawPathParams,
+    request: Request,
+    next: Next,
+) -> Response {
+    let mut ids = path.iter().map(|(_, value)| Uuid::parse_str(value));
+    if let Some(order) = ids.find_map(std::result::Result::ok) {
+        context.concerns_order(OrderId(order), queries::vessel_of);
+    }
+    context.log_reads_of_firms();
+    next.run(request).await
+}
+
+/// List work orders
+#[utoipa::path(get, path = "/work-orders", tag = "adjusting", params(Filter, Page),
+    responses((status = 200, body = OrderList), (status = 401, body = Problem)))]
+async fn list_work_orders(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Params(filter): Params<Filter>,
+    page: Page,
+) -> Result<Json<OrderList>> {
+    let before = page.after_id()?;
+    let found = store::list(&app.db, reader.tenant, &filter, before, page.fetch()).await?;
+    let listed = page.cut(found, |order| order.id.to_string());
+    Ok(Json(OrderList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// See a work order
+///
+/// With all that the next thing to do depends on: the page at the binnacle asks for
+/// nothing else.
+#[utoipa::path(get, path = "/work-orders/{id}", tag = "adjusting", params(("id" = OrderId, Path)),
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn find_work_order(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Id(id): Id<OrderId>,
+) -> Result<Json<Order>> {
+    shown(&app, reader.tenant, id).await
+}
+
+/// Read a work order's log
+///
+/// What is between the operator and another firm is withheld from a firm; its hash stays.
+#[utoipa::path(get, path = "/work-orders/{id}/entries", tag = "adjusting",
+    params(("id" = OrderId, Path), Page),
+    responses((status = 200, body = LineList), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn list_entries(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Id(id): Id<OrderId>,
+    page: Page,
+) -> Result<Json<LineList>> {
+    let summary = store::summary(&app.db, reader.tenant, id).await?;
+    let after = page.after_number()?;
+    let found = store::lines(&app.db, summary.vessel_id, id, after, page.fetch()).await?;
+    let listed = page.cut(found, |(seq, _, _)| seq.to_string());
+    let read = |(seq, line, sha256): (i64, String, String)| {
+        let entry: Entry = serde_json::from_str(&line)?;
+        let line = firm_view::line(reader.tenant, &entry, line, &sha256)?;
+        let entry = serde_json::from_str(&line)?;
+        Ok(LineSchema { seq, sha256, entry })
+    };
+    let items: Result<Vec<LineSchema>> = listed.items.into_iter().map(read).collect();
+    Ok(Json(LineList {
+        items: items?,
+        next: listed.next,
+    }))
+}

@@ -1,0 +1,98 @@
+//! What was read at the berth, and what it is held against.
+//!
+//! What always holds: a reading that is refused is kept with the reason; and one that is
+//! taken keeps with it everything that a plan from it depends on, so that the same plan
+//! can be made again from the log alone. Its words are those of `plan` (docs/plan.md).
+
+use crate::berth_session::planning_inputs::Basis;
+use crate::work_orders::refusal::Refusal;
+use binnacle_adjustment::adjust::ReadingForm;
+use binnacle_adjustment::berth::{BerthEstimate, BerthReading};
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::time::Time;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// A reading as the log has it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Read {
+    /// What was read.
+    pub given: ReadingForm,
+    /// What it was held against; none when that could not be found.
+    pub basis: Option<Basis>,
+    /// What it told; none when it was refused.
+    pub checked: Option<Checked>,
+    /// Why it was refused; none when it was taken.
+    pub refusal: Option<Refusal>,
+}
+
+/// What a reading told.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = BerthCheck)]
+pub struct Checked {
+    /// λ, the mean share of the earth's horizontal field that reaches the compass; every
+    /// heading tells it equally well.
+    pub lambda: f64,
+    /// Its standard error.
+    #[schema(required)]
+    pub lambda_sd: Option<f64>,
+    /// Between the field read and the field expected, degrees.
+    pub consistency_deg: f64,
+    /// The standard error of that, degrees.
+    #[schema(required)]
+    pub consistency_sd_deg: Option<f64>,
+    /// What to make of it: `consistent`, or `loose` where wide errors explain it.
+    pub verdict: String,
+    /// Magnetic heading at the berth, degrees.
+    pub magnetic_deg: f64,
+}
+
+/// A clock on board may be so much before the server's, seconds.
+const FAST_CLOCK_S: f64 = 300.0;
+
+/// Refuses what cannot be a number of its kind, or a time.
+pub(crate) fn must_be_numbers(given: &ReadingForm, now: Time) -> Result<()> {
+    given.must_be_numbers().map_err(|error| Error::Invalid {
+        field: error.field,
+        detail: error.what,
+    })?;
+    if given.at.seconds_since(now.0) > FAST_CLOCK_S {
+        return Err(Error::Invalid {
+            field: "at",
+            detail: "lies in the future".to_owned(),
+        });
+    }
+    Ok(())
+}
+
+/// What a reading told, or why it is not taken.
+pub(crate) fn check(
+    given: &ReadingForm,
+    basis: &Basis,
+) -> Result<std::result::Result<Checked, Refusal>> {
+    let variation = basis.variation()?;
+    let checked = given.check(
+        &basis.model.model,
+        basis.earth(),
+        variation,
+        &basis.binnacle,
+    );
+    Ok(match checked {
+        Ok((reading, estimate)) => Ok(Checked::new(&reading, &estimate)),
+        Err(refused) => Err(Refusal::from(&*refused)),
+    })
+}
+
+impl Checked {
+    fn new(reading: &BerthReading, estimate: &BerthEstimate) -> Checked {
+        let (lambda, consistency) = (estimate.lambda, estimate.consistency);
+        Checked {
+            lambda: lambda.value,
+            lambda_sd: lambda.standard_error,
+            consistency_deg: consistency.angle_deg,
+            consistency_sd_deg: consistency.standard_error_deg,
+            verdict: consistency.verdict.to_string(),
+            magnetic_deg: reading.magnetic().degrees(),
+        }
+    }
+}

@@ -1,0 +1,304 @@
+//! The plan: what the planner offers, and what was chosen of it.
+
+use crate::berth_session::planning_inputs::Prepared;
+use crate::work_orders::order::Summary;
+use crate::work_orders::order_state::Standing;
+use crate::work_orders::refusal::{Cure, Refusal, not_adjustable};
+use binnacle_adjustment::adjust::{
+    AdjustError, Learnt, Optimality, Outcome, Plan, by_compass, plan, turned_in_all,
+};
+use binnacle_compass::logbook::LogbookKind;
+use binnacle_fleet::alerts::{self, Effect};
+use binnacle_fleet::binnacles;
+use binnacle_fleet::logbook;
+use binnacle_fleet::models;
+use binnacle_platform::app::App;
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::time::Time;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// A plan that was chosen.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Planned {
+    /// Which of those that were offered, from 1.
+    pub chosen: usize,
+    /// All that were offered, in short.
+    pub offered: Vec<InShort>,
+    /// What the adjuster should know of it.
+    pub notes: Vec<String>,
+    /// How well the search knows that nothing is better.
+    pub optimality: Option<Optimality>,
+    /// The plan.
+    pub plan: Plan,
+}
+
+/// A plan in short.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct InShort {
+    /// Movements of hand that it takes.
+    pub moves: u32,
+    /// Worst foretold residual, weighted over the waters, degrees.
+    pub worst_residual_deg: f64,
+    /// The widest 95 % band, degrees.
+    pub widest_band_deg: f64,
+}
+
+/// Which plan.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = PlanChoice, example = json!({ "plan": 1 }))]
+pub(crate) struct Choice {
+    /// Which of those that are offered, from 1: the recommended one where it is not said.
+    #[schema(minimum = 1)]
+    pub plan: Option<usize>,
+}
+
+impl Standing {
+    /// What the planner is asked now.
+    ///
+    /// # Errors
+    /// [`Error::WrongState`] before there is a reading.
+    pub(crate) fn prepared(&self) -> Result<Prepared> {
+        let wrong = || Error::WrongState("there is no reading to plan from yet".to_owned());
+        let read = self.read.as_ref().ok_or_else(wrong)?;
+        let basis = read.basis.clone().ok_or_else(wrong)?;
+        let reading = read
+            .given
+            .reading(basis.variation()?)
+            .map_err(|error| anyhow::anyhow!("a reading that was taken: {error}"))?;
+        Ok(Prepared {
+            reading,
+            given: read.given.clone(),
+            binnacle: self.binnacle.clone().ok_or_else(wrong)?,
+            moved_to: self.moved_to.clone(),
+            compass_deg: self.compass_deg,
+            limits: self.limits,
+            basis,
+        })
+    }
+}
+
+/// What is read at a berth holds no longer: by then she may lie elsewhere.
+pub(crate) const READING_HOLDS_S: f64 = 48.0 * 3600.0;
+
+/// Refuses a reading that is too old, or older than a change of the ship's magnetism, of
+/// what is known of her binnacle or of cargo.
+///
+/// # Errors
+/// [`Error::WrongState`].
+pub(crate) async fn must_still_hold(
+    app: &App,
+    summary: &Summary,
+    prepared: &Prepared,
+) -> Result<()> {
+    let age_s = app.clock.now().seconds_since(prepared.given.at);
+    if age_s > READING_HOLDS_S {
+        let hours = age_s / 3600.0;
+        let words = format!("the berth was read {hours:.0} hours ago: read it again");
+        return Err(Error::WrongState(words));
+    }
+    must_be_without_cargo(app, summary, prepared).await?;
+    let (vessel, compass) = (summary.vessel_id, summary.compass_id);
+    let binnacle = binnacles::current(&app.db, vessel, compass).await?;
+    if binnacle.is_some_and(|now| now.revision != prepared.basis.binnacle_revision) {
+        return Err(Error::WrongState(
+            "the binnacle was written anew since the berth was read: read the berth again"
+                .to_owned(),
+        ));
+    }
+    let model = models::current(&app.db, vessel, compass).await?;
+    let known_until = prepared.basis.model.data_until;
+    let holds = model.is_some_and(|model| model.epoch_from.is_none_or(|from| from <= known_until));
+    if !holds {
+        return Err(Error::WrongState(
+            "the ship's magnetism has changed since the model that the berth was held against: \
+             when there is a model again, read it again"
+                .to_owned(),
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses what was read before magnetic cargo came on board, by the logbook as it is now,
+/// and what cargo that it has no longer would refuse. Cargo that it had and has is the
+/// planner's to refuse.
+///
+/// # Errors
+/// [`Error::WrongState`].
+pub(crate) async fn must_be_without_cargo(
+    app: &App,
+    summary: &Summary,
+    prepared: &Prepared,
+) -> Result<()> {
+    let logbook = logbook::of_compass(&app.db, summary.vessel_id, summary.compass_id).await?;
+    let (read_at, now) = (prepared.given.at, app.clock.now());
+    let mut since = logbook.iter().filter(|entry| {
+        entry.kind == LogbookKind::MagneticCargo
+            && entry.from <= now
+            && entry.to.is_none_or(|to| to > read_at)
+    });
+    if prepared.basis.cargo_on_board {
+        if prepared.given.cargo_on_board || since.any(|entry| entry.from <= read_at) {
+            return Ok(());
+        }
+        return Err(Error::WrongState(
+            "the logbook no longer has magnetic cargo on board when the berth was read: read the \
+             berth again"
+                .to_owned(),
+        ));
+    }
+    let Some(cargo) = since.next() else {
+        return Ok(());
+    };
+    Err(Error::WrongState(format!(
+        "the logbook has magnetic cargo on board since {}, and the berth was read without it: if \
+         the entry is wrong, put it right or withdraw it there; if not, wait until the cargo is \
+         ashore, put back the correctors that were moved, say so, and read the berth again",
+        Time(cargo.from).to_the_minute()
+    )))
+}
+
+/// Refuses what is foretold beyond the order's limits, however it came to be followed.
+///
+/// # Errors
+/// `not-adjustable` with what would cure it.
+pub(crate) fn must_keep_to_limits(standing: &Standing) -> Result<()> {
+    let basis = standing.read.as_ref().and_then(|read| read.basis.as_ref());
+    let followed = standing.plan.as_ref().zip(basis);
+    let beyond =
+        followed.and_then(|(plan, basis)| plan.plan.beyond(&standing.limits, &basis.waters));
+    match beyond {
+        Some(refused) => Err(not_adjustable(vec![Refusal::from(&refused)])),
+        None => Ok(()),
+    }
+}
+
+/// Refuses to complete what in all turned the compass otherwise than planned, where
+/// neither the magnetometer nor anyone's eyes have said since that the correctors stand so:
+/// small errors of steps, each within its own tolerance, add up.
+///
+/// # Errors
+/// [`Error::WrongState`].
+pub(crate) async fn must_have_turned(
+    app: &App,
+    standing: &Standing,
+    prepared: Prepared,
+) -> Result<()> {
+    let looked = standing.looked_at == standing.steps.len();
+    let read = (prepared.given.compass_deg, prepared.compass_deg);
+    let (Some(first_deg), Some(now_deg)) = read else {
+        return Ok(());
+    };
+    if standing.learnt().is_some() || looked {
+        return Ok(());
+    }
+    let in_all = calculate(app, move || {
+        let adjustment = prepared.adjustment();
+        turned_in_all(&adjustment, first_deg, adjustment.standing(), now_deg)
+    });
+    let in_all = in_all.await?;
+    if in_all.agrees() {
+        return Ok(());
+    }
+    Err(Error::WrongState(format!(
+        "{}: read the field again (second reading), or look at each corrector and say how they \
+         stand",
+        in_all.in_words()
+    )))
+}
+
+/// What is foretold of the correctors as they stand: by the magnetometer after the steps,
+/// or by what the compass showed at them, which leaves more open.
+///
+/// # Errors
+/// `not-adjustable` where what is left open is beyond the order's limits.
+pub(crate) async fn foretold(app: &App, standing: &Standing) -> Result<Learnt> {
+    if let Some(learnt) = standing.learnt() {
+        return Ok(learnt.clone());
+    }
+    let prepared = standing.prepared()?;
+    let (limits, waters) = (standing.limits, prepared.basis.waters.clone());
+    let steps = standing.steps.clone();
+    let learnt = calculate(app, move || by_compass(&prepared.adjustment(), &steps)).await?;
+    let Some(beyond) = learnt.beyond(&limits, &waters) else {
+        return Ok(learnt);
+    };
+    let mut refusal = Refusal::from(&beyond);
+    refusal.words = format!(
+        "by what the compass showed of the steps, {}: read the field again",
+        refusal.words
+    );
+    refusal.cures.insert(0, Cure::ReadAgain);
+    Err(not_adjustable(vec![refusal]))
+}
+
+/// What the planner offers, or why it offers nothing.
+///
+/// # Errors
+/// `not-adjustable` with what would cure it.
+pub(crate) async fn offer(app: &App, summary: &Summary, prepared: Prepared) -> Result<Outcome> {
+    let (vessel, compass) = (summary.vessel_id, summary.compass_id);
+    let alerts = alerts::list_in_force(&app.db, vessel, compass).await?;
+    let unproved = prepared.basis.model.headings_until;
+    let mut outcome = calculate(app, move || plan(&prepared.adjustment())).await?;
+    if let Some(until) = unproved {
+        outcome.notes.insert(
+            0,
+            format!(
+                "no heading at sea has confirmed the last adjustment, and the model is foretold \
+                 by it: the last heading behind it is of {}",
+                until.to_the_minute()
+            ),
+        );
+    }
+    let told = alerts
+        .iter()
+        .filter(|alert| alert.cause.effect_on_plan() == Effect::Note);
+    let told = told.map(|alert| format!("an alert about this compass is open: {}", alert.summary));
+    outcome.notes.splice(0..0, told);
+    if outcome.plans.is_empty() {
+        return Err(not_adjustable(refusals(&outcome)));
+    }
+    Ok(outcome)
+}
+
+/// Runs the planner on a blocking thread, a few at a time.
+pub(crate) async fn calculate<T: Send + 'static>(
+    app: &App,
+    what: impl FnOnce() -> std::result::Result<T, AdjustError> + Send + 'static,
+) -> Result<T> {
+    let turn = app.planning.clone().acquire_owned().await;
+    let turn = turn.map_err(|error| anyhow::anyhow!(error))?;
+    let done = tokio::task::spawn_blocking(move || {
+        let _turn = turn;
+        what()
+    });
+    done.await?.map_err(|error| Error::Invalid {
+        field: "plan",
+        detail: error.to_string(),
+    })
+}
+
+/// Why an outcome has no plans.
+pub(crate) fn refusals(outcome: &Outcome) -> Vec<Refusal> {
+    outcome.refusals.iter().map(Refusal::from).collect()
+}
+
+impl Planned {
+    /// What was chosen of an outcome, from 1; none when there are not so many.
+    pub fn of(outcome: Outcome, chosen: usize) -> Option<Planned> {
+        let in_short = |plan: &Plan| InShort {
+            moves: plan.moves,
+            worst_residual_deg: plan.worst_residual_deg,
+            widest_band_deg: plan.widest_band_deg,
+        };
+        Some(Planned {
+            chosen,
+            offered: outcome.plans.iter().map(in_short).collect(),
+            notes: outcome.notes,
+            optimality: outcome.optimality,
+            plan: outcome.plans.into_iter().nth(chosen.checked_sub(1)?)?,
+        })
+    }
+}

@@ -1,0 +1,155 @@
+//! Whether she can lie where a reading at the berth says, and when it says.
+//!
+//! What always holds: a reading is doubted by what the server knows without it, the port of
+//! the order and the vessel's own track; where it knows neither there is no doubt.
+
+use crate::berth_session::plan::READING_HOLDS_S;
+use crate::firms::port_meant;
+use crate::work_orders::refusal::{Cure, Refusal};
+use binnacle_adjustment::adjust::ReadingForm;
+use binnacle_compass::position::Position;
+use binnacle_compass::result::SampleDiagnostic;
+use binnacle_fleet::analysis;
+use binnacle_platform::app::App;
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::ids::{CompassId, VesselId};
+use binnacle_platform::time::Time;
+
+/// The farthest berth of a port from where the list of ports has it, nautical miles.
+const FROM_PORT_NM: f64 = 60.0;
+/// No ship of ours makes more, knots.
+const FASTEST_KN: f64 = 30.0;
+/// What a track and a berth on the chart differ by, nautical miles.
+const SLACK_NM: f64 = 5.0;
+/// So far from a reading the track is looked at, seconds.
+const AROUND_S: f64 = 48.0 * 3600.0;
+/// Mean radius of the earth, nautical miles.
+const EARTH_NM: f64 = 3440.07;
+
+/// Refuses a reading that no plan could be made from any more.
+///
+/// # Errors
+/// Names the field.
+pub(crate) fn must_be_of_now(given: &ReadingForm, now: Time) -> Result<()> {
+    let age_s = now.0.seconds_since(given.at);
+    if age_s > READING_HOLDS_S {
+        return Err(Error::Invalid {
+            field: "at",
+            detail: format!(
+                "lies {:.0} hours back: a reading holds for {:.0}",
+                age_s / 3600.0,
+                READING_HOLDS_S / 3600.0
+            ),
+        });
+    }
+    Ok(())
+}
+
+/// Why she cannot have lain there then; none where nothing speaks against it.
+pub(crate) async fn doubt(
+    app: &App,
+    (vessel, compass): (VesselId, CompassId),
+    port: &str,
+    given: &ReadingForm,
+) -> Result<Option<Refusal>> {
+    let Ok(berth) = Position::new(given.lat, given.lon) else {
+        return Ok(None);
+    };
+    if let Some(words) = not_in_port(berth, port) {
+        return Ok(Some(refusal(words)));
+    }
+    let around = [-AROUND_S, AROUND_S].map(|s| Some(Time(given.at.plus_seconds(s))));
+    let chunks = analysis::chunks(&app.db, vessel, compass, around[0], around[1]).await?;
+    let mut nearest: Option<(f64, Position)> = None;
+    for chunk in &chunks {
+        for found in serde_json::from_str::<Vec<SampleDiagnostic>>(chunk)? {
+            let apart_s = given.at.seconds_since(found.sample.time).abs();
+            if nearest.is_none_or(|(least_s, _)| apart_s < least_s) {
+                nearest = Some((apart_s, found.sample.position));
+            }
+        }
+    }
+    Ok(nearest.and_then(|seen| too_far(berth, seen)).map(refusal))
+}
+
+fn refusal(words: String) -> Refusal {
+    Refusal {
+        refusal: "position_unlikely".to_owned(),
+        words,
+        could_be: vec![
+            "the position is another, perhaps east for west or north for south".to_owned(),
+            "it was read at another time".to_owned(),
+            "she lies in another port than the order says".to_owned(),
+        ],
+        cures: vec![Cure::ReadAgain],
+    }
+}
+
+/// By the list of ports; words that mean none of it tell nothing.
+fn not_in_port(berth: Position, port: &str) -> Option<String> {
+    let known = port_meant(port)?;
+    let (apart_nm, name) = (distance_nm(berth, known.position), known.name);
+    (apart_nm > FROM_PORT_NM).then(|| {
+        format!(
+            "the position of the reading is {apart_nm:.0} nautical miles from {name}, where the \
+             order is to be done"
+        )
+    })
+}
+
+/// By her own track: where she was at the nearest time.
+fn too_far(berth: Position, (apart_s, seen): (f64, Position)) -> Option<String> {
+    let apart_nm = distance_nm(berth, seen);
+    let hours = apart_s / 3600.0;
+    (apart_nm > SLACK_NM + FASTEST_KN * hours).then(|| {
+        format!(
+            "the position of the reading is {apart_nm:.0} nautical miles from where her track \
+             has her, {hours:.1} hours from then"
+        )
+    })
+}
+
+/// Along a great circle.
+fn distance_nm(one: Position, other: Position) -> f64 {
+    let [lat, other_lat] = [one, other].map(|place| place.lat_deg().to_radians());
+    let [lon, other_lon] = [one, other].map(|place| place.lon_deg().to_radians());
+    let half = ((other_lat - lat) / 2.0).sin().powi(2)
+        + lat.cos() * other_lat.cos() * ((other_lon - lon) / 2.0).sin().powi(2);
+    2.0 * EARTH_NM * half.clamp(0.0, 1.0).sqrt().asin()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(lat: f64, lon: f64) -> Position {
+        Position::new(lat, lon).unwrap()
+    }
+
+    #[test]
+    fn a_minute_of_latitude_is_a_mile() {
+        let apart = distance_nm(at(43.0, -3.0), at(44.0, -3.0));
+        assert!((apart - 60.0).abs() < 0.1, "{apart}");
+        let apart = distance_nm(at(0.0, 179.5), at(0.0, -179.5));
+        assert!((apart - 60.0).abs() < 0.1, "{apart}");
+    }
+
+    #[test]
+    fn a_berth_is_near_its_port_whatever_the_case_of_its_name() {
+        for port in ["Bilbao", " bilbao ", "ESBIO", "Bilbao (ESBIO)"] {
+            assert_eq!(not_in_port(at(43.35, -3.04), port), None);
+            assert!(
+                not_in_port(at(43.35, 3.04), port).is_some(),
+                "east for west"
+            );
+            assert!(not_in_port(at(10.0, -3.04), port).is_some());
+        }
+        assert_eq!(not_in_port(at(10.0, -3.04), "Nowhere at all"), None);
+    }
+
+    #[test]
+    fn she_is_no_farther_than_she_can_have_steamed() {
+        assert!(too_far(at(43.0, -3.0), (600.0, at(44.0, -3.0))).is_some());
+        assert_eq!(too_far(at(43.0, -3.0), (7_200.0, at(44.0, -3.0))), None);
+    }
+}

@@ -1,0 +1,132 @@
+//! What the compass's last adjustment told of λ, which one heading cannot tell from a change
+//! of the ship's magnetism along the needle.
+//!
+//! What always holds: it is calculated anew from the record that was signed; and where the
+//! logbook has work on the hull or at the compass since, it is nothing to go by.
+
+use binnacle_adjustment::adjust::{
+    Adjustment, Circumstances, EarlierLambda, Limits, ReadingForm, Water,
+};
+use binnacle_adjustment::binnacle::{Binnacle, Setting};
+use binnacle_compass::angle::Variation;
+use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
+use binnacle_compass::time::Timestamp;
+use binnacle_platform::app::App;
+use binnacle_platform::db::row;
+use binnacle_platform::error::Result;
+use binnacle_platform::ids::{CompassId, VesselId};
+use serde::{Deserialize, Serialize};
+
+/// λ at an earlier berth.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct EarlierBerth {
+    /// As it was told.
+    pub lambda: EarlierLambda,
+    /// How the correctors stood then.
+    pub stood: Setting,
+}
+
+impl EarlierBerth {
+    /// With the correctors as this binnacle has them.
+    pub fn set_as(&self, binnacle: &Binnacle) -> Option<EarlierLambda> {
+        self.lambda.set_as(binnacle, &self.stood)
+    }
+}
+
+/// What of a record λ follows from.
+#[derive(Deserialize)]
+struct Recorded {
+    reading: ReadingForm,
+    model_before: Model,
+    earth_at_berth: Earth,
+    binnacle_before: Before,
+    waters: Vec<Water>,
+}
+
+#[derive(Deserialize)]
+struct Earth {
+    variation_deg: f64,
+    h_nt: f64,
+    z_nt: f64,
+}
+
+#[derive(Deserialize)]
+struct Before {
+    binnacle: Binnacle,
+}
+
+/// What the compass's last adjustment that was completed told; none where there was none,
+/// or iron near the compass may be another since.
+///
+/// # Errors
+/// When the database fails.
+pub(crate) async fn of_compass(
+    app: &App,
+    vessel: VesselId,
+    compass: CompassId,
+    now: Timestamp,
+    logbook: &[LogbookEntry],
+) -> Result<Option<EarlierBerth>> {
+    let found = row!(
+        &app.db,
+        (Option<String>,),
+        "SELECT record FROM work_orders
+         WHERE vessel_id = $1 AND compass_id = $2 AND completed_at IS NOT NULL
+         ORDER BY completed_at DESC, id DESC
+         LIMIT 1",
+        vessel,
+        compass
+    )?;
+    let Some(record) = found.and_then(|(record,)| record) else {
+        return Ok(None);
+    };
+    // A record of a time when less was written down tells nothing.
+    let Ok(recorded) = serde_json::from_str::<Recorded>(&record) else {
+        return Ok(None);
+    };
+    let since = recorded.reading.at;
+    let is_other_iron = logbook.iter().any(|entry| {
+        changes_iron(entry.kind) && entry.from <= now && entry.to.unwrap_or(entry.from) >= since
+    });
+    Ok(if is_other_iron { None } else { recorded.told() })
+}
+
+/// Whether λ may be another after it.
+fn changes_iron(kind: LogbookKind) -> bool {
+    matches!(
+        kind,
+        LogbookKind::CompassMoved
+            | LogbookKind::Repair
+            | LogbookKind::DryDocking
+            | LogbookKind::Welding
+    )
+}
+
+impl Recorded {
+    fn told(&self) -> Option<EarlierBerth> {
+        let variation = Variation::try_from(self.earth_at_berth.variation_deg).ok()?;
+        let binnacle = &self.binnacle_before.binnacle;
+        let adjustment = Adjustment {
+            model: &self.model_before,
+            earth: EarthField {
+                h_nt: self.earth_at_berth.h_nt,
+                z_nt: self.earth_at_berth.z_nt,
+            },
+            reading: &self.reading.reading(variation).ok()?,
+            scale_sd: self.reading.scale_sd(),
+            compass_deg: None,
+            vertical: None,
+            binnacle,
+            now: None,
+            waters: &self.waters,
+            circumstances: Circumstances::default(),
+            limits: Limits::default(),
+        };
+        Some(EarlierBerth {
+            lambda: EarlierLambda::told(self.reading.at, &adjustment).ok()??,
+            stood: binnacle.setting.clone(),
+        })
+    }
+}

@@ -1,0 +1,224 @@
+//! What a second reading of the field tells, and what to plan from where it calls for that.
+//!
+//! What always holds: it is judged against the correctors as they are said to stand, by
+//! the first reading and the model that was held against that.
+
+use crate::berth_session::berth_reading::{Read, check};
+use crate::berth_session::plan::calculate;
+use crate::berth_session::planning_inputs::{Basis, Prepared};
+use crate::berth_session::second_reading_api::{AgainSaid, AgainVerdict, ReadAgain};
+use crate::berth_session::steps::Moved;
+use crate::work_orders::order_state::Standing;
+use crate::work_orders::refusal::Refusal;
+use binnacle_adjustment::adjust::{
+    AdjustError, Again, AgainForm, Card, Corrector, Done, Learnt, ReadingForm, Slip, Verdict,
+    read_again,
+};
+use binnacle_adjustment::berth::BerthReading;
+use binnacle_adjustment::binnacle::Binnacle;
+use binnacle_platform::app::App;
+use binnacle_platform::error::{Error, Result};
+
+/// Parts of a reading that has the vertical one.
+pub(crate) const WHOLE: usize = 3;
+
+const FITS_UNPLANNED: &str =
+    "the correctors do what they should where they are said to stand: plan anew from this reading";
+const BEYOND: &str = "the correctors seem to stand as planned, but more is left than the limits \
+    allow: read once more, away from steel and cranes; if it is so again, plan anew from this \
+    reading";
+
+/// A second reading as it was given, as one of its own, and as the science takes it.
+pub(crate) struct Second {
+    given: AgainForm,
+    pub(crate) form: ReadingForm,
+    reading: BerthReading,
+}
+
+impl Second {
+    pub(crate) fn new(given: AgainForm, prepared: &Prepared) -> Result<Second> {
+        let form = given.as_reading(&prepared.given);
+        let form = form.map_err(|error| Error::Invalid {
+            field: error.field,
+            detail: error.what,
+        })?;
+        let reading = form.reading(prepared.basis.variation()?);
+        let reading = reading.map_err(|error| Error::Invalid {
+            field: "forward, starboard",
+            detail: error.to_string(),
+        })?;
+        Ok(Second {
+            given,
+            form,
+            reading,
+        })
+    }
+
+    fn read(&self, prepared: &Prepared, steps: &[Done]) -> std::result::Result<Again, AdjustError> {
+        read_again(
+            &prepared.adjustment(),
+            steps,
+            &self.reading,
+            self.form.vertical(),
+            self.form.compass_deg,
+            self.form.unit,
+        )
+    }
+
+    /// What it told, and what to plan from where it calls for a plan from itself: also
+    /// where it fits, and there is no plan that was followed.
+    pub(crate) fn judge(
+        self,
+        prepared: &Prepared,
+        steps: &[Done],
+        looked_at: usize,
+        planned: bool,
+    ) -> std::result::Result<(ReadAgain, Option<Basis>), AdjustError> {
+        let again = self.read(prepared, steps)?;
+        let mut said = AgainSaid {
+            verdict: AgainVerdict::AsPlanned,
+            words: as_planned(steps, again.parts.len()),
+            parts: again.parts,
+            step: None,
+            setting: None,
+            worst_residual_deg: None,
+            widest_band_deg: None,
+            refusals: Vec::new(),
+            could_be: Vec::new(),
+        };
+        let from_here = |learnt: &Learnt, binnacle: Binnacle| {
+            let mut basis = prepared.basis.clone();
+            basis.model.model = learnt.model_after.clone();
+            basis.binnacle = binnacle;
+            // The first reading was held against it.
+            basis.earlier = None;
+            basis.has_learnt_here = true;
+            basis
+        };
+        let (mut foretold, mut anew) = (None, None);
+        match again.verdict {
+            Verdict::AsPlanned { learnt } if planned => foretold = Some(*learnt),
+            Verdict::AsPlanned { learnt } => {
+                said.verdict = AgainVerdict::Replan;
+                FITS_UNPLANNED.clone_into(&mut said.words);
+                let standing = prepared.adjustment().standing().clone();
+                anew = Some(from_here(
+                    &learnt,
+                    prepared.binnacle.with_setting(standing)?,
+                ));
+                foretold = Some(*learnt);
+            }
+            Verdict::Replan {
+                learnt,
+                refusals,
+                binnacle,
+                ..
+            } => {
+                said.verdict = AgainVerdict::Replan;
+                BEYOND.clone_into(&mut said.words);
+                said.refusals = refusals.iter().map(Refusal::from).collect();
+                anew = Some(from_here(&learnt, *binnacle));
+                foretold = Some(*learnt);
+            }
+            Verdict::Slip {
+                step,
+                slip,
+                setting,
+                ..
+            } => {
+                said.verdict = AgainVerdict::Slip;
+                said.words = suspected(steps, step, slip);
+                said.step = u32::try_from(looked_at).ok().map(|before| before + step);
+                said.setting = Some(setting);
+            }
+            Verdict::Unexplained { mistakes } => {
+                said.verdict = AgainVerdict::Unexplained;
+                said.words = unexplained(looked_at);
+                said.could_be = mistakes.iter().map(ToString::to_string).collect();
+                if let Some(card) = again.card.filter(Card::is_refused) {
+                    said.words = card.found();
+                    said.could_be.extend(card.suspects());
+                }
+            }
+        }
+        said.worst_residual_deg = foretold.as_ref().map(|learnt| learnt.worst_residual_deg);
+        said.widest_band_deg = foretold.as_ref().map(|learnt| learnt.widest_band_deg);
+        let read = ReadAgain {
+            given: self.given,
+            said,
+            learnt: foretold,
+            anew: None,
+        };
+        Ok((read, anew))
+    }
+}
+
+/// Whether the reading that did not fit fits the correctors as they are said to stand now.
+pub(crate) async fn is_explained_by(app: &App, standing: &Standing, moved: &Moved) -> Result<bool> {
+    let Some(disproof) = standing.disproof() else {
+        return Ok(false);
+    };
+    let mut before = standing.clone();
+    before.step_back();
+    let mut prepared = before.prepared()?;
+    prepared.moved_to = Some(moved.after.clone());
+    if let Some(anew) = &moved.learnt_anew {
+        prepared.binnacle = anew.binnacle.clone();
+    }
+    let second = Second::new(disproof.given.clone(), &prepared)?;
+    let again = calculate(app, move || second.read(&prepared, &[])).await?;
+    Ok(matches!(
+        again.verdict,
+        Verdict::AsPlanned { .. } | Verdict::Replan { .. }
+    ))
+}
+
+/// The second reading as one to plan from, held against what is known now.
+pub(crate) fn to_plan_from(basis: Basis, given: ReadingForm) -> Result<Box<Read>> {
+    let (checked, refusal) = match check(&given, &basis)? {
+        Ok(checked) => (Some(checked), None),
+        Err(refusal) => (None, Some(refusal)),
+    };
+    Ok(Box::new(Read {
+        given,
+        basis: Some(basis),
+        checked,
+        refusal,
+    }))
+}
+
+fn unexplained(looked_at: usize) -> String {
+    let steps = match looked_at {
+        0 => "one of its steps",
+        _ => "a step that nobody has looked at since",
+    };
+    format!(
+        "neither the plan nor a slip in {steps} explains what was read: look at every step and at \
+         the magnetometer, and read again"
+    )
+}
+
+/// What is confirmed, and what is not.
+fn as_planned(steps: &[Done], parts: usize) -> String {
+    let heels = |done: &Done| done.step.corrector == Corrector::Heeling;
+    let mut words = "the correctors do what was planned".to_owned();
+    if parts < WHOLE && steps.iter().any(heels) {
+        words += "; the vertical part was not read both times, and nothing confirms the heeling \
+                  magnets";
+    }
+    words
+}
+
+fn suspected(steps: &[Done], number: u32, slip: Slip) -> String {
+    let step = steps.get((number as usize).saturating_sub(1));
+    let words = step.map_or("", |done| done.step.words.as_str());
+    let how = match slip {
+        Slip::WrongEnd => "the magnets went in with the wrong end".to_owned(),
+        Slip::OtherHole { hole } => format!("the magnets stand at {hole}"),
+        Slip::NotDone => "it was not done".to_owned(),
+    };
+    format!(
+        "look at the step \"{words}\": by the field, {how}. Say how the correctors stand; where \
+         they stand as planned, or are put right, read again"
+    )
+}

@@ -1,0 +1,384 @@
+//! Photographs, completion, signatures, and the archive of evidence.
+
+use crate::berth_session::photos::{Caption, MAX_BYTES, MOST, PhotoTaken};
+use crate::berth_session::plan::{
+    foretold, must_have_turned, must_keep_to_limits, must_still_hold,
+};
+use crate::completion::complete::{self, Signed, SignedBy, Word};
+use crate::completion::record::Aboard;
+use crate::evidence::{Evidence, File, Line, archive, predicted_csv, record_pdf, record_svg};
+use crate::firms::keys;
+use crate::work_orders::firm_view;
+use crate::work_orders::log_entry::Content;
+use crate::work_orders::order::{Order, State};
+use crate::work_orders::order_update;
+use crate::work_orders::shown;
+use crate::work_orders::store::{self, Whole};
+use axum::body::{Body, Bytes};
+use axum::extract::rejection::BytesRejection;
+use axum::extract::{DefaultBodyLimit, FromRef, State as Shared};
+use axum::http::header::{CONTENT_DISPOSITION, CONTENT_SECURITY_POLICY, CONTENT_TYPE};
+use axum::response::{IntoResponse, Response};
+use binnacle_fleet::compasses;
+use binnacle_fleet::vessels;
+use binnacle_platform::access::{PartyReader, PartyWriter};
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Params, Valid};
+use binnacle_platform::idempotency::Key;
+use binnacle_platform::ids::{OrderId, PhotoId};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// In which states photographs are added.
+const WITH_PHOTOS: [State; 8] = [
+    State::Planned,
+    State::Accepted,
+    State::OnBoard,
+    State::Measured,
+    State::Adjusting,
+    State::Adjusted,
+    State::Verified,
+    State::Failed,
+];
+
+pub(crate) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(add_photo))
+        .layer(DefaultBodyLimit::max(MAX_BYTES))
+        .routes(routes!(find_photo))
+        .routes(routes!(complete_work_order))
+        .routes(routes!(sign_record))
+        .routes(routes!(find_record))
+        .routes(routes!(print_record))
+        .routes(routes!(draw_record))
+        .routes(routes!(tabulate_record))
+        .routes(routes!(find_evidence))
+}
+
+/// Add a photograph
+///
+/// The body is the file as it is: JPEG, PNG or WebP, 10 MiB at most.
+#[utoipa::path(post, path = "/work-orders/{id}/photos", tag = "adjusting",
+    params(("id" = OrderId, Path), Caption, Key),
+    request_body(content = Vec<u8>, content_type = "application/octet-stream"),
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, body = Problem), (status = 413, body = Problem),
+              (status = 415, body = Problem)))]
+async fn add_photo(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: PartyWriter,
+    Id(id): Id<OrderId>,
+    Params(caption): Params<Caption>,
+    key: Key,
+    body: std::result::Result<Bytes, BytesRejection>,
+) -> Result<Json<Order>> {
+    let bytes = body.map_err(|_| Error::TooLarge(MAX_BYTES))?;
+    let taken = PhotoTaken::new(PhotoId::new(), &bytes, &caption)?;
+    let update = order_update(&app, request, writer, id, key, "photo", &taken.sha256)?;
+    let (whole, done) = update.look().await?;
+    if done.is_some() {
+        return shown(&app, writer.tenant, id).await;
+    }
+    whole.must_be(
+        &WITH_PHOTOS,
+        "nothing is added before a firm has it, or any more",
+    )?;
+    if photos(&whole).count() >= MOST {
+        return Err(Error::WrongState(format!("there are {MOST} photographs")));
+    }
+    if let Some(mut change) = update.begin(&whole).await? {
+        let (sha256, kind) = (taken.sha256.as_str(), taken.media_type.as_str());
+        store::insert_photo(
+            &mut change.tx,
+            &whole.summary,
+            taken.photo,
+            kind,
+            sha256,
+            &bytes,
+        )
+        .await?;
+        change.append(Content::Photo(taken)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.tenant, id).await
+}
+
+fn photos(whole: &Whole) -> impl Iterator<Item = (i64, &PhotoTaken)> {
+    whole.log.iter().filter_map(|entry| match &entry.content {
+        Content::Photo(photo) => Some((entry.seq, photo)),
+        _ => None,
+    })
+}
+
+/// See a photograph
+#[utoipa::path(get, path = "/work-orders/{id}/photos/{photo}", tag = "adjusting",
+    params(("id" = OrderId, Path), ("photo" = PhotoId, Path)),
+    responses((status = 200, content_type = "image/*", body = Vec<u8>),
+              (status = 401, body = Problem), (status = 404, body = Problem)))]
+async fn find_photo(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Id((id, photo)): Id<(OrderId, PhotoId)>,
+) -> Result<Response> {
+    let summary = store::summary(&app.db, reader.tenant, id).await?;
+    let found = store::photo(&app.db, summary.vessel_id, id, photo).await?;
+    let (media_type, bytes) = found.ok_or(Error::NotFound("photograph"))?;
+    let headers = [
+        (CONTENT_TYPE, media_type.as_str()),
+        (CONTENT_SECURITY_POLICY, "default-src 'none'; sandbox"),
+        (CONTENT_DISPOSITION, "attachment"),
+    ];
+    Ok((headers, bytes).into_response())
+}
+
+/// Complete an adjustment
+///
+/// By the adjuster's name, licence and typed signature. From that moment on the vessel's
+/// logbook has the adjustment, the ship gets the model that is foretold, and the card is
+/// a prediction until headings at sea agree.
+#[utoipa::path(post, path = "/work-orders/{id}/complete", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Word,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "A step is not done", body = Problem),
+              (status = 422, body = Problem)))]
+async fn complete_work_order(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: PartyWriter,
+    Id(id): Id<OrderId>,
+    key: Key,
+    Valid(word): Valid<Word>,
+) -> Result<Json<Order>> {
+    let update = order_update(&app, request, writer, id, key, "completion", &word)?;
+    let (whole, done) = update.look().await?;
+    if done.is_some() {
+        return shown(&app, writer.tenant, id).await;
+    }
+    whole.must_be(&[State::Adjusting], "there is no plan that was followed")?;
+    let standing = whole.standing();
+    let prepared = standing.prepared()?;
+    must_still_hold(&app, &whole.summary, &prepared).await?;
+    must_keep_to_limits(&standing)?;
+    let (word, at) = word.checked(&whole, app.clock.now().into())?;
+    complete::must_stand_as_planned(&standing)?;
+    must_have_turned(&app, &standing, prepared).await?;
+    let learnt = foretold(&app, &standing).await?;
+    let aboard = aboard(&app, &whole).await?;
+    if let Some(mut change) = update.begin(&whole).await? {
+        Box::pin(complete::complete(&mut change, &aboard, learnt, word, at)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.tenant, id).await
+}
+
+async fn aboard(app: &App, whole: &Whole) -> Result<Aboard> {
+    let summary = &whole.summary;
+    let vessel = vessels::find_row(&app.db, summary.operator_id, summary.vessel_id).await?;
+    let vessel = vessel.ok_or(Error::NotFound("vessel"))?;
+    Ok(Aboard {
+        vessel_name: vessel.name,
+        imo_number: vessel.imo_number,
+        call_sign: vessel.call_sign,
+        flag: vessel.flag,
+        compass: compasses::find(&app.db, summary.vessel_id, Some(summary.compass_id)).await?,
+    })
+}
+
+/// Sign the record with a firm's key
+///
+/// An Ed25519 signature over the 32 octets of `record_sha256`. The order says whose key it
+/// is when the order's firm has registered it (`/firms/{id}/keys`), and otherwise that the
+/// key is unknown.
+#[utoipa::path(post, path = "/work-orders/{id}/signatures", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Signed,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no record yet", body = Problem),
+              (status = 422, description = "It is not this key's", body = Problem)))]
+async fn sign_record(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: PartyWriter,
+    Id(id): Id<OrderId>,
+    key: Key,
+    Valid(signed): Valid<Signed>,
+) -> Result<Json<Order>> {
+    let update = order_update(&app, request, writer, id, key, "signature", &signed)?;
+    let (whole, done) = update.look().await?;
+    if done.is_some() {
+        return shown(&app, writer.tenant, id).await;
+    }
+    let completed = whole.standing().completed;
+    let completed = completed.ok_or_else(no_record)?;
+    signed.checked(&completed.record_sha256)?;
+    if let Some(mut change) = update.begin(&whole).await? {
+        let holder = change.whole.summary.firm_id;
+        let key = keys::find_active(&mut change.tx, holder, &signed.public_key).await?;
+        let signed = SignedBy { signed, key };
+        change.append(Content::Signature(signed)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.tenant, id).await
+}
+
+fn no_record() -> Error {
+    Error::WrongState("there is no record before the adjustment is completed".to_owned())
+}
+
+/// See the adjustment record
+///
+/// The very octets that a firm's key signs the hash of.
+#[utoipa::path(get, path = "/work-orders/{id}/record.json", tag = "adjusting",
+    params(("id" = OrderId, Path)),
+    responses((status = 200, content_type = "application/json", body = String),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no record yet", body = Problem)))]
+async fn find_record(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Id(id): Id<OrderId>,
+) -> Result<Response> {
+    let summary = store::summary(&app.db, reader.tenant, id).await?;
+    let record = store::record(&app.db, summary.vessel_id, id).await?;
+    let headers = [(CONTENT_TYPE, "application/json")];
+    Ok((headers, record.ok_or_else(no_record)?).into_response())
+}
+
+/// Print the adjustment record
+///
+/// The sheets that the evidence holds, drawn from `record.json`. A prediction, not a
+/// certificate.
+#[utoipa::path(get, path = "/work-orders/{id}/record.pdf", tag = "adjusting",
+    params(("id" = OrderId, Path)),
+    responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no record yet", body = Problem)))]
+async fn print_record(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Id(id): Id<OrderId>,
+) -> Result<Response> {
+    let bytes = made_of_record(&app, reader, id, record_pdf).await?;
+    Ok(record_file(id, "pdf", "application/pdf", bytes))
+}
+
+/// Draw the adjustment record
+///
+/// The sheets of `record.pdf` as one picture, one below the other.
+#[utoipa::path(get, path = "/work-orders/{id}/record.svg", tag = "adjusting",
+    params(("id" = OrderId, Path)),
+    responses((status = 200, content_type = "image/svg+xml", body = String),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no record yet", body = Problem)))]
+async fn draw_record(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Id(id): Id<OrderId>,
+) -> Result<Response> {
+    let text = made_of_record(&app, reader, id, record_svg).await?;
+    Ok(record_file(id, "svg", "image/svg+xml", text))
+}
+
+/// The residuals that an adjustment record foretells, as CSV
+///
+/// A line for each place and compass heading, with the 95 % band.
+#[utoipa::path(get, path = "/work-orders/{id}/record.csv", tag = "adjusting",
+    params(("id" = OrderId, Path)),
+    responses((status = 200, content_type = "text/csv", body = String),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no record yet", body = Problem)))]
+async fn tabulate_record(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Id(id): Id<OrderId>,
+) -> Result<Response> {
+    let text = made_of_record(&app, reader, id, predicted_csv).await?;
+    Ok(record_file(id, "csv", "text/csv; charset=utf-8", text))
+}
+
+async fn made_of_record<T: Send + 'static>(
+    app: &App,
+    reader: PartyReader,
+    id: OrderId,
+    make: fn(&str) -> anyhow::Result<T>,
+) -> Result<T> {
+    let summary = store::summary(&app.db, reader.tenant, id).await?;
+    let record = store::record(&app.db, summary.vessel_id, id).await?;
+    let record = record.ok_or_else(no_record)?;
+    Ok(tokio::task::spawn_blocking(move || make(&record)).await??)
+}
+
+fn record_file(id: OrderId, extension: &str, kind: &str, body: impl Into<Body>) -> Response {
+    let name = format!("inline; filename=\"record-{id}.{extension}\"");
+    let headers = [(CONTENT_TYPE, kind), (CONTENT_DISPOSITION, name.as_str())];
+    (headers, body.into()).into_response()
+}
+
+/// Get the evidence of an adjustment
+///
+/// One archive that `binnacle-server verify-evidence` checks, and that says how to check
+/// it by hand. A prediction, not a certificate.
+#[utoipa::path(get, path = "/work-orders/{id}/evidence.zip", tag = "adjusting",
+    params(("id" = OrderId, Path)),
+    responses((status = 200, content_type = "application/zip", body = Vec<u8>),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no record yet", body = Problem)))]
+async fn find_evidence(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Id(id): Id<OrderId>,
+) -> Result<Response> {
+    let whole = store::whole(&app.db, reader.tenant, id).await?;
+    let vessel = whole.summary.vessel_id;
+    let record = store::record(&app.db, vessel, id).await?;
+    let record = record.ok_or_else(no_record)?;
+    let mut files = vec![File {
+        name: "predicted.csv".to_owned(),
+        bytes: predicted_csv(&record)?.into_bytes(),
+    }];
+    for (seq, photo) in photos(&whole) {
+        let found = store::photo(&app.db, vessel, id, photo.photo).await?;
+        let (_, bytes) = found.ok_or_else(|| anyhow::anyhow!("a photograph is gone"))?;
+        let name = photo.file(seq);
+        files.push(File { name, bytes });
+    }
+    files.push(File {
+        name: "record.json".to_owned(),
+        bytes: record.clone().into_bytes(),
+    });
+    let lines = store::lines(&app.db, vessel, id, None, i64::MAX).await?;
+    // As many as were looked at: one that came meanwhile is in the next archive.
+    let lines = lines.into_iter().zip(&whole.log);
+    let lines = lines.map(|((_, line, sha256), entry)| {
+        let text = firm_view::line(reader.tenant, entry, line, &sha256)?;
+        Ok(Line { text, sha256 })
+    });
+    let mut evidence = Evidence {
+        order: id.to_string(),
+        lines: lines.collect::<Result<_>>()?,
+        files,
+    };
+    let written = tokio::task::spawn_blocking(move || {
+        evidence.files.push(File {
+            name: "record.pdf".to_owned(),
+            bytes: record_pdf(&record)?,
+        });
+        archive(evidence)
+    });
+    let bytes = written.await??;
+    let name = format!("attachment; filename=\"evidence-{id}.zip\"");
+    let headers = [
+        (CONTENT_TYPE, "application/zip"),
+        (CONTENT_DISPOSITION, name.as_str()),
+    ];
+    Ok((headers, bytes).into_response())
+}

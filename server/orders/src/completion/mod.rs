@@ -1,0 +1,8 @@
+//! Completion of a work order: the signed record, its evidence, and completed orders.
+
+pub mod complete;
+mod completed_orders;
+pub(crate) mod completion_api;
+mod record;
+
+pub use completed_orders::{Done, Span, done};

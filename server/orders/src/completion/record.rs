@@ -1,0 +1,146 @@
+//! The adjustment record: everything that an inspector may ask for, as canonical JSON.
+//!
+//! What always holds: it is made once, when the order is completed, and kept as that
+//! text; a signature is over its hash. It says of itself that it is no certificate.
+
+use crate::completion::complete::Word;
+use crate::work_orders::log_entry::{Content, canonical};
+use crate::work_orders::order::NOT_A_CERTIFICATE;
+use crate::work_orders::store::Whole;
+use binnacle_adjustment::adjust::{HeelingPlan, Learnt};
+use binnacle_adjustment::binnacle::Binnacle;
+use binnacle_fleet::compasses::Compass;
+use binnacle_platform::error::Result;
+use binnacle_platform::time::Time;
+use serde_json::json;
+
+/// Whose compass it is.
+pub(crate) struct Aboard {
+    pub(crate) vessel_name: String,
+    pub(crate) imo_number: Option<String>,
+    pub(crate) call_sign: Option<String>,
+    pub(crate) flag: Option<String>,
+    pub(crate) compass: Compass,
+}
+
+/// The record of an order that is about to be completed.
+pub(crate) fn text(
+    aboard: &Aboard,
+    whole: &Whole,
+    learnt: &Learnt,
+    word: &Word,
+    account: &str,
+    after: &Binnacle,
+) -> Result<String> {
+    let (summary, standing) = (&whole.summary, whole.standing());
+    let read = standing.first.as_deref().or(standing.read.as_ref());
+    let basis = read.and_then(|read| read.basis.as_ref());
+    let plan = standing.plan.as_ref();
+    let before = standing.before.as_ref();
+    let again: Vec<_> = whole.log.iter().filter_map(second_reading).collect();
+    let hidden = standing.hidden_steps();
+    let found: Vec<_> = whole.log.iter().filter_map(settings).collect();
+    let steps: Vec<_> = whole.log.iter().filter_map(step).collect();
+    let photos: Vec<_> = whole.log.iter().filter_map(photo).collect();
+    canonical(&json!({
+        "version": 1,
+        "what": "record of a magnetic compass adjusted at the berth",
+        "standing": NOT_A_CERTIFICATE,
+        "order": summary.id,
+        "vessel": {
+            "id": summary.vessel_id, "name": aboard.vessel_name, "imo_number": aboard.imo_number,
+            "call_sign": aboard.call_sign, "flag": aboard.flag,
+        },
+        "compass": {
+            "id": aboard.compass.id, "name": aboard.compass.name, "role": aboard.compass.role,
+            "make": aboard.compass.make, "serial_number": aboard.compass.serial_number,
+        },
+        "port": summary.port,
+        "berth": summary.berth,
+        "adjusted_at": word.at,
+        "adjuster": {
+            "name": word.adjuster_name, "licence": word.adjuster_licence, "firm": word.firm,
+            "signature": word.signature, "account": account,
+        },
+        "data": basis.map(|basis| json!({
+            "sha256": basis.model.input_hash, "estimator": basis.model.estimator,
+            "until": basis.model.data_until, "headings_until": basis.model.headings_until,
+            "model_version": basis.model.version,
+        })),
+        "model_before": basis.map(|basis| &basis.model.model),
+        "earth_at_berth": basis.map(|basis| json!({
+            "variation_deg": basis.variation_deg, "h_nt": basis.h_nt, "z_nt": basis.z_nt,
+            "model": basis.field_model,
+        })),
+        "limits": standing.limits,
+        "waters": basis.map(|basis| &basis.waters),
+        "reading": read.map(|read| &read.given),
+        "berth_check": read.map(|read| &read.checked),
+        "binnacle_before": basis.map(|basis| json!({
+            "revision": basis.binnacle_revision, "binnacle": basis.binnacle,
+        })),
+        "setting_before": basis.map(|basis| &basis.binnacle.setting),
+        "setting_after": after.setting,
+        "binnacle_after": after,
+        "plan": plan.map(|plan| json!({
+            "moves": plan.plan.moves, "worst_residual_deg": plan.plan.worst_residual_deg,
+            "widest_band_deg": plan.plan.widest_band_deg,
+            "heeling": HeelingPlan {
+                before_deg_per_deg: before.and_then(|before| before.heeling_deg_per_deg),
+                ..plan.plan.heeling
+            },
+            "optimality": plan.optimality, "offered": plan.offered, "notes": plan.notes,
+        })),
+        "steps_as_read": steps,
+        "settings_as_said": found,
+        "second_readings": again,
+        "not_shown": (!hidden.is_empty()).then(|| json!({ "steps": hidden, "words": NOT_SHOWN })),
+        "predicted_before": before.map(|before| &before.deviations),
+        "predicted_after": learnt.after,
+        "model_after": learnt.model_after,
+        "photos": photos,
+        "log": { "entries": summary.last_seq, "last_sha256": summary.last_sha256 },
+    }))
+}
+
+/// Of steps that neither compass nor magnetometer has shown.
+const NOT_SHOWN: &str = "the compass does not show these steps on the berth's heading, and no \
+    second reading of the magnetometer confirms them: a slip in one of them can only be found \
+    by headings at sea";
+
+fn second_reading(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
+    let Content::SecondReading(read) = &entry.content else {
+        return None;
+    };
+    Some(json!({ "at": at(entry.at), "given": read.given, "said": read.said }))
+}
+
+fn step(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
+    let Content::Step(done) = &entry.content else {
+        return None;
+    };
+    Some(json!({
+        "at": at(entry.at), "said": done.said, "words": done.step.words,
+        "moved": done.setting.is_some(),
+    }))
+}
+
+fn settings(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
+    let Content::CorrectorSettings(moved) = &entry.content else {
+        return None;
+    };
+    Some(json!({
+        "at": at(entry.at), "before": moved.before, "after": moved.after, "note": moved.note,
+    }))
+}
+
+fn photo(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
+    let Content::Photo(photo) = &entry.content else {
+        return None;
+    };
+    Some(json!(photo))
+}
+
+fn at(time: Time) -> serde_json::Value {
+    json!(time)
+}

@@ -1,0 +1,97 @@
+//! Port calls at which orders are to be done, and the calls that are known.
+//!
+//! Port calls are written elsewhere: they are only read here.
+
+use crate::dispatch::port_call_changes::Alongside;
+use anyhow::Context;
+use binnacle_platform::db::{Tx, execute, row};
+use binnacle_platform::error::Result;
+use binnacle_platform::ids::{CallId, OrderId, VesselId};
+use binnacle_platform::time::Time;
+use binnacle_schedule::ports::PortCode;
+
+/// A port call, as far as an order has to do with it.
+#[derive(Debug, sqlx::FromRow)]
+pub(crate) struct KnownCall {
+    /// The call's id.
+    pub(crate) id: CallId,
+    /// UN/LOCODE of the port.
+    pub(crate) port: String,
+    eta: Time,
+    etd: Time,
+}
+
+impl KnownCall {
+    /// Returns where and when the vessel is alongside.
+    ///
+    /// # Errors
+    /// When the stored port is no port.
+    pub(crate) fn alongside(&self) -> Result<Alongside> {
+        let port = PortCode::parse(&self.port).context("a stored port")?;
+        Ok(Alongside::new(port, self.eta, self.etd))
+    }
+}
+
+/// Finds the call that a vessel is in at some time.
+pub(crate) async fn call_at(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Option<KnownCall>> {
+    Ok(row!(
+        in tx,
+        KnownCall,
+        "SELECT id, port, eta, etd FROM port_calls
+         WHERE vessel_id = $1 AND eta <= $2 AND etd > $2 AND withdrawn_at IS NULL
+         ORDER BY eta, id
+         LIMIT 1",
+        vessel,
+        at
+    )?)
+}
+
+/// Links an order to a call, unless it has one.
+pub async fn link_once(tx: &mut Tx, vessel: VesselId, order: OrderId, call: CallId) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO schedule_orders (vessel_id, order_id, call_id) VALUES ($1, $2, $3)
+         ON CONFLICT (vessel_id, order_id) DO NOTHING",
+        vessel,
+        order,
+        call
+    )?;
+    Ok(())
+}
+
+/// Links an order to a call, whatever it was linked to.
+pub(crate) async fn link(
+    tx: &mut Tx,
+    vessel: VesselId,
+    order: OrderId,
+    call: CallId,
+) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO schedule_orders (vessel_id, order_id, call_id) VALUES ($1, $2, $3)
+         ON CONFLICT (vessel_id, order_id) DO UPDATE SET call_id = excluded.call_id",
+        vessel,
+        order,
+        call
+    )?;
+    Ok(())
+}
+
+/// Returns the port of the call that an order is linked to.
+pub(crate) async fn linked_port(
+    tx: &mut Tx,
+    vessel: VesselId,
+    order: OrderId,
+) -> Result<Option<String>> {
+    let found = row!(
+        in tx,
+        (String,),
+        "SELECT c.port FROM schedule_orders l
+         JOIN port_calls c ON c.vessel_id = l.vessel_id AND c.id = l.call_id
+         WHERE l.vessel_id = $1 AND l.order_id = $2
+         ORDER BY c.id",
+        vessel,
+        order
+    )?;
+    Ok(found.map(|(port,)| port))
+}

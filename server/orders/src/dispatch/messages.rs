@@ -1,0 +1,178 @@
+//! Messages between an operator and a firm about an order.
+//!
+//! What always holds: a message is an entry of the order's log; no other firm reads it.
+
+use crate::dispatch::offer_requests::{message, must_be_own};
+use crate::work_orders::log_entry::Content;
+use crate::work_orders::offer_state::{Between, Offer, OfferState, Offers};
+use crate::work_orders::order_update;
+use crate::work_orders::store;
+use axum::extract::{FromRef, State as Shared};
+use axum::http::StatusCode;
+use binnacle_platform::access::{PartyReader, PartyWriter};
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Page, Valid};
+use binnacle_platform::idempotency::Key;
+use binnacle_platform::ids::{FirmId, OrderId};
+use binnacle_platform::tenants::Tenant;
+use binnacle_platform::time::Time;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+pub(crate) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new().routes(routes!(list_messages, send_message))
+}
+
+/// A message to be sent.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = NewOrderMessage, example = json!({ "text": "Is the gangway to port?" }))]
+struct NewMessage {
+    /// The firm that an operator writes to; may be left out where there is one.
+    #[serde(default)]
+    firm_id: Option<FirmId>,
+    /// In words, 2,000 characters at most.
+    #[schema(min_length = 1, max_length = 2000)]
+    text: String,
+}
+
+/// A message.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(as = OrderMessage)]
+struct Sent {
+    /// Its number in the order's log.
+    seq: i64,
+    /// When it was sent.
+    at: Time,
+    /// Who sent it.
+    by: String,
+    /// Whether someone of the firm's sent it, rather than of the operator's.
+    from_firm: bool,
+    /// The firm.
+    firm_id: FirmId,
+    /// Its name.
+    firm_name: String,
+    /// In words.
+    text: String,
+}
+
+/// A page of messages.
+#[derive(Serialize, ToSchema)]
+#[schema(as = OrderMessageList)]
+struct MessageList {
+    /// The oldest first.
+    items: Vec<Sent>,
+    /// `after` of the next page.
+    #[schema(required)]
+    next: Option<String>,
+}
+
+/// List the messages about a work order
+///
+/// A firm reads its own only. That the port call has moved is among them, from `Binnacle`.
+#[utoipa::path(get, path = "/work-orders/{id}/messages", tag = "adjusting",
+    params(("id" = OrderId, Path), Page),
+    responses((status = 200, body = MessageList), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn list_messages(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Id(id): Id<OrderId>,
+    page: Page,
+) -> Result<Json<MessageList>> {
+    let after = page.after_number()?.unwrap_or(0);
+    let whole = store::whole(&app.db, reader.tenant, id).await?;
+    let mine = |firm: FirmId| reader.tenant.firm().is_none_or(|mine| mine == firm);
+    let sent = whole.log.into_iter().filter_map(|entry| {
+        let said = match entry.content {
+            Content::Message(said) => said,
+            Content::CallMoved(moved) => moved.said,
+            _ => return None,
+        };
+        (entry.seq > after && mine(said.firm.firm_id)).then(|| Sent {
+            seq: entry.seq,
+            at: entry.at,
+            by: entry.author.name,
+            from_firm: entry.author.firm_id.is_some(),
+            firm_id: said.firm.firm_id,
+            firm_name: said.firm.firm_name,
+            text: said.text.unwrap_or_default(),
+        })
+    });
+    let listed = page.cut(sent.collect(), |message: &Sent| message.seq.to_string());
+    Ok(Json(MessageList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// Send a message about a work order
+///
+/// To the operator, or to a firm that is asked or has the order.
+#[utoipa::path(post, path = "/work-orders/{id}/messages", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = NewMessage,
+    responses((status = 204), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no such firm to write to", body = Problem),
+              (status = 422, body = Problem)))]
+async fn send_message(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: PartyWriter,
+    Id(id): Id<OrderId>,
+    key: Key,
+    Valid(new): Valid<NewMessage>,
+) -> Result<StatusCode> {
+    let update = order_update(&app, request, writer, id, key, "message", &new)?;
+    must_be_own(writer.tenant, new.firm_id)?;
+    let text = message(&new.text)?;
+    let summary = store::summary(&app.db, writer.tenant, id).await?;
+    if summary.state.is_over() {
+        return Err(Error::WrongState("the order is over".to_owned()));
+    }
+    if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
+        let offers = change.whole.standing().offers;
+        let said = Between {
+            text: Some(text),
+            ..Between::with(partner(&offers, writer.tenant, new.firm_id)?.firm())
+        };
+        change.append(Content::Message(said)).await?;
+        change.commit().await?;
+    }
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// The firm that a message is from or to.
+fn partner(offers: &Offers, tenant: Tenant, named: Option<FirmId>) -> Result<&Offer> {
+    let wanted = tenant.firm().or(named);
+    let seen =
+        |offer: &&Offer| offer.state.is_seen() && wanted.is_none_or(|firm| firm == offer.firm_id);
+    let mut found: Vec<&Offer> = offers.all.iter().filter(seen).collect();
+    if wanted.is_none() {
+        // Of several that are asked one may have it already.
+        let holder = found
+            .iter()
+            .position(|offer| offer.state == OfferState::Accepted);
+        if let Some(holder) = holder {
+            found = vec![found[holder]];
+        }
+    }
+    match found.as_slice() {
+        [firm] => Ok(firm),
+        [] => Err(Error::WrongState(
+            "there is no such firm that is asked or has the order".to_owned(),
+        )),
+        _ => Err(Error::Invalid {
+            field: "firm_id",
+            detail: "is missing: more than one firm is asked".to_owned(),
+        }),
+    }
+}

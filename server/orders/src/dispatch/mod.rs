@@ -1,0 +1,19 @@
+//! Dispatch of a work order to firms: offers, their answers and deadlines, other times, and
+//! changes of the port call.
+
+pub(crate) mod call_links;
+pub(crate) mod messages;
+mod new_port_calls;
+pub(crate) mod offer_api;
+mod offer_expiry;
+pub(crate) mod offer_requests;
+mod offer_sequence;
+pub(crate) mod port_call_changes;
+pub(crate) mod port_call_check;
+pub(crate) mod reschedule;
+
+pub use call_links::link_once;
+pub use new_port_calls::calls_come;
+pub use offer_expiry::{lapse, watch};
+pub use offer_requests::NewOffer;
+pub use port_call_changes::{Alongside, CallFit, Moving, calls_move};

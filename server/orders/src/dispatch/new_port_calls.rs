@@ -1,0 +1,73 @@
+//! A port call that is entered where an order waits for one: its own was withdrawn, or none
+//! was known.
+//!
+//! What always holds: an order comes to a call of its own port only, and only where its time
+//! lies in it; who was told that its call is gone is told that there is one again.
+
+use crate::dispatch::call_links;
+use crate::dispatch::port_call_changes::{self, Alongside, CallChange, CallFit, Moving};
+use crate::firms::port_meant;
+use crate::work_orders::store;
+use binnacle_platform::db::Tx;
+use binnacle_platform::error::Result;
+use binnacle_platform::events::Event;
+use binnacle_platform::ids::{CallId, OrderId, VesselId};
+use binnacle_platform::time::Time;
+
+/// Brings orders without a call to new calls of a vessel, whose row is held; the live events,
+/// to be published after the commit.
+///
+/// # Errors
+/// When the database cannot be written.
+pub async fn calls_come(
+    tx: &mut Tx,
+    vessel: VesselId,
+    new: &[(CallId, Alongside)],
+    by: &str,
+    now: Time,
+) -> Result<Vec<Event>> {
+    let mut told = Vec::new();
+    if new.is_empty() {
+        return Ok(told);
+    }
+    for order in port_call_changes::under_way(tx, vessel).await? {
+        if !order.is_adrift {
+            continue;
+        }
+        let Some((port, gone)) = waits(tx, vessel, order.id).await? else {
+            continue;
+        };
+        let lies_in = |call: &Alongside| {
+            let fit = call.fit(&port, order.planned_at);
+            matches!(fit, CallFit::Fits | CallFit::OtherHour)
+        };
+        let Some((id, is)) = new.iter().find(|(_, call)| lies_in(call)) else {
+            continue;
+        };
+        call_links::link(tx, vessel, order.id, *id).await?;
+        if let Some(gone) = gone {
+            let moving = Moving {
+                call_id: gone.call_id,
+                then_id: *id,
+                was: gone.is.unwrap_or(gone.was),
+                is: Some(is.clone()),
+            };
+            told.extend(port_call_changes::tell(tx, vessel, order.id, &moving, by, now).await?);
+        }
+    }
+    Ok(told)
+}
+
+/// The port that an order is for, where its words mean one, and what became of the call that
+/// it had.
+async fn waits(
+    tx: &mut Tx,
+    vessel: VesselId,
+    order: OrderId,
+) -> Result<Option<(String, Option<CallChange>)>> {
+    let whole = store::lock(tx, vessel, order).await?;
+    let standing = whole.standing();
+    let meant = || port_meant(&whole.summary.port).map(|port| port.code.to_string());
+    let port = standing.port.or_else(meant);
+    Ok(port.map(|port| (port, standing.call)))
+}

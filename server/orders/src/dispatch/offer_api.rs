@@ -1,0 +1,209 @@
+//! Offering an order to firms, and what these answer.
+
+use crate::dispatch::offer_requests::{
+    self, Answer, Boarded, FirmSays, NewOffer, Proposal, firm_says, operator_says,
+};
+use crate::work_orders::log_entry::Content;
+use crate::work_orders::order::{Order, State};
+use crate::work_orders::order_update;
+use crate::work_orders::shown;
+use crate::work_orders::store;
+use axum::extract::{FromRef, State as Shared};
+use axum::http::StatusCode;
+use binnacle_platform::access::{PartyWriter, Writer};
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Valid, ValidOrNone};
+use binnacle_platform::idempotency::Key;
+use binnacle_platform::ids::{OrderId, VesselId};
+use binnacle_platform::tenants::Tenant;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+pub(crate) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(offer_work_order))
+        .routes(routes!(accept_work_order))
+        .routes(routes!(decline_work_order))
+        .routes(routes!(propose_terms))
+        .routes(routes!(go_on_board))
+}
+
+/// Offer a work order to firms
+///
+/// One after the other, or to all at once. Where nobody answers in time the next is asked.
+#[utoipa::path(post, path = "/work-orders/{id}/offer", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = NewOffer,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "It is offered already, or has begun", body = Problem),
+              (status = 422, body = Problem)))]
+async fn offer_work_order(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: Writer,
+    Id(id): Id<OrderId>,
+    key: Key,
+    Valid(new): Valid<NewOffer>,
+) -> Result<Json<Order>> {
+    let operator = writer.operator;
+    let update = order_update(&app, request, writer, id, key, "offer", &new)?;
+    let (whole, done) = update.look().await?;
+    if done.is_some() {
+        return shown(&app, operator, id).await;
+    }
+    let allowed = [State::Planned, State::Declined];
+    whole.must_be(
+        &allowed,
+        "it is offered before a firm has it, and not twice at a time",
+    )?;
+    if let Some(mut change) = update.begin(&whole).await? {
+        let offered = new.checked(&mut change.tx, operator).await?;
+        offer_requests::offer(&mut change, offered).await?;
+        change.commit().await?;
+    }
+    shown(&app, operator, id).await
+}
+
+/// The vessel of an order that is to be answered: a firm that was asked once is told why
+/// it cannot answer any more.
+async fn vessel_of(app: &App, tenant: Tenant, id: OrderId) -> Result<VesselId> {
+    match tenant {
+        Tenant::Firm(firm) => store::vessel_of_asked(&app.db, firm, id).await,
+        Tenant::Operator(_) => Ok(store::summary(&app.db, tenant, id).await?.vessel_id),
+    }
+}
+
+/// Accept an offer, or a proposal
+///
+/// A firm takes the order as it is offered; an operator agrees to what a firm has
+/// proposed. Of those who accept at once one has it.
+#[utoipa::path(post, path = "/work-orders/{id}/accept", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Answer,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is nothing to accept, or not any more", body = Problem),
+              (status = 422, body = Problem)))]
+async fn accept_work_order(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: PartyWriter,
+    Id(id): Id<OrderId>,
+    key: Key,
+    ValidOrNone(answer): ValidOrNone<Answer>,
+) -> Result<Json<Order>> {
+    let update = order_update(&app, request, writer, id, key, "yes", &answer)?;
+    let answer = answer.checked(writer.tenant)?;
+    let vessel = vessel_of(&app, writer.tenant, id).await?;
+    if let Some(mut change) = update.begin_on(vessel).await? {
+        match writer.tenant {
+            Tenant::Firm(firm) => firm_says(&mut change, firm, FirmSays::Yes(answer)).await?,
+            Tenant::Operator(_) => operator_says(&mut change, answer, true).await?,
+        }
+        change.commit().await?;
+    }
+    shown(&app, writer.tenant, id).await
+}
+
+/// Decline an offer, or a proposal
+///
+/// A firm will not have the order, or gives it back before it is on board; an operator
+/// does not agree to what a firm has proposed. The next firm is asked.
+#[utoipa::path(post, path = "/work-orders/{id}/decline", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Answer,
+    responses((status = 204), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is nothing to decline, or not any more", body = Problem),
+              (status = 422, body = Problem)))]
+async fn decline_work_order(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: PartyWriter,
+    Id(id): Id<OrderId>,
+    key: Key,
+    ValidOrNone(answer): ValidOrNone<Answer>,
+) -> Result<StatusCode> {
+    let update = order_update(&app, request, writer, id, key, "no", &answer)?;
+    let answer = answer.checked(writer.tenant)?;
+    let vessel = vessel_of(&app, writer.tenant, id).await?;
+    if let Some(mut change) = update.begin_on(vessel).await? {
+        match writer.tenant {
+            Tenant::Firm(firm) => firm_says(&mut change, firm, FirmSays::No(answer)).await?,
+            Tenant::Operator(_) => operator_says(&mut change, answer, false).await?,
+        }
+        change.commit().await?;
+    }
+    // The order is no business of a firm's any more.
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Propose other terms
+///
+/// For a firm that is asked: another fee, time or berth, one of them or all. What it leaves
+/// out is as it was offered. The operator accepts or declines, with a deadline of its own.
+#[utoipa::path(post, path = "/work-orders/{id}/propose", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Proposal,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "It is not offered to your firm, or not any more", body = Problem),
+              (status = 422, body = Problem)))]
+async fn propose_terms(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: PartyWriter,
+    Id(id): Id<OrderId>,
+    key: Key,
+    Valid(proposal): Valid<Proposal>,
+) -> Result<Json<Order>> {
+    let Tenant::Firm(firm) = writer.tenant else {
+        return Err(Error::Forbidden(
+            "terms are proposed by a firm that is asked",
+        ));
+    };
+    let update = order_update(&app, request, writer, id, key, "proposal", &proposal)?;
+    let vessel = vessel_of(&app, writer.tenant, id).await?;
+    let now = app.clock.now().into();
+    if let Some(mut change) = update.begin_on(vessel).await? {
+        let proposal = proposal.checked(change.whole.summary.planned_at, now)?;
+        firm_says(&mut change, firm, FirmSays::Instead(proposal)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.tenant, id).await
+}
+
+/// Say that the adjuster is on board
+///
+/// The next thing is to read the berth.
+#[utoipa::path(post, path = "/work-orders/{id}/on-board", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Boarded,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "No firm has accepted it yet, or the work has begun", body = Problem),
+              (status = 422, body = Problem)))]
+async fn go_on_board(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: PartyWriter,
+    Id(id): Id<OrderId>,
+    key: Key,
+    ValidOrNone(boarded): ValidOrNone<Boarded>,
+) -> Result<Json<Order>> {
+    let update = order_update(&app, request, writer, id, key, "on board", &boarded)?;
+    let (whole, done) = update.look().await?;
+    if done.is_some() {
+        return shown(&app, writer.tenant, id).await;
+    }
+    let allowed = [State::Planned, State::Accepted];
+    whole.must_be(&allowed, "the adjuster goes on board once a firm has it")?;
+    let boarded = boarded.checked(app.clock.now().into())?;
+    if let Some(mut change) = update.begin(&whole).await? {
+        change.append(Content::OnBoard(boarded)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.tenant, id).await
+}

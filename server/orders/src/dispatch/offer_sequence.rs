@@ -1,0 +1,132 @@
+//! Whose turn it is to be asked for an order, and until when they may answer.
+
+use crate::firms;
+use crate::work_orders::log_entry::Content;
+use crate::work_orders::offer_state::{Between, Offer, OfferState, Offers};
+use crate::work_orders::order::State;
+use crate::work_orders::order_update::Change;
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::ids::FirmId;
+use binnacle_platform::time::Time;
+
+const HOUR_S: f64 = 3600.0;
+
+/// When an answer to what is asked now is due.
+fn due(change: &Change<'_>, hours: u32) -> Time {
+    Time(change.now.0.plus_seconds(f64::from(hours) * HOUR_S))
+}
+
+/// Refuses a job whose time is over.
+pub(crate) fn must_be_ahead(change: &Change<'_>, at: Time) -> Result<()> {
+    if latest(at) > change.now {
+        return Ok(());
+    }
+    Err(Error::WrongState(format!(
+        "the job was for {}, which is over: it needs another time",
+        at.to_the_minute()
+    )))
+}
+
+/// Until when someone on the quay may say yes to a job that should have begun.
+fn latest(at: Time) -> Time {
+    Time(at.0.plus_seconds(HOUR_S))
+}
+
+/// Until when to answer: no later than the job is to begin, if that is still ahead or was
+/// just now.
+pub(crate) fn answer_by(change: &Change<'_>, within_hours: u32, at: Time) -> Time {
+    let due = due(change, within_hours);
+    let ends = if at > change.now { at } else { latest(at) };
+    if ends > change.now {
+        due.min(ends)
+    } else {
+        due
+    }
+}
+
+/// Until when an answer leaves those whose turn comes after so many others time for theirs:
+/// the time until the job, or until they are to be asked by their terms, is shared out among
+/// all who come before and themselves. None where nobody comes after.
+pub(crate) async fn share_ends(
+    change: &mut Change<'_>,
+    offers: &Offers,
+    asked: usize,
+) -> Result<Option<Time>> {
+    let at = change.whole.summary.planned_at;
+    let left_s = at.0.seconds_since(change.now.0);
+    let (mut turns, mut share_s) = (1.0, f64::INFINITY);
+    let waiting = offers.all.iter();
+    let waiting = waiting.filter(|offer| offer.state == OfferState::Waiting);
+    for offer in waiting.skip(asked) {
+        let lead_s = lead_time_s(change, offer.firm_id).await?;
+        if left_s > lead_s {
+            turns += 1.0;
+            share_s = share_s.min((left_s - lead_s) / turns);
+        }
+    }
+    let ends = |share_s: f64| Time(change.now.0.plus_seconds(share_s.floor()));
+    Ok(share_s.is_finite().then(|| ends(share_s)))
+}
+
+/// How long before a job a firm wants to be asked by its terms, seconds.
+async fn lead_time_s(change: &mut Change<'_>, firm: FirmId) -> Result<f64> {
+    let operator = change.whole.summary.operator_id;
+    let terms = firms::terms_for(&mut change.tx, operator, firm).await?;
+    Ok(terms.map_or(0.0, |terms| terms.lead_time_h * HOUR_S))
+}
+
+/// Whether there is more than so much time until the job.
+fn is_in_time(change: &Change<'_>, lead_s: f64) -> bool {
+    let at = change.whole.summary.planned_at;
+    at.0.seconds_since(change.now.0) > lead_s
+}
+
+/// Asks whom it is the turn of, where nobody else is waited for. Whom it is too late to ask is
+/// passed over.
+pub(crate) async fn ask_next(change: &mut Change<'_>) -> Result<()> {
+    let offers = change.whole.standing().offers;
+    if offers.state() == State::Declined {
+        let waiting = offers.all.into_iter();
+        for offer in waiting.filter(|offer| offer.state == OfferState::Waiting) {
+            let lead_s = lead_time_s(change, offer.firm_id).await?;
+            if is_in_time(change, lead_s) {
+                continue;
+            }
+            let text = if is_in_time(change, 0.0) {
+                let hours = lead_s / HOUR_S;
+                format!("not asked: it wants to be asked {hours} h ahead")
+            } else {
+                "not asked: the time of the job is over".to_owned()
+            };
+            let passed = Between {
+                text: Some(text),
+                ..Between::with(offer.firm())
+            };
+            change.append(Content::Lapsed(passed)).await?;
+        }
+    }
+    ask(change).await
+}
+
+/// Asks those whose turn it is, if it is anyone's, and says until when they may answer.
+pub(crate) async fn ask(change: &mut Change<'_>) -> Result<()> {
+    let offers = change.whole.standing().offers;
+    let next: Vec<Offer> = offers.next().cloned().collect();
+    if next.is_empty() {
+        return Ok(());
+    }
+    let at = change.whole.summary.planned_at;
+    let until = answer_by(change, offers.answer_within_hours, at);
+    let share = share_ends(change, &offers, next.len()).await?;
+    let answer_by = share.map_or(until, |share| share.min(until));
+    for next in next {
+        let asked = Between {
+            answer_by: Some(answer_by),
+            fee_eur: next.fee_eur,
+            text: next.text.clone(),
+            ..Between::with(next.firm())
+        };
+        change.append(Content::Asked(asked)).await?;
+    }
+    Ok(())
+}

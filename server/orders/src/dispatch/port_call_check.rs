@@ -1,0 +1,106 @@
+//! Where a ship is when an order has her adjusted.
+//!
+//! What always holds: an order whose words mean a port is for a day on which the vessel is
+//! known to be there, or no coming call there is known, nor where else she is then.
+
+use crate::dispatch::port_call_changes::{Alongside, CallFit};
+use crate::firms::port_meant;
+use crate::work_orders::order_update::Change;
+use binnacle_platform::db::{Tx, rows};
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::ids::VesselId;
+use binnacle_platform::time::Time;
+use binnacle_schedule::ports::{Port, PortCode};
+
+/// The ports of a vessel's calls at some time.
+async fn ports_of(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Vec<(String,)>> {
+    Ok(rows!(
+        in tx,
+        (String,),
+        "SELECT port FROM port_calls
+         WHERE vessel_id = $1 AND withdrawn_at IS NULL AND eta <= $2 AND etd >= $2
+         ORDER BY eta, id",
+        vessel,
+        at
+    )?)
+}
+
+/// A vessel's calls at a port that are not over.
+async fn coming(
+    tx: &mut Tx,
+    vessel: VesselId,
+    port: PortCode,
+    now: Time,
+) -> Result<Vec<Alongside>> {
+    let calls = rows!(
+        in tx,
+        (Time, Time),
+        "SELECT eta, etd FROM port_calls
+         WHERE vessel_id = $1 AND withdrawn_at IS NULL AND port = $2 AND etd > $3
+         ORDER BY eta, id",
+        vessel,
+        port.to_string(),
+        now
+    )?;
+    let calls = calls.into_iter();
+    Ok(calls
+        .map(|(eta, etd)| Alongside::new(port, eta, etd))
+        .collect())
+}
+
+/// Refuses a time at which the vessel is known to be at another port than an order's, and a
+/// day without a call at its port where calls there are known.
+///
+/// # Errors
+/// [`Error::Invalid`], of a field.
+pub(crate) async fn must_be_there(
+    change: &mut Change<'_>,
+    at: Time,
+    field: &'static str,
+) -> Result<()> {
+    let (vessel, port) = (change.whole.summary.vessel_id, &change.whole.summary.port);
+    let Some(meant) = port_meant(port) else {
+        return Ok(());
+    };
+    let there = ports_of(&mut change.tx, vessel, at).await?;
+    let there: Vec<&Port> = there
+        .iter()
+        .filter_map(|(code,)| port_meant(code))
+        .collect();
+    let Some(other) = there.first() else {
+        return must_lie_in_a_call(change, meant, at, field).await;
+    };
+    if there.iter().any(|port| port.code == meant.code) {
+        return Ok(());
+    }
+    let detail = format!(
+        "by her port calls she is at {} ({}) then, not at {} ({})",
+        other.name, other.code, meant.name, meant.code
+    );
+    Err(Error::Invalid { field, detail })
+}
+
+async fn must_lie_in_a_call(
+    change: &mut Change<'_>,
+    meant: &Port,
+    at: Time,
+    field: &'static str,
+) -> Result<()> {
+    let vessel = change.whole.summary.vessel_id;
+    let calls = coming(&mut change.tx, vessel, meant.code, change.now).await?;
+    let port = meant.code.to_string();
+    let is_that_day =
+        |call: &Alongside| matches!(call.fit(&port, at), CallFit::Fits | CallFit::OtherHour);
+    if calls.is_empty() || calls.iter().any(is_that_day) {
+        return Ok(());
+    }
+    let there: Vec<String> = calls.iter().map(Alongside::in_words).collect();
+    let detail = format!(
+        "by her port calls she is at {} ({port}) {}, not on the day of {}: choose a time in a \
+         call, or enter the call that is not known yet",
+        meant.name,
+        there.join(", "),
+        at.to_the_minute()
+    );
+    Err(Error::Invalid { field, detail })
+}

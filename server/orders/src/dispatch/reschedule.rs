@@ -1,0 +1,307 @@
+//! Another time for an order that a firm has: the operator asks, the firm says yes or no.
+//!
+//! What always holds: what was agreed stands until the firm says yes. The new time lies in
+//! a call of the vessel's at the order's port, for as long as a job takes, and on a day on
+//! which the firm has a team left by its terms: when it is asked, and when it says yes.
+
+use crate::dispatch::call_links;
+use crate::dispatch::offer_requests::{Answer, LONGEST_H, checked_terms, must_have_room, two_days};
+use crate::dispatch::offer_sequence::answer_by;
+use crate::dispatch::port_call_changes::CallFit;
+use crate::dispatch::port_call_check;
+use crate::firms::{Told, port_meant};
+use crate::work_orders::log_entry::Content;
+use crate::work_orders::offer_state::{Asked, Between, Offer, Terms};
+use crate::work_orders::order::{Order, State};
+use crate::work_orders::order_update;
+use crate::work_orders::order_update::Change;
+use crate::work_orders::shown;
+use crate::work_orders::store;
+use axum::extract::{FromRef, State as Shared};
+use binnacle_platform::access::{PartyWriter, Writer};
+use binnacle_platform::app::App;
+use binnacle_platform::audit::RequestContext;
+use binnacle_platform::error::{Error, Problem, Result};
+use binnacle_platform::http::{Id, Json, Valid, ValidOrNone, optional_text};
+use binnacle_platform::idempotency::Key;
+use binnacle_platform::ids::OrderId;
+use binnacle_platform::tenants::Tenant;
+use binnacle_platform::time::Time;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+pub(crate) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(propose_retime))
+        .routes(routes!(accept_retime))
+        .routes(routes!(decline_retime))
+}
+
+/// Another time for an order that a firm has.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = NewRetime, example = json!({
+    "terms": { "planned_at": "2026-12-10T08:00:00Z" }, "answer_within_hours": 24,
+    "text": "She is two days late."
+}))]
+struct Retime {
+    /// The time, and the berth if another.
+    terms: Terms,
+    /// So long the firm has for an answer, 1 to 720 hours; what was agreed stands after it.
+    #[serde(default = "two_days")]
+    #[schema(minimum = 1, maximum = 720)]
+    answer_within_hours: u32,
+    /// In words.
+    #[serde(default)]
+    #[schema(max_length = 200)]
+    text: Option<String>,
+}
+
+/// Ask the firm that has an order for another time
+///
+/// For the operator, before the adjuster is on board. What was agreed stands until the firm
+/// accepts; asked again, the firm answers what was asked last.
+#[utoipa::path(post, path = "/work-orders/{id}/retime", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Retime,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "No firm has it, the work has begun, she is not \
+                             alongside then, or the firm has no team left that day", body = Problem),
+              (status = 422, body = Problem)))]
+async fn propose_retime(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: Writer,
+    Id(id): Id<OrderId>,
+    key: Key,
+    Valid(retime): Valid<Retime>,
+) -> Result<Json<Order>> {
+    let update = order_update(&app, request, writer, id, key, "retime", &retime)?;
+    let (whole, done) = update.look().await?;
+    if done.is_some() {
+        return shown(&app, writer.operator, id).await;
+    }
+    let hours = retime.answer_within_hours;
+    if !(1..=LONGEST_H).contains(&hours) {
+        return Err(Error::Invalid {
+            field: "answer_within_hours",
+            detail: format!("{hours} is outside 1 to {LONGEST_H}"),
+        });
+    }
+    let terms = checked_terms(retime.terms, app.clock.now().into())?;
+    let text = optional_text("text", retime.text.as_deref())?;
+    whole.must_be(&[State::Accepted], "a firm that has it is asked")?;
+    if let Some(mut change) = update.begin(&whole).await? {
+        let holder = holder(&change)?;
+        must_be_possible(&mut change, &holder.firm(), &terms, Told::Operator).await?;
+        let between = Between {
+            answer_by: Some(answer_by(&change, hours, terms.planned_at)),
+            terms: Some(terms),
+            text,
+            ..Between::with(holder.firm())
+        };
+        change.append(Content::RetimeProposed(between)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.operator, id).await
+}
+
+/// Agree to another time
+///
+/// For the firm that has the order.
+#[utoipa::path(post, path = "/work-orders/{id}/retime/accept", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Answer,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "Nothing is asked, or not any more, or the call has \
+                             moved meanwhile", body = Problem),
+              (status = 422, body = Problem)))]
+async fn accept_retime(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: PartyWriter,
+    Id(id): Id<OrderId>,
+    key: Key,
+    ValidOrNone(answer): ValidOrNone<Answer>,
+) -> Result<Json<Order>> {
+    let update = order_update(
+        &app,
+        request,
+        writer,
+        id,
+        key,
+        "yes to another time",
+        &answer,
+    )?;
+    let answer = answer.checked(writer.tenant)?;
+    let summary = store::summary(&app.db, writer.tenant, id).await?;
+    let Tenant::Firm(firm) = writer.tenant else {
+        return Err(Error::WrongState(
+            "the firm that has the order answers what it is asked".to_owned(),
+        ));
+    };
+    if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
+        let offer = holder(&change)?;
+        if offer.firm_id != firm {
+            return Err(Error::NotFound("work order"));
+        }
+        let terms = asked_terms(&change, &offer)?;
+        // What was agreed on besides the time stands.
+        let agreed = offer.terms.clone();
+        let terms = Terms {
+            berth: (terms.berth).or_else(|| agreed.as_ref()?.berth.clone()),
+            fee_eur: terms.fee_eur.or_else(|| offer.fee()),
+            ..terms
+        };
+        must_be_possible(&mut change, &offer.firm(), &terms, Told::Firm).await?;
+        at_its_call(&mut change, terms.planned_at).await?;
+        let agreed = Between {
+            terms: Some(terms),
+            text: answer.text,
+            ..Between::with(offer.firm())
+        };
+        change.append(Content::RetimeAccepted(agreed)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.tenant, id).await
+}
+
+/// Do not agree to another time
+///
+/// What was agreed stands. The operator takes its question back in the same way.
+#[utoipa::path(post, path = "/work-orders/{id}/retime/decline", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Answer,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "Nothing is asked, or not any more", body = Problem),
+              (status = 422, body = Problem)))]
+async fn decline_retime(
+    Shared(app): Shared<App>,
+    request: RequestContext,
+    writer: PartyWriter,
+    Id(id): Id<OrderId>,
+    key: Key,
+    ValidOrNone(answer): ValidOrNone<Answer>,
+) -> Result<Json<Order>> {
+    let update = order_update(
+        &app,
+        request,
+        writer,
+        id,
+        key,
+        "no to another time",
+        &answer,
+    )?;
+    let answer = answer.checked(writer.tenant)?;
+    let summary = store::summary(&app.db, writer.tenant, id).await?;
+    if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
+        let offer = holder(&change)?;
+        if writer
+            .tenant
+            .firm()
+            .is_some_and(|firm| firm != offer.firm_id)
+        {
+            return Err(Error::NotFound("work order"));
+        }
+        if answer.firm_id.is_some_and(|firm| firm != offer.firm_id) {
+            return Err(Error::Invalid {
+                field: "firm_id",
+                detail: "is not the firm that has the order".to_owned(),
+            });
+        }
+        asked_terms(&change, &offer)?;
+        let between = Between {
+            text: answer.text,
+            ..Between::with(offer.firm())
+        };
+        change.append(Content::RetimeDeclined(between)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.tenant, id).await
+}
+
+/// The firm that has an order whose work has not begun.
+fn holder(change: &Change<'_>) -> Result<Offer> {
+    change
+        .whole
+        .must_be(&[State::Accepted], "a firm that has it is asked")?;
+    let offers = change.whole.standing().offers;
+    let holder = offers.holder().cloned();
+    holder.ok_or_else(|| Error::WrongState("no firm has the order".to_owned()))
+}
+
+/// What the firm is asked.
+fn asked_terms(change: &Change<'_>, offer: &Offer) -> Result<Terms> {
+    let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
+    let Some(terms) = offer.new_terms.clone() else {
+        return wrong("no other time is asked for");
+    };
+    if offer.answer_by.is_some_and(|by| by < change.now) {
+        return wrong("the question has lapsed: what was agreed stands");
+    }
+    Ok(terms)
+}
+
+/// The port that an order is for, where its call is known.
+async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
+    if let Some(port) = change.whole.standing().port {
+        return Ok(Some(port));
+    }
+    let (vessel, planned_at) = (
+        change.whole.summary.vessel_id,
+        change.whole.summary.planned_at,
+    );
+    let id = change.whole.summary.id;
+    if let Some(port) = call_links::linked_port(&mut change.tx, vessel, id).await? {
+        return Ok(Some(port));
+    }
+    let call = call_links::call_at(&mut change.tx, vessel, planned_at).await?;
+    let meant = port_meant(&change.whole.summary.port).map(|port| port.code.to_string());
+    let is_hers = |port: &String| meant.as_ref().is_none_or(|meant| meant == port);
+    Ok(call.map(|call| call.port).filter(is_hers))
+}
+
+/// Notes at which call an order is to be done whose time is another now.
+pub(crate) async fn at_its_call(change: &mut Change<'_>, at: Time) -> Result<()> {
+    let (vessel, id) = (change.whole.summary.vessel_id, change.whole.summary.id);
+    if let Some(call) = call_links::call_at(&mut change.tx, vessel, at).await? {
+        call_links::link(&mut change.tx, vessel, id, call.id).await?;
+    }
+    Ok(())
+}
+
+/// Refuses a time at which the ship is not there, or the firm has no team.
+///
+/// # Errors
+/// [`Error::WrongState`], which says what is in the way.
+async fn must_be_possible(
+    change: &mut Change<'_>,
+    firm: &Asked,
+    terms: &Terms,
+    told: Told,
+) -> Result<()> {
+    // Without any call nobody knows where she will be: the firm judges for itself.
+    let Some(port) = order_port(change).await? else {
+        port_call_check::must_be_there(change, terms.planned_at, "planned_at").await?;
+        return must_have_room(change, firm, terms.planned_at, told).await;
+    };
+    let (at, vessel) = (terms.planned_at, change.whole.summary.vessel_id);
+    let call = call_links::call_at(&mut change.tx, vessel, at).await?;
+    let fit = match &call {
+        Some(call) => call.alongside()?.fit(&port, at),
+        None => CallFit::NoCall,
+    };
+    if fit != CallFit::Fits {
+        return Err(Error::WrongState(format!(
+            "she has no call at {port} that lasts for three hours from {}",
+            at.to_the_minute()
+        )));
+    }
+    must_have_room(change, firm, at, told).await
+}

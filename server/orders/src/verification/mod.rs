@@ -1,0 +1,207 @@
+//! The proof at sea: settled headings since an adjustment, held against what was
+//! foretold.
+//!
+//! What always holds: a verdict is an entry of the order's log, in the transaction that
+//! stores the analysis whose samples it rests on; an alarm is an alert as long as the
+//! order stands failed; what has passed stays so, and a later change of the ship ends the
+//! epoch instead.
+
+use crate::work_orders::log_entry::{Author, Content};
+use crate::work_orders::order::State;
+use crate::work_orders::publish::{self, Before};
+use crate::work_orders::store;
+use binnacle_adjustment::adjust::{Settled, Verification, verify};
+use binnacle_compass::result::{SampleDiagnostic, SampleReason};
+use binnacle_compass::ship::EarthField;
+use binnacle_fleet::alerts::UnconfirmedAdjustment;
+use binnacle_platform::db::Tx;
+use binnacle_platform::error::Result;
+use binnacle_platform::events::Event;
+use binnacle_platform::ids::{CompassId, VesselId};
+use binnacle_platform::time::Time;
+use serde::{Deserialize, Serialize};
+use tracing::warn;
+use utoipa::ToSchema;
+use uuid::Uuid;
+
+/// Of one heading at sea: reference, card and sea together, degrees.
+const HEADING_SD_DEG: f64 = 0.7;
+
+/// What the headings at sea say.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[schema(as = OrderVerification)]
+pub struct Verified {
+    /// The verdict with its figures: `passed`, `more_needed` or `alarm`.
+    #[schema(value_type = crate::work_orders::schema::SeaVerdictSchema)]
+    pub verification: Verification,
+    /// The same in words.
+    pub words: String,
+    /// How many samples it rests on.
+    pub samples: usize,
+    /// The time of the last of them.
+    pub until: Time,
+}
+
+fn agree(headings: usize) -> String {
+    if headings == 1 {
+        "1 heading agrees".to_owned()
+    } else {
+        format!("{headings} headings agree")
+    }
+}
+
+impl Verified {
+    fn new(verification: Verification, samples: usize, until: Time) -> Verified {
+        let words = match &verification {
+            Verification::Passed {
+                headings,
+                band95_deg,
+                rms_deg,
+            } => format!(
+                "{} with what was foretold, to {rms_deg:.1} degrees; the band is now \
+                 {band95_deg:.1} degrees",
+                agree(*headings)
+            ),
+            Verification::MoreNeeded { headings, needed } => format!(
+                "{} so far; {} more {} needed",
+                agree(*headings),
+                needed.count,
+                if needed.count == 1 { "is" } else { "are" }
+            ),
+            Verification::Alarm {
+                compass_deg,
+                off_deg,
+                standard_error_deg,
+            } => format!(
+                "on compass heading {compass_deg:03.0} the deviation is {off_deg:.1} degrees off \
+                 what was foretold (standard error {standard_error_deg:.1})"
+            ),
+        };
+        Verified {
+            verification,
+            words,
+            samples,
+            until,
+        }
+    }
+
+    /// Whether headings at sea bear out what was foretold.
+    pub fn has_passed(&self) -> bool {
+        matches!(self.verification, Verification::Passed { .. })
+    }
+
+    /// Whether it says something that this does not.
+    fn is_news_after(&self, last: Option<&Verified>) -> bool {
+        let headings = |verified: &Verified| match verified.verification {
+            Verification::MoreNeeded { headings, .. } => Some(headings),
+            Verification::Passed { .. } | Verification::Alarm { .. } => None,
+        };
+        last.is_none_or(|last| {
+            headings(last) != headings(self)
+                || std::mem::discriminant(&last.verification)
+                    != std::mem::discriminant(&self.verification)
+        })
+    }
+}
+
+/// Holds a compass's samples against what its last adjustment foretold.
+pub async fn after_analysis(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+    samples: &[SampleDiagnostic],
+    now: Time,
+) -> Result<Vec<Event>> {
+    let last = store::last_completed(tx, vessel, compass).await?;
+    let Some((order, State::Adjusted, _)) = last else {
+        return Ok(Vec::new());
+    };
+    let mut whole = store::lock(tx, vessel, order).await?;
+    let standing = whole.standing();
+    let before = Before::of(&whole);
+    let Some(completed) = standing.completed else {
+        return Ok(Vec::new());
+    };
+    let counts = |found: &&SampleDiagnostic| {
+        Time(found.sample.time) > completed.at
+            && matches!(found.reason, None | Some(SampleReason::NoModel))
+    };
+    let counted: Vec<&SampleDiagnostic> = samples.iter().filter(counts).collect();
+    let settled: Vec<Settled> = counted.iter().filter_map(|found| settled(found)).collect();
+    let (Some(last), Some(here)) = (counted.last(), settled.last().map(|last| last.earth)) else {
+        return Ok(Vec::new());
+    };
+    let verification = match verify(&completed.model_after, &settled, here) {
+        Ok(verification) => verification,
+        Err(error) => {
+            warn!(%vessel, %error, "an adjustment cannot be verified");
+            return Ok(Vec::new());
+        }
+    };
+    let verified = Verified::new(verification, settled.len(), Time(last.sample.time));
+    if !verified.is_news_after(standing.verified.as_ref()) {
+        return Ok(Vec::new());
+    }
+    if matches!(verified.verification, Verification::Passed { .. }) {
+        let text = serde_json::to_string(&verified)?;
+        store::verified(tx, &whole.summary, now, &text).await?;
+    }
+    let author = Author::server();
+    let content = Content::Verification(Box::new(verified));
+    store::append(tx, &mut whole, Uuid::now_v7(), &author, now, content).await?;
+    publish::tell(tx, &whole, &before, now).await
+}
+
+fn settled(found: &SampleDiagnostic) -> Option<Settled> {
+    Some(Settled {
+        compass: found.sample.compass,
+        deviation_deg: found.deviation_deg?,
+        sd_deg: HEADING_SD_DEG,
+        earth: EarthField {
+            h_nt: found.h_nt?,
+            z_nt: found.z_nt?,
+        },
+    })
+}
+
+/// Returns a compass's last adjustment, if headings at sea contradict it.
+pub async fn unconfirmed_adjustment(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<UnconfirmedAdjustment>> {
+    let last = store::last_completed(tx, vessel, compass).await?;
+    let Some((order, State::Failed, adjusted_at)) = last else {
+        return Ok(None);
+    };
+    let whole = store::lock(tx, vessel, order).await?;
+    let verified = whole.standing().verified;
+    Ok(verified.map(|verified| UnconfirmedAdjustment {
+        order,
+        adjusted_at,
+        verdict: verified.words,
+        samples: verified.samples,
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use binnacle_adjustment::adjust::Needed;
+    use binnacle_compass::time::Timestamp;
+
+    #[test]
+    fn one_heading_agrees_and_several_agree() {
+        let words = |headings, count| {
+            let needed = Needed {
+                count,
+                compass_deg: Vec::new(),
+            };
+            let so_far = Verification::MoreNeeded { headings, needed };
+            let until = Timestamp::parse("2026-11-21T12:00:00Z").unwrap();
+            Verified::new(so_far, headings, until.into()).words
+        };
+        assert_eq!(words(1, 4), "1 heading agrees so far; 4 more are needed");
+        assert_eq!(words(4, 1), "4 headings agree so far; 1 more is needed");
+    }
+}

@@ -1,0 +1,24 @@
+//! What a firm sees of an order's log: nothing of what is between the operator and others.
+//!
+//! What always holds: an entry that is withheld leaves its number, its hash and that of
+//! the entry before, so that the log can be checked without it.
+
+use crate::work_orders::log_entry::{Entry, canonical};
+use binnacle_platform::error::Result;
+use binnacle_platform::tenants::Tenant;
+use serde_json::json;
+
+/// A line of a log as a tenant reads it.
+///
+/// # Errors
+/// When it cannot be written as JSON.
+pub(crate) fn line(tenant: Tenant, entry: &Entry, line: String, sha256: &str) -> Result<String> {
+    let seen = |firm| entry.content.is_seen_by(firm);
+    if tenant.firm().is_none_or(seen) {
+        return Ok(line);
+    }
+    canonical(&json!({
+        "order": entry.order, "seq": entry.seq, "previous_sha256": entry.previous_sha256,
+        "withheld_sha256": sha256,
+    }))
+}

@@ -1,0 +1,91 @@
+//! Keys of requests to an order: one that is sent again writes nothing more, however late.
+//!
+//! What always holds: a key and what was written under it are stored in one transaction,
+//! and are kept as long as the order. A key is the operator's or the firm's own.
+
+use crate::work_orders::order::Summary;
+use binnacle_platform::db::{Db, Tx, execute, row};
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::idempotency::Key;
+use binnacle_platform::tenants::Tenant;
+use uuid::Uuid;
+
+/// The entry to write under: `wanted`, or the one that the same request wrote before
+/// under this key. For whoever holds the order's lock.
+///
+/// # Errors
+/// When the key was used for another request to this order.
+pub(crate) async fn once(
+    key: &Key,
+    tx: &mut Tx,
+    tenant: Tenant,
+    order: &Summary,
+    request_hash: &[u8],
+    wanted: Uuid,
+) -> Result<Uuid> {
+    let Some(key_hash) = key.hash() else {
+        return Ok(wanted);
+    };
+    let known = row!(
+        in &mut *tx,
+        (Vec<u8>, Uuid),
+        "SELECT request_hash, entry_id FROM work_order_keys
+         WHERE vessel_id = $1 AND order_id = $2 AND tenant_id = $3 AND key_hash = $4
+         ORDER BY key_hash",
+        order.vessel_id,
+        order.id,
+        tenant.id(),
+        key_hash.as_slice()
+    )?;
+    if let Some(written) = same(known, request_hash)? {
+        return Ok(written);
+    }
+    execute!(
+        tx,
+        "INSERT INTO work_order_keys (vessel_id, order_id, tenant_id, key_hash, request_hash,
+                                      entry_id)
+         VALUES ($1, $2, $3, $4, $5, $6)",
+        order.vessel_id,
+        order.id,
+        tenant.id(),
+        key_hash.as_slice(),
+        request_hash,
+        wanted
+    )?;
+    Ok(wanted)
+}
+
+/// What the same request wrote before under this key; none where it has not come yet.
+///
+/// # Errors
+/// When the key was used for another request to this order.
+pub(crate) async fn find(
+    key: &Key,
+    db: &Db,
+    tenant: Tenant,
+    order: &Summary,
+    request_hash: &[u8],
+) -> Result<Option<Uuid>> {
+    let Some(key_hash) = key.hash() else {
+        return Ok(None);
+    };
+    let known = row!(
+        db,
+        (Vec<u8>, Uuid),
+        "SELECT request_hash, entry_id FROM work_order_keys
+         WHERE vessel_id = $1 AND order_id = $2 AND tenant_id = $3 AND key_hash = $4
+         ORDER BY key_hash",
+        order.vessel_id,
+        order.id,
+        tenant.id(),
+        key_hash.as_slice()
+    )?;
+    same(known, request_hash)
+}
+
+fn same(known: Option<(Vec<u8>, Uuid)>, request_hash: &[u8]) -> Result<Option<Uuid>> {
+    match known {
+        Some((made_for, _)) if made_for != request_hash => Err(Error::KeyReused),
+        known => Ok(known.map(|(_, entry)| entry)),
+    }
+}

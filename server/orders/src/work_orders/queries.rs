@@ -1,0 +1,205 @@
+//! Orders and their logs as they are found in the database.
+//!
+//! What always holds: an order is found only by its operator, or by a firm that is asked,
+//! has proposed terms, or has it.
+
+use crate::work_orders::order::{Filter, Summary};
+use crate::work_orders::store::{Whole, read};
+use binnacle_platform::db::{self, Db, Tx, execute, row, rows};
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::ids::{FirmId, OrderId, VesselId};
+use binnacle_platform::tenants::Tenant;
+use binnacle_platform::time::Time;
+use futures_util::future::BoxFuture;
+use uuid::Uuid;
+
+/// Orders as a firm (`$1`) or, where that is none, an operator sees them.
+macro_rules! summary_sql {
+    ($rest:literal) => {
+        concat!(
+            "SELECT p.id AS operator_id, p.name AS operator_name, o.vessel_id,
+                    v.name AS vessel_name, o.id, o.compass_id, c.name AS compass_name,
+                    CASE f.state WHEN 'open' THEN 'offered' WHEN 'proposed' THEN 'proposed'
+                                 ELSE o.state END AS state,
+                    o.port, o.berth, o.planned_at, o.adjuster_name, o.adjuster_licence, o.firm,
+                    o.firm_id, o.created_at, o.created_by, o.completed_at, o.last_seq,
+                    o.last_sha256, o.call_fit,
+                    CASE WHEN f.firm_id IS NULL THEN o.answer_by ELSE f.answer_by END
+                        AS answer_by,
+                    EXISTS (SELECT 1 FROM binnacles b
+                            WHERE b.vessel_id = o.vessel_id AND b.compass_id = o.compass_id)
+                        AS has_binnacle
+             FROM work_orders o
+             JOIN vessels v ON v.id = o.vessel_id
+             JOIN operators p ON p.id = v.operator_id
+             JOIN compasses c ON c.vessel_id = o.vessel_id AND c.id = o.compass_id
+             LEFT JOIN work_order_offers f ON f.vessel_id = o.vessel_id AND f.order_id = o.id
+                                          AND f.firm_id = $1 ",
+            $rest
+        )
+    };
+}
+
+/// The newest first, from before an id.
+pub(crate) async fn list(
+    db: &Db,
+    tenant: Tenant,
+    filter: &Filter,
+    before: Option<Uuid>,
+    limit: i64,
+) -> Result<Vec<Summary>> {
+    Ok(rows!(
+        db,
+        Summary,
+        summary_sql!(
+            "WHERE (v.operator_id = $2 OR f.state IN ('open', 'proposed', 'accepted'))
+               AND o.id < $3
+               AND ($4 IS NULL OR o.vessel_id = $4)
+               AND ($5 IS NULL OR $5 = CASE f.state WHEN 'open' THEN 'offered'
+                                                    WHEN 'proposed' THEN 'proposed'
+                                                    ELSE o.state END)
+             ORDER BY o.id DESC
+             LIMIT $6"
+        ),
+        tenant.firm(),
+        tenant.operator(),
+        before.unwrap_or(Uuid::max()),
+        filter.vessel,
+        filter.state,
+        limit
+    )?)
+}
+
+/// An order that the tenant sees, in a line.
+///
+/// # Errors
+/// [`Error::NotFound`] when there is none.
+pub(crate) async fn summary(db: &Db, tenant: Tenant, id: OrderId) -> Result<Summary> {
+    row!(
+        db,
+        Summary,
+        summary_sql!(
+            "WHERE (v.operator_id = $2 OR f.state IN ('open', 'proposed', 'accepted'))
+               AND o.id = $3
+             ORDER BY o.id"
+        ),
+        tenant.firm(),
+        tenant.operator(),
+        id
+    )?
+    .ok_or(Error::NotFound("work order"))
+}
+
+/// Finds the vessel of an order, whoever asks.
+pub(crate) fn vessel_of(
+    tx: &mut Tx,
+    order: OrderId,
+) -> BoxFuture<'_, db::Result<Option<VesselId>>> {
+    Box::pin(async move {
+        let found = row!(
+            in tx,
+            (VesselId,),
+            "SELECT vessel_id FROM work_orders WHERE id = $1 ORDER BY vessel_id",
+            order
+        )?;
+        Ok(found.map(|(vessel,)| vessel))
+    })
+}
+
+/// The vessel of an order that a firm was once asked to do, whether or not it still sees it.
+pub(crate) async fn vessel_of_asked(db: &Db, firm: FirmId, id: OrderId) -> Result<VesselId> {
+    let found = row!(
+        db,
+        (VesselId,),
+        "SELECT vessel_id FROM work_order_offers
+         WHERE firm_id = $1 AND order_id = $2 AND state <> 'waiting'
+         ORDER BY vessel_id",
+        firm,
+        id
+    )?;
+    let (vessel,) = found.ok_or(Error::NotFound("work order"))?;
+    Ok(vessel)
+}
+
+/// Orders of which an answer is overdue, the longest first.
+pub(crate) async fn overdue(db: &Db, now: Time, limit: i64) -> Result<Vec<(VesselId, OrderId)>> {
+    Ok(rows!(
+        db,
+        (VesselId, OrderId),
+        "SELECT vessel_id, id FROM work_orders
+         WHERE answer_by < $1
+         ORDER BY answer_by, id
+         LIMIT $2",
+        now,
+        limit
+    )?)
+}
+
+/// The order as its operator sees it, within a transaction, of a vessel that is known:
+/// others who would change it wait.
+pub(crate) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<Whole> {
+    execute!(
+        &mut *tx,
+        "UPDATE work_orders SET state = state WHERE vessel_id = $1 AND id = $2",
+        vessel,
+        id
+    )?;
+    let summary = row!(
+        in &mut *tx,
+        Summary,
+        summary_sql!("WHERE o.vessel_id = $2 AND o.id = $3 ORDER BY o.id"),
+        None::<FirmId>,
+        vessel,
+        id
+    )?
+    .ok_or(Error::NotFound("work order"))?;
+    let lines = rows!(
+        in tx,
+        (String,),
+        "SELECT line FROM work_order_entries
+         WHERE vessel_id = $1 AND order_id = $2
+         ORDER BY seq",
+        vessel,
+        id
+    )?;
+    let log = read(lines)?;
+    Ok(Whole { summary, log })
+}
+
+/// An order that the tenant sees, with its log.
+pub(crate) async fn whole(db: &Db, tenant: Tenant, id: OrderId) -> Result<Whole> {
+    let summary = summary(db, tenant, id).await?;
+    let lines = rows!(
+        db,
+        (String,),
+        "SELECT line FROM work_order_entries
+         WHERE vessel_id = $1 AND order_id = $2
+         ORDER BY seq",
+        summary.vessel_id,
+        id
+    )?;
+    let log = read(lines)?;
+    Ok(Whole { summary, log })
+}
+
+/// Lines of an order's log as they were hashed, with their hashes, from after a number.
+pub(crate) async fn lines(
+    db: &Db,
+    vessel: VesselId,
+    id: OrderId,
+    after: Option<i64>,
+    limit: i64,
+) -> Result<Vec<(i64, String, String)>> {
+    Ok(rows!(
+        db,
+        (i64, String, String),
+        "SELECT seq, line, sha256 FROM work_order_entries
+         WHERE vessel_id = $1 AND order_id = $2 AND seq > $3
+         ORDER BY seq
+         LIMIT $4",
+        vessel,
+        id,
+        after.unwrap_or(0),
+        limit
+    )?)
+}
