@@ -5,6 +5,9 @@
 //! function of its arguments, so that an analysis can be repeated to the byte.
 //! The conventions are those of [`binnacle_compass`].
 
+mod gyro_speed_error;
+mod observation;
+
 pub mod estimate;
 pub mod fit;
 

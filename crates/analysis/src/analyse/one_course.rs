@@ -3,7 +3,8 @@
 //! What always holds: the band is made wider where it is narrower than the courses that she
 //! has sailed on account for, and never narrower.
 
-use crate::fit::{Observation, RobustFit};
+use crate::fit::RobustFit;
+use crate::observation::Observation;
 use binnacle_compass::model::Model;
 
 /// Headings that are scattered about their mean by less than this are one course: how stiff

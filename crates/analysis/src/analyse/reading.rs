@@ -1,7 +1,8 @@
 //! Samples put in order, each with the earth's field around it.
 
 use super::logbook::{excludes, exclusion};
-use crate::fit::{HeadingReading, gyro_speed_error_deg};
+use crate::fit::HeadingReading;
+use crate::gyro_speed_error::gyro_speed_error_deg;
 use binnacle_compass::angle::{TrueHeading, Variation};
 use binnacle_compass::field::{FieldAt, FieldModel};
 use binnacle_compass::logbook::LogbookEntry;

@@ -11,7 +11,7 @@ use super::quality::widely;
 use super::row::{CONSTANT, Point, Row, Station, UNKNOWNS, Unknowns, row, stations};
 use super::untimed::{all_timed, cell_of, design_effect};
 use super::whiten::{Drift, Part, Pass, Whitening, whiten};
-use crate::fit::Observation;
+use crate::observation::Observation;
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::time::Timestamp;
 use nalgebra::{SMatrix, SVector};

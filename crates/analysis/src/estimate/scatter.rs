@@ -6,7 +6,7 @@
 //! more of them there are: as a multiple of the ship's own white noise, and by so much
 //! at the least whatever that is taken for, as where it hides in slower noise.
 
-use crate::fit::Observation;
+use crate::observation::Observation;
 
 /// Windows of ten seconds in ten minutes.
 const FULL_WINDOWS: f64 = 60.0;

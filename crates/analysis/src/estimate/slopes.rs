@@ -278,7 +278,7 @@ mod tests {
     use super::*;
     use crate::estimate::row::{Point, row, stations};
     use crate::estimate::whiten::whiten;
-    use crate::fit::Observation;
+    use crate::observation::Observation;
     use binnacle_compass::angle::{CompassHeading, Deviation, Variation};
     use binnacle_compass::time::Timestamp;
 

@@ -8,7 +8,7 @@ use super::quality::{Evidence, quality};
 use super::row::{CONSTANT, USUAL_FUSION, in_own_units, plain_residual};
 use super::start::start;
 use super::untimed::{all_timed, are_times_believed, cell_of};
-use crate::fit::Observation;
+use crate::observation::Observation;
 use binnacle_compass::model::{Caution, Covariance, Identifiable, Parameters, Quality};
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::ship::EarthField;

@@ -3,7 +3,7 @@
 
 use super::products::Products;
 use super::row::{Point, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row};
-use crate::fit::Observation;
+use crate::observation::Observation;
 use nalgebra::{SMatrix, SVector};
 
 /// Enough for any ship whose headings are not ambiguous.

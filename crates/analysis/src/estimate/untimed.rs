@@ -7,7 +7,7 @@
 //! part ρ of their variance in common a mean is known as by n/(1 + (n − 1) ρ) independent
 //! ones (the design effect of a sample of clusters \[Kish\]).
 
-use crate::fit::Observation;
+use crate::observation::Observation;
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::time::Timestamp;
 

@@ -1,6 +1,6 @@
 //! Whether observations lie on enough headings, and on which they do not.
 
-use super::Observation;
+use crate::observation::Observation;
 use binnacle_compass::result::FitError;
 
 /// Sectors of heading, of 15° each.

@@ -5,7 +5,6 @@
 mod csv_row;
 mod headings;
 mod normal;
-mod observation;
 mod ols;
 mod paper;
 mod reference;
@@ -13,12 +12,12 @@ mod robust;
 mod soundness;
 mod stray;
 
+pub use crate::gyro_speed_error::gyro_speed_error_deg;
+pub use crate::observation::Observation;
 pub use csv_row::{CsvRow, CsvRowError, check_columns, readings_from_csv};
-pub use observation::Observation;
 pub use ols::fit_ols;
 pub use paper::fit_paper;
-pub(crate) use reference::northerly_speed_error_deg;
-pub use reference::{HeadingReading, Referred, gyro_speed_error_deg, refer};
+pub use reference::{HeadingReading, Referred, refer};
 pub(crate) use robust::learn;
 pub use robust::{
     REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, fit_known_ship, fit_robust,

@@ -6,10 +6,10 @@
 //! held to be independent from row to row, and nothing is known beforehand. The
 //! product's own fit is [`fit_robust`](super::fit_robust).
 
-use super::Observation;
 use super::headings::check_headings;
 use super::normal::{Matrix, Vector, check_number, covariance, identifiable, invert};
 use super::robust::{check_field, is_usable};
+use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::linearised_at_compass;
 use binnacle_compass::model::{Model, Parameters};

@@ -6,10 +6,10 @@
 //! noise is held to be independent. The product's own fit is
 //! [`fit_robust`](super::fit_robust).
 
-use super::Observation;
 use super::headings::check_headings;
 use super::normal::{Matrix, Vector, check_number, covariance, identifiable, invert};
 use super::robust::{check_field, is_usable};
+use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::{Model, Parameters};

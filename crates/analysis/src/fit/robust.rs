@@ -1,10 +1,10 @@
 //! The product's fit: exact model, residuals in angle, robust weights, noise
 //! that remembers, and a prior for what headings cannot tell.
 
-use super::Observation;
 use super::headings::check_headings;
 use super::{soundness, stray};
 use crate::estimate::{Options, Prior, Rough, estimate, rough};
+use crate::observation::Observation;
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::result::{FitError, NoiseLevels};

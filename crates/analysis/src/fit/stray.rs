@@ -1,6 +1,6 @@
 //! Rows far from the others in time: a wrong date, or a ship long not looked at.
 
-use super::Observation;
+use crate::observation::Observation;
 use binnacle_compass::model::Caution;
 use binnacle_compass::time::Timestamp;
 

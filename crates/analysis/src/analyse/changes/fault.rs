@@ -2,7 +2,7 @@
 
 use super::evidence::LASTED;
 use crate::analyse::reading::{Reading, heading_reading};
-use crate::fit::Observation;
+use crate::observation::Observation;
 use binnacle_compass::result::{Cause, CauseProbability, Change, Epoch};
 use binnacle_compass::time::Timestamp;
 

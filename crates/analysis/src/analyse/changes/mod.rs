@@ -13,7 +13,7 @@ use super::epoch::Reference;
 use super::reading::Reading;
 use crate::change::{Given, Loaded, What, detect};
 use crate::estimate::Prior;
-use crate::fit::Observation;
+use crate::observation::Observation;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::result::{Cause, Change, NoiseLevels, SampleReason};
 use binnacle_compass::time::Timestamp;

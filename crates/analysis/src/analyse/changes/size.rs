@@ -2,7 +2,7 @@
 
 use crate::analyse::reading::Reading;
 use crate::change::{Event, Snapshot};
-use crate::fit::Observation;
+use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::result::{Cause, Change, Epoch, Step};

@@ -6,7 +6,7 @@ use crate::change::{
     Circumstances, Event, Perhaps, SAILED_SINCE, Snapshot, Unnoticed, What, at_port, causes,
     rows_since,
 };
-use crate::fit::Observation;
+use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{Cause, Change};

@@ -4,7 +4,7 @@ use super::{EVERY, Event, Leads, Search, What};
 use crate::change::bank::{Kind, Lead};
 use crate::change::calls::{Base, Candidate};
 use crate::change::filter::Filter;
-use crate::fit::Observation;
+use crate::observation::Observation;
 
 /// A step must be likelier by this than a burst, nats; or by that, when its lead
 /// over nothing is large.

@@ -2,7 +2,8 @@
 
 use crate::change::filter::{Filter, Noise};
 use crate::estimate::{Prior, Unknowns};
-use crate::fit::{Observation, learn};
+use crate::fit::learn;
+use crate::observation::Observation;
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::ship::PARAMETERS;
 

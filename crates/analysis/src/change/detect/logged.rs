@@ -2,7 +2,7 @@
 
 use super::Search;
 use crate::change::calls::Said;
-use crate::fit::Observation;
+use crate::observation::Observation;
 use binnacle_compass::time::Timestamp;
 
 /// People write down the day, or when the hatches were shut.

@@ -31,7 +31,7 @@ use super::filter::{Filter, Measurement, Noise, measurement};
 use super::large::{fusion, relinearised};
 use super::upset::Earlier;
 use crate::estimate::{Point, Prior, Station, Unknowns, are_times_believed, row, stations};
-use crate::fit::Observation;
+use crate::observation::Observation;
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::time::Timestamp;
 use borne_out::Doubt;

@@ -1,6 +1,6 @@
 //! Port calls, by where there are no rows.
 
-use crate::fit::Observation;
+use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
 
 /// A port call is a gap of at least this without going further than that.

@@ -1,7 +1,7 @@
 //! What lightning leaves in a ship fades for weeks.
 
 use crate::change::filter::Filter;
-use crate::fit::Observation;
+use crate::observation::Observation;
 
 /// How far bx and by wander in thirty days after a step at sea, as a part of it.
 const FADES: f64 = 0.35;

@@ -3,7 +3,8 @@
 //! Reading the file is the caller's business; which columns there must be, and
 //! what a row says, is decided here.
 
-use super::{HeadingReading, gyro_speed_error_deg};
+use super::HeadingReading;
+use crate::gyro_speed_error::gyro_speed_error_deg;
 use binnacle_compass::angle::{Brief, CompassHeading, TrueHeading, Variation};
 use binnacle_compass::field::{FieldAt, FieldModel};
 use binnacle_compass::position::Position;

@@ -1,5 +1,6 @@
 use super::*;
-use crate::fit::{Observation, refer};
+use crate::fit::refer;
+use crate::observation::Observation;
 
 fn row() -> CsvRow {
     CsvRow {

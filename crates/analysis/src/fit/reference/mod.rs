@@ -11,14 +11,10 @@
 
 mod check;
 mod parted;
-mod speed_error;
 mod stuck;
 mod vote;
 
-pub use speed_error::gyro_speed_error_deg;
-pub(crate) use speed_error::northerly_speed_error_deg;
-
-use super::Observation;
+use crate::observation::Observation;
 use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation};
 use binnacle_compass::position::Position;
 use binnacle_compass::result::{FitError, ReferenceCheck};

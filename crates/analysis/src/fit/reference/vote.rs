@@ -2,7 +2,8 @@
 
 use super::check::{centred, has_failed, median};
 use super::{HeadingReading, Trust, differences, observe};
-use crate::fit::{Observation, RobustFit, RobustOptions, fit_robust};
+use crate::fit::{RobustFit, RobustOptions, fit_robust};
+use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::result::ReferenceCheck;
