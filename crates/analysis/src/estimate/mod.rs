@@ -20,31 +20,24 @@
 //! - where the ship's magnetism drifts, the parameters are those at the last
 //!   observation.
 
-mod direction;
-mod levels;
-mod needle;
-mod noise;
+mod noise_process;
 mod prior;
-mod problem;
 mod products;
-mod quality;
-mod row;
-mod scatter;
-mod slopes;
+mod robust_loss;
+mod rows;
 mod solve;
-mod start;
-mod untimed;
-mod whiten;
+mod undated_rows;
+mod whitening;
 
-pub(crate) use noise::{
+pub(crate) use noise_process::{
     COMPASS_SWING_S, SCHULER_DAMPING, SCHULER_PER_S, SLOW_GYRO_S, Transition, VARIATION_NM,
 };
 pub(crate) use prior::POPULATION_SD;
 pub use prior::Prior;
 pub(crate) use prior::unseen_sd_nt;
-pub(crate) use row::{
+pub(crate) use robust_loss::{loss_of, weight};
+pub(crate) use rows::{
     CONSTANT, OFFSET_SD_DEG, Point, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row, stations,
 };
 pub(crate) use solve::{Options, Rough, estimate, rough};
-pub(crate) use untimed::are_times_believed;
-pub(crate) use whiten::{loss_of, weight};
+pub(crate) use undated_rows::are_times_believed;

@@ -4,10 +4,10 @@
 //! Restricted, because the unknowns are fitted to the same residuals; with a
 //! prior, because a few days cannot show what wanders over weeks.
 
-use super::noise::LEVELS;
-use super::row::{Row, Station, UNKNOWNS};
-use super::slopes::{Slopes, slopes};
-use super::whiten::{Pass, whiten};
+use super::filter::{Pass, whiten};
+use super::likelihood_slopes::{Slopes, slopes};
+use crate::estimate::noise_process::LEVELS;
+use crate::estimate::rows::{Row, Station, UNKNOWNS};
 use binnacle_compass::result::NoiseLevels;
 use nalgebra::{SMatrix, SVector};
 

@@ -1,10 +1,10 @@
 //! What an estimate rests on: the data or the prior, and how many independent
 //! samples the data are worth.
 
-use super::direction::Direction;
-use super::needle::Needle;
-use super::prior::scales;
-use super::row::{CONSTANT, UNKNOWNS};
+use crate::estimate::prior::scales;
+use crate::estimate::rows::Direction;
+use crate::estimate::rows::Needle;
+use crate::estimate::rows::{CONSTANT, UNKNOWNS};
 use binnacle_compass::model::{Caution, FromData, Identifiable, Parameters, Quality};
 use binnacle_compass::ship::{CAUTION_H_NT, EarthField, PARAMETERS};
 use nalgebra::{SMatrix, SVector};

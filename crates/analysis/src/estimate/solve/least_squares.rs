@@ -4,13 +4,13 @@
 //! What always holds: when a solution has settled, the next step would be smaller than
 //! was asked for; what is judged is the pass that told so.
 
-use super::levels::{Pull, Sought, fit_levels};
-use super::prior::{Prior, scales, tail};
-use super::products::Products;
 use super::quality::widely;
-use super::row::{CONSTANT, Point, Row, Station, UNKNOWNS, Unknowns, row, stations};
-use super::untimed::{all_timed, cell_of, design_effect};
-use super::whiten::{Drift, Part, Pass, Whitening, whiten};
+use crate::estimate::prior::{Prior, scales, tail};
+use crate::estimate::products::Products;
+use crate::estimate::rows::{CONSTANT, Point, Row, Station, UNKNOWNS, Unknowns, row, stations};
+use crate::estimate::undated_rows::{all_timed, cell_of, design_effect};
+use crate::estimate::whitening::{Drift, Part, Pass, Whitening, whiten};
+use crate::estimate::whitening::{Pull, Sought, fit_levels};
 use crate::observation::Observation;
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::time::Timestamp;
@@ -28,25 +28,25 @@ const DRIFTING: [usize; 2] = [0, 2];
 /// Days whose scores are held against what the noise model says of them.
 const BLOCK_S: f64 = 4.0 * 86_400.0;
 
-pub(super) type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
-pub(super) type Vector = SVector<f64, UNKNOWNS>;
+pub(crate) type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+pub(crate) type Vector = SVector<f64, UNKNOWNS>;
 
 /// Observations from the earliest to the latest, with what stays the same
 /// through the iteration.
-pub(super) struct Problem<'a> {
-    pub(super) observations: &'a [Observation],
-    pub(super) stations: Vec<Station>,
-    pub(super) prior_mean: Vector,
-    pub(super) prior_information: Matrix,
+pub(crate) struct Problem<'a> {
+    pub(crate) observations: &'a [Observation],
+    pub(crate) stations: Vec<Station>,
+    pub(crate) prior_mean: Vector,
+    pub(crate) prior_information: Matrix,
 }
 
 /// Where the iteration is.
-pub(super) struct Solution {
-    pub(super) unknowns: Unknowns,
+pub(crate) struct Solution {
+    pub(crate) unknowns: Unknowns,
     /// The reference's share in the heading at which rows are taken.
-    pub(super) fusion: f64,
+    pub(crate) fusion: f64,
     /// The prior's information there.
-    pub(super) prior_information: Matrix,
+    pub(crate) prior_information: Matrix,
 }
 
 /// How large the steps were.
@@ -75,20 +75,20 @@ impl Steps {
 }
 
 /// What the last pass says of a solution.
-pub(super) struct Judged {
+pub(crate) struct Judged {
     /// Parameters as they were at the last observation, in population units.
-    pub(super) at_last: Unknowns,
-    pub(super) information: Matrix,
-    pub(super) covariance: Matrix,
+    pub(crate) at_last: Unknowns,
+    pub(crate) information: Matrix,
+    pub(crate) covariance: Matrix,
     /// The same by the data alone.
-    pub(super) by_data: Option<Matrix>,
+    pub(crate) by_data: Option<Matrix>,
     /// What the rows would tell were their errors independent and of one degree.
-    pub(super) independent: Matrix,
-    pub(super) weights: Vec<f64>,
+    pub(crate) independent: Matrix,
+    pub(crate) weights: Vec<f64>,
 }
 
 impl<'a> Problem<'a> {
-    pub(super) fn new(observations: &'a [Observation], prior: &Prior) -> Option<Problem<'a>> {
+    pub(crate) fn new(observations: &'a [Observation], prior: &Prior) -> Option<Problem<'a>> {
         let (mean, information) = prior.in_population_units()?;
         let mut prior_mean = Vector::zeros();
         prior_mean.as_mut_slice()[..=CONSTANT].copy_from_slice(&mean);
@@ -106,7 +106,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The same ship's problem by other observations.
-    pub(super) fn by<'b>(&self, observations: &'b [Observation]) -> Problem<'b> {
+    pub(crate) fn by<'b>(&self, observations: &'b [Observation]) -> Problem<'b> {
         Problem {
             observations,
             stations: stations(observations),
@@ -117,7 +117,7 @@ impl<'a> Problem<'a> {
 
     /// The levels at a solution, sought from `levels`, and the share that the
     /// reference has by them in the heading at which rows are taken.
-    pub(super) fn levels_at(
+    pub(crate) fn levels_at(
         &self,
         solution: &Solution,
         typical: &NoiseLevels,
@@ -132,7 +132,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Gauss–Newton from a solution until it settles, and the parameters' drift then.
-    pub(super) fn descend(
+    pub(crate) fn descend(
         &self,
         mut solution: Solution,
         levels: &NoiseLevels,
@@ -151,7 +151,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The same, judged.
-    pub(super) fn settle(
+    pub(crate) fn settle(
         &self,
         mut solution: Solution,
         levels: &NoiseLevels,
@@ -257,13 +257,13 @@ impl<'a> Problem<'a> {
 
 impl Solution {
     /// What was known of parameters and constant before the data.
-    pub(super) fn prior_covariance(&self) -> Option<SMatrix<f64, 8, 8>> {
+    pub(crate) fn prior_covariance(&self) -> Option<SMatrix<f64, 8, 8>> {
         let information = self.prior_information.fixed_view::<8, 8>(0, 0);
         Some(information.into_owned().cholesky()?.inverse())
     }
 
     /// From the first observation, where drift begins, to the last.
-    pub(super) fn at_last(&self, drift: &Drift) -> Unknowns {
+    pub(crate) fn at_last(&self, drift: &Drift) -> Unknowns {
         let scale = scales();
         let mut at_last = self.unknowns;
         for (a, i) in DRIFTING.into_iter().enumerate() {

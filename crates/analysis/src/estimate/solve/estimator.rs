@@ -1,13 +1,13 @@
 //! The estimate itself: a robust start, noise levels from the data, and
 //! Gauss–Newton on whitened rows.
 
-use super::levels::{Sought, looked_at};
-use super::prior::{Prior, scales};
-use super::problem::{Matrix, Problem, Solution};
+use super::least_squares::{Matrix, Problem, Solution};
 use super::quality::{Evidence, quality};
-use super::row::{CONSTANT, USUAL_FUSION, in_own_units, plain_residual};
 use super::start::start;
-use super::untimed::{all_timed, are_times_believed, cell_of};
+use crate::estimate::prior::{Prior, scales};
+use crate::estimate::rows::{CONSTANT, USUAL_FUSION, in_own_units, plain_residual};
+use crate::estimate::undated_rows::{all_timed, are_times_believed, cell_of};
+use crate::estimate::whitening::{Sought, looked_at};
 use crate::observation::Observation;
 use binnacle_compass::model::{Caution, Covariance, Identifiable, Parameters, Quality};
 use binnacle_compass::result::NoiseLevels;

@@ -3,9 +3,9 @@
 
 use super::direction::Direction;
 use super::needle::Needle;
-use super::noise::{STATES, Step, Transition};
-use super::prior::scales;
 use super::scatter::{Scatter, White};
+use crate::estimate::noise_process::{STATES, Step, Transition};
+use crate::estimate::prior::scales;
 use crate::gyro_speed_error::northerly_speed_error_deg;
 use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;

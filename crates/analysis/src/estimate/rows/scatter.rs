@@ -43,7 +43,7 @@ impl White {
     }
 
     /// Of the difference of both references, in which the card has no part.
-    pub(super) fn of_difference(o: &Observation) -> White {
+    pub(crate) fn of_difference(o: &Observation) -> White {
         White {
             factor: (1.0 + FULL_WINDOWS / windows(o)) / (2.0 * o.weight),
             scatter: 0.0,
@@ -53,14 +53,14 @@ impl White {
 
 /// The scatter of a ship's windows so far.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Scatter {
+pub(crate) struct Scatter {
     /// Sum of squares over windows, degrees squared.
     squares: f64,
     windows: f64,
 }
 
 impl Scatter {
-    pub(super) fn new() -> Scatter {
+    pub(crate) fn new() -> Scatter {
         Scatter {
             squares: STARTING_WINDOWS * NOMINAL_DEG * NOMINAL_DEG,
             windows: STARTING_WINDOWS,
@@ -68,7 +68,7 @@ impl Scatter {
     }
 
     /// Of the row's deviation; takes the row in.
-    pub(super) fn white(&mut self, o: &Observation) -> White {
+    pub(crate) fn white(&mut self, o: &Observation) -> White {
         let windows = windows(o);
         let usual = self.squares / self.windows;
         let (square, told) = match o.spread_deg {

@@ -1,8 +1,8 @@
 //! A first fit that outliers cannot lead astray: Huber weights on rows taken
 //! for independent, their spread from the median of the residuals.
 
-use super::products::Products;
-use super::row::{Point, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row};
+use crate::estimate::products::Products;
+use crate::estimate::rows::{Point, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row};
 use crate::observation::Observation;
 use nalgebra::{SMatrix, SVector};
 

@@ -4,9 +4,10 @@
 //! The filter's gain depends on the noise alone, so that one covariance serves
 //! the residual and every column.
 
-use super::noise::{DRIFT, STATES, Transition, initial_variances};
-use super::products::Products;
-use super::row::{Row, Station, UNKNOWNS};
+use crate::estimate::noise_process::{DRIFT, STATES, Transition, initial_variances};
+use crate::estimate::products::Products;
+use crate::estimate::robust_loss::{loss_of, weight_among_many};
+use crate::estimate::rows::{Row, Station, UNKNOWNS};
 use binnacle_compass::result::NoiseLevels;
 use nalgebra::{SMatrix, SVector};
 
@@ -15,13 +16,6 @@ const SERIES: usize = (1 + UNKNOWNS).next_multiple_of(2);
 /// The same but for the last column, that of what is left of the references' usual
 /// difference: without pairs of references it is zero.
 const OF_ONE_REFERENCE: usize = UNKNOWNS;
-
-/// Innovations beyond so many standard deviations have their variance raised:
-/// large enough that Gaussian noise loses nothing worth naming.
-const DOUBTED: f64 = 2.5;
-
-/// An innovation beyond this is no noise of the kind that levels describe.
-const GROSS: f64 = 6.0;
 
 /// What one pass over the rows adds up to.
 #[derive(Clone, Debug)]
@@ -214,46 +208,6 @@ fn advance_columns(covariance: &mut [[f64; STATES]; STATES], t: &Transition) {
 fn loaded(parts: &[f64; STATES]) -> impl Iterator<Item = (usize, f64)> {
     let parts = parts.iter().copied().enumerate();
     parts.filter(|(_, part)| *part != 0.0)
-}
-
-/// The weight of an innovation by its size in standard deviations, squared: 1 up
-/// to [`DOUBTED`], then falling with the square, so that the wilder an innovation,
-/// the less it moves what is believed.
-pub(crate) fn weight(z_squared: f64) -> f64 {
-    let bound = DOUBTED * DOUBTED;
-    if z_squared <= bound {
-        1.0
-    } else {
-        bound / z_squared
-    }
-}
-
-/// The weight in a fit of many rows at once, which falls faster beyond [`GROSS`]:
-/// wild readings that are all to one side add up. It is never 0, lest a fit that
-/// began far off stayed there.
-pub(super) fn weight_among_many(z_squared: f64) -> f64 {
-    weight(z_squared) * (GROSS * GROSS / z_squared).min(1.0)
-}
-
-/// The loss whose slope is twice the weighted innovation, but no more than at
-/// [`GROSS`]: however wild a few rows are, the levels are for the others.
-pub(crate) fn loss_of(z_squared: f64) -> f64 {
-    let square = z_squared.min(GROSS * GROSS);
-    let bound = DOUBTED * DOUBTED;
-    if square <= bound {
-        square
-    } else {
-        bound * (1.0 + (square / bound).ln())
-    }
-}
-
-/// The slope of [`loss_of`].
-pub(super) fn loss_slope(z_squared: f64) -> f64 {
-    if z_squared > GROSS * GROSS {
-        0.0
-    } else {
-        weight(z_squared)
-    }
 }
 
 /// Runs the filter over all rows.

@@ -5,11 +5,11 @@
 //! loads, so that one step of arithmetic serves them all; covariances are symmetric,
 //! and only their lower triangle is kept.
 
-use super::noise::{LEVELS, STATES, Transition, initial_variances};
-use super::products::Products;
-use super::row::{Row, Station, UNKNOWNS};
-use super::scatter::White;
-use super::whiten::{loss_slope, weight_among_many};
+use crate::estimate::noise_process::{LEVELS, STATES, Transition, initial_variances};
+use crate::estimate::products::Products;
+use crate::estimate::robust_loss::{loss_slope, weight_among_many};
+use crate::estimate::rows::White;
+use crate::estimate::rows::{Row, Station, UNKNOWNS};
 use binnacle_compass::result::NoiseLevels;
 
 /// By how much a level's logarithm is nudged: far below what matters, far above
@@ -276,8 +276,8 @@ impl<const N: usize> Sums<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::row::{Point, row, stations};
-    use crate::estimate::whiten::whiten;
+    use crate::estimate::rows::{Point, row, stations};
+    use crate::estimate::whitening::whiten;
     use crate::observation::Observation;
     use binnacle_compass::angle::{CompassHeading, Deviation, Variation};
     use binnacle_compass::time::Timestamp;
