@@ -3,14 +3,14 @@
 //! product does ([`fit_robust`]).
 
 mod csv_row;
-mod headings;
-mod normal;
+mod heading_check;
+mod normal_equations;
 mod ols;
 mod paper;
 mod reference;
+mod residual_check;
 mod robust;
-mod soundness;
-mod stray;
+mod time_outliers;
 
 pub use crate::gyro_speed_error::gyro_speed_error_deg;
 pub use crate::observation::Observation;

@@ -6,8 +6,8 @@
 //! noise is held to be independent. The product's own fit is
 //! [`fit_robust`](super::fit_robust).
 
-use super::headings::check_headings;
-use super::normal::{Matrix, Vector, check_number, covariance, identifiable, invert};
+use super::heading_check::check_headings;
+use super::normal_equations::{Matrix, Vector, check_number, covariance, identifiable, invert};
 use super::robust::{check_field, is_usable};
 use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;

@@ -1,8 +1,8 @@
 //! The product's fit: exact model, residuals in angle, robust weights, noise
 //! that remembers, and a prior for what headings cannot tell.
 
-use super::headings::check_headings;
-use super::{soundness, stray};
+use super::heading_check::check_headings;
+use super::{residual_check, time_outliers};
 use crate::estimate::{Options, Prior, Rough, estimate, rough};
 use crate::observation::Observation;
 use binnacle_compass::deviation::Coefficients;
@@ -117,7 +117,7 @@ fn usable(observations: &[Observation]) -> Vec<usize> {
     let mut usable: Vec<usize> = (0..observations.len())
         .filter(|&i| is_usable(&observations[i]))
         .collect();
-    stray::leave_out_early(observations, &mut usable);
+    time_outliers::leave_out_early(observations, &mut usable);
     usable
 }
 
@@ -149,11 +149,11 @@ fn fit_usable(
     )
     .ok_or(FitError::NotConverged)?;
     let residuals = fitted.rows.iter().map(|row| row.residual_deg);
-    let caution = soundness::judge(residuals, &fitted.levels)?;
+    let caution = residual_check::judge(residuals, &fitted.levels)?;
     check_needle(&fitted.parameters, rows)?;
     let mut quality = fitted.quality;
     quality.cautions.extend(caution);
-    quality.cautions.extend(stray::long_gap(rows));
+    quality.cautions.extend(time_outliers::long_gap(rows));
 
     let mut outcomes = vec![
         RowOutcome {

@@ -1,6 +1,6 @@
 //! How gyro and satellite compass compare, and the heading of both.
 
-use super::{HeadingReading, Trust};
+use super::reading::{HeadingReading, Trust};
 use binnacle_compass::angle::{TrueHeading, wrap_180};
 use binnacle_compass::result::{FAILED_BEYOND_AT_MOST_DEG, ReferenceCheck};
 

@@ -1,5 +1,10 @@
 use super::check::{Reference, check_of, merge};
 use super::*;
+use crate::observation::Observation;
+use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation};
+use binnacle_compass::position::Position;
+use binnacle_compass::result::FitError;
+use binnacle_compass::time::Timestamp;
 
 fn heading(degrees: f64) -> TrueHeading {
     TrueHeading::new(degrees).unwrap()

@@ -6,7 +6,7 @@
 //! compass from one heading to another, and wild readings are few. Where the other
 //! reference keeps steady, too, it is the compass that swings.
 
-use super::{HeadingReading, Trust};
+use super::reading::{HeadingReading, Trust};
 use binnacle_compass::angle::{TrueHeading, wrap_180};
 
 /// So many readings in a row must be the same.

@@ -1,7 +1,8 @@
 //! Which of two references has failed: the magnetic compass has the third vote.
 
 use super::check::{centred, has_failed, median};
-use super::{HeadingReading, Trust, differences, observe};
+use super::observe::{differences, observe};
+use super::reading::{HeadingReading, Trust};
 use crate::fit::{RobustFit, RobustOptions, fit_robust};
 use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;

@@ -4,8 +4,8 @@
 //! What always holds: the usual difference is that of the days before, not of the many days
 //! that a fault may have lasted since; and readings without times are never parted.
 
-use super::HeadingReading;
 use super::check::{difference_deg, median, robust_sd};
+use super::reading::HeadingReading;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::time::Timestamp;
 use std::ops::Range;
