@@ -4,11 +4,10 @@
 //! probability under each cause. They are judgements, kept in one table so that
 //! they can be argued with (docs/science.md, §9).
 
-use super::detect::What;
+use super::event::What;
+use super::likelihood_ratio::TEMPER;
 use binnacle_compass::result::{Cause, CauseProbability};
 
-/// Leads are of models that are only nearly right: they count for this much.
-const TEMPER: f64 = 0.5;
 /// How much likelier a cause is that people reported at the time.
 const REPORTED: f64 = 100.0;
 /// Bursts longer than this are hardly a place's, shorter hardly a storm's.
@@ -114,11 +113,6 @@ const WITH_A_STAY: f64 = 0.02;
 /// not decided.
 const AGAINST: f64 = 0.02;
 const AGAINST_WHILE_OPEN: f64 = 0.5;
-
-/// The odds that a lead stands for.
-pub(crate) fn odds(nats: f64) -> f64 {
-    (TEMPER * nats).exp()
-}
 
 /// The causes of an event, the likeliest first.
 pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability> {

@@ -11,17 +11,22 @@
 //! between two references is never put down to the ship; every change says by what
 //! evidence, and the probabilities of its causes add up to one.
 
-mod bank;
-mod calls;
 mod cause;
 mod detect;
+mod detection;
+mod event;
 mod filter;
-mod large;
-mod symmetric;
-mod upset;
+mod hypotheses;
+mod hypothesis_kind;
+mod jump_models;
+mod large_step;
+mod likelihood_ratio;
+mod port_call_returns;
+mod port_calls;
 
-pub(crate) use cause::{Circumstances, causes, odds};
-pub(crate) use detect::{
-    Event, Given, Loaded, Perhaps, SAILED_SINCE, Snapshot, Unnoticed, What, at_port, detect,
-    rows_since,
-};
+pub(crate) use cause::{Circumstances, causes};
+pub(crate) use detect::detect;
+pub(crate) use detection::{Given, Loaded, Perhaps, Unnoticed};
+pub(crate) use event::{Event, Snapshot, What};
+pub(crate) use likelihood_ratio::odds;
+pub(crate) use port_calls::{SAILED_SINCE, at_port, rows_since};

@@ -1,10 +1,10 @@
 //! A filter's covariance: a symmetric matrix, of which the right upper quarter is not
 //! worked out.
 
-use super::filter::STATES;
+use super::states::STATES;
 
 /// Columns of a panel.
-pub(super) const WIDE: usize = STATES / 2;
+pub(crate) const WIDE: usize = STATES / 2;
 
 /// In two panels of columns, one after the other, each from the diagonal down: sixteen
 /// rows, and eight. The squares about the diagonal are whole.
@@ -12,10 +12,10 @@ pub(super) const WIDE: usize = STATES / 2;
 /// Loops run along rows and leave out those that a zero makes idle: so compilers work on
 /// several numbers of a row at a time, and not on several rows.
 #[derive(Clone, Debug)]
-pub(super) struct Symmetric([[f64; WIDE]; STATES + WIDE]);
+pub(crate) struct Symmetric([[f64; WIDE]; STATES + WIDE]);
 
 impl Symmetric {
-    pub(super) fn zeros() -> Symmetric {
+    pub(crate) fn zeros() -> Symmetric {
         Symmetric([[0.0; WIDE]; STATES + WIDE])
     }
 
@@ -26,19 +26,19 @@ impl Symmetric {
     }
 
     /// The same, to be changed.
-    pub(super) fn panels_mut(&mut self) -> [&mut [[f64; WIDE]]; 2] {
+    pub(crate) fn panels_mut(&mut self) -> [&mut [[f64; WIDE]]; 2] {
         let (left, right) = self.0.split_at_mut(STATES);
         [left, right]
     }
 
-    pub(super) fn at(&self, i: usize, j: usize) -> f64 {
+    pub(crate) fn at(&self, i: usize, j: usize) -> f64 {
         let (i, j) = (i.max(j), i.min(j));
         let panel = j / WIDE;
         self.panels()[panel][i - panel * WIDE][j % WIDE]
     }
 
     /// Makes this one's element, and the one mirrored, a value.
-    pub(super) fn set(&mut self, i: usize, j: usize, value: f64) {
+    pub(crate) fn set(&mut self, i: usize, j: usize, value: f64) {
         let (i, j) = (i.max(j), i.min(j));
         let panel = j / WIDE;
         let (row, column) = (i - panel * WIDE, j % WIDE);
@@ -49,12 +49,12 @@ impl Symmetric {
         }
     }
 
-    pub(super) fn add(&mut self, i: usize, j: usize, value: f64) {
+    pub(crate) fn add(&mut self, i: usize, j: usize, value: f64) {
         self.set(i, j, self.at(i, j) + value);
     }
 
     /// The product with a vector.
-    pub(super) fn times(&self, vector: &[f64; STATES]) -> [f64; STATES] {
+    pub(crate) fn times(&self, vector: &[f64; STATES]) -> [f64; STATES] {
         let mut product = [0.0; STATES];
         for (panel, rows) in self.panels().into_iter().enumerate() {
             let vector = &vector[panel * WIDE..];
@@ -80,7 +80,7 @@ impl Symmetric {
     }
 
     /// Takes off a vector's products with itself, times a factor.
-    pub(super) fn take_off(&mut self, vector: &[f64; STATES], factor: f64) {
+    pub(crate) fn take_off(&mut self, vector: &[f64; STATES], factor: f64) {
         for (panel, rows) in self.panels_mut().into_iter().enumerate() {
             let vector = &vector[panel * WIDE..];
             let own: [f64; WIDE] = std::array::from_fn(|column| vector[column]);
@@ -99,7 +99,7 @@ impl Symmetric {
 
 /// The product of two vectors as long as the shorter: in four sums side by side, which
 /// need not wait for one another.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     for (a, b) in a.as_chunks::<4>().0.iter().zip(b.as_chunks::<4>().0) {
         for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {

@@ -1,9 +1,11 @@
 //! When a change happened, to the row.
 
-use super::{Event, GAP_S, Search, What, earlier};
-use crate::change::bank::Kind;
+use super::GAP_S;
+use super::state::{Search, earlier};
+use crate::change::event::{Event, What};
 use crate::change::filter::{Filter, Measurement};
-use crate::change::upset::{misled, upset};
+use crate::change::hypothesis_kind::Kind;
+use crate::change::jump_models::{misled, upset};
 use crate::estimate::Unknowns;
 
 /// Times tried for the date of a change, in each of two rounds.
@@ -20,16 +22,16 @@ const CALL_ROWS: usize = 144;
 const CALL_NATS: f64 = 8.0;
 
 /// A change with its date.
-pub(super) struct Dated {
-    pub(super) first: usize,
-    pub(super) between: (usize, usize),
-    pub(super) kind: Kind,
+pub(crate) struct Dated {
+    pub(crate) first: usize,
+    pub(crate) between: (usize, usize),
+    pub(crate) kind: Kind,
     /// The filter just before it, and the one that knew of it, now.
-    pub(super) before: Filter,
-    pub(super) filter: Filter,
+    pub(crate) before: Filter,
+    pub(crate) filter: Filter,
     /// Whether it is dated at a call though the likeliest row is of days after it, or comes
     /// after something that passed since.
-    pub(super) is_late: bool,
+    pub(crate) is_late: bool,
 }
 
 /// Where rows before a change are linearised that led to `after`: before a large step at the
@@ -43,7 +45,7 @@ fn at_before(kind: Kind, origin: &Filter, after: &Unknowns) -> Unknowns {
 
 impl Search<'_> {
     /// When it happened, to the row.
-    pub(super) fn date(&self, winner: usize, kind: Kind, k: usize) -> Dated {
+    pub(crate) fn date(&self, winner: usize, kind: Kind, k: usize) -> Dated {
         let spawns = &self.bank.spawns;
         let origin = &spawns[winner.saturating_sub(1)];
         let until = spawns.get(winner + 1).map_or(k, |s| s.at);

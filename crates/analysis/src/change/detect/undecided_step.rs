@@ -3,10 +3,10 @@
 //! What always holds: it is no event; until the rows tell, the band is to hold both the ship
 //! that she was and the one that she may be.
 
-use super::{Leads, Search};
-use crate::change::bank::Kind;
+use super::state::{Leads, Search};
 use crate::change::filter::Filter;
-use crate::change::upset::{WILD_DEG, struck};
+use crate::change::hypothesis_kind::Kind;
+use crate::change::jump_models::{WILD_DEG, struck};
 use crate::estimate::{POPULATION_SD, unseen_sd_nt};
 use std::ops::Range;
 
@@ -28,7 +28,7 @@ const NOMINAL_H_NT: f64 = 24_000.0;
 
 impl Search<'_> {
     /// What the step that may have been adds to the variance of bx and by, nT².
-    pub(super) fn open_nt2(&self, leads: &Leads) -> Option<f64> {
+    pub(crate) fn open_nt2(&self, leads: &Leads) -> Option<f64> {
         let last = self.observations.len().checked_sub(1)?;
         let others = leads.iter().flatten().map(|lead| lead.nats);
         let likeliest = others.fold(0.0, f64::max);

@@ -3,11 +3,13 @@
 //! What always holds: it is no event and moves no date; it is only to make the band as
 //! wide as what is not known.
 
-use super::{Event, Leads, Search, What};
-use crate::change::bank::Kind;
-use crate::change::cause::odds;
+use super::state::{Leads, Search};
+use crate::change::detection::Unnoticed;
+use crate::change::event::{Event, What};
 use crate::change::filter::Filter;
-use crate::change::upset::upset;
+use crate::change::hypothesis_kind::Kind;
+use crate::change::jump_models::upset;
+use crate::change::likelihood_ratio::odds;
 
 /// How likely a ship is another magnet after a port call, a reference off, and the compass
 /// astray for hours by what passes.
@@ -18,36 +20,14 @@ const ASTRAY: f64 = 0.03;
 const SOON_S: f64 = 3.0 * 86_400.0;
 /// Calls that are asked about: the last few among so many rows.
 const ROWS: usize = 288;
-const CALLS: usize = 3;
 /// Odds beyond this are certainty.
 const MOST: f64 = 1e9;
-
-/// A step at a port call that may have been.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Unnoticed {
-    /// The first row after it.
-    pub(crate) first: usize,
-    pub(crate) probability: f64,
-}
-
-/// The last port calls, each with its first row after it and the filter there.
-#[derive(Default)]
-pub(super) struct Ports(Vec<(usize, Filter)>);
-
-impl Ports {
-    pub(super) fn call(&mut self, at: usize, now: &Filter) {
-        if self.0.len() == CALLS {
-            self.0.remove(0);
-        }
-        self.0.push((at, now.clone()));
-    }
-}
 
 impl Search<'_> {
     /// The last port call, if that was soon before row `row`, and the ship as she sailed from
     /// it: cargo that was noticed at sea was on board by then. None where something else that
     /// lasts was told since, `earlier` being all that has been.
-    pub(super) fn sailed(&self, row: usize, earlier: &[Event]) -> Option<(usize, &Filter)> {
+    pub(crate) fn sailed(&self, row: usize, earlier: &[Event]) -> Option<(usize, &Filter)> {
         let (at, filter) = self.ports.0.iter().rfind(|(at, _)| *at <= row)?;
         let is_news = |event: &Event| event.told >= *at && event.what != What::Burst;
         let times = self.observations[*at].time.zip(self.observations[row].time);
@@ -57,7 +37,7 @@ impl Search<'_> {
 
     /// The likeliest of the last port calls for a step that has not been told, and how
     /// likely one at any of them is; `returned` is how likely she is herself again.
-    pub(super) fn unnoticed(&self, leads: &Leads, returned: f64) -> Option<Unnoticed> {
+    pub(crate) fn unnoticed(&self, leads: &Leads, returned: f64) -> Option<Unnoticed> {
         let last = self.observations.len().checked_sub(1)?;
         let earliest = last.saturating_sub(ROWS).max(self.first());
         // A filter that did not know of what was told since is of no use.

@@ -1,24 +1,19 @@
 //! Disturbances that the ship alone cannot be sure of: other ships may speak for them.
 
-use super::{Leads, Search, What};
-use crate::change::bank::{BURST_S, Kind, Lead};
+use super::state::Faint;
+use super::state::{Leads, Search};
+use crate::change::event::What;
+use crate::change::hypotheses::{BURST_S, Lead};
+use crate::change::hypothesis_kind::Kind;
 
 /// A disturbance that leads by this is noted, nats.
 const FAINT_NATS: f64 = 7.0;
 /// What has not led by more for so many rows is over.
 const OVER_ROWS: usize = 36;
 
-/// One that has not been told.
-pub(super) struct Faint {
-    first: usize,
-    /// The row at which it led most.
-    last: usize,
-    leads: Leads,
-}
-
 impl Search<'_> {
     /// Keeps in mind what leads by too little to be told.
-    pub(super) fn note_faint(&mut self, k: usize, leads: Leads, over_lasting: f64) {
+    pub(crate) fn note_faint(&mut self, k: usize, leads: Leads, over_lasting: f64) {
         // What is wild and faint is a few wild readings.
         let is_news = |lead: &Lead| self.burst.is_none() && lead.kind != Kind::Wild;
         let Some(lead) = leads[Kind::Burst as usize].filter(is_news) else {
@@ -29,7 +24,7 @@ impl Search<'_> {
             .as_ref()
             .and_then(|f| f.leads[Kind::Burst as usize]);
         let is_more = most.is_none_or(|most| lead.nats > most.nats);
-        if lead.nats > FAINT_NATS && over_lasting > super::judge::BURST_OVER_STEP && is_more {
+        if lead.nats > FAINT_NATS && over_lasting > super::decision::BURST_OVER_STEP && is_more {
             let first = self.began(lead);
             if self.same_burst(first).is_none() && self.has_time_left(first, k) {
                 let last = k;
@@ -39,7 +34,7 @@ impl Search<'_> {
     }
 
     /// Whether a burst of row `first` may go on still.
-    pub(super) fn has_time_left(&self, first: usize, k: usize) -> bool {
+    pub(crate) fn has_time_left(&self, first: usize, k: usize) -> bool {
         let time = |row: usize| self.observations[row].time;
         let age_s = time(k)
             .zip(time(first))
@@ -48,7 +43,7 @@ impl Search<'_> {
     }
 
     /// Puts it among the events, unconfirmed, once it is over or the rows are.
-    pub(super) fn settle_faint(&mut self, k: usize, is_last: bool) {
+    pub(crate) fn settle_faint(&mut self, k: usize, is_last: bool) {
         let is_over = |faint: &mut Faint| is_last || k > faint.last + OVER_ROWS;
         let Some(faint) = self.faint.take_if(is_over) else {
             return;

@@ -4,11 +4,12 @@
 //! followed beside the filter that knows of the step, over the same rows; what is
 //! withdrawn stays so, whatever comes later, and its place in the list of events is kept.
 
-use super::date::Dated;
-use super::{Leads, Search, What};
-use crate::change::bank::Kind;
-use crate::change::filter::Filter;
-use crate::change::upset::calmed;
+use super::dating::Dated;
+use super::state::{Doubt, Unsettled};
+use super::state::{Leads, Search};
+use crate::change::event::What;
+use crate::change::hypothesis_kind::Kind;
+use crate::change::jump_models::calmed;
 
 /// That there was no step must be likelier by this than that there was one, nats, after so
 /// many rows: half a day of sailing.
@@ -21,21 +22,9 @@ const HOPELESS_AT_FIRST_NATS: f64 = 45.0;
 /// While what passes leads by this, the rows tell nothing of the ship, nats.
 const ASTRAY_NATS: f64 = 3.0;
 
-/// That the last step may be none.
-pub(super) struct Doubt {
-    /// The step's place in the list of events.
-    event: usize,
-    /// The row that told.
-    told: usize,
-    /// Where the stretch of learning began before it was told.
-    learn_from: usize,
-    /// Of a ship to whom nothing happened, and by whom something passed.
-    pub(super) without: Vec<Filter>,
-}
-
 impl Search<'_> {
     /// The doubt of a step that was dated just now, and is the last event.
-    pub(super) fn doubt_of(&self, k: usize, dated: &Dated, leads: &Leads) -> Doubt {
+    pub(crate) fn doubt_of(&self, k: usize, dated: &Dated, leads: &Leads) -> Doubt {
         let (before, rows) = (&dated.before, dated.first..k + 1);
         let nothing = self.run(before.clone(), rows, &before.unknowns());
         let passed = leads[Kind::Burst as usize].and_then(|lead| {
@@ -54,7 +43,7 @@ impl Search<'_> {
     }
 
     /// It reads the row that the filter has read.
-    pub(super) fn take_in_doubt(&mut self, k: usize) {
+    pub(crate) fn take_in_doubt(&mut self, k: usize) {
         let Some(mut doubt) = self.doubt.take() else {
             return;
         };
@@ -76,7 +65,7 @@ impl Search<'_> {
     }
 
     /// Withdraws the last step, if the rows since are likelier without it.
-    pub(super) fn settle_doubt(&mut self, k: usize, leads: &Leads) -> bool {
+    pub(crate) fn settle_doubt(&mut self, k: usize, leads: &Leads) -> bool {
         let of_kind = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
         if self.burst.is_some() || of_kind(Kind::Burst) > ASTRAY_NATS {
             return false;
@@ -98,13 +87,13 @@ impl Search<'_> {
         event.confirmed = false;
         event.withdrawn = Some(k);
         self.calls.forget(doubt.event);
-        self.unsettled = super::Unsettled::default();
+        self.unsettled = Unsettled::default();
         self.take_over(k, doubt.without.swap_remove(place), doubt.learn_from);
         true
     }
 
     /// Whether an event is a step that still stands.
-    pub(super) fn is_standing_step(&self, event: usize) -> bool {
+    pub(crate) fn is_standing_step(&self, event: usize) -> bool {
         let event = &self.events[event];
         event.what == What::Step && event.withdrawn.is_none()
     }

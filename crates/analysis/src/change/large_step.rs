@@ -4,9 +4,10 @@
 //! that small changes are judged as if there were none; each reads every row linearised at
 //! the ship that it supposes, for deviation is not linear in a large step.
 
-use super::bank::{Bank, Kind, Spawn};
 use super::filter::{Filter, Measurement, Noise};
-use super::upset::upset;
+use super::hypotheses::{Bank, Spawn};
+use super::hypothesis_kind::Kind;
+use super::jump_models::upset;
 use crate::estimate::{USUAL_FUSION, Unknowns};
 
 /// A large step is supposed once a reading was further astray than this, degrees where H is
@@ -27,7 +28,7 @@ const WILD_Z_SQUARED: f64 = 9.0;
 /// The share that the reference has in the heading at which rows are taken: all of it for a
 /// ship so strong a magnet that her compass may turn several times as fast as she does,
 /// for there what the compass has in it would explain whatever it shows.
-pub(super) fn fusion(ship: &Unknowns) -> f64 {
+pub(crate) fn fusion(ship: &Unknowns) -> f64 {
     if ship[0].hypot(ship[2]) > STRONG {
         1.0
     } else {
@@ -37,7 +38,7 @@ pub(super) fn fusion(ship: &Unknowns) -> f64 {
 
 /// The row linearised at the ship that `filter` takes her for once it has read it, where
 /// that is far from the ship before.
-pub(super) fn relinearised(
+pub(crate) fn relinearised(
     filter: &Filter,
     noise: &Noise,
     measure: impl Fn(&Unknowns) -> Measurement,
@@ -59,7 +60,7 @@ pub(super) fn relinearised(
 impl Bank {
     /// Takes row `at` in, which the other copies have taken in before, where a large step
     /// is supposed; `measure` is of any row at any ship.
-    pub(super) fn take_large(
+    pub(crate) fn take_large(
         &mut self,
         at: usize,
         noise: &Noise,

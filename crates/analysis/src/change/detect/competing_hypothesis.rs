@@ -5,15 +5,16 @@
 //! first; what explains the rows since far better takes its place, once, and it stays
 //! one change.
 
-use super::anew::ANEW_NATS;
-use super::date::Dated;
-use super::event::{Event, snapshot, take_out};
-use super::unsettled::Unsettled;
-use super::{Leads, Search, What};
-use crate::change::bank::Kind;
-use crate::change::calls::{Base, Began};
+use super::dating::Dated;
+use super::state::Rival;
+use super::state::{Leads, Search, Unsettled};
+use super::step_refit::ANEW_NATS;
+use crate::change::event::{Event, What, snapshot, take_out};
 use crate::change::filter::{CONSTANT_STATE, Filter, Measurement};
-use crate::change::upset::misaligned;
+use crate::change::hypotheses::Spawn;
+use crate::change::hypothesis_kind::Kind;
+use crate::change::jump_models::misaligned;
+use crate::change::port_call_returns::{Base, Began};
 
 /// Standard deviation of the zero's step, degrees, unless the first reading after it is
 /// further off.
@@ -42,23 +43,9 @@ const SECTOR_ROWS: usize = 3;
 const HOPELESS_NATS: f64 = 20.0;
 const OLDEST: usize = 8640;
 
-/// Another reading of a step.
-pub(super) struct Rival {
-    what: What,
-    /// The step's place in the list of events.
-    event: usize,
-    /// What bx and by drift by beyond their usual.
-    drift: f64,
-    first: usize,
-    between: (usize, usize),
-    filter: Filter,
-    /// The filter before it.
-    before: Filter,
-}
-
 impl Search<'_> {
     /// The rivals of a step that was dated just now.
-    pub(super) fn rivals_of(&self, k: usize, dated: &Dated) -> Vec<Rival> {
+    pub(crate) fn rivals_of(&self, k: usize, dated: &Dated) -> Vec<Rival> {
         let creeping = CREEPS
             .iter()
             .filter_map(|drift| self.creeping(k, dated, *drift));
@@ -103,7 +90,7 @@ impl Search<'_> {
         let measured: Vec<Measurement> = rows
             .map(|row| self.measure_drifting(row, &at, drift))
             .collect();
-        let run = |(place, spawn): (usize, &crate::change::bank::Spawn)| {
+        let run = |(place, spawn): (usize, &Spawn)| {
             let mut filter = spawn.origin().clone();
             for m in &measured[spawn.at - oldest..] {
                 filter.take(m, &self.noise, None);
@@ -130,7 +117,7 @@ impl Search<'_> {
     }
 
     /// They read the row that the filter has read.
-    pub(super) fn take_in_rivals(&mut self, k: usize) {
+    pub(crate) fn take_in_rivals(&mut self, k: usize) {
         let mut rivals = std::mem::take(&mut self.rivals);
         for rival in &mut rivals {
             let at = rival.filter.unknowns();
@@ -144,7 +131,7 @@ impl Search<'_> {
 
     /// Puts the likeliest rival in the place of the last step, if it explains the rows
     /// far better and no less well than another step would.
-    pub(super) fn settle_rivals(&mut self, k: usize, leads: &Leads) -> bool {
+    pub(crate) fn settle_rivals(&mut self, k: usize, leads: &Leads) -> bool {
         let of_kind = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
         let (step, burst) = (of_kind(Kind::Step), of_kind(Kind::Burst));
         // What drifts may well have come back: that she did is simpler.
@@ -258,7 +245,7 @@ impl Search<'_> {
 
     /// By how much it is likelier that the zero moved than that the ship did, for each step of
     /// which that is open.
-    pub(super) fn note_zeros(&mut self) {
+    pub(crate) fn note_zeros(&mut self) {
         for rival in self.rivals.iter().filter(|r| r.what == What::Alignment) {
             let nats = rival.filter.log_likelihood - self.null.log_likelihood;
             if let Some(event) = self.events.get_mut(rival.event) {
@@ -280,7 +267,7 @@ impl Search<'_> {
     }
 
     /// What had been taken for further steps was the same.
-    pub(super) fn forget_later_steps(&mut self, of: usize) {
+    pub(crate) fn forget_later_steps(&mut self, of: usize) {
         let is_gone = |place: usize, event: &Event| match event.what {
             What::Step => place > of,
             What::Return(step) => step >= of && self.events[step].what == What::Step,
@@ -309,7 +296,7 @@ impl Search<'_> {
     }
 
     /// What the filter gained by being told of a burst, its rivals would have gained, too.
-    pub(super) fn credit_rivals(&mut self, kind: Kind) {
+    pub(crate) fn credit_rivals(&mut self, kind: Kind) {
         let gained = self.bank.lead(kind, &self.null).map_or(0.0, |l| l.nats);
         let rivals = self.rivals.iter_mut().map(|rival| &mut rival.filter);
         let doubts = self.doubt.iter_mut().flat_map(|doubt| &mut doubt.without);

@@ -3,8 +3,8 @@
 //! What always holds: what is upset is known less afterwards, never better, but for what
 //! is again as it was known to be before.
 
-use super::bank::Kind;
 use super::filter::{Burst, CONSTANT_STATE, Filter, Measurement, Noise, OFFSET, STATES, VARIATION};
+use super::hypothesis_kind::Kind;
 use crate::estimate::{OFFSET_SD_DEG, POPULATION_SD};
 use binnacle_compass::model::Parameters;
 use binnacle_compass::ship::PARAMETERS;
@@ -24,14 +24,14 @@ const REFERENCE_DEG: f64 = 5.0;
 const BURST_DEG: f64 = 1.2;
 const BURST_MEMORY_S: f64 = 3600.0;
 /// A compass that is further astray than this, degrees where H is 24 µT, may go wild.
-pub(super) const WILD_DEG: f64 = 3.5;
+pub(crate) const WILD_DEG: f64 = 3.5;
 /// How far a ship that is herself again may differ from what she was, in
 /// population units.
 const SLACK: f64 = 0.06;
 
 /// What something was before it changed, and may become again.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Earlier<'a> {
+pub(crate) enum Earlier<'a> {
     Ship(&'a Filter),
     Reference(&'a Filter),
     /// The compass's own zero.
@@ -40,7 +40,7 @@ pub(super) enum Earlier<'a> {
 
 impl Earlier<'_> {
     /// The filter with that as it was.
-    pub(super) fn again(self, now: &Filter) -> Filter {
+    pub(crate) fn again(self, now: &Filter) -> Filter {
         match self {
             Earlier::Ship(before) => set_back(now, before),
             Earlier::Reference(before) => mended(now, before, &[CONSTANT_STATE, OFFSET]),
@@ -54,13 +54,13 @@ impl Earlier<'_> {
     }
 }
 
-pub(super) const BURST: Burst = Burst {
+pub(crate) const BURST: Burst = Burst {
     variance: BURST_DEG * BURST_DEG,
     memory_s: BURST_MEMORY_S,
 };
 
 /// The filter with that having happened just now, by how much not being known.
-pub(super) fn upset(now: &Filter, kind: Kind) -> Filter {
+pub(crate) fn upset(now: &Filter, kind: Kind) -> Filter {
     // All else sets in as it goes on: within its memory, not at once.
     match kind {
         Kind::Step => stepped(now, STEP),
@@ -74,7 +74,7 @@ pub(super) fn upset(now: &Filter, kind: Kind) -> Filter {
 }
 
 /// The filter of a ship that may have been struck by far harder than she is as a rule.
-pub(super) fn struck(now: &Filter) -> Filter {
+pub(crate) fn struck(now: &Filter) -> Filter {
     stepped(now, LARGE)
 }
 
@@ -97,7 +97,7 @@ fn stepped(now: &Filter, permanent: f64) -> Filter {
 /// their mean; the satellite compass's moves them in opposite senses; alone, either is
 /// the constant's. The step may be as large as the reading is astray: what is believed
 /// to be impossible is never learnt.
-pub(super) fn misled(now: &Filter, next: &Measurement, which: Kind) -> Filter {
+pub(crate) fn misled(now: &Filter, next: &Measurement, which: Kind) -> Filter {
     let mut copy = now.clone();
     let size = now.astray_deg(next).max(REFERENCE_DEG);
     let constant = if next.difference.is_some() {
@@ -120,7 +120,7 @@ pub(super) fn misled(now: &Filter, next: &Measurement, which: Kind) -> Filter {
 
 /// The filter with the compass's zero having moved so that the constant is about another by
 /// `moved_deg`, where rows are to be linearised; how far, is not known but for its size.
-pub(super) fn misaligned(now: &Filter, moved_deg: f64, size_deg: f64) -> Filter {
+pub(crate) fn misaligned(now: &Filter, moved_deg: f64, size_deg: f64) -> Filter {
     let mut copy = now.clone();
     copy.mean = turned(now, moved_deg);
     let [less, more] = [-1.0, 1.0].map(|by| turned(now, moved_deg + by));
@@ -168,7 +168,7 @@ fn mended(now: &Filter, before: &Filter, lasting: &[usize]) -> Filter {
 }
 
 /// The filter with the ship's own parameters as `base` had them.
-pub(super) fn set_back(now: &Filter, base: &Filter) -> Filter {
+pub(crate) fn set_back(now: &Filter, base: &Filter) -> Filter {
     let mut copy = now.clone();
     copy.mean[..PARAMETERS].copy_from_slice(&base.mean[..PARAMETERS]);
     for i in 0..PARAMETERS {
@@ -189,7 +189,7 @@ pub(super) fn set_back(now: &Filter, base: &Filter) -> Filter {
 }
 
 /// A burst in which the furthest reading was so far astray: a wild one is as large.
-pub(super) fn burst_of(astray_deg: f64) -> Burst {
+pub(crate) fn burst_of(astray_deg: f64) -> Burst {
     let deg = if astray_deg > WILD_DEG {
         astray_deg
     } else {
@@ -203,7 +203,7 @@ pub(super) fn burst_of(astray_deg: f64) -> Burst {
 
 /// The filter with the variation as if it had never been astray: what swung wildly is
 /// itself again at once.
-pub(super) fn calmed(now: &Filter, noise: &Noise) -> Filter {
+pub(crate) fn calmed(now: &Filter, noise: &Noise) -> Filter {
     let mut copy = now.clone();
     copy.mean[VARIATION] = 0.0;
     for j in 0..STATES {

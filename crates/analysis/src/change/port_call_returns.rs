@@ -5,7 +5,8 @@
 //! and what has become unlikely is given up, so that the work a row is bounded.
 
 use super::filter::{Filter, Measurement, Noise};
-use super::upset::set_back;
+use super::jump_models::set_back;
+use super::likelihood_ratio::TEMPER;
 use crate::estimate::Unknowns;
 use binnacle_compass::time::Timestamp;
 
@@ -14,8 +15,6 @@ const MOST: usize = 4;
 const BASES: usize = 3;
 /// A return that trails by more than this is given up, nats.
 const HOPELESS_NATS: f64 = 16.0;
-/// Leads are of models that are only nearly right: they count for this much.
-const TEMPER: f64 = 0.5;
 /// How likely a ship is to become herself again at a port call after a change at sea.
 const RETURN_AFTER_SEA: f64 = 0.01;
 /// A change that began at a port call is cargo with this probability; little cargo is noticed
@@ -38,7 +37,7 @@ const SAID_NOTICED_AT_SEA: f64 = 0.7;
 
 /// What the logbook tells of cargo at a port call.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Said {
+pub(crate) enum Said {
     Nothing,
     /// Cargo that had been loaded not before a time was discharged, and none stayed.
     Discharged {
@@ -51,7 +50,7 @@ pub(super) enum Said {
 }
 
 /// Where a step happened, as far as the rows tell.
-pub(super) enum Began {
+pub(crate) enum Began {
     AtPort,
     /// At sea, so soon after cargo came on board by the logbook that it may be that.
     SaidLoaded,
@@ -64,15 +63,15 @@ pub(super) enum Began {
 }
 
 /// The ship as she was before a step.
-pub(super) struct Base {
+pub(crate) struct Base {
     /// The step's place in the list of events.
-    pub(super) event: usize,
-    pub(super) filter: Filter,
-    pub(super) began: Began,
+    pub(crate) event: usize,
+    pub(crate) filter: Filter,
+    pub(crate) began: Began,
     /// When the step happened at the latest.
-    pub(super) latest: Option<Timestamp>,
+    pub(crate) latest: Option<Timestamp>,
     /// Port calls since.
-    pub(super) calls: i32,
+    pub(crate) calls: i32,
 }
 
 impl Base {
@@ -90,17 +89,17 @@ impl Base {
     }
 
     /// What began at sea may end there.
-    pub(super) fn began_at_port(&self) -> bool {
+    pub(crate) fn began_at_port(&self) -> bool {
         matches!(self.began, Began::AtPort)
     }
 
     /// Whether it came on board with cargo, as far as logbook and rows tell.
-    pub(super) fn came_on_board(&self) -> bool {
+    pub(crate) fn came_on_board(&self) -> bool {
         matches!(self.began, Began::AtPort | Began::SaidLoaded)
     }
 
     /// The ship without what changed her.
-    pub(super) fn unladen(&self) -> &Filter {
+    pub(crate) fn unladen(&self) -> &Filter {
         match &self.began {
             Began::SoonAfter(sailed) => sailed,
             _ => &self.filter,
@@ -124,29 +123,29 @@ struct Return {
 
 /// A return that may have been.
 #[derive(Clone, Debug)]
-pub(super) struct Candidate {
+pub(crate) struct Candidate {
     /// The step that it would be the end of.
-    pub(super) event: usize,
+    pub(crate) event: usize,
     /// The first row after it.
-    pub(super) at: usize,
+    pub(crate) at: usize,
     /// By how much it is likelier than none by the rows alone.
-    pub(super) nats: f64,
+    pub(crate) nats: f64,
     /// How likely the ship is again what she was before that step, at whatever call, and how
     /// likely any return is.
-    pub(super) probability: f64,
-    pub(super) any: f64,
-    pub(super) filter: Filter,
+    pub(crate) probability: f64,
+    pub(crate) any: f64,
+    pub(crate) filter: Filter,
 }
 
 #[derive(Default)]
-pub(super) struct Calls {
+pub(crate) struct Calls {
     /// From the earliest step to the latest.
-    pub(super) bases: Vec<Base>,
+    pub(crate) bases: Vec<Base>,
     calls: Vec<Call>,
 }
 
 impl Calls {
-    pub(super) fn step(&mut self, base: Base) {
+    pub(crate) fn step(&mut self, base: Base) {
         if self.bases.len() == BASES {
             // The first is the ship without any cargo, and stays.
             self.bases.remove(1);
@@ -156,7 +155,7 @@ impl Calls {
 
     /// The ship lay in port before row `at`; `now` is the filter there, and the
     /// bases are those of steps before `until`, a place in the list of events.
-    pub(super) fn call(&mut self, at: usize, now: &Filter, until: usize, said: Said) {
+    pub(crate) fn call(&mut self, at: usize, now: &Filter, until: usize, said: Said) {
         let unladen = match said {
             Said::Discharged { loaded, at_port } => self.before_loading(loaded, at_port),
             _ => None,
@@ -207,7 +206,7 @@ impl Calls {
     }
 
     /// Takes in a row, linearised at what each return has of the ship.
-    pub(super) fn take(
+    pub(crate) fn take(
         &mut self,
         measure: impl Fn(&Unknowns) -> Measurement,
         noise: &Noise,
@@ -225,7 +224,7 @@ impl Calls {
     }
 
     /// The same for calls at row `first` and later, which are being retraced.
-    pub(super) fn take_since(
+    pub(crate) fn take_since(
         &mut self,
         first: usize,
         measure: impl Fn(&Unknowns) -> Measurement,
@@ -242,7 +241,7 @@ impl Calls {
     /// The likeliest return. `rival` is by how much the likeliest passing disturbance leads;
     /// while one goes on that was told, `is_astray`, the rows speak for no return, but not
     /// against one either, for both may be.
-    pub(super) fn likeliest(
+    pub(crate) fn likeliest(
         &self,
         null: &Filter,
         rival: f64,
@@ -288,7 +287,7 @@ impl Calls {
 
     /// A reference's error changed, or is again what it was: `now` does that to each return,
     /// and each is likelier by what the filter gained by it.
-    pub(super) fn change_reference(&mut self, gained: f64, now: impl Fn(&Filter) -> Filter) {
+    pub(crate) fn change_reference(&mut self, gained: f64, now: impl Fn(&Filter) -> Filter) {
         let returns = self.calls.iter_mut().flat_map(|call| &mut call.returns);
         for back in returns {
             back.filter = now(&back.filter);
@@ -299,7 +298,7 @@ impl Calls {
     /// The filter, `null`, is likelier by `gained` now that it knows of a disturbance that
     /// passed. So would a return be, but by no more than that it leads no longer: what it led
     /// by may be what the disturbance explains.
-    pub(super) fn credit(&mut self, null: &Filter, gained: f64) {
+    pub(crate) fn credit(&mut self, null: &Filter, gained: f64) {
         let returns = self.calls.iter_mut().flat_map(|call| &mut call.returns);
         for back in returns {
             let led = back.filter.log_likelihood - null.log_likelihood;
@@ -310,7 +309,7 @@ impl Calls {
 
     /// The ship is as she was before `event`, or it was no step of hers: later ones are of the
     /// past.
-    pub(super) fn forget(&mut self, event: usize) {
+    pub(crate) fn forget(&mut self, event: usize) {
         self.bases.retain(|base| base.event < event);
         self.calls.clear();
     }

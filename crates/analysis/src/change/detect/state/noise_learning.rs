@@ -12,18 +12,18 @@ const LEARN_DAYS: [f64; 3] = [10.0, 30.0, 90.0];
 
 /// What a stretch of rows told.
 #[derive(Clone, Copy)]
-pub(super) struct Learnt {
-    pub(super) levels: NoiseLevels,
-    pub(super) noise: Noise,
-    pub(super) unknowns: Unknowns,
+pub(crate) struct Learnt {
+    pub(crate) levels: NoiseLevels,
+    pub(crate) noise: Noise,
+    pub(crate) unknowns: Unknowns,
     /// Rows that it was of.
-    pub(super) until: usize,
+    pub(crate) until: usize,
 }
 
 impl Learnt {
     /// What was known `before`, or else from the first days that suffice: what happened in
     /// them would be learnt with them.
-    pub(super) fn first(
+    pub(crate) fn first(
         observations: &[Observation],
         prior: &Prior,
         before: Option<&NoiseLevels>,
@@ -48,7 +48,7 @@ impl Learnt {
     }
 
     /// From `rows`, beginning with the levels learnt before.
-    pub(super) fn of(
+    pub(crate) fn of(
         observations: &[Observation],
         rows: std::ops::Range<usize>,
         prior: &Prior,
@@ -82,17 +82,17 @@ fn noise(levels: &NoiseLevels) -> Noise {
 
 /// When levels are learnt again.
 #[derive(Clone, Copy)]
-pub(super) struct Lesson {
+pub(crate) struct Lesson {
     /// At this row.
-    pub(super) at: usize,
+    pub(crate) at: usize,
     /// From so many days.
-    pub(super) days: f64,
+    pub(crate) days: f64,
 }
 
 impl Lesson {
     /// The next after row `k`, of at least so many days since row `from`; one that
     /// never comes when there is none.
-    pub(super) fn next(observations: &[Observation], from: usize, k: usize, days: f64) -> Lesson {
+    pub(crate) fn next(observations: &[Observation], from: usize, k: usize, days: f64) -> Lesson {
         let long = LEARN_DAYS.iter().filter(|long| **long >= days);
         let mut lessons = long.map(|&days| Lesson {
             at: rows_within(observations, from, days),

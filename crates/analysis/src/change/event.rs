@@ -1,23 +1,9 @@
-//! What the search is told, and what it tells.
+//! Events that the detector found among the rows.
 
-use super::{Loaded, Unnoticed};
-use crate::change::filter::{CONSTANT_STATE, Filter};
-use crate::estimate::{POPULATION_SD, Prior};
+use super::filter::{CONSTANT_STATE, Filter};
+use crate::estimate::POPULATION_SD;
 use binnacle_compass::model::{Covariance, Parameters};
-use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::ship::PARAMETERS;
-use binnacle_compass::time::Timestamp;
-
-/// What the search is told beside the rows.
-pub(crate) struct Given<'a> {
-    pub(crate) prior: &'a Prior,
-    /// The sizes of noise as they were before the rows, where that is known.
-    pub(crate) levels: Option<&'a NoiseLevels>,
-    /// Times at which people say that something happened.
-    pub(crate) reported: &'a [Timestamp],
-    /// What people say of cargo that moves the compass.
-    pub(crate) cargo: &'a [Loaded],
-}
 
 /// The ship's seven parameters as a filter had them.
 #[derive(Clone, Debug)]
@@ -82,7 +68,7 @@ pub(crate) struct Event {
 
 impl Event {
     /// What was told as the ship's or her compass's was gone again before row `end`.
-    pub(super) fn pass(&mut self, end: usize) {
+    pub(crate) fn pass(&mut self, end: usize) {
         let [step, reference, burst, back] = self.leads;
         self.what = What::Burst;
         self.last = Some(end.saturating_sub(1).max(self.first));
@@ -94,7 +80,7 @@ impl Event {
 
 /// Takes those out that are `gone`; the places of the others, which are told of returns
 /// here, move with them. Where the event of a place is then.
-pub(super) fn take_out(
+pub(crate) fn take_out(
     events: &mut Vec<Event>,
     gone: Vec<bool>,
 ) -> impl Fn(usize) -> usize + use<> {
@@ -109,33 +95,7 @@ pub(super) fn take_out(
     moved
 }
 
-/// What the rows tell.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Told {
-    pub(crate) events: Vec<Event>,
-    /// A return that may have been, and is not among the events.
-    pub(crate) perhaps: Option<Perhaps>,
-    /// A step that may have been, and is not among them either.
-    pub(crate) unnoticed: Option<Unnoticed>,
-    /// What bx and by may each be off by beyond what the model knows, while a large step is
-    /// neither certain nor out of question, variance in nT².
-    pub(crate) open_nt2: Option<f64>,
-    /// Whether a change would be among them: not of a ship of whom too little is known.
-    pub(crate) is_watched: bool,
-}
-
-/// Something that is as yet neither likely enough to be believed nor unlikely
-/// enough to be forgotten.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Perhaps {
-    /// The event that would have ended.
-    pub(crate) of: usize,
-    /// The first row after its end.
-    pub(crate) first: usize,
-    pub(crate) probability: f64,
-}
-
-pub(super) fn snapshot(filter: &Filter) -> Snapshot {
+pub(crate) fn snapshot(filter: &Filter) -> Snapshot {
     let mut scale = [1.0; PARAMETERS + 1];
     scale[..PARAMETERS].copy_from_slice(&POPULATION_SD);
     let mut parameters = [0.0; PARAMETERS];
@@ -159,6 +119,8 @@ pub(super) fn snapshot(filter: &Filter) -> Snapshot {
 mod tests {
     use super::*;
     use crate::change::filter::Noise;
+    use crate::estimate::Prior;
+    use binnacle_compass::result::NoiseLevels;
 
     fn event(what: What) -> Event {
         let known = Filter::new(&Prior::population(0.5), &Noise::new(&NoiseLevels::TYPICAL));

@@ -1,30 +1,19 @@
 //! What the logbook tells of cargo where the ship lay, or may have.
 
-use super::Search;
-use crate::change::calls::Said;
-use crate::observation::Observation;
+use super::state::Search;
+use crate::change::detection::Loaded;
+use crate::change::port_call_returns::Said;
+use crate::change::port_calls::{SAILED_SINCE, rows_since};
 use binnacle_compass::time::Timestamp;
 
 /// People write down the day, or when the hatches were shut.
 const ABOUT_S: f64 = 12.0 * 3600.0;
 /// What nobody closed was discharged by then, and forgotten.
 const OPEN_S: f64 = 21.0 * 86_400.0;
-/// A step that is dated after so many rows or more of sailing since was not the loading:
-/// half of it for what people write, half for dating.
-pub(crate) const SAILED_SINCE: usize = 36;
-
-/// Cargo that moves the compass, as the logbook has it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Loaded {
-    pub(crate) from: Timestamp,
-    /// When it was discharged; none where nobody wrote that down.
-    pub(crate) to: Option<Timestamp>,
-}
-
 impl Search<'_> {
     /// What the logbook tells of the cargo on board after the time between a row and the
     /// one before.
-    pub(super) fn said_at(&self, k: usize) -> Said {
+    pub(crate) fn said_at(&self, k: usize) -> Said {
         let Some((before, after)) = self.around(k) else {
             return Said::Nothing;
         };
@@ -51,7 +40,7 @@ impl Search<'_> {
     }
 
     /// Whether the logbook has it that cargo came on board when a step happened.
-    pub(super) fn is_said_loaded(&self, (earliest, latest): (usize, usize)) -> bool {
+    pub(crate) fn is_said_loaded(&self, (earliest, latest): (usize, usize)) -> bool {
         let sailed = &self.observations[..earliest];
         let earliest = self.around(earliest).map(|around| around.0);
         let Some((earliest, latest)) = earliest.zip(self.observations[latest].time) else {
@@ -65,7 +54,7 @@ impl Search<'_> {
     }
 
     /// Whether the logbook has it that cargo was on board when a row was read.
-    pub(super) fn is_said_on_board(&self, k: usize) -> bool {
+    pub(crate) fn is_said_on_board(&self, k: usize) -> bool {
         let Some(time) = self.observations[k].time else {
             return false;
         };
@@ -78,7 +67,7 @@ impl Search<'_> {
 
     /// Whether the logbook has it that cargo was discharged between a row and the one
     /// before, whether or not she seems to have lain there.
-    pub(super) fn is_said_discharged(&self, k: usize) -> bool {
+    pub(crate) fn is_said_discharged(&self, k: usize) -> bool {
         let Some((before, after)) = self.around(k) else {
             return false;
         };
@@ -91,10 +80,4 @@ impl Search<'_> {
         let before = self.observations[k.checked_sub(1)?].time?;
         Some((before, self.observations[k].time?))
     }
-}
-
-/// Rows after a time, of rows in order of time.
-pub(crate) fn rows_since(rows: &[Observation], time: Timestamp) -> usize {
-    let before = rows.partition_point(|row| row.time.is_none_or(|row| row <= time));
-    rows.len() - before
 }

@@ -7,16 +7,16 @@
 //! A filter that took the little it saw of the latter for more than it was cannot follow when
 //! she turns: that speaks against the filter and not against the step.
 
-use super::date::Dated;
-use super::event::snapshot;
-use super::{Search, What};
-use crate::change::bank::Kind;
+use super::dating::Dated;
+use super::state::Search;
+use crate::change::event::{What, snapshot};
 use crate::change::filter::Filter;
-use crate::change::large::relinearised;
-use crate::change::upset::upset;
+use crate::change::hypothesis_kind::Kind;
+use crate::change::jump_models::upset;
+use crate::change::large_step::relinearised;
 
 /// The step is kept where nothing else is likelier by more, nats.
-pub(super) const ANEW_NATS: f64 = 8.0;
+pub(crate) const ANEW_NATS: f64 = 8.0;
 /// Another step within so many rows may be the same.
 const SAME_ROWS: usize = 432;
 /// So often are all rows linearised at where the last round ended.
@@ -25,7 +25,7 @@ const ROUNDS: usize = 3;
 impl Search<'_> {
     /// The filter with a step before row `first`, or in it, having read all rows until `k`.
     /// The reading in which it happened is of neither ship.
-    pub(super) fn step_anew(&self, k: usize, before: &Filter, first: usize) -> Filter {
+    pub(crate) fn step_anew(&self, k: usize, before: &Filter, first: usize) -> Filter {
         let mut likeliest = self.step_read(k, before, first, Kind::Step);
         let after = (first + 1).min(k);
         let within = self.run(before.clone(), first..after, &before.unknowns());
@@ -56,7 +56,7 @@ impl Search<'_> {
     }
 
     /// The step before this one, and its filter, where that one alone explains the rows.
-    pub(super) fn same_step(&self, k: usize, dated: &Dated) -> Option<(usize, Filter)> {
+    pub(crate) fn same_step(&self, k: usize, dated: &Dated) -> Option<(usize, Filter)> {
         let base = self.calls.bases.last()?;
         let event = self.events.get(base.event)?;
         let later = &self.events[base.event + 1..];
@@ -70,7 +70,7 @@ impl Search<'_> {
     }
 
     /// The step is what `filter` says, and what was told after it was the same.
-    pub(super) fn step_is(&mut self, k: usize, of: usize, filter: Filter) {
+    pub(crate) fn step_is(&mut self, k: usize, of: usize, filter: Filter) {
         self.forget_later_steps(of);
         let event = &mut self.events[of];
         event.after = snapshot(&filter);

@@ -10,7 +10,7 @@ const FADES_S: f64 = 60.0 * 86_400.0;
 
 /// A step that fades.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Unsettled {
+pub(crate) struct Unsettled {
     /// The first row after it.
     since: usize,
     /// Variance of bx's and by's drift in thirty days, population units.
@@ -20,7 +20,7 @@ pub(super) struct Unsettled {
 }
 
 impl Unsettled {
-    pub(super) fn after(since: usize, before: &Filter, after: &Filter) -> Unsettled {
+    pub(crate) fn after(since: usize, before: &Filter, after: &Filter) -> Unsettled {
         let moved = |state: usize| after.mean[state] - before.mean[state];
         let size = moved(0).hypot(moved(2));
         Unsettled {
@@ -31,7 +31,7 @@ impl Unsettled {
     }
 
     /// A ship that drifts on from row `since`.
-    pub(super) fn creeping(since: usize, variance: f64) -> Unsettled {
+    pub(crate) fn creeping(since: usize, variance: f64) -> Unsettled {
         Unsettled {
             since,
             variance,
@@ -40,12 +40,12 @@ impl Unsettled {
     }
 
     /// Whether the ship drifts when row `k` is read.
-    pub(super) fn creeps(&self, observations: &[Observation], k: usize) -> bool {
+    pub(crate) fn creeps(&self, observations: &[Observation], k: usize) -> bool {
         self.is_drift && self.variance(observations, k) > 0.0
     }
 
     /// Beside the usual drift, when row `k` is read.
-    pub(super) fn variance(&self, observations: &[Observation], k: usize) -> f64 {
+    pub(crate) fn variance(&self, observations: &[Observation], k: usize) -> f64 {
         if self.variance == 0.0 || k < self.since {
             return 0.0;
         }

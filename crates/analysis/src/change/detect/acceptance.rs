@@ -1,14 +1,14 @@
 //! What is believed takes over from the filter, and becomes an event.
 
-use super::date::Dated;
-use super::event::{snapshot, take_out};
-use super::learn::Lesson;
-use super::unsettled::Unsettled;
-use super::{EVERY, Event, Leads, Search, What};
-use crate::change::bank::{Kind, Lead};
-use crate::change::calls::{Base, Began, Candidate};
+use super::EVERY;
+use super::dating::Dated;
+use super::state::{Leads, Lesson, Search, Unsettled};
+use crate::change::event::{Event, What, snapshot, take_out};
 use crate::change::filter::Filter;
-use crate::change::upset::{Earlier, misled, upset};
+use crate::change::hypotheses::Lead;
+use crate::change::hypothesis_kind::Kind;
+use crate::change::jump_models::{Earlier, misled, upset};
+use crate::change::port_call_returns::{Base, Began, Candidate};
 
 /// A change that is gone again within this, away from port, is none of the ship's.
 const BRIEF_S: f64 = 24.0 * 3600.0;
@@ -18,7 +18,7 @@ const AS_LIKELY_NATS: f64 = 3.0;
 
 impl Search<'_> {
     /// The ship's magnetism or a reference changed: the copy that knew takes over.
-    pub(super) fn adopt(&mut self, k: usize, kind: Kind, leads: Leads) {
+    pub(crate) fn adopt(&mut self, k: usize, kind: Kind, leads: Leads) {
         let Some(lead) = leads[kind as usize] else {
             return;
         };
@@ -99,7 +99,7 @@ impl Search<'_> {
 
     /// The port calls since a step, and the one at which it happened, as the filter
     /// that knows of the step would have met them.
-    pub(super) fn retrace(&mut self, k: usize, dated: &Dated) {
+    pub(crate) fn retrace(&mut self, k: usize, dated: &Dated) {
         let event = self.events.len() - 1;
         let is_said_loaded = self.is_said_loaded(dated.between);
         let began = if dated.is_late && !is_said_loaded {
@@ -150,7 +150,7 @@ impl Search<'_> {
     /// A burst that went on until now ended where a change is dated; if it began
     /// there too, or nothing before the change told of it, it was the change's first sign
     /// and nothing else.
-    pub(super) fn supersede_burst(&mut self, first: usize) {
+    pub(crate) fn supersede_burst(&mut self, first: usize) {
         let Some(event) = self.burst.take() else {
             return;
         };
@@ -162,7 +162,7 @@ impl Search<'_> {
         }
     }
 
-    pub(super) fn adopt_return(&mut self, k: usize, leads: Leads) {
+    pub(crate) fn adopt_return(&mut self, k: usize, leads: Leads) {
         let Some(lead) = leads[Kind::Return as usize] else {
             return;
         };
@@ -214,7 +214,7 @@ impl Search<'_> {
     }
 
     /// The reference is itself again.
-    pub(super) fn adopt_mended(&mut self, k: usize, leads: Leads) {
+    pub(crate) fn adopt_mended(&mut self, k: usize, leads: Leads) {
         let Some(lead) = leads[Kind::Return as usize] else {
             return;
         };
@@ -240,7 +240,7 @@ impl Search<'_> {
     }
 
     /// The ship has been herself again since a port call.
-    pub(super) fn adopt_call(&mut self, k: usize, back: Candidate, leads: Leads) {
+    pub(crate) fn adopt_call(&mut self, k: usize, back: Candidate, leads: Leads) {
         // Before places in the list move.
         self.note_zeros();
         self.rivals.clear();
@@ -274,7 +274,7 @@ impl Search<'_> {
         self.take_over(k, back.filter, back.at);
     }
 
-    pub(super) fn take_over(&mut self, k: usize, filter: Filter, first: usize) {
+    pub(crate) fn take_over(&mut self, k: usize, filter: Filter, first: usize) {
         self.note_zeros();
         self.null = filter;
         self.bank.clear();
@@ -288,7 +288,7 @@ impl Search<'_> {
         self.lesson = Lesson::next(self.observations, first, first, self.learnt_days);
     }
 
-    pub(super) fn push(
+    pub(crate) fn push(
         &mut self,
         k: usize,
         what: What,

@@ -2,6 +2,7 @@
 
 use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
+use binnacle_compass::time::Timestamp;
 
 /// A port call is a gap of at least this without going further than that.
 const PORT_S: f64 = 3.0 * 3600.0;
@@ -15,4 +16,14 @@ pub(crate) fn at_port(observations: &[Observation], row: usize) -> Option<bool> 
     let north = a.lat_deg() - b.lat_deg();
     let east = wrap_180(a.lon_deg() - b.lon_deg()) * a.lat_deg().to_radians().cos();
     Some(gap_s > PORT_S && 60.0 * north.hypot(east) < PORT_NM)
+}
+
+/// A step that is dated after so many rows or more of sailing since was not the loading:
+/// half of it for what people write, half for dating.
+pub(crate) const SAILED_SINCE: usize = 36;
+
+/// Rows after a time, of rows in order of time.
+pub(crate) fn rows_since(rows: &[Observation], time: Timestamp) -> usize {
+    let before = rows.partition_point(|row| row.time.is_none_or(|row| row <= time));
+    rows.len() - before
 }

@@ -10,7 +10,8 @@
 //! about geometrically; the time of the likeliest copy of every kind is among them.
 
 use super::filter::{Filter, Measurement, Noise};
-use super::upset::{BURST, Earlier, WILD_DEG, burst_of, calmed, misled, upset};
+use super::hypothesis_kind::{KINDS, Kind, PASSING, REFERENCES, RIVALS, STEPS};
+use super::jump_models::{BURST, Earlier, WILD_DEG, burst_of, calmed, misled, upset};
 use std::collections::VecDeque;
 
 /// Times that are kept.
@@ -18,7 +19,7 @@ const CAPACITY: usize = 16;
 /// A copy older than this is given up, rows.
 const OLDEST: usize = 4320;
 /// How long a storm may go on.
-pub(super) const BURST_S: f64 = 36.0 * 3600.0;
+pub(crate) const BURST_S: f64 = 36.0 * 3600.0;
 /// A burst that leads by less is not worth supposing to be over, nats.
 const WORTH: f64 = 3.0;
 /// Rivals are awake from when a step leads by this until nothing leads by that, nats;
@@ -42,62 +43,15 @@ const COLD_AFTER: usize = 48;
 /// at sea, by this, nats.
 const IN_PORT_NATS: f64 = 4.0;
 
-/// What may have happened.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// The ship's magnetism changed.
-    Step,
-    /// A reference's error changed: the gyro's, if there are two.
-    Reference,
-    /// The earth's field went astray for hours.
-    Burst,
-    /// The ship's magnetism is again what it was before.
-    Return,
-    /// The field that had gone astray is itself again.
-    Over,
-    /// The satellite compass's error changed.
-    Satellite,
-    /// The compass swings by more than any storm makes it.
-    Wild,
-    /// The ship's magnetism changed by far more than it does as a rule.
-    Large,
-}
-
-const KINDS: [Kind; 8] = [
-    Kind::Step,
-    Kind::Reference,
-    Kind::Burst,
-    Kind::Return,
-    Kind::Over,
-    Kind::Satellite,
-    Kind::Wild,
-    Kind::Large,
-];
-
-/// Those in which the ship changed for good.
-const STEPS: [Kind; 2] = [Kind::Step, Kind::Large];
-const RIVALS: [Kind; 6] = [
-    Kind::Reference,
-    Kind::Burst,
-    Kind::Return,
-    Kind::Over,
-    Kind::Satellite,
-    Kind::Wild,
-];
-/// Those in which something is astray for hours.
-const PASSING: [Kind; 2] = [Kind::Burst, Kind::Wild];
-/// Those that are upset by as much as the next reading is astray.
-const REFERENCES: [Kind; 2] = [Kind::Reference, Kind::Satellite];
-
 /// A time at which something may have happened.
 #[derive(Clone, Debug)]
-pub(super) struct Spawn {
+pub(crate) struct Spawn {
     /// The first row after it.
-    pub(super) at: usize,
+    pub(crate) at: usize,
     /// The filter then; boxed, as spawns move up whenever one is given up.
     origin: Box<Filter>,
     /// The first row of the burst that may be over.
-    pub(super) astray_from: Option<usize>,
+    pub(crate) astray_from: Option<usize>,
     /// Boxed, as most are none.
     copies: [Option<Box<Filter>>; KINDS.len()],
     age_s: f64,
@@ -155,40 +109,40 @@ impl Spawn {
         }
     }
 
-    pub(super) fn origin(&self) -> &Filter {
+    pub(crate) fn origin(&self) -> &Filter {
         &self.origin
     }
 
-    pub(super) fn copy(&self, kind: Kind) -> Option<&Filter> {
+    pub(crate) fn copy(&self, kind: Kind) -> Option<&Filter> {
         self.copies[kind as usize].as_deref()
     }
 
-    pub(super) fn copy_mut(&mut self, kind: Kind) -> Option<&mut Filter> {
+    pub(crate) fn copy_mut(&mut self, kind: Kind) -> Option<&mut Filter> {
         self.copies[kind as usize].as_deref_mut()
     }
 
-    pub(super) fn set(&mut self, kind: Kind, copy: Filter) {
+    pub(crate) fn set(&mut self, kind: Kind, copy: Filter) {
         self.copies[kind as usize] = Some(Box::new(copy));
     }
 
-    pub(super) fn astray_deg(&self) -> f64 {
+    pub(crate) fn astray_deg(&self) -> f64 {
         self.astray_deg
     }
 }
 
 /// By how much a copy is likelier than the filter that knows of nothing.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lead {
-    pub(super) nats: f64,
-    pub(super) kind: Kind,
+pub(crate) struct Lead {
+    pub(crate) nats: f64,
+    pub(crate) kind: Kind,
     /// The copy's place in the bank.
-    pub(super) spawn: usize,
+    pub(crate) spawn: usize,
 }
 
 #[derive(Default)]
-pub(super) struct Bank {
+pub(crate) struct Bank {
     /// From the oldest to the latest.
-    pub(super) spawns: Vec<Spawn>,
+    pub(crate) spawns: Vec<Spawn>,
     /// The last measurements, the latest last, and its row.
     memory: VecDeque<Measurement>,
     latest: usize,
@@ -201,7 +155,7 @@ pub(super) struct Bank {
 
 impl Bank {
     /// Forgets all that may have happened for good.
-    pub(super) fn forget_lasting(&mut self) {
+    pub(crate) fn forget_lasting(&mut self) {
         let lasting = [Kind::Step, Kind::Large, Kind::Reference, Kind::Satellite];
         for spawn in &mut self.spawns {
             for kind in lasting {
@@ -211,13 +165,13 @@ impl Bank {
     }
 
     /// Forgets all that may have happened.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.spawns.clear();
         self.are_rivals_awake = false;
     }
 
     /// New copies of `now`, which are to begin with row `at`.
-    pub(super) fn spawn(
+    pub(crate) fn spawn(
         &mut self,
         at: usize,
         now: &Filter,
@@ -257,7 +211,7 @@ impl Bank {
 
     /// Takes in the measurement of row `at`; `null` has taken it in before, and it
     /// surprised by so much.
-    pub(super) fn take(
+    pub(crate) fn take(
         &mut self,
         at: usize,
         m: Measurement,
@@ -321,7 +275,7 @@ impl Bank {
     }
 
     /// The likeliest copy of a kind.
-    pub(super) fn lead(&self, kind: Kind, null: &Filter) -> Option<Lead> {
+    pub(crate) fn lead(&self, kind: Kind, null: &Filter) -> Option<Lead> {
         // Asleep there are none.
         if kind != Kind::Step && !self.are_rivals_awake {
             return None;
@@ -336,29 +290,29 @@ impl Bank {
     }
 
     /// By how much what leads was likelier beforehand than the same at another time.
-    pub(super) fn beforehand_nats(&self, lead: Lead) -> f64 {
+    pub(crate) fn beforehand_nats(&self, lead: Lead) -> f64 {
         match lead.kind {
             Kind::Step => self.spawns[lead.spawn].beforehand_nats,
             _ => 0.0,
         }
     }
 
-    pub(super) fn are_rivals_awake(&self) -> bool {
+    pub(crate) fn are_rivals_awake(&self) -> bool {
         self.are_rivals_awake
     }
 
     /// The likeliest copy of those in which the ship changed for good.
-    pub(super) fn step(&self, null: &Filter) -> Option<Lead> {
+    pub(crate) fn step(&self, null: &Filter) -> Option<Lead> {
         self.likeliest(&STEPS, null)
     }
 
     /// The likeliest copy of those in which the field goes or went astray.
-    pub(super) fn passing(&self, null: &Filter) -> Option<Lead> {
+    pub(crate) fn passing(&self, null: &Filter) -> Option<Lead> {
         self.likeliest(&[Kind::Burst, Kind::Wild, Kind::Over], null)
     }
 
     /// The likeliest copy of those in which a reference changed.
-    pub(super) fn reference(&self, null: &Filter) -> Option<Lead> {
+    pub(crate) fn reference(&self, null: &Filter) -> Option<Lead> {
         self.likeliest(&REFERENCES, null)
     }
 

@@ -4,103 +4,26 @@
 //! What always holds: two filters that have taken in the same measurements can be
 //! compared by their log likelihoods.
 
-use super::symmetric::{Symmetric, WIDE, dot};
-use crate::estimate::{
-    CONSTANT, POPULATION_SD, Prior, Station, Transition, UNKNOWNS, Unknowns, loss_of, weight,
+use super::covariance::{Symmetric, WIDE, dot};
+use super::measurement::{Measurement, Scalar};
+use super::noise::{Burst, Noise};
+use super::states::{
+    CONSTANT_STATE, DRIFTING, LASTING, OFFSET, OFFSET_UNKNOWN, RATE, SATELLITE, SLOW, SPEED,
+    STATES, SWING, VARIATION,
 };
-use binnacle_compass::result::NoiseLevels;
+use crate::estimate::{POPULATION_SD, Prior, UNKNOWNS, Unknowns, loss_of, weight};
 use binnacle_compass::ship::PARAMETERS;
 
-/// States: the seven parameters in population units, the constant, the gyro's
-/// leftover speed error, what is left of the references' usual difference; then
-/// Schuler swing and rate, slow gyro error, compass swing, variation error and
-/// satellite compass's error, degrees.
-pub(super) const STATES: usize = 16;
-/// Those that the row's prediction depends on.
-pub(super) const LASTING: usize = 10;
-pub(super) const SPEED: usize = 8;
-pub(super) const OFFSET: usize = 9;
-const SWING: usize = 10;
-const RATE: usize = 11;
-const SLOW: usize = 12;
-pub(super) const VARIATION: usize = 14;
-const SATELLITE: usize = 15;
-/// Where the offset stands among the estimator's unknowns.
-const OFFSET_UNKNOWN: usize = UNKNOWNS - 1;
-const DRIFTING: [usize; 2] = [0, 2];
-
-/// What the filter takes in at one time: the deviation and, where both references
-/// were read, their difference.
-pub(super) struct Measurement {
-    pub(super) transition: Transition,
-    pub(super) seconds: f64,
-    /// What bx and by each drifted by since the last, variance in population units.
-    pub(super) drift: f64,
-    pub(super) deviation: Scalar,
-    pub(super) difference: Option<Scalar>,
-}
-
-/// One number measured, degrees.
-pub(super) struct Scalar {
-    /// What was measured, were all states zero.
-    pub(super) value: f64,
-    pub(super) load: [f64; STATES],
-    pub(super) variance: f64,
-}
-
-/// The sizes of noise as the filter uses them.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Noise {
-    pub(super) white: f64,
-    pub(super) difference_white: f64,
-    stationary: [f64; STATES - LASTING],
-    turn: f64,
-    drift: f64,
-}
-
-impl Noise {
-    pub(super) fn new(levels: &NoiseLevels) -> Noise {
-        let squared = |sd: f64| sd * sd;
-        Noise {
-            white: squared(levels.white_deg),
-            difference_white: squared(levels.difference_deg),
-            stationary: [
-                squared(levels.schuler_deg),
-                squared(levels.schuler_deg),
-                squared(levels.slow_gyro_deg),
-                squared(levels.compass_swing_deg),
-                squared(levels.variation_deg),
-                squared(levels.satellite_deg),
-            ],
-            turn: squared(levels.turn_deg),
-            drift: squared(levels.drift_nt / POPULATION_SD[0]),
-        }
-    }
-
-    /// Of the variation, as a rule.
-    pub(super) fn variation(&self) -> f64 {
-        self.stationary[VARIATION - LASTING]
-    }
-}
-
-/// Variation that is off by much more than usual, and otherwise every hour.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Burst {
-    /// Variance, degrees squared.
-    pub(super) variance: f64,
-    pub(super) memory_s: f64,
-}
-
 #[derive(Clone, Debug)]
-pub(super) struct Filter {
-    pub(super) mean: [f64; STATES],
-    pub(super) covariance: Symmetric,
-    pub(super) log_likelihood: f64,
+pub(crate) struct Filter {
+    pub(crate) mean: [f64; STATES],
+    pub(crate) covariance: Symmetric,
+    pub(crate) log_likelihood: f64,
 }
 
 impl Filter {
     /// Before the first measurement; none when the prior is no prior.
-    pub(super) fn new(prior: &Prior, noise: &Noise) -> Filter {
+    pub(crate) fn new(prior: &Prior, noise: &Noise) -> Filter {
         let mut scale = [1.0; PARAMETERS + 1];
         scale[..PARAMETERS].copy_from_slice(&POPULATION_SD);
         let mut mean = [0.0; STATES];
@@ -125,7 +48,7 @@ impl Filter {
     }
 
     /// The lasting states as the estimator's unknowns.
-    pub(super) fn unknowns(&self) -> Unknowns {
+    pub(crate) fn unknowns(&self) -> Unknowns {
         let mut unknowns = [0.0; UNKNOWNS];
         unknowns[..=SPEED].copy_from_slice(&self.mean[..=SPEED]);
         unknowns[OFFSET_UNKNOWN] = self.mean[OFFSET];
@@ -133,7 +56,7 @@ impl Filter {
     }
 
     /// Whether the constant is what it was in another, as far as either knows.
-    pub(super) fn has_constant_of(&self, other: &Filter) -> bool {
+    pub(crate) fn has_constant_of(&self, other: &Filter) -> bool {
         let k = CONSTANT_STATE;
         let apart = (self.mean[k] - other.mean[k]).abs();
         let variance = self.covariance.at(k, k) + other.covariance.at(k, k);
@@ -142,7 +65,7 @@ impl Filter {
 
     /// By how much the deviation, or the references' difference, is not as expected,
     /// degrees.
-    pub(super) fn astray_deg(&self, m: &Measurement) -> f64 {
+    pub(crate) fn astray_deg(&self, m: &Measurement) -> f64 {
         let off = |scalar: &Scalar| {
             let expected: f64 = scalar.load.iter().zip(&self.mean).map(|(l, x)| l * x).sum();
             (scalar.value - expected).abs()
@@ -151,19 +74,19 @@ impl Filter {
     }
 
     /// How far bx and by are from those of another, population units.
-    pub(super) fn far_from(&self, other: &Filter) -> f64 {
+    pub(crate) fn far_from(&self, other: &Filter) -> f64 {
         let [x, y] = DRIFTING.map(|s| self.mean[s] - other.mean[s]);
         x.hypot(y)
     }
 
     /// The same of the deviation alone, as an error of the variation where H is 24 µT.
-    pub(super) fn variation_astray_deg(&self, m: &Measurement) -> f64 {
+    pub(crate) fn variation_astray_deg(&self, m: &Measurement) -> f64 {
         let Scalar { value, load, .. } = &m.deviation;
         ((value - dot(load, &self.mean)) / load[VARIATION]).abs()
     }
 
     /// How far the deviation is from what is expected, squared standard deviations.
-    pub(super) fn z_squared(&self, m: &Measurement) -> f64 {
+    pub(crate) fn z_squared(&self, m: &Measurement) -> f64 {
         let Scalar {
             value,
             load,
@@ -175,7 +98,7 @@ impl Filter {
 
     /// Takes in what was measured; `burst` is what the variation does meanwhile, if
     /// not the usual. By how much that surprised, nats: 0 on the average.
-    pub(super) fn take(&mut self, m: &Measurement, noise: &Noise, burst: Option<&Burst>) -> f64 {
+    pub(crate) fn take(&mut self, m: &Measurement, noise: &Noise, burst: Option<&Burst>) -> f64 {
         self.advance(m, noise, burst);
         let by_difference = m.difference.as_ref().map(|scalar| self.update(scalar));
         by_difference.unwrap_or(0.0) + self.update(&m.deviation)
@@ -249,50 +172,3 @@ impl Filter {
         0.5 * (loss - 1.0)
     }
 }
-
-/// What `station` and `row` measure, as a filter takes it in; `unsettled` is what bx and
-/// by drift beyond their usual, variance in thirty days.
-pub(super) fn measurement(
-    station: &Station,
-    row: &crate::estimate::Row,
-    at: &Unknowns,
-    seconds: f64,
-    noise: &Noise,
-    unsettled: f64,
-) -> Measurement {
-    let scalar = |residual: f64, columns: &[f64; UNKNOWNS], loads: &[f64], variance: f64| {
-        let mut load = [0.0; STATES];
-        load[..=SPEED].copy_from_slice(&columns[..=SPEED]);
-        load[OFFSET] = columns[OFFSET_UNKNOWN];
-        load[LASTING..].copy_from_slice(&loads[..STATES - LASTING]);
-        let known: f64 = columns.iter().zip(at).map(|(c, u)| c * u).sum();
-        Scalar {
-            value: residual + known,
-            load,
-            variance,
-        }
-    };
-    Measurement {
-        transition: station.transition,
-        seconds,
-        drift: (noise.drift + unsettled) * station.transition.drift_share,
-        deviation: scalar(
-            row.residual,
-            &row.columns,
-            &station.loads(row),
-            station.white.variance(noise.white),
-        ),
-        difference: row.difference.map(|residual| {
-            let (columns, loads) = station.difference(row);
-            scalar(
-                residual,
-                &columns,
-                &loads,
-                station.difference_white.variance(noise.difference_white),
-            )
-        }),
-    }
-}
-
-/// The constant's place among the states is its place among the unknowns.
-pub(super) const CONSTANT_STATE: usize = CONSTANT;

@@ -1,9 +1,10 @@
 //! When a passing disturbance is over.
 
-use super::Search;
-use crate::change::bank::{BURST_S, Kind};
+use super::state::Search;
 use crate::change::filter::VARIATION;
-use crate::change::upset::{burst_of, upset};
+use crate::change::hypotheses::BURST_S;
+use crate::change::hypothesis_kind::Kind;
+use crate::change::jump_models::{burst_of, upset};
 
 /// And by this than a change for the filter to be that of the burst.
 const BURST_FOR_CERTAIN: f64 = 6.0;
@@ -16,7 +17,7 @@ const ASTRAY_DEG: f64 = 0.7;
 impl Search<'_> {
     /// Once a burst has had its time, the filter that knew of it takes over if it is
     /// still the likelier, so that the burst does not pass for the ship's.
-    pub(super) fn settle_burst(&mut self, k: usize) {
+    pub(crate) fn settle_burst(&mut self, k: usize) {
         let age_s = |row: usize| match (self.observations[row].time, self.observations[k].time) {
             (Some(then), Some(now)) => now.seconds_since(then),
             _ => 0.0,
@@ -54,7 +55,7 @@ impl Search<'_> {
 
     /// The last row from `first` to `k` at which a filter that expects a burst found
     /// the variation astray.
-    pub(super) fn last_astray(&self, first: usize, k: usize) -> usize {
+    pub(crate) fn last_astray(&self, first: usize, k: usize) -> usize {
         let Some(spawn) = self.bank.spawns.iter().rfind(|s| s.at <= first) else {
             return first;
         };

@@ -1,9 +1,12 @@
 //! Whether what leads leads by enough to be believed.
 
-use super::{EVERY, Event, Leads, Search, What};
-use crate::change::bank::{Kind, Lead};
-use crate::change::calls::{Base, Candidate};
+use super::EVERY;
+use super::state::{Leads, Search};
+use crate::change::event::{Event, What};
 use crate::change::filter::Filter;
+use crate::change::hypotheses::Lead;
+use crate::change::hypothesis_kind::Kind;
+use crate::change::port_call_returns::{Base, Candidate};
 use crate::observation::Observation;
 
 /// A step must be likelier by this than a burst, nats; or by that, when its lead
@@ -48,7 +51,7 @@ const MENDED_NATS: f64 = 8.0;
 const MENDED_BELOW: f64 = 3.0;
 /// A burst must be likelier by this than nothing, and by this than a change.
 const BURST_NATS: f64 = 14.0;
-pub(super) const BURST_OVER_STEP: f64 = 3.0;
+pub(crate) const BURST_OVER_STEP: f64 = 3.0;
 /// In the first weeks, when the sizes of noise are of few days, either must be likelier
 /// by so much more.
 const NEW_S: f64 = 20.0 * 86_400.0;
@@ -56,7 +59,7 @@ const NEW_NATS: f64 = 3.0;
 const CREEPING_NATS: f64 = 10.0;
 
 impl Search<'_> {
-    pub(super) fn judge(&mut self, k: usize) {
+    pub(crate) fn judge(&mut self, k: usize) {
         let leads = self.leads();
         let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
         if k < self.young() {
@@ -183,13 +186,13 @@ impl Search<'_> {
     }
 
     /// The last event, if it is this passing disturbance.
-    pub(super) fn same_burst(&self, first: usize) -> Option<&Event> {
+    pub(crate) fn same_burst(&self, first: usize) -> Option<&Event> {
         let last = self.events.last();
         last.filter(|event| event.what == What::Burst && event.first + EVERY >= first)
     }
 
     /// The first row of a passing disturbance.
-    pub(super) fn began(&self, lead: Lead) -> usize {
+    pub(crate) fn began(&self, lead: Lead) -> usize {
         let spawn = &self.bank.spawns[lead.spawn];
         let over = spawn.astray_from.filter(|_| self.is_over(lead));
         over.unwrap_or(spawn.at)
@@ -204,7 +207,7 @@ impl Search<'_> {
         leads[kind as usize].map_or(0.0, |lead| self.bank.beforehand_nats(lead))
     }
 
-    pub(super) fn is_step(&self, k: usize, lead: f64, over_burst: f64, leads: &Leads) -> bool {
+    pub(crate) fn is_step(&self, k: usize, lead: f64, over_burst: f64, leads: &Leads) -> bool {
         let step = leads[Kind::Step as usize];
         // A large step would explain the first hour of a storm, too.
         let is_usual = step.is_some_and(|lead| lead.kind == Kind::Step);
@@ -228,7 +231,7 @@ impl Search<'_> {
 
     /// The likeliest return at a port call, if a step to something else is not
     /// likelier by far.
-    pub(super) fn candidate(&self, leads: &Leads) -> Option<Candidate> {
+    pub(crate) fn candidate(&self, leads: &Leads) -> Option<Candidate> {
         self.candidate_below(leads, RETURN_BELOW_STEP)
     }
 
@@ -253,7 +256,7 @@ impl Search<'_> {
 
     /// The port call at about row `at`, until row `k`, at which what began in port may have
     /// ended.
-    pub(super) fn discharge_near(&self, at: usize, k: usize) -> Option<usize> {
+    pub(crate) fn discharge_near(&self, at: usize, k: usize) -> Option<usize> {
         let laden = self
             .calls
             .bases
@@ -276,13 +279,13 @@ impl Search<'_> {
     }
 
     /// Whether both references were read lately.
-    pub(super) fn has_both(&self, k: usize) -> bool {
+    pub(crate) fn has_both(&self, k: usize) -> bool {
         let lately = &self.observations[k.saturating_sub(LATELY)..=k];
         lately.iter().any(|o| o.gyro_less_satellite_deg.is_some())
     }
 
     /// Whether a passing disturbance's lead is that of one that is over.
-    pub(super) fn is_over(&self, lead: Lead) -> bool {
+    pub(crate) fn is_over(&self, lead: Lead) -> bool {
         let over = self.bank.lead(Kind::Over, &self.null);
         over.is_some_and(|over| over.spawn == lead.spawn && over.nats >= lead.nats)
     }

@@ -1,0 +1,180 @@
+//! The search: one filter runs forward over the rows, a bank of what else may have
+//! happened beside it, and what proves likelier by far takes its place.
+//!
+//! What always holds: a row is read once in order of time and nothing later than it
+//! decides what it tells; every event lies between two rows; the search ends.
+
+use super::state::{Learnt, Lesson, Search, earlier};
+use super::{EVERY, GAP_S};
+use crate::change::detection::{Given, Perhaps, Told};
+use crate::change::event::What;
+use crate::change::filter::Measurement;
+use crate::change::hypotheses::Lead;
+use crate::change::hypothesis_kind::Kind;
+use crate::estimate::are_times_believed;
+use crate::observation::Observation;
+
+/// A row that is astray by more than this is a time to be tried, if the last is so
+/// many rows before it: by the covariance of the row before, to which the step between
+/// has added nothing yet, so that one row in eight is.
+const ASTRAY_SD: f64 = 3.0;
+const ASTRAY_ROWS: usize = 2;
+/// But what passes may begin with this row: it comes and goes faster than learning does.
+const FIRST_PASSING: usize = 12;
+/// Something is up when a lead is beyond this, though not yet what.
+const SUSPECTED_NATS: f64 = 8.0;
+
+/// Searches rows, which are in order of time and all have one; where most share theirs
+/// nothing can be dated.
+pub(crate) fn detect(observations: &[Observation], given: &Given<'_>) -> Told {
+    if !are_times_believed(observations) {
+        return Told::default();
+    }
+    let Some(learnt) = Learnt::first(observations, given.prior, given.levels) else {
+        return Told::default();
+    };
+    let mut search = Search::new(observations, given, learnt);
+    for k in 0..observations.len() {
+        search.step(k);
+    }
+    search.finish()
+}
+
+impl Search<'_> {
+    fn step(&mut self, k: usize) {
+        if k >= self.lesson.at {
+            self.learn(k);
+        }
+        if k == self.first() {
+            self.bank.forget_lasting();
+        }
+        let is_due = k >= FIRST_PASSING && self.is_due(k);
+        if is_due {
+            self.settle_burst(k);
+        }
+        let m = self.next(k);
+        if is_due || (k >= FIRST_PASSING && self.is_astray(k, &m)) {
+            let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
+            let known = (earlier, self.is_call(k));
+            self.bank.spawn(k, &self.null, &self.noise, known);
+            self.spawned = k;
+        }
+        if self.is_call(k) || self.is_said_discharged(k) {
+            let said = self.said_at(k);
+            self.calls.call(k, &self.null, usize::MAX, said);
+        }
+        if self.is_call(k) {
+            self.ports.call(k, &self.null);
+        }
+        let surprise = self.null.take(&m, &self.noise, None);
+        let mut calls = std::mem::take(&mut self.calls);
+        calls.take(|at| self.measure(k, at), &self.noise, &self.null);
+        self.calls = calls;
+        self.take_in_rivals(k);
+        self.take_in_doubt(k);
+        let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
+        let null = (&self.null, surprise);
+        self.bank.take(k, m, &self.noise, null, earlier);
+        let mut bank = std::mem::take(&mut self.bank);
+        bank.take_large(k, &self.noise, |row, at| self.measure(row, at));
+        self.bank = bank;
+        if k >= FIRST_PASSING {
+            self.judge(k);
+            self.settle_faint(k, false);
+        }
+    }
+
+    fn is_due(&self, k: usize) -> bool {
+        let reported = || {
+            let Some((before, now)) = k
+                .checked_sub(1)
+                .and_then(|j| self.observations[j].time)
+                .zip(self.observations[k].time)
+            else {
+                return false;
+            };
+            self.reported.iter().any(|t| before < *t && *t <= now)
+        };
+        k >= self.spawned + EVERY || (k > 0 && self.seconds(k) > GAP_S) || reported()
+    }
+
+    /// Whether something may have happened just before this row.
+    fn is_astray(&self, k: usize, m: &Measurement) -> bool {
+        k >= self.spawned + ASTRAY_ROWS && self.null.z_squared(m) > ASTRAY_SD * ASTRAY_SD
+    }
+
+    /// The sizes of noise again, from the longer stretch there is now.
+    fn learn(&mut self, k: usize) {
+        let rows = self.learn_from..k;
+        if let Some(learnt) = Learnt::of(self.observations, rows, self.prior, Some(&self.levels)) {
+            self.levels = learnt.levels;
+            self.noise = learnt.noise;
+        }
+        self.learnt_days = self.lesson.days;
+        self.lesson = Lesson::next(self.observations, self.learn_from, k, 0.0);
+    }
+
+    /// What is suspected when the rows end.
+    fn finish(mut self) -> Told {
+        let leads = self.leads();
+        let perhaps = self.candidate(&leads).map(|candidate| Perhaps {
+            of: candidate.event,
+            first: candidate.at,
+            probability: candidate.any,
+        });
+        let returned = perhaps.map_or(0.0, |perhaps| perhaps.probability);
+        let unnoticed = self.unnoticed(&leads, returned);
+        let open_nt2 = self.open_nt2(&leads);
+        self.note_zeros();
+        self.suspect();
+        self.settle_faint(self.observations.len().saturating_sub(1), true);
+        Told {
+            events: self.events,
+            perhaps,
+            unnoticed,
+            open_nt2,
+            is_watched: true,
+        }
+    }
+
+    fn suspect(&mut self) {
+        let Some(k) = self.observations.len().checked_sub(1) else {
+            return;
+        };
+        if let Some(event) = self.burst {
+            let last = self.last_astray(self.events[event].first, k + 1);
+            self.events[event].last = (last + EVERY < k).then_some(last);
+            return;
+        }
+        let leads = self.leads();
+        let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let likeliest = [Kind::Step, Kind::Reference, Kind::Burst]
+            .into_iter()
+            .max_by(|a, b| nats(*a).total_cmp(&nats(*b)))
+            .filter(|kind| nats(*kind) > SUSPECTED_NATS);
+        // A burst that has had its time keeps its lead.
+        let is_news = |lead: Lead| self.has_time_left(self.bank.spawns[lead.spawn].at, k);
+        let Some((kind, lead)) = likeliest.and_then(|kind| Some((kind, leads[kind as usize]?)))
+        else {
+            return;
+        };
+        if k < self.young() || (kind == Kind::Burst && !is_news(lead)) {
+            return;
+        }
+        let what = match kind {
+            Kind::Reference => What::Reference,
+            Kind::Burst => What::Burst,
+            _ => What::Step,
+        };
+        let spawn = &self.bank.spawns[lead.spawn];
+        let first = spawn.at;
+        let filters = spawn
+            .copy(lead.kind)
+            .map(|f| (spawn.origin().clone(), f.clone()));
+        let change = filters.as_ref().map(|(before, after)| (before, after));
+        self.push(k, what, first, (first, first), leads, change);
+        if let Some(event) = self.events.last_mut() {
+            event.confirmed = false;
+        }
+    }
+}

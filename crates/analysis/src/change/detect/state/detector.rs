@@ -1,0 +1,218 @@
+//! The detector's state, and rows as it reads them.
+
+use super::alternatives::{Doubt, Faint, Rival};
+use super::extra_drift::Unsettled;
+use super::leads::Leads;
+use super::noise_learning::{Learnt, Lesson};
+use super::port_departures::Ports;
+use crate::change::detection::{Given, Loaded};
+use crate::change::event::{Event, What};
+use crate::change::filter::{Filter, Measurement, Noise, measurement};
+use crate::change::hypotheses::Bank;
+use crate::change::hypothesis_kind::Kind;
+use crate::change::jump_models::Earlier;
+use crate::change::large_step::{fusion, relinearised};
+use crate::change::port_call_returns::Calls;
+use crate::change::port_calls::at_port;
+use crate::estimate::{Point, Prior, Station, Unknowns, row, stations};
+use crate::observation::Observation;
+use binnacle_compass::result::NoiseLevels;
+use binnacle_compass::time::Timestamp;
+
+/// What drifts does so on the way: of a longer gap so much counts for what a supposed drift
+/// may have done in it, seconds, or any change in a gap would pass for one.
+const DRIFTS_UNSEEN_S: f64 = 12.0 * 3600.0;
+/// Before so many rows no change is told from learning; so many where the sizes of noise
+/// are known from before.
+const YOUNG: usize = 300;
+const YOUNG_KNOWN: usize = 72;
+/// A change that is dated among the first rows of all is none.
+const FIRST: usize = 100;
+const FIRST_KNOWN: usize = 36;
+
+pub(crate) struct Search<'a> {
+    pub(crate) observations: &'a [Observation],
+    pub(crate) stations: Vec<Station>,
+    pub(crate) reported: &'a [Timestamp],
+    pub(crate) cargo: &'a [Loaded],
+    pub(crate) prior: &'a Prior,
+    /// Whether the sizes of noise were known before the rows.
+    pub(crate) is_known: bool,
+    pub(crate) levels: NoiseLevels,
+    pub(crate) noise: Noise,
+    /// What rows are linearised at until the filter itself knows.
+    pub(crate) start: Unknowns,
+    pub(crate) start_until: usize,
+    /// Where the present stretch of learning began, and which comes next.
+    pub(crate) learn_from: usize,
+    pub(crate) lesson: Lesson,
+    /// Days that the levels were learnt from.
+    pub(crate) learnt_days: f64,
+    pub(crate) null: Filter,
+    pub(crate) bank: Bank,
+    pub(crate) spawned: usize,
+    /// What the ship was before steps, and where she may have become it again.
+    pub(crate) calls: Calls,
+    pub(crate) ports: Ports,
+    /// A reference's fault that goes on, if one does: its place in the list of
+    /// events, and the filter before.
+    pub(crate) misled: Option<(usize, Filter)>,
+    /// The same of a compass's zero that moved, if nothing else has changed since.
+    pub(crate) misaligned: Option<(usize, Filter)>,
+    pub(crate) unsettled: Unsettled,
+    /// What else the last step may have been.
+    pub(crate) rivals: Vec<Rival>,
+    /// That it may be none.
+    pub(crate) doubt: Option<Doubt>,
+    /// The burst that goes on, if one does.
+    pub(crate) burst: Option<usize>,
+    /// The filter before the last burst that was told, and its first row, as long as nothing
+    /// that lasts was.
+    pub(crate) passed: Option<(usize, Filter)>,
+    /// A disturbance that leads by too little to be told.
+    pub(crate) faint: Option<Faint>,
+    pub(crate) events: Vec<Event>,
+}
+
+impl<'a> Search<'a> {
+    pub(crate) fn new(
+        observations: &'a [Observation],
+        given: &Given<'a>,
+        learnt: Learnt,
+    ) -> Search<'a> {
+        Search {
+            observations,
+            stations: stations(observations),
+            reported: given.reported,
+            cargo: given.cargo,
+            prior: given.prior,
+            is_known: given.levels.is_some(),
+            null: Filter::new(given.prior, &learnt.noise),
+            levels: learnt.levels,
+            noise: learnt.noise,
+            start: learnt.unknowns,
+            start_until: learnt.until,
+            learn_from: 0,
+            lesson: Lesson::next(observations, 0, learnt.until, 0.0),
+            learnt_days: 0.0,
+            bank: Bank::default(),
+            spawned: 0,
+            calls: Calls::default(),
+            ports: Ports::default(),
+            misled: None,
+            misaligned: None,
+            unsettled: Unsettled::default(),
+            rivals: Vec::new(),
+            doubt: None,
+            burst: None,
+            passed: None,
+            faint: None,
+            events: Vec::new(),
+        }
+    }
+
+    pub(crate) fn first(&self) -> usize {
+        if self.is_known { FIRST_KNOWN } else { FIRST }
+    }
+
+    pub(crate) fn young(&self) -> usize {
+        if self.is_known { YOUNG_KNOWN } else { YOUNG }
+    }
+
+    /// Steps', references', bursts' (those that are over, too) and returns' best.
+    pub(crate) fn leads(&self) -> Leads {
+        [
+            self.bank.step(&self.null),
+            self.bank.reference(&self.null),
+            self.bank.passing(&self.null),
+            self.bank.lead(Kind::Return, &self.null),
+        ]
+    }
+
+    /// Row `k` as the filter is to read it.
+    pub(crate) fn next(&self, k: usize) -> Measurement {
+        if k < self.start_until {
+            return self.measure(k, &self.start);
+        }
+        relinearised(&self.null, &self.noise, |at| self.measure(k, at))
+    }
+
+    /// Where row `k` is linearised.
+    pub(crate) fn point(&self, k: usize) -> Unknowns {
+        if k < self.start_until {
+            self.start
+        } else {
+            self.null.unknowns()
+        }
+    }
+
+    pub(crate) fn measure(&self, k: usize, at: &Unknowns) -> Measurement {
+        self.measure_drifting(k, at, 0.0)
+    }
+
+    /// The same for a ship that drifts by so much more in thirty days, variance in
+    /// population units.
+    pub(crate) fn measure_drifting(&self, k: usize, at: &Unknowns, drift: f64) -> Measurement {
+        let unsettled = self.unsettled.variance(self.observations, k);
+        let seen = (DRIFTS_UNSEEN_S / self.seconds(k)).min(1.0);
+        self.measured(k, at, unsettled.max(seen * drift))
+    }
+
+    /// The same for a ship that drifts as ships do.
+    pub(crate) fn measure_settled(&self, k: usize, at: &Unknowns) -> Measurement {
+        self.measured(k, at, 0.0)
+    }
+
+    pub(crate) fn measured(&self, k: usize, at: &Unknowns, unsettled: f64) -> Measurement {
+        let (o, station) = (&self.observations[k], &self.stations[k]);
+        let row = row(o, station, &Point::at(at, fusion(at)));
+        measurement(station, &row, at, self.seconds(k), &self.noise, unsettled)
+    }
+
+    /// Since the row before.
+    pub(crate) fn seconds(&self, k: usize) -> f64 {
+        let earlier = k.checked_sub(1).and_then(|j| self.observations[j].time);
+        match (earlier, self.observations[k].time) {
+            (Some(earlier), Some(time)) => time.seconds_since(earlier).max(0.0),
+            _ => 0.0,
+        }
+    }
+
+    pub(crate) fn is_call(&self, k: usize) -> bool {
+        at_port(self.observations, k) == Some(true)
+    }
+
+    /// A filter over some rows, all linearised at one point.
+    pub(crate) fn run(
+        &self,
+        mut filter: Filter,
+        rows: std::ops::Range<usize>,
+        at: &Unknowns,
+    ) -> Filter {
+        for k in self.calm(rows) {
+            filter.take(&self.measure(k, at), &self.noise, None);
+        }
+        filter
+    }
+
+    /// Those rows in which nothing was astray that passed.
+    pub(crate) fn calm(&self, rows: std::ops::Range<usize>) -> impl Iterator<Item = usize> {
+        let passed = self.events.iter().filter(|event| event.what == What::Burst);
+        let passed = passed.filter_map(|burst| Some(burst.first..=burst.last?));
+        let passed: Vec<_> = passed.filter(|p| *p.end() >= rows.start).collect();
+        rows.filter(move |row| !passed.iter().any(|passed| passed.contains(row)))
+    }
+}
+
+/// What may be again what it was: a reference first, which is soon mended; then what
+/// changed last.
+pub(crate) fn earlier<'a>(
+    misled: Option<&'a (usize, Filter)>,
+    misaligned: Option<&'a (usize, Filter)>,
+    calls: &'a Calls,
+) -> Option<Earlier<'a>> {
+    let reference = misled.map(|(_, before)| Earlier::Reference(before));
+    let zero = || misaligned.map(|(_, before)| Earlier::Zero(before));
+    let ship = || calls.bases.last().map(|base| Earlier::Ship(base.unladen()));
+    reference.or_else(zero).or_else(ship)
+}

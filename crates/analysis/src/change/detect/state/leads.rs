@@ -1,0 +1,6 @@
+//! The likeliest hypothesis of each kind.
+
+use crate::change::hypotheses::Lead;
+
+/// The likeliest copies by kind, in the order of [`Kind`].
+pub(crate) type Leads = [Option<Lead>; 4];

@@ -1,0 +1,19 @@
+//! The filter at the last port calls.
+
+use crate::change::filter::Filter;
+
+/// Calls that are asked about: the last few.
+const CALLS: usize = 3;
+
+/// The last port calls, each with its first row after it and the filter there.
+#[derive(Default)]
+pub(crate) struct Ports(pub(crate) Vec<(usize, Filter)>);
+
+impl Ports {
+    pub(crate) fn call(&mut self, at: usize, now: &Filter) {
+        if self.0.len() == CALLS {
+            self.0.remove(0);
+        }
+        self.0.push((at, now.clone()));
+    }
+}

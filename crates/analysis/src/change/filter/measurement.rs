@@ -1,0 +1,68 @@
+//! Measurements as the filter reads them.
+
+use super::noise::Noise;
+use super::states::{LASTING, OFFSET, OFFSET_UNKNOWN, SPEED, STATES};
+use crate::estimate::{Row, Station, Transition, UNKNOWNS, Unknowns};
+
+/// What the filter takes in at one time: the deviation and, where both references
+/// were read, their difference.
+pub(crate) struct Measurement {
+    pub(crate) transition: Transition,
+    pub(crate) seconds: f64,
+    /// What bx and by each drifted by since the last, variance in population units.
+    pub(crate) drift: f64,
+    pub(crate) deviation: Scalar,
+    pub(crate) difference: Option<Scalar>,
+}
+
+/// One number measured, degrees.
+pub(crate) struct Scalar {
+    /// What was measured, were all states zero.
+    pub(crate) value: f64,
+    pub(crate) load: [f64; STATES],
+    pub(crate) variance: f64,
+}
+
+/// What `station` and `row` measure, as a filter takes it in; `unsettled` is what bx and
+/// by drift beyond their usual, variance in thirty days.
+pub(crate) fn measurement(
+    station: &Station,
+    row: &Row,
+    at: &Unknowns,
+    seconds: f64,
+    noise: &Noise,
+    unsettled: f64,
+) -> Measurement {
+    let scalar = |residual: f64, columns: &[f64; UNKNOWNS], loads: &[f64], variance: f64| {
+        let mut load = [0.0; STATES];
+        load[..=SPEED].copy_from_slice(&columns[..=SPEED]);
+        load[OFFSET] = columns[OFFSET_UNKNOWN];
+        load[LASTING..].copy_from_slice(&loads[..STATES - LASTING]);
+        let known: f64 = columns.iter().zip(at).map(|(c, u)| c * u).sum();
+        Scalar {
+            value: residual + known,
+            load,
+            variance,
+        }
+    };
+    Measurement {
+        transition: station.transition,
+        seconds,
+        drift: (noise.drift + unsettled) * station.transition.drift_share,
+        deviation: scalar(
+            row.residual,
+            &row.columns,
+            &station.loads(row),
+            station.white.variance(noise.white),
+        ),
+        difference: row.difference.map(|residual| {
+            let (columns, loads) = station.difference(row);
+            scalar(
+                residual,
+                &columns,
+                &loads,
+                station.difference_white.variance(noise.difference_white),
+            )
+        }),
+    }
+}

@@ -1,0 +1,12 @@
+//! The Kalman filter that the detector runs over the rows.
+
+mod covariance;
+mod kalman;
+mod measurement;
+mod noise;
+mod states;
+
+pub(crate) use kalman::Filter;
+pub(crate) use measurement::{Measurement, measurement};
+pub(crate) use noise::{Burst, Noise};
+pub(crate) use states::{CONSTANT_STATE, OFFSET, STATES, VARIATION};
