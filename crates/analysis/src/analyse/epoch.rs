@@ -1,8 +1,8 @@
 //! Intervals of constant magnetism, and the fit of each.
 
-use super::one_course::open_along;
 use super::reading::Reading;
 use super::reading::heading_reading;
+use super::single_heading::open_along;
 use crate::estimate::{Prior, unseen_sd_nt};
 use crate::fit::{
     HeadingReading, Observation, REJECTED_BELOW, RobustFit, RobustOptions, fit_known_ship,

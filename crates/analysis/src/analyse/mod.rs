@@ -6,29 +6,29 @@
 //! without a reason; and a set of samples that does not carry a model yields a
 //! refusal that says what is missing.
 
-mod alongside;
-mod cargo;
+mod berth_stays;
+mod cargo_entries;
 mod changes;
-mod course;
-mod either;
 mod epoch;
-mod logbook;
-mod one_course;
+mod epoch_builder;
+mod logbook_rules;
+mod mixture;
 mod reading;
-mod stuck;
+mod single_heading;
+mod stuck_compass;
 
-use alongside::{berths, mark_alongside};
+use berth_stays::{berths, mark_alongside};
 use binnacle_compass::coverage::coverage;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{Analysis, ESTIMATOR, Epoch};
 use binnacle_compass::sample::Sample;
 use binnacle_compass::settings::AnalysisSettings;
-use cargo::notices;
+use cargo_entries::notices;
 use changes::merge_faults;
-use course::Course;
 use epoch::epochs;
+use epoch_builder::Course;
 use reading::{Reading, readings};
-use stuck::mark_stuck;
+use stuck_compass::mark_stuck;
 
 /// Said where nothing can be watched for.
 const UNWATCHED: &str = "so far too little is known of the ship to tell a change of her \
@@ -49,7 +49,7 @@ pub fn analyse(
         let from = begun.or(epoch.from);
         begun = course.follow(Epoch { from, ..epoch }, &mut readings, logbook, settings);
     }
-    let mut notices = notices(&readings, logbook, &course);
+    let mut notices = notices(&readings, logbook, &course.idle);
     if course.is_unwatched {
         notices.push(UNWATCHED.to_owned());
     }

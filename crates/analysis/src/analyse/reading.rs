@@ -1,6 +1,6 @@
 //! Samples put in order, each with the earth's field around it.
 
-use super::logbook::{excludes, exclusion};
+use super::logbook_rules::{excludes, exclusion};
 use crate::fit::HeadingReading;
 use crate::gyro_speed_error::gyro_speed_error_deg;
 use binnacle_compass::angle::{TrueHeading, Variation};

@@ -5,8 +5,7 @@
 //! unless she has sailed so for weeks and nothing set them apart.
 
 use super::changes::Found;
-use super::course::Course;
-use super::logbook::excludes;
+use super::logbook_rules::excludes;
 use super::reading::Reading;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::result::{Cause, Epoch, SampleReason};
@@ -120,7 +119,7 @@ fn idle(entry: &LogbookEntry, epoch: &Epoch, found: &Found, own: &[Reading]) -> 
 pub(super) fn notices(
     readings: &[Reading],
     logbook: &[LogbookEntry],
-    course: &Course,
+    idle: &[Idle],
 ) -> Vec<String> {
     let Some(until) = readings.last().map(|r| r.sample().time) else {
         return Vec::new();
@@ -137,11 +136,7 @@ pub(super) fn notices(
                 r.sample().time >= from && r.diagnostic.reason == Some(SampleReason::MagneticCargo)
             });
             let left_out = left_out.count();
-            if let Some(idle) = course
-                .idle
-                .iter()
-                .find(|idle| idle.entry == (from, entry.to))
-            {
+            if let Some(idle) = idle.iter().find(|idle| idle.entry == (from, entry.to)) {
                 let days = idle.until.seconds_since(idle.since) / DAY_S;
                 let so = if idle.is_back {
                     format!(

@@ -2,18 +2,18 @@
 //!
 //! What always holds: only the last epoch's model is made wider, and nothing is told by it.
 
-use super::Course;
+use super::builder::Course;
 use crate::analyse::changes::{Begun, Ended, Misled};
-use crate::analyse::either::either;
 use crate::analyse::epoch::{Reference, empty_epoch};
+use crate::analyse::mixture::either;
 use crate::analyse::reading::Reading;
-use binnacle_compass::result::{Cause, Change, Epoch};
+use binnacle_compass::result::{Cause, Epoch};
 use binnacle_compass::ship::PARAMETERS;
 
 impl Course {
     /// Widens the last epoch's model where the ship may be again as she was in the
     /// epoch `base`.
-    pub(super) fn allow_for_end(
+    pub(in crate::analyse) fn allow_for_end(
         &mut self,
         ended: &Ended,
         base: Option<usize>,
@@ -39,7 +39,7 @@ impl Course {
     }
 
     /// Widens the last epoch's model where the ship may be another since a port call.
-    pub(super) fn allow_for_change(
+    pub(in crate::analyse) fn allow_for_change(
         &mut self,
         begun: &Begun,
         readings: &[Reading],
@@ -63,7 +63,7 @@ impl Course {
 
     /// Widens the last epoch's model where what began it may have been that the compass's
     /// zero moved.
-    pub(super) fn allow_for_zero(
+    pub(in crate::analyse) fn allow_for_zero(
         &mut self,
         probability: f64,
         readings: &[Reading],
@@ -88,7 +88,7 @@ impl Course {
 
     /// Widens the last epoch's model where it may have been the compass's zero that moved, and
     /// not the only reference's.
-    pub(super) fn allow_for_misled(&mut self, misled: &Misled) {
+    pub(in crate::analyse) fn allow_for_misled(&mut self, misled: &Misled) {
         let Some(model) = self.epochs.last_mut().and_then(|last| last.model.as_mut()) else {
             return;
         };
@@ -106,7 +106,7 @@ impl Course {
     }
 
     /// Widens the last epoch's model where the ship may have been struck hard just now.
-    pub(super) fn allow_for_step(&mut self, variance_nt2: f64) {
+    pub(in crate::analyse) fn allow_for_step(&mut self, variance_nt2: f64) {
         let last = self.epochs.last_mut().and_then(|last| last.model.as_mut());
         if let Some(covariance) = last.and_then(|model| model.covariance.as_mut()) {
             for j in [0, 2] {
@@ -114,12 +114,4 @@ impl Course {
             }
         }
     }
-}
-
-/// How likely it is that a change was the compass's zero, where it is not told as that and
-/// the odds are worth a wider band.
-pub(super) fn zero_besides(change: &Change) -> Option<f64> {
-    let causes = change.causes.iter().filter(|c| c.cause != change.cause);
-    let mut zero = causes.filter(|c| c.cause == Cause::Alignment);
-    zero.next().map(|zero| zero.probability)
 }

@@ -3,13 +3,10 @@
 //! What always holds: every reading is of one epoch; an epoch is fitted once all that
 //! happened in it is known, and after those before it.
 
-mod allow;
-
-use super::cargo::{Idle, is_laden, take_idle};
-use super::changes::{Found, Known, MISTIMED_S, find, sharpen};
-use super::epoch::{Reference, Stretch, empty_epoch, fit_epoch, prior, reference, refuse};
-use super::reading::Reading;
-use allow::zero_besides;
+use crate::analyse::cargo_entries::{Idle, is_laden, take_idle};
+use crate::analyse::changes::{Found, Known, MISTIMED_S, find, sharpen};
+use crate::analyse::epoch::{Reference, Stretch, empty_epoch, fit_epoch, prior, reference, refuse};
+use crate::analyse::reading::Reading;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{Cause, CauseProbability, Change, Epoch, SampleReason};
 use binnacle_compass::settings::AnalysisSettings;
@@ -24,20 +21,20 @@ const SAME_TIME_S: f64 = 3600.0;
 
 /// The epochs so far, with the readings of each.
 #[derive(Default)]
-pub(super) struct Course {
-    pub(super) epochs: Vec<Epoch>,
+pub(in crate::analyse) struct Course {
+    pub(in crate::analyse) epochs: Vec<Epoch>,
     /// Places among those of the epoch of the logbook.
-    ranges: Vec<Range<usize>>,
-    pub(super) changes: Vec<Change>,
+    pub(in crate::analyse) ranges: Vec<Range<usize>>,
+    pub(in crate::analyse) changes: Vec<Change>,
     /// Entries of cargo that the samples no longer bear out.
-    pub(super) idle: Vec<Idle>,
+    pub(in crate::analyse) idle: Vec<Idle>,
     /// Whether a change in the last of them would not have been noticed.
-    pub(super) is_unwatched: bool,
+    pub(in crate::analyse) is_unwatched: bool,
 }
 
 impl Course {
     /// Before the first epoch, with what the compass alone has shown.
-    pub(super) fn after(changes: Vec<Change>) -> Course {
+    pub(in crate::analyse) fn after(changes: Vec<Change>) -> Course {
         Course {
             changes,
             ..Course::default()
@@ -46,7 +43,7 @@ impl Course {
 
     /// One epoch of the logbook, with the changes that its samples show. Where the samples
     /// show that it ended at another time than the logbook says, that time.
-    pub(super) fn follow(
+    pub(in crate::analyse) fn follow(
         &mut self,
         epoch: Epoch,
         readings: &mut [Reading],
@@ -121,7 +118,7 @@ impl Course {
                     return earlier.or(late);
                 }
                 self.is_unwatched = !own.is_empty() && !found.is_watched;
-                self.split(epoch, found, own, (&reference, logbook));
+                self.split(epoch, found, own, &reference, logbook);
             }
             Err(refusal) => {
                 let mut epoch = epoch;
@@ -145,7 +142,8 @@ impl Course {
         mut epoch: Epoch,
         mut found: Found,
         readings: &mut [Reading],
-        (reference, logbook): (&Reference, &[LogbookEntry]),
+        reference: &Reference,
+        logbook: &[LogbookEntry],
     ) {
         let until = epoch.to;
         self.idle
@@ -222,7 +220,7 @@ impl Course {
     }
 
     /// What an epoch that follows the last is to be fitted to.
-    fn stretch<'a>(
+    pub(in crate::analyse) fn stretch<'a>(
         &self,
         epoch: &Epoch,
         own: Range<usize>,
@@ -257,7 +255,7 @@ impl Course {
         }
     }
 
-    fn push(&mut self, epoch: Epoch, own: Range<usize>) {
+    pub(in crate::analyse) fn push(&mut self, epoch: Epoch, own: Range<usize>) {
         self.epochs.push(epoch);
         self.ranges.push(own);
     }
@@ -302,4 +300,12 @@ impl Course {
             ended: None,
         })
     }
+}
+
+/// How likely it is that a change was the compass's zero, where it is not told as that and
+/// the odds are worth a wider band.
+fn zero_besides(change: &Change) -> Option<f64> {
+    let causes = change.causes.iter().filter(|c| c.cause != change.cause);
+    let mut zero = causes.filter(|c| c.cause == Cause::Alignment);
+    zero.next().map(|zero| zero.probability)
 }

@@ -1,7 +1,9 @@
 //! Puts events into words and dates.
 
+use super::change_size as size;
 use super::evidence::evidence;
-use super::{Begun, Ended, Misled, cause_of, size};
+use super::findings::{Begun, Ended, Misled};
+use crate::analyse::logbook_rules::cause_of;
 use crate::change::{
     Circumstances, Event, Perhaps, SAILED_SINCE, Snapshot, Unnoticed, What, at_port, causes,
     rows_since,

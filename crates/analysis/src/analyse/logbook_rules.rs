@@ -1,7 +1,7 @@
 //! Which samples the logbook excludes.
 
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
-use binnacle_compass::result::SampleReason;
+use binnacle_compass::result::{Cause, SampleReason};
 use binnacle_compass::sample::Sample;
 
 /// An open berth entry says nothing of a sample taken at this speed or more,
@@ -24,5 +24,16 @@ pub(super) fn exclusion(kind: LogbookKind) -> Option<SampleReason> {
         LogbookKind::MagneticCargo => Some(SampleReason::MagneticCargo),
         LogbookKind::Berth => Some(SampleReason::Berth),
         _ => None,
+    }
+}
+
+/// What an entry of the logbook is a report of.
+pub(super) fn cause_of(kind: LogbookKind) -> Option<Cause> {
+    match kind {
+        LogbookKind::Lightning | LogbookKind::Shock => Some(Cause::LightningOrShock),
+        LogbookKind::MagneticCargo => Some(Cause::MagneticCargo),
+        LogbookKind::Berth => Some(Cause::BerthSteel),
+        LogbookKind::Note => None,
+        _ => Some(Cause::AdjustmentOrRepair),
     }
 }
