@@ -3,7 +3,7 @@
 //! What always holds: learning never widens a band, and the reference's
 //! constant error, which no heading can show, is never learnt.
 
-use super::AdviceError;
+use super::question::AdviceError;
 use binnacle_compass::coverage::HEADING_STEP_DEG;
 use binnacle_compass::deviation::{DeviationError, NORMAL_95, linearised_at_compass};
 use binnacle_compass::model::Model;

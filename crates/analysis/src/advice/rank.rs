@@ -2,9 +2,9 @@
 //! magnetic latitude with the best three headings in each.
 
 use super::knowledge::{Knowledge, SECTORS, Slope, Visit, Waters, slopes};
+use super::question::{AdviceError, NOTICEABLE_DEG, Question};
 use super::ranges::{Ends, ranges};
 use super::watch::{WATCHES, errors_of_watches};
-use super::{AdviceError, NOTICEABLE_DEG, Question};
 use binnacle_compass::coverage::{
     Coverage, HEADING_STEP_DEG, MAGNETIC_LATITUDE_STEP_DEG, magnetic_latitude_band_deg,
 };

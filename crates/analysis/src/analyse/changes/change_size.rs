@@ -100,12 +100,7 @@ pub(super) fn cosine(one: &Event, other: &Event) -> f64 {
 }
 
 /// Says the step anew by the models of the epochs on both sides.
-pub(in crate::analyse) fn sharpen(
-    change: &mut Change,
-    before: &Epoch,
-    after: &Epoch,
-    readings: &[Reading],
-) {
+pub(crate) fn sharpen(change: &mut Change, before: &Epoch, after: &Epoch, readings: &[Reading]) {
     let (Some(old), Some(new)) = (&before.model, &after.model) else {
         return;
     };

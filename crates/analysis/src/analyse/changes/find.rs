@@ -14,7 +14,7 @@ use binnacle_compass::time::Timestamp;
 
 /// Searches the readings of one epoch of the logbook and marks those that a
 /// passing disturbance or a failed reference spoilt.
-pub(in crate::analyse) fn find(
+pub(crate) fn find(
     readings: &mut [Reading],
     reference: &Reference,
     logbook: &[LogbookEntry],

@@ -6,35 +6,35 @@ use binnacle_compass::time::Timestamp;
 
 /// Work may have been done so long before the logbook says so, or after, seconds: people
 /// write down when they noticed, or what was planned.
-pub(in crate::analyse) const MISTIMED_S: f64 = 86_400.0;
+pub(crate) const MISTIMED_S: f64 = 86_400.0;
 
 /// What was found in one epoch of the logbook.
-pub(in crate::analyse) struct Found {
-    pub(in crate::analyse) changes: Vec<Change>,
+pub(crate) struct Found {
+    pub(crate) changes: Vec<Change>,
     /// Where epochs begin beside the logbook's.
-    pub(in crate::analyse) boundaries: Vec<Boundary>,
+    pub(crate) boundaries: Vec<Boundary>,
     /// The end that a change may have had, if that is open.
-    pub(in crate::analyse) perhaps: Option<Ended>,
+    pub(crate) perhaps: Option<Ended>,
     /// A change that may have begun at a port call, and has not been told.
-    pub(in crate::analyse) unnoticed: Option<Begun>,
+    pub(crate) unnoticed: Option<Begun>,
     /// A zero that may have moved in place of the only reference's.
-    pub(in crate::analyse) misled: Option<Misled>,
+    pub(crate) misled: Option<Misled>,
     /// What a step that is not certain may have done to bx and by, variance in nT².
-    pub(in crate::analyse) open_nt2: Option<f64>,
+    pub(crate) open_nt2: Option<f64>,
     /// Whether a change would have been noticed.
-    pub(in crate::analyse) is_watched: bool,
+    pub(crate) is_watched: bool,
 }
 
 impl Found {
     /// When the work was done of which the logbook says that it was done at a time soon
     /// after: people write down when they noticed.
-    pub(in crate::analyse) fn reported_late(&self, said: Timestamp) -> Option<Timestamp> {
+    pub(crate) fn reported_late(&self, said: Timestamp) -> Option<Timestamp> {
         let last = self.boundaries.last().filter(|last| !last.resumes)?;
         (self.is_work(last) && said.seconds_since(last.at) < MISTIMED_S).then_some(last.at)
     }
 
     /// When the work was done of which the logbook says that it was done at a time before.
-    pub(in crate::analyse) fn reported_early(&self, said: Timestamp) -> Option<Timestamp> {
+    pub(crate) fn reported_early(&self, said: Timestamp) -> Option<Timestamp> {
         let mut later = self.boundaries.iter().filter(|boundary| boundary.at > said);
         let first = later.next().filter(|first| !first.resumes)?;
         let after_s = self.changes[first.change].from_earliest.seconds_since(said);
@@ -48,38 +48,38 @@ impl Found {
 }
 
 /// A change that may be over.
-pub(in crate::analyse) struct Ended {
+pub(crate) struct Ended {
     /// When it would have ended.
-    pub(in crate::analyse) at: Timestamp,
+    pub(crate) at: Timestamp,
     /// Its place in the list.
-    pub(in crate::analyse) change: usize,
-    pub(in crate::analyse) probability: f64,
+    pub(crate) change: usize,
+    pub(crate) probability: f64,
 }
 
 /// A change that may have begun.
-pub(in crate::analyse) struct Begun {
-    pub(in crate::analyse) at: Timestamp,
-    pub(in crate::analyse) probability: f64,
+pub(crate) struct Begun {
+    pub(crate) at: Timestamp,
+    pub(crate) probability: f64,
 }
 
 /// A compass whose zero may have moved, by so much, degrees, with that variance.
-pub(in crate::analyse) struct Misled {
-    pub(in crate::analyse) moved_deg: f64,
-    pub(in crate::analyse) variance: f64,
-    pub(in crate::analyse) probability: f64,
+pub(crate) struct Misled {
+    pub(crate) moved_deg: f64,
+    pub(crate) variance: f64,
+    pub(crate) probability: f64,
 }
 
 /// The beginning of an epoch that a change made.
-pub(in crate::analyse) struct Boundary {
-    pub(in crate::analyse) at: Timestamp,
+pub(crate) struct Boundary {
+    pub(crate) at: Timestamp,
     /// The change's place in the list.
-    pub(in crate::analyse) change: usize,
+    pub(crate) change: usize,
     /// Whether the change ended here, and the ship is as she was before it.
-    pub(in crate::analyse) resumes: bool,
+    pub(crate) resumes: bool,
 }
 
 /// What is known beforehand of the ship and of her instruments' noise.
-pub(in crate::analyse) struct Known {
-    pub(in crate::analyse) prior: Prior,
-    pub(in crate::analyse) levels: Option<NoiseLevels>,
+pub(crate) struct Known {
+    pub(crate) prior: Prior,
+    pub(crate) levels: Option<NoiseLevels>,
 }

@@ -90,7 +90,7 @@ fn since_it_was_dense<T>(spell: &[(usize, Timestamp, T)]) -> Option<&[(usize, Ti
 
 /// Puts faults of the references that follow closely on each other, or are found in two
 /// ways, together; and those of the compass. `changes` are in order of time.
-pub(in crate::analyse) fn merge_faults(changes: &mut Vec<Change>, epochs: &[Epoch]) {
+pub(crate) fn merge_faults(changes: &mut Vec<Change>, epochs: &[Epoch]) {
     merge(changes, epochs, Cause::ReferenceFault);
     merge(changes, epochs, Cause::CompassFault);
 }

@@ -21,20 +21,20 @@ const SAME_TIME_S: f64 = 3600.0;
 
 /// The epochs so far, with the readings of each.
 #[derive(Default)]
-pub(in crate::analyse) struct Course {
-    pub(in crate::analyse) epochs: Vec<Epoch>,
+pub(crate) struct Course {
+    pub(crate) epochs: Vec<Epoch>,
     /// Places among those of the epoch of the logbook.
-    pub(in crate::analyse) ranges: Vec<Range<usize>>,
-    pub(in crate::analyse) changes: Vec<Change>,
+    pub(crate) ranges: Vec<Range<usize>>,
+    pub(crate) changes: Vec<Change>,
     /// Entries of cargo that the samples no longer bear out.
-    pub(in crate::analyse) idle: Vec<Idle>,
+    pub(crate) idle: Vec<Idle>,
     /// Whether a change in the last of them would not have been noticed.
-    pub(in crate::analyse) is_unwatched: bool,
+    pub(crate) is_unwatched: bool,
 }
 
 impl Course {
     /// Before the first epoch, with what the compass alone has shown.
-    pub(in crate::analyse) fn after(changes: Vec<Change>) -> Course {
+    pub(crate) fn after(changes: Vec<Change>) -> Course {
         Course {
             changes,
             ..Course::default()
@@ -43,7 +43,7 @@ impl Course {
 
     /// One epoch of the logbook, with the changes that its samples show. Where the samples
     /// show that it ended at another time than the logbook says, that time.
-    pub(in crate::analyse) fn follow(
+    pub(crate) fn follow(
         &mut self,
         epoch: Epoch,
         readings: &mut [Reading],
@@ -220,7 +220,7 @@ impl Course {
     }
 
     /// What an epoch that follows the last is to be fitted to.
-    pub(in crate::analyse) fn stretch<'a>(
+    pub(crate) fn stretch<'a>(
         &self,
         epoch: &Epoch,
         own: Range<usize>,
@@ -255,7 +255,7 @@ impl Course {
         }
     }
 
-    pub(in crate::analyse) fn push(&mut self, epoch: Epoch, own: Range<usize>) {
+    pub(crate) fn push(&mut self, epoch: Epoch, own: Range<usize>) {
         self.epochs.push(epoch);
         self.ranges.push(own);
     }

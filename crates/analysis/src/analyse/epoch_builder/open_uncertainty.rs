@@ -13,7 +13,7 @@ use binnacle_compass::ship::PARAMETERS;
 impl Course {
     /// Widens the last epoch's model where the ship may be again as she was in the
     /// epoch `base`.
-    pub(in crate::analyse) fn allow_for_end(
+    pub(crate) fn allow_for_end(
         &mut self,
         ended: &Ended,
         base: Option<usize>,
@@ -39,7 +39,7 @@ impl Course {
     }
 
     /// Widens the last epoch's model where the ship may be another since a port call.
-    pub(in crate::analyse) fn allow_for_change(
+    pub(crate) fn allow_for_change(
         &mut self,
         begun: &Begun,
         readings: &[Reading],
@@ -63,7 +63,7 @@ impl Course {
 
     /// Widens the last epoch's model where what began it may have been that the compass's
     /// zero moved.
-    pub(in crate::analyse) fn allow_for_zero(
+    pub(crate) fn allow_for_zero(
         &mut self,
         probability: f64,
         readings: &[Reading],
@@ -88,7 +88,7 @@ impl Course {
 
     /// Widens the last epoch's model where it may have been the compass's zero that moved, and
     /// not the only reference's.
-    pub(in crate::analyse) fn allow_for_misled(&mut self, misled: &Misled) {
+    pub(crate) fn allow_for_misled(&mut self, misled: &Misled) {
         let Some(model) = self.epochs.last_mut().and_then(|last| last.model.as_mut()) else {
             return;
         };
@@ -106,7 +106,7 @@ impl Course {
     }
 
     /// Widens the last epoch's model where the ship may have been struck hard just now.
-    pub(in crate::analyse) fn allow_for_step(&mut self, variance_nt2: f64) {
+    pub(crate) fn allow_for_step(&mut self, variance_nt2: f64) {
         let last = self.epochs.last_mut().and_then(|last| last.model.as_mut());
         if let Some(covariance) = last.and_then(|model| model.covariance.as_mut()) {
             for j in [0, 2] {
