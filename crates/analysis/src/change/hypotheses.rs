@@ -11,37 +11,23 @@
 
 use super::filter::{Filter, Measurement, Noise};
 use super::hypothesis_kind::{KINDS, Kind, PASSING, REFERENCES, RIVALS, STEPS};
-use super::jump_models::{BURST, Earlier, WILD_DEG, burst_of, calmed, misled, upset};
+use super::jump_models::{BURST, Earlier, burst_of, calmed, misled, upset};
+use crate::change::priors;
+use crate::change::thresholds::{
+    AWAKE_MIN_ROWS, ROW_FORGOTTEN_EXCESS_LOSS, ROW_MAX_EXCESS_LOSS, SEVERE_TRANSIENT_DEG,
+    SLEEP_LOG_LIKELIHOOD_RATIO, STEP_DROPPED_LOG_LIKELIHOOD_RATIO, STEP_DROPPED_MIN_ROWS,
+    TRANSIENT_END_FORK_LOG_LIKELIHOOD_RATIO, TRANSIENT_MAX_S, WAKE_EXCESS_LOSS,
+    WAKE_LOG_LIKELIHOOD_RATIO,
+};
 use std::collections::VecDeque;
 
 /// Times that are kept.
 const CAPACITY: usize = 16;
 /// A copy older than this is given up, rows.
-const OLDEST: usize = 4320;
-/// How long a storm may go on.
-pub(crate) const BURST_S: f64 = 36.0 * 3600.0;
-/// A burst that leads by less is not worth supposing to be over, nats.
-const WORTH: f64 = 3.0;
+const MAX_AGE_ROWS: usize = 4320;
 /// Rivals are awake from when a step leads by this until nothing leads by that, nats;
 /// they know of so many measurements at most.
-const WAKE_NATS: f64 = 7.0;
-const SLEEP_NATS: f64 = 6.0;
-const REMEMBERED: usize = 432;
-/// And for so many rows from when surprises have added up to this: a storm goes to and
-/// fro, and no step follows it.
-const SURPRISED_NATS: f64 = 4.0;
-const SURPRISED_ROWS: usize = 18;
-/// A surprise counts for so much at most, lest one wild reading wakes them, and so
-/// much a row is forgotten.
-const SURPRISE_NATS: f64 = 2.5;
-const FORGOTTEN_NATS: f64 = 0.75;
-/// A step that trails by this, after so many rows, is given up.
-const COLD_NATS: f64 = 2.0;
-const COLD_AFTER: usize = 48;
-
-/// A step is likelier beforehand at a port call, where cargo is loaded, than within any hour
-/// at sea, by this, nats.
-const IN_PORT_NATS: f64 = 4.0;
+const REMEMBERED_ROWS: usize = 432;
 
 /// A time at which something may have happened.
 #[derive(Clone, Debug)]
@@ -77,11 +63,12 @@ impl Spawn {
 
     /// All but a large step, which reads rows of its own.
     fn take(&mut self, m: &Measurement, noise: &Noise, kinds: &[Kind]) {
-        let goes_on = self.age_s < BURST_S;
+        let goes_on = self.age_s < TRANSIENT_MAX_S;
         self.age_s += m.seconds;
         if let Some(burst) = &self.copies[Kind::Burst as usize] {
             self.astray_deg = self.astray_deg.max(self.origin.variation_astray_deg(m));
-            if self.astray_deg > WILD_DEG && self.copies[Kind::Wild as usize].is_none() {
+            if self.astray_deg > SEVERE_TRANSIENT_DEG && self.copies[Kind::Wild as usize].is_none()
+            {
                 self.copies[Kind::Wild as usize] = Some(burst.clone());
             }
         }
@@ -188,7 +175,11 @@ impl Bank {
             age_s: 0.0,
             astray_deg: 0.0,
             is_fresh: false,
-            beforehand_nats: if in_port { IN_PORT_NATS } else { 0.0 },
+            beforehand_nats: if in_port {
+                priors::STEP_AT_PORT_CALL_LOG_ODDS
+            } else {
+                0.0
+            },
         };
         let mut step = upset(now, Kind::Step);
         step.log_likelihood += spawn.beforehand_nats;
@@ -196,7 +187,9 @@ impl Bank {
         if self.are_rivals_awake {
             spawn.wake(earlier);
             let astray = self.likeliest(&PASSING, now);
-            if let Some(lead) = astray.filter(|lead| lead.nats > WORTH) {
+            if let Some(lead) =
+                astray.filter(|lead| lead.nats > TRANSIENT_END_FORK_LOG_LIKELIHOOD_RATIO)
+            {
                 let astray = &self.spawns[lead.spawn];
                 spawn.astray_from = Some(astray.at);
                 let over = astray.copy(lead.kind).map(|copy| match lead.kind {
@@ -222,20 +215,20 @@ impl Bank {
         for spawn in &mut self.spawns {
             spawn.take(&m, noise, &KINDS);
         }
-        if self.memory.len() == REMEMBERED {
+        if self.memory.len() == REMEMBERED_ROWS {
             self.memory.pop_front();
         }
         self.memory.push_back(m);
         self.latest = at;
-        let counted = surprise.min(SURPRISE_NATS) - FORGOTTEN_NATS;
+        let counted = surprise.min(ROW_MAX_EXCESS_LOSS) - ROW_FORGOTTEN_EXCESS_LOSS;
         self.surprise = (self.surprise + counted).max(0.0);
         let step = self.lead(Kind::Step, null).map_or(0.0, |lead| lead.nats);
-        let is_surprised = self.surprise > SURPRISED_NATS;
+        let is_surprised = self.surprise > WAKE_EXCESS_LOSS;
         if is_surprised {
             self.surprise = 0.0;
-            self.awake_until = at + SURPRISED_ROWS;
+            self.awake_until = at + AWAKE_MIN_ROWS;
         }
-        if (is_surprised || step > WAKE_NATS) && !self.are_rivals_awake {
+        if (is_surprised || step > WAKE_LOG_LIKELIHOOD_RATIO) && !self.are_rivals_awake {
             self.wake(noise, earlier);
         }
     }
@@ -257,7 +250,7 @@ impl Bank {
     /// Gives up rivals when nothing leads, and steps that trail for good.
     fn rest(&mut self, at: usize, null: &Filter) {
         let leads = KINDS.map(|kind| self.lead(kind, null).map_or(0.0, |lead| lead.nats));
-        if at >= self.awake_until && leads.iter().all(|nats| *nats < SLEEP_NATS) {
+        if at >= self.awake_until && leads.iter().all(|nats| *nats < SLEEP_LOG_LIKELIHOOD_RATIO) {
             self.are_rivals_awake = false;
             for spawn in &mut self.spawns {
                 for kind in KINDS.into_iter().filter(|kind| *kind != Kind::Step) {
@@ -265,8 +258,12 @@ impl Bank {
                 }
             }
         }
-        let hopeless = null.log_likelihood - COLD_NATS;
-        for spawn in self.spawns.iter_mut().filter(|s| at - s.at > COLD_AFTER) {
+        let hopeless = null.log_likelihood - STEP_DROPPED_LOG_LIKELIHOOD_RATIO;
+        for spawn in self
+            .spawns
+            .iter_mut()
+            .filter(|s| at - s.at > STEP_DROPPED_MIN_ROWS)
+        {
             let step = &mut spawn.copies[Kind::Step as usize];
             if step.as_ref().is_some_and(|s| s.log_likelihood <= hopeless) {
                 *step = None;
@@ -323,7 +320,7 @@ impl Bank {
 
     /// Makes room for one more.
     fn thin(&mut self, at: usize, null: &Filter) {
-        self.spawns.retain(|s| at - s.at <= OLDEST);
+        self.spawns.retain(|s| at - s.at <= MAX_AGE_ROWS);
         if self.spawns.len() < CAPACITY {
             return;
         }

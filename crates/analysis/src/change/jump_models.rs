@@ -5,29 +5,11 @@
 
 use super::filter::{Burst, CONSTANT_STATE, Filter, Measurement, Noise, OFFSET, STATES, VARIATION};
 use super::hypothesis_kind::Kind;
+use crate::change::priors;
+use crate::change::thresholds::SEVERE_TRANSIENT_DEG;
 use crate::estimate::{OFFSET_SD_DEG, POPULATION_SD};
 use binnacle_compass::model::Parameters;
 use binnacle_compass::ship::PARAMETERS;
-
-/// Standard deviation of a step in bx and by, in population units (1500 nT), and
-/// in what is induced.
-const STEP: f64 = 0.8;
-const STEP_INDUCED: f64 = 0.3;
-/// Of a large one in bx and by, and by how much that is less likely beforehand, nats.
-const LARGE: f64 = 6.0;
-const LARGE_AGAINST_NATS: f64 = 2.0;
-/// Of a step of either reference, degrees, unless the first reading after it is
-/// further off.
-const REFERENCE_DEG: f64 = 5.0;
-/// Of the variation in a storm or over an anomaly, degrees where H is 24 µT, how
-/// long it stays the same, and how long it may go on.
-const BURST_DEG: f64 = 1.2;
-const BURST_MEMORY_S: f64 = 3600.0;
-/// A compass that is further astray than this, degrees where H is 24 µT, may go wild.
-pub(crate) const WILD_DEG: f64 = 3.5;
-/// How far a ship that is herself again may differ from what she was, in
-/// population units.
-const SLACK: f64 = 0.06;
 
 /// What something was before it changed, and may become again.
 #[derive(Clone, Copy, Debug)]
@@ -55,18 +37,18 @@ impl Earlier<'_> {
 }
 
 pub(crate) const BURST: Burst = Burst {
-    variance: BURST_DEG * BURST_DEG,
-    memory_s: BURST_MEMORY_S,
+    variance: priors::TRANSIENT_SD_DEG * priors::TRANSIENT_SD_DEG,
+    memory_s: priors::TRANSIENT_CORRELATION_S,
 };
 
 /// The filter with that having happened just now, by how much not being known.
 pub(crate) fn upset(now: &Filter, kind: Kind) -> Filter {
     // All else sets in as it goes on: within its memory, not at once.
     match kind {
-        Kind::Step => stepped(now, STEP),
+        Kind::Step => stepped(now, priors::STEP_SD),
         Kind::Large => {
             let mut copy = struck(now);
-            copy.log_likelihood -= LARGE_AGAINST_NATS;
+            copy.log_likelihood -= priors::AGAINST_LARGE_STEP_LOG_ODDS;
             copy
         }
         _ => now.clone(),
@@ -75,7 +57,7 @@ pub(crate) fn upset(now: &Filter, kind: Kind) -> Filter {
 
 /// The filter of a ship that may have been struck by far harder than she is as a rule.
 pub(crate) fn struck(now: &Filter) -> Filter {
-    stepped(now, LARGE)
+    stepped(now, priors::LARGE_STEP_SD)
 }
 
 fn stepped(now: &Filter, permanent: f64) -> Filter {
@@ -84,7 +66,7 @@ fn stepped(now: &Filter, permanent: f64) -> Filter {
         let step = if matches!(j, 0 | 2) {
             permanent
         } else {
-            STEP_INDUCED
+            priors::INDUCED_STEP_SD
         };
         copy.covariance.add(j, j, step * step);
     }
@@ -99,7 +81,7 @@ fn stepped(now: &Filter, permanent: f64) -> Filter {
 /// to be impossible is never learnt.
 pub(crate) fn misled(now: &Filter, next: &Measurement, which: Kind) -> Filter {
     let mut copy = now.clone();
-    let size = now.astray_deg(next).max(REFERENCE_DEG);
+    let size = now.astray_deg(next).max(priors::REFERENCE_STEP_SD_DEG);
     let constant = if next.difference.is_some() {
         size / 2.0
     } else {
@@ -183,17 +165,18 @@ pub(crate) fn set_back(now: &Filter, base: &Filter) -> Filter {
         }
     }
     for j in [0, 2] {
-        copy.covariance.add(j, j, SLACK * SLACK);
+        copy.covariance
+            .add(j, j, priors::RETURN_SD * priors::RETURN_SD);
     }
     copy
 }
 
 /// A burst in which the furthest reading was so far astray: a wild one is as large.
 pub(crate) fn burst_of(astray_deg: f64) -> Burst {
-    let deg = if astray_deg > WILD_DEG {
+    let deg = if astray_deg > SEVERE_TRANSIENT_DEG {
         astray_deg
     } else {
-        BURST_DEG
+        priors::TRANSIENT_SD_DEG
     };
     Burst {
         variance: deg * deg,

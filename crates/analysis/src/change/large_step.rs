@@ -8,28 +8,23 @@ use super::filter::{Filter, Measurement, Noise};
 use super::hypotheses::{Bank, Spawn};
 use super::hypothesis_kind::Kind;
 use super::jump_models::upset;
+use crate::change::thresholds::{LARGE_STEP_DEG, LARGE_STEP_MAX_ROWS};
 use crate::estimate::{USUAL_FUSION, Unknowns};
 
-/// A large step is supposed once a reading was further astray than this, degrees where H is
-/// 24 µT.
-const LARGE_DEG: f64 = 4.0;
-/// Of times no more than so many rows ago: a ship on one course does not show what lies
-/// along her needle.
-const ROWS: usize = 72;
 /// A row is linearised again where it moves what is expected of it by more than this,
 /// degrees, and so often at most.
-const FAR_DEG: f64 = 2.0;
-const ROUNDS: usize = 6;
+const RELINEARISE_BEYOND_DEG: f64 = 2.0;
+const LINEARISATION_ROUNDS: usize = 6;
 /// A ship whose bx and by are beyond this is a strong magnet, population units (1500 nT).
-const STRONG: f64 = 4.0;
+const STRONG_MAGNET: f64 = 4.0;
 /// One that is off by more than this is a wild reading, squared standard deviations.
-const WILD_Z_SQUARED: f64 = 9.0;
+const OUTLIER_Z_SQUARED: f64 = 9.0;
 
 /// The share that the reference has in the heading at which rows are taken: all of it for a
 /// ship so strong a magnet that her compass may turn several times as fast as she does,
 /// for there what the compass has in it would explain whatever it shows.
 pub(crate) fn fusion(ship: &Unknowns) -> f64 {
-    if ship[0].hypot(ship[2]) > STRONG {
+    if ship[0].hypot(ship[2]) > STRONG_MAGNET {
         1.0
     } else {
         USUAL_FUSION
@@ -45,8 +40,8 @@ pub(crate) fn relinearised(
 ) -> Measurement {
     let mut m = measure(&filter.unknowns());
     let mut moved = filter.astray_deg(&m);
-    for _ in 0..ROUNDS {
-        if moved < FAR_DEG || filter.z_squared(&m) > WILD_Z_SQUARED {
+    for _ in 0..LINEARISATION_ROUNDS {
+        if moved < RELINEARISE_BEYOND_DEG || filter.z_squared(&m) > OUTLIER_Z_SQUARED {
             break;
         }
         let mut after = filter.clone();
@@ -91,5 +86,5 @@ impl Bank {
 
 /// Whether a large step is to be supposed of that time from now on.
 fn is_new(spawn: &Spawn, at: usize) -> bool {
-    spawn.astray_deg() > LARGE_DEG && at <= spawn.at + ROWS
+    spawn.astray_deg() > LARGE_STEP_DEG && at <= spawn.at + LARGE_STEP_MAX_ROWS
 }

@@ -23,10 +23,13 @@ mod large_step;
 mod likelihood_ratio;
 mod port_call_returns;
 mod port_calls;
+mod priors;
+mod thresholds;
 
 pub(crate) use cause::{Circumstances, causes};
 pub(crate) use detect::detect;
 pub(crate) use detection::{Given, Loaded, Perhaps, Unnoticed};
 pub(crate) use event::{Event, Snapshot, What};
 pub(crate) use likelihood_ratio::odds;
-pub(crate) use port_calls::{SAILED_SINCE, at_port, rows_since};
+pub(crate) use port_calls::{at_port, rows_since};
+pub(crate) use thresholds::SAILED_SINCE_ROWS;

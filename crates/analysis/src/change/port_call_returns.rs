@@ -1,39 +1,20 @@
 //! Port calls at which a ship may have become what she was before a step: cargo
 //! is discharged where it was loaded, in port.
 //!
-//! What always holds: at most [`MOST`] calls and [`BASES`] earlier states are kept,
+//! What always holds: at most [`MAX_PORT_CALLS`] calls and [`MAX_BASELINES`] earlier states are kept,
 //! and what has become unlikely is given up, so that the work a row is bounded.
 
 use super::filter::{Filter, Measurement, Noise};
 use super::jump_models::set_back;
 use super::likelihood_ratio::TEMPER;
+use crate::change::priors;
+use crate::change::thresholds::RETURN_DROPPED_LOG_LIKELIHOOD_RATIO;
 use crate::estimate::Unknowns;
 use binnacle_compass::time::Timestamp;
 
 /// Calls and earlier states that are kept, the latest of each.
-const MOST: usize = 4;
-const BASES: usize = 3;
-/// A return that trails by more than this is given up, nats.
-const HOPELESS_NATS: f64 = 16.0;
-/// How likely a ship is to become herself again at a port call after a change at sea.
-const RETURN_AFTER_SEA: f64 = 0.01;
-/// A change that began at a port call is cargo with this probability; little cargo is noticed
-/// late, so that one that is dated days after a call may be, too, and the rather where the rows
-/// fit one at the call as well.
-const IS_CARGO: f64 = 0.84;
-const IS_CARGO_NOTICED_LATE: f64 = 0.6;
-const IS_CARGO_SOON_AFTER: f64 = 0.25;
-/// Cargo is discharged at any one call with this probability.
-const DISCHARGED: f64 = 0.6;
-
-/// She is herself again so likely at a call at which the logbook says that her cargo was
-/// discharged: it is believed at once. And so likely where it says that it stayed.
-const SAID_DISCHARGED: f64 = 0.95;
-const SAID_ON_BOARD: f64 = 0.05;
-/// And so likely where it says so of an hour when she was under way, or where what may have
-/// been the cargo was dated after she had sailed with it: the rows are to tell.
-const SAID_UNDER_WAY: f64 = 0.5;
-const SAID_NOTICED_AT_SEA: f64 = 0.7;
+const MAX_PORT_CALLS: usize = 4;
+const MAX_BASELINES: usize = 3;
 
 /// What the logbook tells of cargo at a port call.
 #[derive(Clone, Copy, Debug)]
@@ -79,13 +60,13 @@ impl Base {
     /// through many was no cargo.
     fn chance(&self) -> f64 {
         let is_cargo = match self.began {
-            Began::AtPort | Began::SaidLoaded => IS_CARGO,
-            Began::NoticedLate => IS_CARGO_NOTICED_LATE,
-            Began::SoonAfter(_) => IS_CARGO_SOON_AFTER,
-            Began::AtSea => return RETURN_AFTER_SEA,
+            Began::AtPort | Began::SaidLoaded => priors::CARGO,
+            Began::NoticedLate => priors::CARGO_NOTICED_LATE,
+            Began::SoonAfter(_) => priors::CARGO_SOON_AFTER_CALL,
+            Began::AtSea => return priors::RETURN_AFTER_CHANGE_AT_SEA,
         };
-        let still = is_cargo * (1.0 - DISCHARGED).powi(self.calls);
-        DISCHARGED * still / (still + 1.0 - is_cargo)
+        let still = is_cargo * (1.0 - priors::DISCHARGE).powi(self.calls);
+        priors::DISCHARGE * still / (still + 1.0 - is_cargo)
     }
 
     /// What began at sea may end there.
@@ -146,7 +127,7 @@ pub(crate) struct Calls {
 
 impl Calls {
     pub(crate) fn step(&mut self, base: Base) {
-        if self.bases.len() == BASES {
+        if self.bases.len() == MAX_BASELINES {
             // The first is the ship without any cargo, and stays.
             self.bases.remove(1);
         }
@@ -165,7 +146,7 @@ impl Calls {
             .map(|base| {
                 let chance = match (said, unladen) {
                     (_, Some((event, chance))) if event == base.event => chance,
-                    (Said::OnBoard, _) => SAID_ON_BOARD * base.chance(),
+                    (Said::OnBoard, _) => priors::LOGGED_ON_BOARD_FACTOR * base.chance(),
                     _ => base.chance(),
                 };
                 base.calls += 1;
@@ -180,7 +161,7 @@ impl Calls {
             return;
         }
         self.calls.retain(|call| call.at != at);
-        if self.calls.len() == MOST {
+        if self.calls.len() == MAX_PORT_CALLS {
             self.calls.remove(0);
         }
         self.calls.push(Call { at, returns });
@@ -198,9 +179,9 @@ impl Calls {
             return None;
         }
         let chance = match (first.came_on_board(), at_port) {
-            (true, true) => SAID_DISCHARGED,
-            (true, false) => SAID_UNDER_WAY,
-            (false, _) => SAID_NOTICED_AT_SEA,
+            (true, true) => priors::LOGGED_DISCHARGE,
+            (true, false) => priors::LOGGED_DISCHARGE_UNDER_WAY,
+            (false, _) => priors::LOGGED_DISCHARGE_NOTICED_AT_SEA,
         };
         Some((first.event, chance))
     }
@@ -217,8 +198,10 @@ impl Calls {
                 let m = measure(&back.filter.unknowns());
                 back.filter.take(&m, noise, None);
             }
-            call.returns
-                .retain(|back| back.filter.log_likelihood > null.log_likelihood - HOPELESS_NATS);
+            call.returns.retain(|back| {
+                back.filter.log_likelihood
+                    > null.log_likelihood - RETURN_DROPPED_LOG_LIKELIHOOD_RATIO
+            });
         }
         self.calls.retain(|call| !call.returns.is_empty());
     }

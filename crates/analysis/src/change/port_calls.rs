@@ -18,10 +18,6 @@ pub(crate) fn at_port(observations: &[Observation], row: usize) -> Option<bool> 
     Some(gap_s > PORT_S && 60.0 * north.hypot(east) < PORT_NM)
 }
 
-/// A step that is dated after so many rows or more of sailing since was not the loading:
-/// half of it for what people write, half for dating.
-pub(crate) const SAILED_SINCE: usize = 36;
-
 /// Rows after a time, of rows in order of time.
 pub(crate) fn rows_since(rows: &[Observation], time: Timestamp) -> usize {
     let before = rows.partition_point(|row| row.time.is_none_or(|row| row <= time));

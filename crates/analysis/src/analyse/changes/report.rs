@@ -5,7 +5,7 @@ use super::evidence::evidence;
 use super::findings::{Begun, Ended, Misled};
 use crate::analyse::logbook_rules::cause_of;
 use crate::change::{
-    Circumstances, Event, Perhaps, SAILED_SINCE, Snapshot, Unnoticed, What, at_port, causes,
+    Circumstances, Event, Perhaps, SAILED_SINCE_ROWS, Snapshot, Unnoticed, What, at_port, causes,
     rows_since,
 };
 use crate::observation::Observation;
@@ -307,7 +307,7 @@ impl Teller<'_> {
         // It comes and goes in port, not after hours of sailing.
         let at_the_quay = |time: Timestamp| {
             let sailed = rows_since(&self.observations[..first], time);
-            at_port == Some(true) || sailed < SAILED_SINCE
+            at_port == Some(true) || sailed < SAILED_SINCE_ROWS
         };
         // What happens from one time to another may change the ship all the while, but
         // cargo does so when it comes on board and when it goes.

@@ -1,6 +1,5 @@
 //! What is believed takes over from the filter, and becomes an event.
 
-use super::EVERY;
 use super::dating::Dated;
 use super::state::{Leads, Lesson, Search, Unsettled};
 use crate::change::event::{Event, What, snapshot, take_out};
@@ -9,12 +8,9 @@ use crate::change::hypotheses::Lead;
 use crate::change::hypothesis_kind::Kind;
 use crate::change::jump_models::{Earlier, misled, upset};
 use crate::change::port_call_returns::{Base, Began, Candidate};
-
-/// A change that is gone again within this, away from port, is none of the ship's.
-const BRIEF_S: f64 = 24.0 * 3600.0;
-/// A large step that is no less likely than the usual by this is taken for one, nats: of
-/// what lies along the needle the usual knows too little.
-const AS_LIKELY_NATS: f64 = 3.0;
+use crate::change::thresholds::{
+    BRIEF_CHANGE_S, FORK_INTERVAL_ROWS, LARGE_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO,
+};
 
 impl Search<'_> {
     /// The ship's magnetism or a reference changed: the copy that knew takes over.
@@ -23,7 +19,9 @@ impl Search<'_> {
             return;
         };
         let large = self.bank.lead(Kind::Large, &self.null);
-        let large = large.filter(|l| kind == Kind::Step && l.nats > lead.nats - AS_LIKELY_NATS);
+        let large = large.filter(|l| {
+            kind == Kind::Step && l.nats > lead.nats - LARGE_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO
+        });
         let lead = large.unwrap_or(lead);
         let dated = self.date(lead.spawn, lead.kind, k);
         let earlier = self.calls.bases.last();
@@ -155,7 +153,7 @@ impl Search<'_> {
             return;
         };
         let burst = &self.events[event];
-        if burst.first + 2 * EVERY >= first || burst.told >= first {
+        if burst.first + 2 * FORK_INTERVAL_ROWS >= first || burst.told >= first {
             self.events.remove(event);
         } else {
             self.events[event].last = Some(first - 1);
@@ -209,7 +207,7 @@ impl Search<'_> {
             .map(|(end, begin)| end.seconds_since(begin));
         let mut rows = event.between.0..=back.between.1.max(back.first);
         matches!(event.what, What::Step | What::Alignment)
-            && lasted_s.is_some_and(|s| s < BRIEF_S)
+            && lasted_s.is_some_and(|s| s < BRIEF_CHANGE_S)
             && !rows.any(|row| self.is_call(row))
     }
 

@@ -8,45 +8,29 @@
 use super::dating::Dated;
 use super::state::Rival;
 use super::state::{Leads, Search, Unsettled};
-use super::step_refit::ANEW_NATS;
 use crate::change::event::{Event, What, snapshot, take_out};
 use crate::change::filter::{CONSTANT_STATE, Filter, Measurement};
 use crate::change::hypotheses::Spawn;
 use crate::change::hypothesis_kind::Kind;
 use crate::change::jump_models::misaligned;
 use crate::change::port_call_returns::{Base, Began};
+use crate::change::priors;
+use crate::change::thresholds::{
+    ALIGNMENT_SECTOR_ROWS, ALIGNMENT_SECTORS, ALIGNMENT_SECTORS_BETWEEN,
+    COMPETING_DEFICIT_LOG_LIKELIHOOD_RATIO, COMPETING_DROPPED_LOG_LIKELIHOOD_RATIO,
+    COMPETING_LOG_LIKELIHOOD_RATIO, COMPETING_MAX_ROWS,
+    COMPETING_WITH_SEVERAL_LOG_LIKELIHOOD_RATIO, DRIFT_BEFORE_CARGO_ROWS,
+    DRIFT_WITH_CARGO_EXTRA_LOG_LIKELIHOOD_RATIO, STEP_KEPT_LOG_LIKELIHOOD_RATIO,
+};
 
 /// Standard deviation of the zero's step, degrees, unless the first reading after it is
 /// further off.
-const ZERO_DEG: f64 = 5.0;
-const ZERO_ROUNDS: usize = 3;
-/// What bx and by each drift by in thirty days, variance in population units (1500 nT):
-/// a ship that creeps, and one that drifts fast.
-const CREEPS: [f64; 2] = [0.5, 4.0];
-/// A rival must be likelier by this than the step.
-const RIVAL_NATS: f64 = 8.0;
-/// But by this, where it takes the place of several: one change is likelier than more.
-const RIVAL_OF_SEVERAL_NATS: f64 = 3.0;
-const SPARED_NATS: f64 = 6.0;
-/// And by so much more for a drift where all steps were dated in port, or with cargo on board,
-/// for that is cargo as a rule; it must have begun so many rows before the first.
-const DRIFT_IN_PORT_NATS: f64 = 16.0;
-const BEFORE_PORT_ROWS: usize = 72;
-/// And no less likely by this than another step would be: two in a row are seldom.
-const BELOW_STEP: f64 = 3.0;
-/// A zero that moved takes a step's place once two sectors of this many, with so many others
-/// between them, have been sailed for so many rows each: two headings 30° apart and more.
-const SECTORS: usize = 36;
-const BETWEEN: usize = 3;
-const SECTOR_ROWS: usize = 3;
-/// One that trails by this is given up, nats, and any after so many rows.
-const HOPELESS_NATS: f64 = 20.0;
-const OLDEST: usize = 8640;
+const LINEARISATION_ROUNDS: usize = 3;
 
 impl Search<'_> {
     /// The rivals of a step that was dated just now.
     pub(crate) fn rivals_of(&self, k: usize, dated: &Dated) -> Vec<Rival> {
-        let creeping = CREEPS
+        let creeping = priors::DRIFT_VARIANCES
             .iter()
             .filter_map(|drift| self.creeping(k, dated, *drift));
         let misaligned = self.has_both(k).then(|| self.misaligned(k, dated));
@@ -70,11 +54,11 @@ impl Search<'_> {
     fn zero_moved(&self, k: usize, before: &Filter, first: usize) -> Filter {
         let mut filter = before.clone();
         // So often, for the rows are to be linearised at where it ends.
-        for _ in 0..ZERO_ROUNDS {
+        for _ in 0..LINEARISATION_ROUNDS {
             let at = filter.unknowns();
             let moved_deg = filter.mean[CONSTANT_STATE] - before.mean[CONSTANT_STATE];
             let next = self.measure(first, &at);
-            let size_deg = before.astray_deg(&next).max(ZERO_DEG);
+            let size_deg = before.astray_deg(&next).max(priors::ALIGNMENT_STEP_SD_DEG);
             let moved = misaligned(before, moved_deg, size_deg);
             filter = self.run(moved, first..k + 1, &at);
         }
@@ -124,8 +108,8 @@ impl Search<'_> {
             let m = self.measure_drifting(k, &at, rival.drift);
             rival.filter.take(&m, &self.noise, None);
         }
-        let hopeless = self.null.log_likelihood - HOPELESS_NATS;
-        rivals.retain(|r| r.filter.log_likelihood > hopeless && k < r.first + OLDEST);
+        let hopeless = self.null.log_likelihood - COMPETING_DROPPED_LOG_LIKELIHOOD_RATIO;
+        rivals.retain(|r| r.filter.log_likelihood > hopeless && k < r.first + COMPETING_MAX_ROWS);
         self.rivals = rivals;
     }
 
@@ -144,7 +128,7 @@ impl Search<'_> {
         };
         let worth = |place: usize| {
             let rival = &self.rivals[place];
-            lead(rival) + SPARED_NATS * later(rival) as f64
+            lead(rival) + priors::SPARED_STEP_LOG_ODDS * later(rival) as f64
         };
         let likeliest = (0..self.rivals.len()).max_by(|&a, &b| worth(a).total_cmp(&worth(b)));
         let Some(place) = likeliest else {
@@ -155,22 +139,26 @@ impl Search<'_> {
         let is_drift = self.rivals[place].what == What::Drift;
         let in_port = is_drift && steps.all(|event| self.is_cargo_likely(event));
         let mut enough = if later(&self.rivals[place]) > 0 {
-            RIVAL_OF_SEVERAL_NATS
+            COMPETING_WITH_SEVERAL_LOG_LIKELIHOOD_RATIO
         } else {
-            RIVAL_NATS
+            COMPETING_LOG_LIKELIHOOD_RATIO
         };
         if in_port {
             // Cargo comes on board at once: nothing went before it.
-            if self.rivals[place].first + BEFORE_PORT_ROWS > self.events[of].between.0 {
+            if self.rivals[place].first + DRIFT_BEFORE_CARGO_ROWS > self.events[of].between.0 {
                 return false;
             }
-            enough += DRIFT_IN_PORT_NATS;
+            enough += DRIFT_WITH_CARGO_EXTRA_LOG_LIKELIHOOD_RATIO;
         }
-        if nats < enough || nats < step - BELOW_STEP || nats < burst || nats < back {
+        if nats < enough
+            || nats < step - COMPETING_DEFICIT_LOG_LIKELIHOOD_RATIO
+            || nats < burst
+            || nats < back
+        {
             return false;
         }
         // Another step upon the first is the rarer by far.
-        let is_needless = step > RIVAL_NATS;
+        let is_needless = step > COMPETING_LOG_LIKELIHOOD_RATIO;
         if self.rivals[place].what == What::Alignment
             && !is_needless
             && !self.tells_from_step(place, k)
@@ -182,7 +170,7 @@ impl Search<'_> {
             let mut step = self.step_anew(k, &rival.before, rival.first);
             let zero = self.zero_moved(k, &rival.before, rival.first);
             let trails = zero.log_likelihood - step.log_likelihood;
-            if trails < ANEW_NATS {
+            if trails < STEP_KEPT_LOG_LIKELIHOOD_RATIO {
                 // What was gained meanwhile by being told of a burst, it has gained, too.
                 step.log_likelihood = rival.filter.log_likelihood - trails;
                 self.step_is(k, of, step);
@@ -257,13 +245,14 @@ impl Search<'_> {
     /// Whether she has sailed on headings since that tell a zero that moved from a step: on
     /// one, and on two that lie close, a step does the same.
     fn tells_from_step(&self, place: usize, k: usize) -> bool {
-        let mut rows = [0; SECTORS];
+        let mut rows = [0; ALIGNMENT_SECTORS];
         for o in &self.observations[self.rivals[place].first..=k] {
-            rows[(o.compass.degrees() / 360.0 * SECTORS as f64) as usize % SECTORS] += 1;
+            rows[(o.compass.degrees() / 360.0 * ALIGNMENT_SECTORS as f64) as usize
+                % ALIGNMENT_SECTORS] += 1;
         }
-        let sailed = |sector: usize| rows[sector % SECTORS] >= SECTOR_ROWS;
-        let apart = BETWEEN + 1..SECTORS - BETWEEN;
-        (0..SECTORS).any(|one| sailed(one) && apart.clone().any(|far| sailed(one + far)))
+        let sailed = |sector: usize| rows[sector % ALIGNMENT_SECTORS] >= ALIGNMENT_SECTOR_ROWS;
+        let apart = ALIGNMENT_SECTORS_BETWEEN + 1..ALIGNMENT_SECTORS - ALIGNMENT_SECTORS_BETWEEN;
+        (0..ALIGNMENT_SECTORS).any(|one| sailed(one) && apart.clone().any(|far| sailed(one + far)))
     }
 
     /// What had been taken for further steps was the same.

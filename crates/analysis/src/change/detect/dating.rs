@@ -1,25 +1,24 @@
 //! When a change happened, to the row.
 
-use super::GAP_S;
 use super::state::{Search, earlier};
 use crate::change::event::{Event, What};
 use crate::change::filter::{Filter, Measurement};
 use crate::change::hypothesis_kind::Kind;
 use crate::change::jump_models::{misled, upset};
+use crate::change::thresholds::{
+    DATE_AT_PORT_CALL_LOG_LIKELIHOOD_RATIO, DATE_AT_PORT_CALL_ROWS, DATE_LOG_LIKELIHOOD_RATIO,
+    FORK_AFTER_GAP_S,
+};
 use crate::estimate::Unknowns;
 
 /// Times tried for the date of a change, in each of two rounds.
-const DATES: usize = 40;
-/// Those less likely than the best by this or more are no date of it, nats.
-const DATE_NATS: f64 = 1.92;
+const DATES_PER_ROUND: usize = 40;
 /// Usual time from row to row, seconds.
 const ROW_S: f64 = 600.0;
 
 /// A step is dated at one of the port calls within so many rows of its own, if that is less
 /// likely than the likeliest row by no more, nats.
-const CALLS: usize = 3;
-const CALL_ROWS: usize = 144;
-const CALL_NATS: f64 = 8.0;
+const PORT_CALLS_TRIED: usize = 3;
 
 /// A change with its date.
 pub(crate) struct Dated {
@@ -69,11 +68,11 @@ impl Search<'_> {
             let (low, high) = if round == 0 {
                 (origin.at, until)
             } else {
-                let stride = (until - origin.at) / DATES + 1;
+                let stride = (until - origin.at) / DATES_PER_ROUND + 1;
                 let low = best.0.saturating_sub(stride).max(origin.at);
                 (low, (best.0 + stride).min(until))
             };
-            let stride = (high - low) / DATES + 1;
+            let stride = (high - low) / DATES_PER_ROUND + 1;
             let rows = origin.at..k + 1;
             let measure = |at: &Unknowns| -> Vec<Measurement> {
                 rows.clone().map(|row| self.measure(row, at)).collect()
@@ -112,7 +111,7 @@ impl Search<'_> {
                 .map(|x| x.2)
                 .fold(f64::NEG_INFINITY, f64::max);
             of_round
-                .filter(move |x| x.2 > most - DATE_NATS)
+                .filter(move |x| x.2 > most - DATE_LOG_LIKELIHOOD_RATIO)
                 .map(|x| x.1)
                 .collect::<Vec<_>>()
         };
@@ -134,7 +133,7 @@ impl Search<'_> {
     /// than between two rows: the gap is as many times as long, nats.
     fn in_gap_nats(&self, row: usize) -> f64 {
         let seconds = self.seconds(row);
-        if seconds > GAP_S {
+        if seconds > FORK_AFTER_GAP_S {
             (seconds / ROW_S).ln()
         } else {
             0.0
@@ -159,15 +158,17 @@ impl Search<'_> {
         k: usize,
     ) -> Option<Dated> {
         let spawns = &self.bank.spawns;
-        let since = row.saturating_sub(CALL_ROWS);
+        let since = row.saturating_sub(DATE_AT_PORT_CALL_ROWS);
         let from = spawns.partition_point(|s| s.at <= since).saturating_sub(1);
         let origin = &spawns[from.min(winner)];
         let until = spawns
             .get(winner + 1)
             .map_or(k, |s| s.at)
-            .max(row + CALL_ROWS);
+            .max(row + DATE_AT_PORT_CALL_ROWS);
         let calls = (origin.at.max(since).max(1)..=until.min(k)).rev();
-        let calls = calls.filter(|&row| self.is_call(row)).take(CALLS);
+        let calls = calls
+            .filter(|&row| self.is_call(row))
+            .take(PORT_CALLS_TRIED);
         let at = filter.unknowns();
         let calm = at_before(kind, origin.origin(), &at);
         let before = calls.map(|call| {
@@ -188,7 +189,10 @@ impl Search<'_> {
                 let filter = self.run(upset(&before, kind), call..k + 1, &at);
                 (call, before, filter)
             })
-            .filter(|(_, _, at_call)| at_call.log_likelihood > filter.log_likelihood - CALL_NATS)
+            .filter(|(_, _, at_call)| {
+                at_call.log_likelihood
+                    > filter.log_likelihood - DATE_AT_PORT_CALL_LOG_LIKELIHOOD_RATIO
+            })
             .max_by(|a, b| a.2.log_likelihood.total_cmp(&b.2.log_likelihood))?;
         let has_passed = |event: &Event| {
             event.what == What::Burst

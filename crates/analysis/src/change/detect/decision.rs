@@ -1,62 +1,26 @@
 //! Whether what leads leads by enough to be believed.
 
-use super::EVERY;
 use super::state::{Leads, Search};
 use crate::change::event::{Event, What};
 use crate::change::filter::Filter;
 use crate::change::hypotheses::Lead;
 use crate::change::hypothesis_kind::Kind;
 use crate::change::port_call_returns::{Base, Candidate};
+use crate::change::priors;
+use crate::change::thresholds::{
+    BOTH_REFERENCES_ROWS, CARGO_RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO,
+    CLEAR_AGAINST_NULL_LOG_LIKELIHOOD_RATIO, CLEAR_STEP_LOG_LIKELIHOOD_RATIO,
+    DRIFTING_EXTRA_LOG_LIKELIHOOD_RATIO, FORK_INTERVAL_ROWS, NEW_VESSEL_EXTRA_LOG_LIKELIHOOD_RATIO,
+    NEW_VESSEL_S, ONE_REFERENCE_LOG_LIKELIHOOD_RATIO, ONE_REFERENCE_SHARE,
+    REFERENCE_REPAIR_DEFICIT_LOG_LIKELIHOOD_RATIO, REFERENCE_REPAIR_LOG_LIKELIHOOD_RATIO,
+    REFERENCE_STEP_LOG_LIKELIHOOD_RATIO, REFERENCE_STEP_MIN_ROWS,
+    RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO, RETURN_DEFICIT_LOG_LIKELIHOOD_RATIO,
+    RETURN_FOR_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO, RETURN_FOR_STEP_POSTERIOR,
+    RETURN_FOR_STEP_ROWS_AFTER, RETURN_FOR_STEP_ROWS_BEFORE, RETURN_POSTERIOR,
+    STEP_LOG_LIKELIHOOD_RATIO, STEP_MIN_ROWS, TRANSIENT_LOG_LIKELIHOOD_RATIO,
+    TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO, VESSEL_OR_REFERENCE_LOG_LIKELIHOOD_RATIO,
+};
 use crate::observation::Observation;
-
-/// A step must be likelier by this than a burst, nats; or by that, when its lead
-/// over nothing is large.
-const STEP_NATS: f64 = 10.5;
-const STEP_AT_LEAST: f64 = 3.0;
-const LARGE_NATS: f64 = 40.0;
-/// And it must have lasted for so many rows: the flank of an anomaly is as steep.
-const STEP_ROWS: usize = 6;
-/// While one of two references is out of use for more than this share of the rows,
-/// it must be likelier by that: the one that is left may be the one that fails.
-const ONE_REFERENCE_SHARE: f64 = 0.3;
-const ONE_REFERENCE_NATS: f64 = 30.0;
-/// A reference's step must be likelier by this than a burst, and have lasted for so
-/// many rows: one wild reading is no fault.
-const REFERENCE_NATS: f64 = 13.5;
-const REFERENCE_ROWS: usize = 3;
-/// So must a return to what was before, away from port.
-const RETURN_AT_SEA_NATS: f64 = 14.0;
-/// Cargo is not discharged at sea: what began in port must be likelier by this.
-const LOADED_RETURN_AT_SEA_NATS: f64 = 30.0;
-/// A return at a port call is believed when it is as likely as this, and unlikelier
-/// than a step to something else by no more than that, nats.
-const RETURNED: f64 = 0.9;
-const RETURN_BELOW_STEP: f64 = 6.0;
-/// A step that is certain is one, if it is dated no more than so many rows before the call
-/// or after it, the return is as likely as this against none, and unlikelier than the step
-/// by no more than that, nats: so soon after a call another step is far the rarer.
-const LIKELY: f64 = 0.3;
-const BEFORE_CALL: usize = 18;
-const AFTER_CALL: usize = 72;
-const CERTAIN_RETURN_BELOW_STEP: f64 = 10.0;
-/// A burst is unlikelier beforehand than a return at a port call by about this, nats.
-const BURST_BELOW_RETURN: f64 = 3.0;
-/// With one reference a step of the ship and one of the reference must differ by
-/// this; with both there were two readings among so many rows.
-const CLEAR_NATS: f64 = 4.0;
-const LATELY: usize = 36;
-/// A reference that is itself again must be likelier by this than a burst, and no
-/// less likely by this than another change.
-const MENDED_NATS: f64 = 8.0;
-const MENDED_BELOW: f64 = 3.0;
-/// A burst must be likelier by this than nothing, and by this than a change.
-const BURST_NATS: f64 = 14.0;
-pub(crate) const BURST_OVER_STEP: f64 = 3.0;
-/// In the first weeks, when the sizes of noise are of few days, either must be likelier
-/// by so much more.
-const NEW_S: f64 = 20.0 * 86_400.0;
-const NEW_NATS: f64 = 3.0;
-const CREEPING_NATS: f64 = 10.0;
 
 impl Search<'_> {
     pub(crate) fn judge(&mut self, k: usize) {
@@ -68,7 +32,7 @@ impl Search<'_> {
         let burst = nats(Kind::Burst).max(0.0);
         let back = nats(Kind::Return);
         if let Some(candidate) = self.candidate(&leads)
-            && candidate.probability > RETURNED
+            && candidate.probability > RETURN_POSTERIOR
         {
             return self.adopt_call(k, candidate, leads);
         }
@@ -77,14 +41,17 @@ impl Search<'_> {
             return;
         }
         let rival = nats(Kind::Step).max(nats(Kind::Reference));
-        if self.misled.is_some() && back - burst > MENDED_NATS && back > rival - MENDED_BELOW {
+        if self.misled.is_some()
+            && back - burst > REFERENCE_REPAIR_LOG_LIKELIHOOD_RATIO
+            && back > rival - REFERENCE_REPAIR_DEFICIT_LOG_LIKELIHOOD_RATIO
+        {
             return self.adopt_mended(k, leads);
         }
         let earlier = self.calls.bases.last();
         let enough = if self.misaligned.is_none() && earlier.is_some_and(Base::began_at_port) {
-            LOADED_RETURN_AT_SEA_NATS
+            CARGO_RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO
         } else {
-            RETURN_AT_SEA_NATS
+            RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO
         };
         if self.misled.is_none() && back - burst > enough && back > nats(Kind::Step) {
             return self.adopt_return(k, leads);
@@ -98,19 +65,20 @@ impl Search<'_> {
         // One reference on one heading cannot tell a fault of its own from a change
         // of the ship.
         let clear = lasting - self.beforehand_nats(kind, &leads) - other.max(0.0);
-        let is_clear = clear > CLEAR_NATS || self.has_both(k);
+        let is_clear = clear > VESSEL_OR_REFERENCE_LOG_LIKELIHOOD_RATIO || self.has_both(k);
         let is_told = is_clear
             && match kind {
                 Kind::Reference => {
-                    self.has_lasted(REFERENCE_ROWS, kind, k, &leads) && over_burst > REFERENCE_NATS
+                    self.has_lasted(REFERENCE_STEP_MIN_ROWS, kind, k, &leads)
+                        && over_burst > REFERENCE_STEP_LOG_LIKELIHOOD_RATIO
                 }
                 _ => {
-                    self.has_lasted(STEP_ROWS, kind, k, &leads)
+                    self.has_lasted(STEP_MIN_ROWS, kind, k, &leads)
                         && self.is_step(k, lasting, over_burst, &leads)
                 }
             };
         if is_told {
-            let back = self.candidate_below(&leads, CERTAIN_RETURN_BELOW_STEP);
+            let back = self.candidate_below(&leads, RETURN_FOR_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO);
             if let Some(back) = back.filter(|back| self.is_at_call(&leads, back))
                 && kind == Kind::Step
             {
@@ -130,8 +98,8 @@ impl Search<'_> {
         let burst = nats(Kind::Burst);
         let lasting = nats(Kind::Step).max(nats(Kind::Reference));
         if self.burst.is_none()
-            && burst > BURST_NATS + self.unlearnt_nats(k)
-            && burst - lasting > BURST_OVER_STEP
+            && burst > TRANSIENT_LOG_LIKELIHOOD_RATIO + self.unlearnt_nats(k)
+            && burst - lasting > TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
             && leads[Kind::Burst as usize].is_some_and(|lead| self.is_no_few_readings(k, lead))
         {
             let Some(lead) = leads[Kind::Burst as usize] else {
@@ -155,13 +123,13 @@ impl Search<'_> {
 
     /// A few wild readings swing no compass.
     fn is_no_few_readings(&self, k: usize, lead: Lead) -> bool {
-        lead.kind != Kind::Wild || k + 1 >= self.bank.spawns[lead.spawn].at + STEP_ROWS
+        lead.kind != Kind::Wild || k + 1 >= self.bank.spawns[lead.spawn].at + STEP_MIN_ROWS
     }
 
     /// And while she drifts, for a drift goes on.
     fn creeping_nats(&self, k: usize) -> f64 {
         if self.unsettled.creeps(self.observations, k) {
-            CREEPING_NATS
+            DRIFTING_EXTRA_LOG_LIKELIHOOD_RATIO
         } else {
             0.0
         }
@@ -170,9 +138,9 @@ impl Search<'_> {
     /// What is asked beyond the usual while little is known of this ship's noise.
     fn unlearnt_nats(&self, k: usize) -> f64 {
         let since = self.observations[0].time.zip(self.observations[k].time);
-        let is_new = since.is_some_and(|(first, now)| now.seconds_since(first) < NEW_S);
+        let is_new = since.is_some_and(|(first, now)| now.seconds_since(first) < NEW_VESSEL_S);
         if is_new && !self.is_known {
-            NEW_NATS
+            NEW_VESSEL_EXTRA_LOG_LIKELIHOOD_RATIO
         } else {
             0.0
         }
@@ -188,7 +156,7 @@ impl Search<'_> {
     /// The last event, if it is this passing disturbance.
     pub(crate) fn same_burst(&self, first: usize) -> Option<&Event> {
         let last = self.events.last();
-        last.filter(|event| event.what == What::Burst && event.first + EVERY >= first)
+        last.filter(|event| event.what == What::Burst && event.first + FORK_INTERVAL_ROWS >= first)
     }
 
     /// The first row of a passing disturbance.
@@ -213,9 +181,10 @@ impl Search<'_> {
         let is_usual = step.is_some_and(|lead| lead.kind == Kind::Step);
         // What is likelier beforehand must be as clear from the rows.
         let beforehand = self.beforehand_nats(Kind::Step, leads);
-        if over_burst - beforehand <= STEP_AT_LEAST
-            || (over_burst <= STEP_NATS + self.unlearnt_nats(k) + self.creeping_nats(k)
-                && !(is_usual && lead - beforehand > LARGE_NATS))
+        if over_burst - beforehand <= CLEAR_STEP_LOG_LIKELIHOOD_RATIO
+            || (over_burst
+                <= STEP_LOG_LIKELIHOOD_RATIO + self.unlearnt_nats(k) + self.creeping_nats(k)
+                && !(is_usual && lead - beforehand > CLEAR_AGAINST_NULL_LOG_LIKELIHOOD_RATIO))
         {
             return false;
         }
@@ -226,18 +195,18 @@ impl Search<'_> {
         };
         let usually = &self.observations[..since.max(1)];
         let is_half_blind = with_one(&self.observations[since..=k]) && !with_one(usually);
-        over_burst > ONE_REFERENCE_NATS || !is_half_blind
+        over_burst > ONE_REFERENCE_LOG_LIKELIHOOD_RATIO || !is_half_blind
     }
 
     /// The likeliest return at a port call, if a step to something else is not
     /// likelier by far.
     pub(crate) fn candidate(&self, leads: &Leads) -> Option<Candidate> {
-        self.candidate_below(leads, RETURN_BELOW_STEP)
+        self.candidate_below(leads, RETURN_DEFICIT_LOG_LIKELIHOOD_RATIO)
     }
 
     fn candidate_below(&self, leads: &Leads, below: f64) -> Option<Candidate> {
         let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
-        let rival = (nats(Kind::Burst) - BURST_BELOW_RETURN).max(0.0);
+        let rival = (nats(Kind::Burst) - priors::RETURN_OVER_TRANSIENT_LOG_ODDS).max(0.0);
         let is_astray = self.burst.is_some() && nats(Kind::Burst) > nats(Kind::Step);
         let likeliest = self.calls.likeliest(&self.null, rival, is_astray)?;
         (is_astray || likeliest.nats > nats(Kind::Step) - below).then_some(likeliest)
@@ -266,7 +235,8 @@ impl Search<'_> {
             return None;
         }
         let loaded = self.events[laden.event].first;
-        let rows = at.saturating_sub(AFTER_CALL)..=(at + BEFORE_CALL).min(k);
+        let rows = at.saturating_sub(RETURN_FOR_STEP_ROWS_AFTER)
+            ..=(at + RETURN_FOR_STEP_ROWS_BEFORE).min(k);
         let calls = rows.filter(|row| *row > loaded && self.is_call(*row));
         calls.min_by_key(|row| row.abs_diff(at))
     }
@@ -274,13 +244,14 @@ impl Search<'_> {
     /// Whether a step that is certain may as well be a return at this call.
     fn is_at_call(&self, leads: &Leads, back: &Candidate) -> bool {
         let step = leads[Kind::Step as usize].map(|lead| self.bank.spawns[lead.spawn].at);
-        let near = back.at.saturating_sub(BEFORE_CALL)..=back.at + AFTER_CALL;
-        back.probability > LIKELY && step.is_some_and(|at| near.contains(&at))
+        let near = back.at.saturating_sub(RETURN_FOR_STEP_ROWS_BEFORE)
+            ..=back.at + RETURN_FOR_STEP_ROWS_AFTER;
+        back.probability > RETURN_FOR_STEP_POSTERIOR && step.is_some_and(|at| near.contains(&at))
     }
 
     /// Whether both references were read lately.
     pub(crate) fn has_both(&self, k: usize) -> bool {
-        let lately = &self.observations[k.saturating_sub(LATELY)..=k];
+        let lately = &self.observations[k.saturating_sub(BOTH_REFERENCES_ROWS)..=k];
         lately.iter().any(|o| o.gyro_less_satellite_deg.is_some())
     }
 

@@ -3,13 +3,10 @@
 use super::state::Search;
 use crate::change::detection::Loaded;
 use crate::change::port_call_returns::Said;
-use crate::change::port_calls::{SAILED_SINCE, rows_since};
+use crate::change::port_calls::rows_since;
+use crate::change::thresholds::{LOGBOOK_TOLERANCE_S, OPEN_CARGO_ENTRY_S, SAILED_SINCE_ROWS};
 use binnacle_compass::time::Timestamp;
 
-/// People write down the day, or when the hatches were shut.
-const ABOUT_S: f64 = 12.0 * 3600.0;
-/// What nobody closed was discharged by then, and forgotten.
-const OPEN_S: f64 = 21.0 * 86_400.0;
 impl Search<'_> {
     /// What the logbook tells of the cargo on board after the time between a row and the
     /// one before.
@@ -18,23 +15,24 @@ impl Search<'_> {
             return Said::Nothing;
         };
         let stays = |loaded: &&Loaded| {
-            loaded.from.seconds_since(before) < -ABOUT_S
+            loaded.from.seconds_since(before) < -LOGBOOK_TOLERANCE_S
                 && loaded
                     .to
-                    .is_some_and(|to| to.seconds_since(after) > ABOUT_S)
+                    .is_some_and(|to| to.seconds_since(after) > LOGBOOK_TOLERANCE_S)
         };
         if self.cargo.iter().any(|loaded| stays(&loaded)) {
             return Said::OnBoard;
         }
         let ended = self.cargo.iter().filter(|loaded| {
             let is_about = |to: Timestamp| {
-                to.seconds_since(before) > -ABOUT_S && to.seconds_since(after) < ABOUT_S
+                to.seconds_since(before) > -LOGBOOK_TOLERANCE_S
+                    && to.seconds_since(after) < LOGBOOK_TOLERANCE_S
             };
             loaded.to.is_some_and(is_about)
         });
         let from = ended.map(|loaded| loaded.from).min();
         from.map_or(Said::Nothing, |from| Said::Discharged {
-            loaded: from.plus_seconds(-ABOUT_S),
+            loaded: from.plus_seconds(-LOGBOOK_TOLERANCE_S),
             at_port: self.is_call(k),
         })
     }
@@ -47,9 +45,9 @@ impl Search<'_> {
             return false;
         };
         self.cargo.iter().any(|loaded| {
-            loaded.from.seconds_since(earliest) > -2.0 * ABOUT_S
-                && loaded.from.seconds_since(latest) < ABOUT_S
-                && rows_since(sailed, loaded.from) < SAILED_SINCE
+            loaded.from.seconds_since(earliest) > -2.0 * LOGBOOK_TOLERANCE_S
+                && loaded.from.seconds_since(latest) < LOGBOOK_TOLERANCE_S
+                && rows_since(sailed, loaded.from) < SAILED_SINCE_ROWS
         })
     }
 
@@ -59,7 +57,9 @@ impl Search<'_> {
             return false;
         };
         let on_board = |loaded: &Loaded| {
-            let until = loaded.to.unwrap_or(loaded.from.plus_seconds(OPEN_S));
+            let until = loaded
+                .to
+                .unwrap_or(loaded.from.plus_seconds(OPEN_CARGO_ENTRY_S));
             (loaded.from..=until).contains(&time)
         };
         self.cargo.iter().any(on_board)

@@ -15,8 +15,3 @@ mod weak_transient;
 mod withdrawal;
 
 pub(crate) use run::detect;
-
-/// Rows between times that are tried: about an hour of sailing.
-pub(crate) const EVERY: usize = 6;
-/// After a gap of this the next row is a time to be tried, whatever the count.
-pub(crate) const GAP_S: f64 = 2.0 * 3600.0;

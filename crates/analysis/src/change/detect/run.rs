@@ -5,7 +5,11 @@
 //! decides what it tells; every event lies between two rows; the search ends.
 
 use super::state::{Learnt, Lesson, Search, earlier};
-use super::{EVERY, GAP_S};
+use crate::change::thresholds::{
+    FIRST_TRANSIENT_ROW, FORK_AFTER_GAP_S, FORK_INNOVATION_MIN_ROWS, FORK_INNOVATION_SD,
+    FORK_INTERVAL_ROWS, SUSPICION_LOG_LIKELIHOOD_RATIO,
+};
+
 use crate::change::detection::{Given, Perhaps, Told};
 use crate::change::event::What;
 use crate::change::filter::Measurement;
@@ -13,16 +17,6 @@ use crate::change::hypotheses::Lead;
 use crate::change::hypothesis_kind::Kind;
 use crate::estimate::are_times_believed;
 use crate::observation::Observation;
-
-/// A row that is astray by more than this is a time to be tried, if the last is so
-/// many rows before it: by the covariance of the row before, to which the step between
-/// has added nothing yet, so that one row in eight is.
-const ASTRAY_SD: f64 = 3.0;
-const ASTRAY_ROWS: usize = 2;
-/// But what passes may begin with this row: it comes and goes faster than learning does.
-const FIRST_PASSING: usize = 12;
-/// Something is up when a lead is beyond this, though not yet what.
-const SUSPECTED_NATS: f64 = 8.0;
 
 /// Searches rows, which are in order of time and all have one; where most share theirs
 /// nothing can be dated.
@@ -48,12 +42,12 @@ impl Search<'_> {
         if k == self.first() {
             self.bank.forget_lasting();
         }
-        let is_due = k >= FIRST_PASSING && self.is_due(k);
+        let is_due = k >= FIRST_TRANSIENT_ROW && self.is_due(k);
         if is_due {
             self.settle_burst(k);
         }
         let m = self.next(k);
-        if is_due || (k >= FIRST_PASSING && self.is_astray(k, &m)) {
+        if is_due || (k >= FIRST_TRANSIENT_ROW && self.is_astray(k, &m)) {
             let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
             let known = (earlier, self.is_call(k));
             self.bank.spawn(k, &self.null, &self.noise, known);
@@ -78,7 +72,7 @@ impl Search<'_> {
         let mut bank = std::mem::take(&mut self.bank);
         bank.take_large(k, &self.noise, |row, at| self.measure(row, at));
         self.bank = bank;
-        if k >= FIRST_PASSING {
+        if k >= FIRST_TRANSIENT_ROW {
             self.judge(k);
             self.settle_faint(k, false);
         }
@@ -95,12 +89,15 @@ impl Search<'_> {
             };
             self.reported.iter().any(|t| before < *t && *t <= now)
         };
-        k >= self.spawned + EVERY || (k > 0 && self.seconds(k) > GAP_S) || reported()
+        k >= self.spawned + FORK_INTERVAL_ROWS
+            || (k > 0 && self.seconds(k) > FORK_AFTER_GAP_S)
+            || reported()
     }
 
     /// Whether something may have happened just before this row.
     fn is_astray(&self, k: usize, m: &Measurement) -> bool {
-        k >= self.spawned + ASTRAY_ROWS && self.null.z_squared(m) > ASTRAY_SD * ASTRAY_SD
+        k >= self.spawned + FORK_INNOVATION_MIN_ROWS
+            && self.null.z_squared(m) > FORK_INNOVATION_SD * FORK_INNOVATION_SD
     }
 
     /// The sizes of noise again, from the longer stretch there is now.
@@ -143,7 +140,7 @@ impl Search<'_> {
         };
         if let Some(event) = self.burst {
             let last = self.last_astray(self.events[event].first, k + 1);
-            self.events[event].last = (last + EVERY < k).then_some(last);
+            self.events[event].last = (last + FORK_INTERVAL_ROWS < k).then_some(last);
             return;
         }
         let leads = self.leads();
@@ -151,7 +148,7 @@ impl Search<'_> {
         let likeliest = [Kind::Step, Kind::Reference, Kind::Burst]
             .into_iter()
             .max_by(|a, b| nats(*a).total_cmp(&nats(*b)))
-            .filter(|kind| nats(*kind) > SUSPECTED_NATS);
+            .filter(|kind| nats(*kind) > SUSPICION_LOG_LIKELIHOOD_RATIO);
         // A burst that has had its time keeps its lead.
         let is_news = |lead: Lead| self.has_time_left(self.bank.spawns[lead.spawn].at, k);
         let Some((kind, lead)) = likeliest.and_then(|kind| Some((kind, leads[kind as usize]?)))

@@ -14,13 +14,10 @@ use crate::change::filter::Filter;
 use crate::change::hypothesis_kind::Kind;
 use crate::change::jump_models::upset;
 use crate::change::large_step::relinearised;
+use crate::change::thresholds::{SAME_STEP_ROWS, STEP_KEPT_LOG_LIKELIHOOD_RATIO};
 
-/// The step is kept where nothing else is likelier by more, nats.
-pub(crate) const ANEW_NATS: f64 = 8.0;
-/// Another step within so many rows may be the same.
-const SAME_ROWS: usize = 432;
 /// So often are all rows linearised at where the last round ended.
-const ROUNDS: usize = 3;
+const LINEARISATION_ROUNDS: usize = 3;
 
 impl Search<'_> {
     /// The filter with a step before row `first`, or in it, having read all rows until `k`.
@@ -48,7 +45,7 @@ impl Search<'_> {
             let m = relinearised(&filter, &self.noise, |at| self.measure(row, at));
             filter.take(&m, &self.noise, None);
         }
-        for _ in 0..ROUNDS {
+        for _ in 0..LINEARISATION_ROUNDS {
             let at = filter.unknowns();
             filter = self.run(upset(before, kind), first..k + 1, &at);
         }
@@ -61,11 +58,11 @@ impl Search<'_> {
         let event = self.events.get(base.event)?;
         let later = &self.events[base.event + 1..];
         let is_last = later.iter().all(|event| event.what == What::Burst);
-        if !is_last || !self.is_standing_step(base.event) || k > event.first + SAME_ROWS {
+        if !is_last || !self.is_standing_step(base.event) || k > event.first + SAME_STEP_ROWS {
             return None;
         }
         let filter = self.step_anew(k, &base.filter, event.first);
-        let enough = dated.filter.log_likelihood - ANEW_NATS;
+        let enough = dated.filter.log_likelihood - STEP_KEPT_LOG_LIKELIHOOD_RATIO;
         (filter.log_likelihood > enough).then_some((base.event, filter))
     }
 

@@ -2,17 +2,12 @@
 
 use super::state::Search;
 use crate::change::filter::VARIATION;
-use crate::change::hypotheses::BURST_S;
 use crate::change::hypothesis_kind::Kind;
 use crate::change::jump_models::{burst_of, upset};
-
-/// And by this than a change for the filter to be that of the burst.
-const BURST_FOR_CERTAIN: f64 = 6.0;
-/// A burst has been over for this long when its filter takes over.
-const SETTLED_S: f64 = 6.0 * 3600.0;
-
-/// The variation is astray while it is off by more than this, degrees at 24 µT.
-const ASTRAY_DEG: f64 = 0.7;
+use crate::change::thresholds::{
+    DISTURBED_VARIATION_DEG, ENDED_TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO, TRANSIENT_MAX_S,
+    TRANSIENT_OVER_FOR_S,
+};
 
 impl Search<'_> {
     /// Once a burst has had its time, the filter that knew of it takes over if it is
@@ -27,14 +22,14 @@ impl Search<'_> {
         let others = [Kind::Step, Kind::Reference, Kind::Return].map(nats);
         let others = others.into_iter().fold(0.0, f64::max);
         let knew = self.bank.lead(Kind::Over, &self.null).filter(|lead| {
-            age_s(self.bank.spawns[lead.spawn].at) >= SETTLED_S
-                && lead.nats > others + BURST_FOR_CERTAIN
+            age_s(self.bank.spawns[lead.spawn].at) >= TRANSIENT_OVER_FOR_S
+                && lead.nats > others + ENDED_TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
         });
         let knew = knew.map(|lead| &self.bank.spawns[lead.spawn]);
         let knew = knew.and_then(|spawn| Some((spawn.at, spawn.copy(Kind::Over)?.clone())));
         let is_over = self
             .burst
-            .is_some_and(|event| age_s(self.events[event].first) >= 1.2 * BURST_S);
+            .is_some_and(|event| age_s(self.events[event].first) >= 1.2 * TRANSIENT_MAX_S);
         if knew.is_none() && !is_over {
             return;
         }
@@ -68,7 +63,7 @@ impl Search<'_> {
         let mut last = first;
         for (row, m) in (spawn.at..k).zip(&measured) {
             filter.take(m, &self.noise, Some(&burst));
-            if row >= first && filter.mean[VARIATION].abs() > ASTRAY_DEG {
+            if row >= first && filter.mean[VARIATION].abs() > DISTURBED_VARIATION_DEG {
                 last = row;
             }
         }

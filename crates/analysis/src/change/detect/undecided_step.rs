@@ -6,23 +6,19 @@
 use super::state::{Leads, Search};
 use crate::change::filter::Filter;
 use crate::change::hypothesis_kind::Kind;
-use crate::change::jump_models::{WILD_DEG, struck};
+use crate::change::jump_models::struck;
+use crate::change::thresholds::{
+    EXCLUDED_STEP_LOG_LIKELIHOOD_RATIO, SEVERE_TRANSIENT_DEG, UNDECIDED_STEP_LOG_LIKELIHOOD_RATIO,
+    UNDECIDED_STEP_MIN_SIZE, UNDECIDED_STEP_ROWS,
+};
 use crate::estimate::{POPULATION_SD, unseen_sd_nt};
 use std::ops::Range;
 
-/// A smaller step than this leaves the band as it is, in population units of 1500 nT.
-const LARGE: f64 = 0.5;
-/// One must be likelier by this than nothing, nats.
-const WORTH_NATS: f64 = 5.0;
-/// And is out of question when something else is likelier by this.
-const OUT_OF_QUESTION_NATS: f64 = 25.0;
-/// A disturbance that has passed may have been one for so many rows: three days.
-const ROWS: usize = 432;
 /// The rows are linearised so often, each time at the ship that the last supposed: deviation
 /// is not linear in a large step.
-const ROUNDS: usize = 4;
+const LINEARISATION_ROUNDS: usize = 4;
 /// Of so many rows the middle one is astray while a compass is.
-const NOW_ROWS: usize = 3;
+const MEDIAN_ROWS: usize = 3;
 /// Where H is this, an error of the variation has its nominal size.
 const NOMINAL_H_NT: f64 = 24_000.0;
 
@@ -32,11 +28,18 @@ impl Search<'_> {
         let last = self.observations.len().checked_sub(1)?;
         let others = leads.iter().flatten().map(|lead| lead.nats);
         let likeliest = others.fold(0.0, f64::max);
-        let passed = self.passed.as_ref().filter(|(at, _)| last < at + ROWS);
-        if likeliest < WORTH_NATS && passed.is_none() {
+        let passed = self
+            .passed
+            .as_ref()
+            .filter(|(at, _)| last < at + UNDECIDED_STEP_ROWS);
+        if likeliest < UNDECIDED_STEP_LOG_LIKELIHOOD_RATIO && passed.is_none() {
             return None;
         }
-        let spawns = self.bank.spawns.iter().filter(|s| last < s.at + ROWS);
+        let spawns = self
+            .bank
+            .spawns
+            .iter()
+            .filter(|s| last < s.at + UNDECIDED_STEP_ROWS);
         let spawns = spawns.map(|spawn| (spawn.at, spawn.origin()));
         let open = spawns
             .chain(passed.map(|(at, before)| (*at, before)))
@@ -46,8 +49,10 @@ impl Search<'_> {
                 let after = self.after_strike(at..first, before);
                 let nats = after.log_likelihood - self.null.log_likelihood;
                 let size = after.far_from(before);
-                let is_open =
-                    size > LARGE && nats > WORTH_NATS.max(likeliest - OUT_OF_QUESTION_NATS);
+                let is_open = size > UNDECIDED_STEP_MIN_SIZE
+                    && nats
+                        > UNDECIDED_STEP_LOG_LIKELIHOOD_RATIO
+                            .max(likeliest - EXCLUDED_STEP_LOG_LIKELIHOOD_RATIO);
                 is_open.then_some((nats, size))
             })
             .max_by(|a, b| a.0.total_cmp(&b.0))
@@ -64,16 +69,16 @@ impl Search<'_> {
         let spawn = &self.bank.spawns[lead.spawn];
         let origin = spawn.origin();
         let at = origin.unknowns();
-        let rows = spawn.at.max((last + 1).saturating_sub(NOW_ROWS))..=last;
+        let rows = spawn.at.max((last + 1).saturating_sub(MEDIAN_ROWS))..=last;
         let astray = rows.map(|row| origin.variation_astray_deg(&self.measure(row, &at)));
         let mut astray: Vec<f64> = astray.collect();
-        if astray.len() < NOW_ROWS {
+        if astray.len() < MEDIAN_ROWS {
             return None;
         }
         astray.sort_by(f64::total_cmp);
         let median = astray
             .get(astray.len() / 2)
-            .filter(|deg| **deg > WILD_DEG)?;
+            .filter(|deg| **deg > SEVERE_TRANSIENT_DEG)?;
         Some(median.to_radians().min(1.0) * NOMINAL_H_NT)
     }
 
@@ -85,7 +90,7 @@ impl Search<'_> {
         let begun = struck(&before);
         let rows = first..self.observations.len();
         let mut after = before;
-        for _ in 0..ROUNDS {
+        for _ in 0..LINEARISATION_ROUNDS {
             after = self.run(begun.clone(), rows.clone(), &after.unknowns());
         }
         after

@@ -10,18 +10,11 @@ use crate::change::filter::Filter;
 use crate::change::hypothesis_kind::Kind;
 use crate::change::jump_models::upset;
 use crate::change::likelihood_ratio::odds;
+use crate::change::priors;
+use crate::change::thresholds::{CARGO_NOTICED_LATE_S, UNDETECTED_STEP_ROWS};
 
-/// How likely a ship is another magnet after a port call, a reference off, and the compass
-/// astray for hours by what passes.
-const CHANGED: f64 = 0.02;
-const MISLED: f64 = 0.002;
-const ASTRAY: f64 = 0.03;
-/// What is dated no longer than this after a call may be cargo that was noticed late.
-const SOON_S: f64 = 3.0 * 86_400.0;
-/// Calls that are asked about: the last few among so many rows.
-const ROWS: usize = 288;
 /// Odds beyond this are certainty.
-const MOST: f64 = 1e9;
+const MAX_ODDS: f64 = 1e9;
 
 impl Search<'_> {
     /// The last port call, if that was soon before row `row`, and the ship as she sailed from
@@ -31,7 +24,8 @@ impl Search<'_> {
         let (at, filter) = self.ports.0.iter().rfind(|(at, _)| *at <= row)?;
         let is_news = |event: &Event| event.told >= *at && event.what != What::Burst;
         let times = self.observations[*at].time.zip(self.observations[row].time);
-        let is_soon = times.is_some_and(|(sailed, now)| now.seconds_since(sailed) < SOON_S);
+        let is_soon =
+            times.is_some_and(|(sailed, now)| now.seconds_since(sailed) < CARGO_NOTICED_LATE_S);
         (is_soon && !earlier.iter().any(is_news)).then_some((*at, filter))
     }
 
@@ -39,7 +33,7 @@ impl Search<'_> {
     /// likely one at any of them is; `returned` is how likely she is herself again.
     pub(crate) fn unnoticed(&self, leads: &Leads, returned: f64) -> Option<Unnoticed> {
         let last = self.observations.len().checked_sub(1)?;
-        let earliest = last.saturating_sub(ROWS).max(self.first());
+        let earliest = last.saturating_sub(UNDETECTED_STEP_ROWS).max(self.first());
         // A filter that did not know of what was told since is of no use.
         let told = |event: &&Event| !matches!(event.what, What::Burst | What::Reference);
         let told = self.events.iter().filter(told).map(|event| event.told);
@@ -48,7 +42,11 @@ impl Search<'_> {
         let likely: Vec<(usize, f64)> = ports
             .map(|(at, before)| {
                 let nats = self.nats_of_step(*at, before);
-                (*at, CHANGED / (1.0 - CHANGED) * odds(nats).min(MOST))
+                (
+                    *at,
+                    priors::CHANGE_AT_PORT_CALL / (1.0 - priors::CHANGE_AT_PORT_CALL)
+                        * odds(nats).min(MAX_ODDS),
+                )
             })
             .collect();
         let (first, _) = likely.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -56,10 +54,13 @@ impl Search<'_> {
         // Against nothing, a reference's fault, what passes, and her being herself again.
         let fault = leads[Kind::Reference as usize]
             .filter(|lead| self.bank.spawns[lead.spawn].at >= *first)
-            .map_or(0.0, |lead| MISLED * odds(lead.nats).min(MOST));
+            .map_or(0.0, |lead| {
+                priors::REFERENCE_FAULT * odds(lead.nats).min(MAX_ODDS)
+            });
         // What passes explains the same rows, where it is not known to be over.
-        let astray = leads[Kind::Burst as usize]
-            .map_or(0.0, |lead| ASTRAY * odds(lead.nats.max(0.0)).min(MOST));
+        let astray = leads[Kind::Burst as usize].map_or(0.0, |lead| {
+            priors::TRANSIENT * odds(lead.nats.max(0.0)).min(MAX_ODDS)
+        });
         let others = (1.0 + fault + astray) / (1.0 - returned).max(f64::MIN_POSITIVE);
         Some(Unnoticed {
             first: *first,

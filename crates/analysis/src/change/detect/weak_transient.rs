@@ -3,13 +3,12 @@
 use super::state::Faint;
 use super::state::{Leads, Search};
 use crate::change::event::What;
-use crate::change::hypotheses::{BURST_S, Lead};
+use crate::change::hypotheses::Lead;
 use crate::change::hypothesis_kind::Kind;
-
-/// A disturbance that leads by this is noted, nats.
-const FAINT_NATS: f64 = 7.0;
-/// What has not led by more for so many rows is over.
-const OVER_ROWS: usize = 36;
+use crate::change::thresholds::{
+    TRANSIENT_MAX_S, TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO,
+    WEAK_TRANSIENT_LOG_LIKELIHOOD_RATIO, WEAK_TRANSIENT_OVER_ROWS,
+};
 
 impl Search<'_> {
     /// Keeps in mind what leads by too little to be told.
@@ -24,7 +23,10 @@ impl Search<'_> {
             .as_ref()
             .and_then(|f| f.leads[Kind::Burst as usize]);
         let is_more = most.is_none_or(|most| lead.nats > most.nats);
-        if lead.nats > FAINT_NATS && over_lasting > super::decision::BURST_OVER_STEP && is_more {
+        if lead.nats > WEAK_TRANSIENT_LOG_LIKELIHOOD_RATIO
+            && over_lasting > TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
+            && is_more
+        {
             let first = self.began(lead);
             if self.same_burst(first).is_none() && self.has_time_left(first, k) {
                 let last = k;
@@ -39,12 +41,12 @@ impl Search<'_> {
         let age_s = time(k)
             .zip(time(first))
             .map(|(now, then)| now.seconds_since(then));
-        age_s.is_some_and(|age_s| age_s < BURST_S)
+        age_s.is_some_and(|age_s| age_s < TRANSIENT_MAX_S)
     }
 
     /// Puts it among the events, unconfirmed, once it is over or the rows are.
     pub(crate) fn settle_faint(&mut self, k: usize, is_last: bool) {
-        let is_over = |faint: &mut Faint| is_last || k > faint.last + OVER_ROWS;
+        let is_over = |faint: &mut Faint| is_last || k > faint.last + WEAK_TRANSIENT_OVER_ROWS;
         let Some(faint) = self.faint.take_if(is_over) else {
             return;
         };

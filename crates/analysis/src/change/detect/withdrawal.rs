@@ -10,17 +10,11 @@ use super::state::{Leads, Search};
 use crate::change::event::What;
 use crate::change::hypothesis_kind::Kind;
 use crate::change::jump_models::calmed;
-
-/// That there was no step must be likelier by this than that there was one, nats, after so
-/// many rows: half a day of sailing.
-const WITHDRAWN_NATS: f64 = 3.0;
-const ROWS: usize = 72;
-/// One that trails by this is given up, nats: the step was one. So much more of it in the
-/// first rows, which told of the step by what may have been its like only.
-const HOPELESS_NATS: f64 = 25.0;
-const HOPELESS_AT_FIRST_NATS: f64 = 45.0;
-/// While what passes leads by this, the rows tell nothing of the ship, nats.
-const ASTRAY_NATS: f64 = 3.0;
+use crate::change::thresholds::{
+    NO_STEP_DROPPED_EARLY_LOG_LIKELIHOOD_RATIO, NO_STEP_DROPPED_LOG_LIKELIHOOD_RATIO,
+    WITHDRAWAL_LOG_LIKELIHOOD_RATIO, WITHDRAWAL_MAX_TRANSIENT_LOG_LIKELIHOOD_RATIO,
+    WITHDRAWAL_MIN_ROWS,
+};
 
 impl Search<'_> {
     /// The doubt of a step that was dated just now, and is the last event.
@@ -52,10 +46,10 @@ impl Search<'_> {
             let m = self.measure_settled(k, &filter.unknowns());
             filter.take(&m, &self.noise, None);
         }
-        let trails = if k < doubt.told + ROWS {
-            HOPELESS_AT_FIRST_NATS
+        let trails = if k < doubt.told + WITHDRAWAL_MIN_ROWS {
+            NO_STEP_DROPPED_EARLY_LOG_LIKELIHOOD_RATIO
         } else {
-            HOPELESS_NATS
+            NO_STEP_DROPPED_LOG_LIKELIHOOD_RATIO
         };
         let hopeless = self.null.log_likelihood - trails;
         doubt
@@ -67,15 +61,17 @@ impl Search<'_> {
     /// Withdraws the last step, if the rows since are likelier without it.
     pub(crate) fn settle_doubt(&mut self, k: usize, leads: &Leads) -> bool {
         let of_kind = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
-        if self.burst.is_some() || of_kind(Kind::Burst) > ASTRAY_NATS {
+        if self.burst.is_some()
+            || of_kind(Kind::Burst) > WITHDRAWAL_MAX_TRANSIENT_LOG_LIKELIHOOD_RATIO
+        {
             return false;
         }
         let likelier = |doubt: &Doubt| {
             let each = doubt.without.iter().enumerate();
             let each = each.map(|(i, filter)| (i, filter.log_likelihood));
             let (place, nats) = each.max_by(|a, b| a.1.total_cmp(&b.1))?;
-            let enough = self.null.log_likelihood + WITHDRAWN_NATS;
-            (k >= doubt.told + ROWS && nats > enough).then_some(place)
+            let enough = self.null.log_likelihood + WITHDRAWAL_LOG_LIKELIHOOD_RATIO;
+            (k >= doubt.told + WITHDRAWAL_MIN_ROWS && nats > enough).then_some(place)
         };
         let Some(place) = self.doubt.as_ref().and_then(likelier) else {
             return false;

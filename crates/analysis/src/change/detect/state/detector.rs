@@ -14,21 +14,14 @@ use crate::change::jump_models::Earlier;
 use crate::change::large_step::{fusion, relinearised};
 use crate::change::port_call_returns::Calls;
 use crate::change::port_calls::at_port;
+use crate::change::priors;
+use crate::change::thresholds::{
+    FIRST_CHANGE_ROW, FIRST_CHANGE_ROW_KNOWN_NOISE, WARM_UP_ROWS, WARM_UP_ROWS_KNOWN_NOISE,
+};
 use crate::estimate::{Point, Prior, Station, Unknowns, row, stations};
 use crate::observation::Observation;
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::time::Timestamp;
-
-/// What drifts does so on the way: of a longer gap so much counts for what a supposed drift
-/// may have done in it, seconds, or any change in a gap would pass for one.
-const DRIFTS_UNSEEN_S: f64 = 12.0 * 3600.0;
-/// Before so many rows no change is told from learning; so many where the sizes of noise
-/// are known from before.
-const YOUNG: usize = 300;
-const YOUNG_KNOWN: usize = 72;
-/// A change that is dated among the first rows of all is none.
-const FIRST: usize = 100;
-const FIRST_KNOWN: usize = 36;
 
 pub(crate) struct Search<'a> {
     pub(crate) observations: &'a [Observation],
@@ -112,11 +105,19 @@ impl<'a> Search<'a> {
     }
 
     pub(crate) fn first(&self) -> usize {
-        if self.is_known { FIRST_KNOWN } else { FIRST }
+        if self.is_known {
+            FIRST_CHANGE_ROW_KNOWN_NOISE
+        } else {
+            FIRST_CHANGE_ROW
+        }
     }
 
     pub(crate) fn young(&self) -> usize {
-        if self.is_known { YOUNG_KNOWN } else { YOUNG }
+        if self.is_known {
+            WARM_UP_ROWS_KNOWN_NOISE
+        } else {
+            WARM_UP_ROWS
+        }
     }
 
     /// Steps', references', bursts' (those that are over, too) and returns' best.
@@ -154,7 +155,7 @@ impl<'a> Search<'a> {
     /// population units.
     pub(crate) fn measure_drifting(&self, k: usize, at: &Unknowns, drift: f64) -> Measurement {
         let unsettled = self.unsettled.variance(self.observations, k);
-        let seen = (DRIFTS_UNSEEN_S / self.seconds(k)).min(1.0);
+        let seen = (priors::DRIFT_IN_GAP_MAX_S / self.seconds(k)).min(1.0);
         self.measured(k, at, unsettled.max(seen * drift))
     }
 

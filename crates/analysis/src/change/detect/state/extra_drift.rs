@@ -1,12 +1,8 @@
 //! What lightning leaves in a ship fades for weeks.
 
 use crate::change::filter::Filter;
+use crate::change::priors;
 use crate::observation::Observation;
-
-/// How far bx and by wander in thirty days after a step at sea, as a part of it.
-const FADES: f64 = 0.35;
-/// For how long, seconds.
-const FADES_S: f64 = 60.0 * 86_400.0;
 
 /// A step that fades.
 #[derive(Clone, Copy, Debug, Default)]
@@ -25,7 +21,7 @@ impl Unsettled {
         let size = moved(0).hypot(moved(2));
         Unsettled {
             since,
-            variance: (FADES * size).powi(2),
+            variance: (priors::STEP_DECAY_SHARE * size).powi(2),
             is_drift: false,
         }
     }
@@ -51,7 +47,7 @@ impl Unsettled {
         }
         let since = observations[self.since].time;
         let age_s = observations[k].time.zip(since);
-        let fades = age_s.is_some_and(|(now, then)| now.seconds_since(then) < FADES_S);
+        let fades = age_s.is_some_and(|(now, then)| now.seconds_since(then) < priors::STEP_DECAY_S);
         if fades { self.variance } else { 0.0 }
     }
 }
