@@ -5,7 +5,7 @@
 //! there and is gone when she has sailed is told as the berth's.
 
 use super::reading::{Reading, heading_reading};
-use crate::change::{Circumstances, What, causes};
+use crate::change::{Circumstances, EventKind, causes};
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::model::Model;
 use binnacle_compass::result::{Cause, Change, Epoch, SampleReason};
@@ -165,14 +165,14 @@ fn tell(stay: &Range<usize>, readings: &[Reading], off: &Off) -> Change {
         // Until she has sailed it may as well be what was done to her there.
         leads: [if is_over { 0.0 } else { nats }, 0.0, nats, 0.0],
         at_port: Some(true),
-        burst_s: Some(last.seconds_since(from)),
+        transient_s: Some(last.seconds_since(from)),
         is_over,
         alongside: true,
-        astray_deg: Some(off.usual_deg),
+        disturbance_deg: Some(off.usual_deg),
         one_reference: !own.iter().any(has_both),
         ..Circumstances::default()
     };
-    let causes = causes(What::Burst, &known);
+    let causes = causes(EventKind::Transient, &known);
     let mut evidence = vec![format!(
         "alongside, the compass was off by {:.1} degrees in the mean of {} samples on one heading",
         off.mean_deg.abs(),

@@ -4,16 +4,16 @@
 //! probability under each cause. They are judgements, kept in one table so that
 //! they can be argued with (docs/science.md, §9).
 
-use super::event::What;
-use super::likelihood_ratio::TEMPER;
+use super::event::EventKind;
+use super::likelihood_ratio::LIKELIHOOD_TEMPER;
 use binnacle_compass::result::{Cause, CauseProbability};
 
 /// How much likelier a cause is that people reported at the time.
-const REPORTED: f64 = 100.0;
+const REPORTED_FACTOR: f64 = 100.0;
 /// Bursts longer than this are hardly a place's, shorter hardly a storm's.
-const LONG_S: f64 = 3.0 * 3600.0;
+const LONG_TRANSIENT_S: f64 = 3.0 * 3600.0;
 /// Changes that took longer to be told apart from nothing than this crept in.
-const SLOW_S: f64 = 20.0 * 86_400.0;
+const SLOW_DETECTION_S: f64 = 20.0 * 86_400.0;
 
 /// What is known of a change beside its size.
 #[allow(
@@ -29,17 +29,17 @@ pub(crate) struct Circumstances {
     /// Whether the ship became herself again, and whether at a port call.
     pub(crate) ended_at_port: Option<bool>,
     /// By how much what was first taken for a step is likelier than that, nats.
-    pub(crate) over_step: f64,
+    pub(crate) over_step_log_likelihood_ratio: f64,
     /// By how much a zero that moved is likelier than a step, nats, where that is open.
-    pub(crate) zero_over_step: Option<f64>,
+    pub(crate) alignment_over_step_log_likelihood_ratio: Option<f64>,
     /// How long a burst lasted, or has lasted yet.
-    pub(crate) burst_s: Option<f64>,
+    pub(crate) transient_s: Option<f64>,
     /// Whether a burst, or a reference's fault, is over.
     pub(crate) is_over: bool,
     /// Whether it came with a berth at which samples were taken, and went with it if it is over.
     pub(crate) alongside: bool,
     /// How far a burst led the compass astray, degrees where H is 24 µT.
-    pub(crate) astray_deg: Option<f64>,
+    pub(crate) disturbance_deg: Option<f64>,
     /// Whether nothing is certain yet.
     pub(crate) is_open: bool,
     /// Whether there was no second reference.
@@ -47,122 +47,149 @@ pub(crate) struct Circumstances {
     /// Whether another step at sea, weeks before or after, went the same way.
     pub(crate) creeps: bool,
     /// How many lasting changes there were within a day of it, with it.
-    pub(crate) in_a_day: usize,
+    pub(crate) changes_within_a_day: usize,
     /// From the change to the row that told.
-    pub(crate) told_after_s: f64,
+    pub(crate) detection_delay_s: f64,
     /// What people reported at the time.
     pub(crate) reported: Vec<Cause>,
 }
 
 /// Rate a vessel-year, and the probabilities of: beginning at a port call; ending
 /// again, at a port call or at sea; being told late; another going the same way.
-struct Kind {
+struct CausePriors {
     cause: Cause,
-    rate: f64,
+    rate_per_year: f64,
     at_port: f64,
     ends_at_port: f64,
     ends_at_sea: f64,
-    told_late: f64,
+    detected_late: f64,
     creeps: f64,
 }
 
-const fn kind(cause: Cause, numbers: [f64; 6]) -> Kind {
-    let [rate, at_port, ends_at_port, ends_at_sea, told_late, creeps] = numbers;
-    Kind {
-        cause,
-        rate,
+const fn cause_priors(cause: Cause, numbers: [f64; 6]) -> CausePriors {
+    let [
+        rate_per_year,
         at_port,
         ends_at_port,
         ends_at_sea,
-        told_late,
+        detected_late,
+        creeps,
+    ] = numbers;
+    CausePriors {
+        cause,
+        rate_per_year,
+        at_port,
+        ends_at_port,
+        ends_at_sea,
+        detected_late,
         creeps,
     }
 }
 
-const LASTING: [Kind; 5] = [
-    kind(Cause::LightningOrShock, [0.2, 0.1, 0.02, 0.05, 0.05, 0.02]),
-    kind(Cause::MagneticCargo, [1.0, 0.97, 0.8, 0.03, 0.1, 0.02]),
-    kind(
+const LASTING_CAUSES: [CausePriors; 5] = [
+    cause_priors(Cause::LightningOrShock, [0.2, 0.1, 0.02, 0.05, 0.05, 0.02]),
+    cause_priors(Cause::MagneticCargo, [1.0, 0.97, 0.8, 0.03, 0.1, 0.02]),
+    cause_priors(
         Cause::AdjustmentOrRepair,
         [0.2, 0.9, 0.02, 0.01, 0.05, 0.02],
     ),
-    kind(Cause::Drift, [0.1, 0.1, 0.02, 0.02, 0.8, 0.7]),
-    kind(Cause::Unknown, [0.02, 0.3, 0.1, 0.1, 0.2, 0.1]),
+    cause_priors(Cause::Drift, [0.1, 0.1, 0.02, 0.02, 0.8, 0.7]),
+    cause_priors(Cause::Unknown, [0.02, 0.3, 0.1, 0.1, 0.2, 0.1]),
 ];
 
 /// A vessel-year.
-const ALIGNMENT_RATE: f64 = 0.05;
-const FAULT_RATE: f64 = 0.5;
+const ALIGNMENT_RATE_PER_YEAR: f64 = 0.05;
+const COMPASS_FAULT_RATE_PER_YEAR: f64 = 0.5;
 /// Of a lone reference that is wild now and then, or swings.
-const REFERENCE_RATE: f64 = 1.0;
+const LONE_REFERENCE_FAULT_RATE_PER_YEAR: f64 = 1.0;
 
 /// How far storms, anomalies and a compass that is at fault lead it astray, degrees where H
 /// is 24 µT: the largest storms on record come to some eight, anomalies seldom to that, and
 /// a card that was hit, lost its light or hangs swings by any number.
 const STORM_DEG: f64 = 5.0;
 const ANOMALY_DEG: f64 = 6.0;
-const FAULT_DEG: f64 = 10.0;
+const COMPASS_FAULT_DEG: f64 = 10.0;
 
 /// How likely a compass's zero that moved is to be put right, beside a reference that is.
-const ZERO_PUT_RIGHT: f64 = 0.1;
+const ALIGNMENT_REPAIRED: f64 = 0.1;
 
 /// How likely the sun, or a place at sea, begins and ends with a stay alongside.
-const WITH_A_STAY: f64 = 0.02;
+const WITH_BERTH_STAY: f64 = 0.02;
 
 /// What contradicts what the search decided weighs so much less; and so much while it has
 /// not decided.
-const AGAINST: f64 = 0.02;
-const AGAINST_WHILE_OPEN: f64 = 0.5;
+const CONTRADICTION_FACTOR: f64 = 0.02;
+const OPEN_CONTRADICTION_FACTOR: f64 = 0.5;
 
 /// The causes of an event, the likeliest first.
-pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability> {
-    let [step, reference, burst, _] = known.leads.map(|lead| TEMPER * lead);
-    let rival = step + TEMPER * known.over_step;
-    let most = rival.max(reference).max(burst);
+pub(crate) fn causes(what: EventKind, circumstances: &Circumstances) -> Vec<CauseProbability> {
+    let [step, reference, burst, _] = circumstances.leads.map(|lead| LIKELIHOOD_TEMPER * lead);
+    let instead_of_step = step + LIKELIHOOD_TEMPER * circumstances.over_step_log_likelihood_ratio;
+    let most = instead_of_step.max(reference).max(burst);
     let mut weights: Vec<(Cause, f64)> = Vec::new();
-    for kind in &LASTING {
-        let lead = if what == What::Drift && kind.cause == Cause::Drift {
-            rival
+    for cause_priors in &LASTING_CAUSES {
+        let lead = if what == EventKind::Drift && cause_priors.cause == Cause::Drift {
+            instead_of_step
         } else {
             step
         };
-        weights.push((kind.cause, kind.weight(known) * (lead - most).exp()));
+        weights.push((
+            cause_priors.cause,
+            cause_priors.weight(circumstances) * (lead - most).exp(),
+        ));
     }
-    if what == What::Alignment {
-        weights.push((Cause::Alignment, ALIGNMENT_RATE * (rival - most).exp()));
+    if what == EventKind::Alignment {
+        weights.push((
+            Cause::Alignment,
+            ALIGNMENT_RATE_PER_YEAR * (instead_of_step - most).exp(),
+        ));
     }
-    if let Some(over) = known.zero_over_step.filter(|_| what == What::Step) {
+    if let Some(over) = circumstances
+        .alignment_over_step_log_likelihood_ratio
+        .filter(|_| what == EventKind::Step)
+    {
         // The headings sailed do not tell: it is not named for what may be as well.
         let steps = weights.iter().map(|(_, weight)| *weight);
         let likeliest = steps.fold(0.0, f64::max);
-        let zero = ALIGNMENT_RATE * (step + TEMPER * over - most).exp();
+        let zero = ALIGNMENT_RATE_PER_YEAR * (step + LIKELIHOOD_TEMPER * over - most).exp();
         weights.push((Cause::Alignment, zero.min(likeliest)));
     }
     let passing = (burst - most).exp();
-    let astray_deg = known.astray_deg.unwrap_or(0.0);
+    let astray_deg = circumstances.disturbance_deg.unwrap_or(0.0);
     let in_storm = (-(astray_deg / STORM_DEG).powi(2)).exp();
     let over_anomaly = 1.0 / (1.0 + (astray_deg / ANOMALY_DEG).powi(2));
-    let by_fault = astray_deg.powi(2) / (astray_deg.powi(2) + FAULT_DEG.powi(2));
-    weights.push((Cause::CompassFault, FAULT_RATE * passing * by_fault));
-    let swings = if known.one_reference {
-        REFERENCE_RATE * passing * by_fault
+    let by_fault = astray_deg.powi(2) / (astray_deg.powi(2) + COMPASS_FAULT_DEG.powi(2));
+    weights.push((
+        Cause::CompassFault,
+        COMPASS_FAULT_RATE_PER_YEAR * passing * by_fault,
+    ));
+    let by_lone_reference = if circumstances.one_reference {
+        LONE_REFERENCE_FAULT_RATE_PER_YEAR * passing * by_fault
     } else {
         0.0
     };
-    let of_reference = 0.5 * (reference - most).exp() + swings;
+    let of_reference = 0.5 * (reference - most).exp() + by_lone_reference;
     weights.push((Cause::ReferenceFault, of_reference));
-    if what == What::Reference && known.one_reference {
+    if what == EventKind::ReferenceFault && circumstances.one_reference {
         // The same on every heading: which of the two was moved, nothing tells but its end.
-        let share = if known.is_over { ZERO_PUT_RIGHT } else { 1.0 };
+        let share = if circumstances.is_over {
+            ALIGNMENT_REPAIRED
+        } else {
+            1.0
+        };
         weights.push((Cause::Alignment, share * of_reference));
     }
     // What is not over is no shorter than it has been.
-    let long = match known.burst_s {
-        Some(seconds) if seconds > LONG_S => 1.0,
-        Some(_) if known.is_over => 0.0,
+    let long = match circumstances.transient_s {
+        Some(seconds) if seconds > LONG_TRANSIENT_S => 1.0,
+        Some(_) if circumstances.is_over => 0.0,
         _ => 0.5,
     };
-    let elsewhere = if known.alongside { WITH_A_STAY } else { 1.0 };
+    let elsewhere = if circumstances.alongside {
+        WITH_BERTH_STAY
+    } else {
+        1.0
+    };
     weights.push((
         Cause::MagneticStorm,
         6.0 * passing * in_storm * (0.1 + 0.8 * long) * elsewhere,
@@ -171,20 +198,20 @@ pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability>
         Cause::LocalAnomaly,
         3.0 * passing * over_anomaly * (0.9 - 0.8 * long) * elsewhere,
     ));
-    let at_berth = match known.at_port {
+    let at_berth = match circumstances.at_port {
         // It lasts as long as she lies there.
-        _ if known.alongside => 1.0,
+        _ if circumstances.alongside => 1.0,
         Some(true) => 0.9 - 0.8 * long,
         _ => 0.01 * (0.9 - 0.8 * long),
     };
     weights.push((Cause::BerthSteel, 3.0 * passing * over_anomaly * at_berth));
     for (cause, weight) in &mut weights {
-        if known.reported.contains(cause) {
-            *weight *= REPORTED;
+        if circumstances.reported.contains(cause) {
+            *weight *= REPORTED_FACTOR;
         }
     }
-    let agrees = |cause: Cause| is_of(what, cause, known);
-    hold_to(what, known, &mut weights);
+    let agrees = |cause: Cause| is_consistent(what, cause, circumstances);
+    discount_contradictions(what, circumstances, &mut weights);
     let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
     let mut causes: Vec<CauseProbability> = weights
         .into_iter()
@@ -208,17 +235,21 @@ pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability>
 }
 
 /// Takes from the weight of what contradicts what the search decided.
-fn hold_to(what: What, known: &Circumstances, weights: &mut [(Cause, f64)]) {
-    let agrees = |cause: Cause| is_of(what, cause, known);
-    let is_of_the_ship = matches!(what, What::Return(_)) || what.is_lasting();
+fn discount_contradictions(
+    what: EventKind,
+    circumstances: &Circumstances,
+    weights: &mut [(Cause, f64)],
+) {
+    let agrees = |cause: Cause| is_consistent(what, cause, circumstances);
+    let is_of_the_ship = matches!(what, EventKind::Return(_)) || what.is_lasting();
     let agreeing = weights.iter().filter(|(cause, _)| agrees(*cause));
     let most = agreeing
         .map(|(_, weight)| *weight)
         .fold(f64::MIN_POSITIVE, f64::max);
-    let share = if known.is_open {
-        AGAINST_WHILE_OPEN
+    let share = if circumstances.is_open {
+        OPEN_CONTRADICTION_FACTOR
     } else {
-        AGAINST
+        CONTRADICTION_FACTOR
     };
     let against = weights.iter_mut().filter(|(cause, _)| !agrees(*cause));
     for (cause, weight) in against {
@@ -232,39 +263,45 @@ fn hold_to(what: What, known: &Circumstances, weights: &mut [(Cause, f64)]) {
 
 /// Whether a cause is of what the search decided, or in port of what it may yet be: there she
 /// may be another since, as long as she has not sailed.
-fn is_of(what: What, cause: Cause, known: &Circumstances) -> bool {
-    let may_be_hers = known.alongside && !known.is_over;
+fn is_consistent(what: EventKind, cause: Cause, circumstances: &Circumstances) -> bool {
+    let may_be_hers = circumstances.alongside && !circumstances.is_over;
     let is_hers = matches!(cause, Cause::MagneticCargo | Cause::AdjustmentOrRepair);
-    agrees(what, cause, known.one_reference) || (may_be_hers && is_hers)
+    agrees(what, cause, circumstances.one_reference) || (may_be_hers && is_hers)
 }
 
-impl Kind {
-    fn weight(&self, known: &Circumstances) -> f64 {
+impl CausePriors {
+    fn weight(&self, circumstances: &Circumstances) -> f64 {
         let of = |holds: bool, share: f64| if holds { share } else { 1.0 - share };
-        let mut weight = self.rate;
-        if let Some(at_port) = known.at_port {
+        let mut weight = self.rate_per_year;
+        if let Some(at_port) = circumstances.at_port {
             weight *= of(at_port, self.at_port);
         }
         // What has not ended may yet end: silence says little.
-        weight *= match known.ended_at_port {
+        weight *= match circumstances.ended_at_port {
             Some(true) => self.ends_at_port,
             Some(false) => self.ends_at_sea,
             None => 1.0 - 0.3 * (self.ends_at_port + self.ends_at_sea),
         };
-        weight *= of(known.creeps, self.creeps);
-        weight * of(known.told_after_s > SLOW_S, self.told_late)
+        weight *= of(circumstances.creeps, self.creeps);
+        weight
+            * of(
+                circumstances.detection_delay_s > SLOW_DETECTION_S,
+                self.detected_late,
+            )
     }
 }
 
 /// Whether a cause is of what the search decided.
-fn agrees(what: What, cause: Cause, one_reference: bool) -> bool {
+fn agrees(what: EventKind, cause: Cause, one_reference: bool) -> bool {
     match what {
-        What::Step | What::Return(_) => cause.is_the_ships(),
-        What::Alignment => cause == Cause::Alignment,
-        What::Drift => cause == Cause::Drift,
-        What::Reference => {
+        EventKind::Step | EventKind::Return(_) => cause.is_the_ships(),
+        EventKind::Alignment => cause == Cause::Alignment,
+        EventKind::Drift => cause == Cause::Drift,
+        EventKind::ReferenceFault => {
             cause == Cause::ReferenceFault || (one_reference && cause == Cause::Alignment)
         }
-        What::Burst => !cause.is_the_ships() && (one_reference || cause != Cause::ReferenceFault),
+        EventKind::Transient => {
+            !cause.is_the_ships() && (one_reference || cause != Cause::ReferenceFault)
+        }
     }
 }

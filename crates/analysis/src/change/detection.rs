@@ -6,19 +6,19 @@ use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::time::Timestamp;
 
 /// What the search is told beside the rows.
-pub(crate) struct Given<'a> {
+pub(crate) struct DetectionInput<'a> {
     pub(crate) prior: &'a Prior,
     /// The sizes of noise as they were before the rows, where that is known.
     pub(crate) levels: Option<&'a NoiseLevels>,
     /// Times at which people say that something happened.
     pub(crate) reported: &'a [Timestamp],
     /// What people say of cargo that moves the compass.
-    pub(crate) cargo: &'a [Loaded],
+    pub(crate) cargo: &'a [CargoPeriod],
 }
 
 /// Cargo that moves the compass, as the logbook has it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Loaded {
+pub(crate) struct CargoPeriod {
     pub(crate) from: Timestamp,
     /// When it was discharged; none where nobody wrote that down.
     pub(crate) to: Option<Timestamp>,
@@ -26,12 +26,12 @@ pub(crate) struct Loaded {
 
 /// What the rows tell.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Told {
+pub(crate) struct Detection {
     pub(crate) events: Vec<Event>,
     /// A return that may have been, and is not among the events.
-    pub(crate) perhaps: Option<Perhaps>,
+    pub(crate) perhaps: Option<PossibleReturn>,
     /// A step that may have been, and is not among them either.
-    pub(crate) unnoticed: Option<Unnoticed>,
+    pub(crate) unnoticed: Option<UndetectedStep>,
     /// What bx and by may each be off by beyond what the model knows, while a large step is
     /// neither certain nor out of question, variance in nT².
     pub(crate) open_nt2: Option<f64>,
@@ -42,7 +42,7 @@ pub(crate) struct Told {
 /// Something that is as yet neither likely enough to be believed nor unlikely
 /// enough to be forgotten.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Perhaps {
+pub(crate) struct PossibleReturn {
     /// The event that would have ended.
     pub(crate) of: usize,
     /// The first row after its end.
@@ -52,7 +52,7 @@ pub(crate) struct Perhaps {
 
 /// A step at a port call that may have been.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Unnoticed {
+pub(crate) struct UndetectedStep {
     /// The first row after it.
     pub(crate) first: usize,
     pub(crate) probability: f64,

@@ -16,29 +16,32 @@ pub(crate) struct Snapshot {
 
 /// What an event is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum What {
+pub(crate) enum EventKind {
     Step,
     /// The compass's own zero moved.
     Alignment,
     /// The ship's magnetism drifts.
     Drift,
-    Reference,
-    Burst,
+    ReferenceFault,
+    Transient,
     /// The ship is again as she was before the event of this place in the list.
     Return(usize),
 }
 
-impl What {
+impl EventKind {
     /// Whether the deviation is another after it, so that an epoch begins.
     pub(crate) fn is_lasting(self) -> bool {
-        matches!(self, What::Step | What::Alignment | What::Drift)
+        matches!(
+            self,
+            EventKind::Step | EventKind::Alignment | EventKind::Drift
+        )
     }
 }
 
 /// Something that happened, found among the rows.
 #[derive(Clone, Debug)]
 pub(crate) struct Event {
-    pub(crate) what: What,
+    pub(crate) what: EventKind,
     /// The first row after it, and the first and last that may be.
     pub(crate) first: usize,
     pub(crate) between: (usize, usize),
@@ -58,29 +61,29 @@ pub(crate) struct Event {
     /// Whether a burst was at first told as a step.
     pub(crate) was_step: bool,
     /// By how much it is likelier than the step for which it was first taken, nats.
-    pub(crate) over_step: f64,
+    pub(crate) over_step_log_likelihood_ratio: f64,
     /// By how much a zero that moved is likelier than the step, nats, where that is open.
-    pub(crate) zero_over_step: Option<f64>,
+    pub(crate) alignment_over_step_log_likelihood_ratio: Option<f64>,
     /// Whether it is dated at a port call, but was seen days after only: it may have happened
     /// at sea.
-    pub(crate) is_late: bool,
+    pub(crate) noticed_late: bool,
 }
 
 impl Event {
     /// What was told as the ship's or her compass's was gone again before row `end`.
     pub(crate) fn pass(&mut self, end: usize) {
         let [step, reference, burst, back] = self.leads;
-        self.what = What::Burst;
+        self.what = EventKind::Transient;
         self.last = Some(end.saturating_sub(1).max(self.first));
         self.leads = [0.0, reference, burst.max(step), back];
         self.was_step = true;
-        self.over_step = 0.0;
+        self.over_step_log_likelihood_ratio = 0.0;
     }
 }
 
 /// Takes those out that are `gone`; the places of the others, which are told of returns
 /// here, move with them. Where the event of a place is then.
-pub(crate) fn take_out(
+pub(crate) fn remove_events(
     events: &mut Vec<Event>,
     gone: Vec<bool>,
 ) -> impl Fn(usize) -> usize + use<> {
@@ -88,7 +91,7 @@ pub(crate) fn take_out(
     events.retain(|_| each.next() != Some(&true));
     let moved = move |place: usize| place - gone[..place].iter().filter(|gone| **gone).count();
     for event in events {
-        if let What::Return(of) = &mut event.what {
+        if let EventKind::Return(of) = &mut event.what {
             *of = moved(*of);
         }
     }
@@ -118,12 +121,15 @@ pub(crate) fn snapshot(filter: &Filter) -> Snapshot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::change::filter::Noise;
+    use crate::change::filter::NoiseVariances;
     use crate::estimate::Prior;
     use binnacle_compass::result::NoiseLevels;
 
-    fn event(what: What) -> Event {
-        let known = Filter::new(&Prior::population(0.5), &Noise::new(&NoiseLevels::TYPICAL));
+    fn event(what: EventKind) -> Event {
+        let known = Filter::new(
+            &Prior::population(0.5),
+            &NoiseVariances::new(&NoiseLevels::TYPICAL),
+        );
         Event {
             what,
             first: 0,
@@ -136,20 +142,25 @@ mod tests {
             confirmed: true,
             withdrawn: None,
             was_step: false,
-            over_step: 0.0,
-            zero_over_step: None,
-            is_late: false,
+            over_step_log_likelihood_ratio: 0.0,
+            alignment_over_step_log_likelihood_ratio: None,
+            noticed_late: false,
         }
     }
 
     #[test]
     fn a_fault_that_goes_on_is_found_where_it_is_when_earlier_events_are_taken_out() {
-        let told = [What::Step, What::Step, What::Reference, What::Return(2)];
+        let told = [
+            EventKind::Step,
+            EventKind::Step,
+            EventKind::ReferenceFault,
+            EventKind::Return(2),
+        ];
         let mut events: Vec<Event> = told.into_iter().map(event).collect();
-        let moved = take_out(&mut events, vec![false, true, false, false]);
+        let moved = remove_events(&mut events, vec![false, true, false, false]);
         assert_eq!(events.len(), 3);
-        assert_eq!(events[moved(2)].what, What::Reference);
-        assert_eq!(events[2].what, What::Return(moved(2)));
+        assert_eq!(events[moved(2)].what, EventKind::ReferenceFault);
+        assert_eq!(events[2].what, EventKind::Return(moved(2)));
         assert_eq!(moved(0), 0);
     }
 }

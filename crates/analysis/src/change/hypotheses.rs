@@ -9,9 +9,13 @@
 //! What always holds: at most [`CAPACITY`] times are kept, their ages spaced
 //! about geometrically; the time of the likeliest copy of every kind is among them.
 
-use super::filter::{Filter, Measurement, Noise};
-use super::hypothesis_kind::{KINDS, Kind, PASSING, REFERENCES, RIVALS, STEPS};
-use super::jump_models::{BURST, Earlier, burst_of, calmed, misled, upset};
+use super::filter::{Filter, Measurement, NoiseVariances};
+use super::hypothesis_kind::{
+    ALL_KINDS, HypothesisKind, OTHER_KINDS, REFERENCE_STEPS, STEPS, TRANSIENTS,
+};
+use super::jump_models::{
+    EarlierState, USUAL_TRANSIENT, apply_jump, misled, reset_variation, transient_noise,
+};
 use crate::change::priors;
 use crate::change::thresholds::{
     AWAKE_MIN_ROWS, ROW_FORGOTTEN_EXCESS_LOSS, ROW_MAX_EXCESS_LOSS, SEVERE_TRANSIENT_DEG,
@@ -31,7 +35,7 @@ const REMEMBERED_ROWS: usize = 432;
 
 /// A time at which something may have happened.
 #[derive(Clone, Debug)]
-pub(crate) struct Spawn {
+pub(crate) struct Fork {
     /// The first row after it.
     pub(crate) at: usize,
     /// The filter then; boxed, as spawns move up whenever one is given up.
@@ -39,56 +43,66 @@ pub(crate) struct Spawn {
     /// The first row of the burst that may be over.
     pub(crate) astray_from: Option<usize>,
     /// Boxed, as most are none.
-    copies: [Option<Box<Filter>>; KINDS.len()],
+    copies: [Option<Box<Filter>>; ALL_KINDS.len()],
     age_s: f64,
     /// How far the compass was astray since, degrees where H is 24 µT.
-    astray_deg: f64,
+    disturbance_deg: f64,
     /// Whether the reference's copy is to be upset by the next reading.
     is_fresh: bool,
     /// By how much its step is likelier beforehand than one at sea.
     beforehand_nats: f64,
 }
 
-impl Spawn {
+impl Fork {
     /// Makes the copies that rival a step.
-    fn wake(&mut self, earlier: Option<Earlier<'_>>) {
+    fn wake(&mut self, earlier: Option<EarlierState<'_>>) {
         let now = &self.origin;
-        for kind in REFERENCES {
+        for kind in REFERENCE_STEPS {
             self.copies[kind as usize] = Some(now.clone());
         }
-        self.copies[Kind::Burst as usize] = Some(Box::new(upset(now, Kind::Burst)));
-        self.copies[Kind::Return as usize] = earlier.map(|earlier| Box::new(earlier.again(now)));
+        self.copies[HypothesisKind::Transient as usize] =
+            Some(Box::new(apply_jump(now, HypothesisKind::Transient)));
+        self.copies[HypothesisKind::Return as usize] =
+            earlier.map(|earlier| Box::new(earlier.again(now)));
         self.is_fresh = true;
     }
 
     /// All but a large step, which reads rows of its own.
-    fn take(&mut self, m: &Measurement, noise: &Noise, kinds: &[Kind]) {
+    fn take(&mut self, m: &Measurement, noise: &NoiseVariances, kinds: &[HypothesisKind]) {
         let goes_on = self.age_s < TRANSIENT_MAX_S;
         self.age_s += m.seconds;
-        if let Some(burst) = &self.copies[Kind::Burst as usize] {
-            self.astray_deg = self.astray_deg.max(self.origin.variation_astray_deg(m));
-            if self.astray_deg > SEVERE_TRANSIENT_DEG && self.copies[Kind::Wild as usize].is_none()
+        if let Some(burst) = &self.copies[HypothesisKind::Transient as usize] {
+            self.disturbance_deg = self
+                .disturbance_deg
+                .max(self.origin.variation_innovation_deg(m));
+            if self.disturbance_deg > SEVERE_TRANSIENT_DEG
+                && self.copies[HypothesisKind::SevereTransient as usize].is_none()
             {
-                self.copies[Kind::Wild as usize] = Some(burst.clone());
+                self.copies[HypothesisKind::SevereTransient as usize] = Some(burst.clone());
             }
         }
-        let burst = |kind: Kind| match kind {
-            Kind::Burst if goes_on => Some(BURST),
-            Kind::Wild if goes_on => Some(burst_of(self.astray_deg)),
+        let burst = |kind: HypothesisKind| match kind {
+            HypothesisKind::Transient if goes_on => Some(USUAL_TRANSIENT),
+            HypothesisKind::SevereTransient if goes_on => {
+                Some(transient_noise(self.disturbance_deg))
+            }
             _ => None,
         };
-        if kinds.contains(&Kind::Reference) && std::mem::take(&mut self.is_fresh) {
+        if kinds.contains(&HypothesisKind::ReferenceStep) && std::mem::take(&mut self.is_fresh) {
             if m.difference.is_none() {
                 // Of one reference there is nothing that tells which it is.
-                self.copies[Kind::Satellite as usize] = None;
+                self.copies[HypothesisKind::SatelliteStep as usize] = None;
             }
-            for kind in REFERENCES {
+            for kind in REFERENCE_STEPS {
                 if let Some(copy) = &mut self.copies[kind as usize] {
                     **copy = misled(copy, m, kind);
                 }
             }
         }
-        for &kind in kinds.iter().filter(|kind| **kind != Kind::Large) {
+        for &kind in kinds
+            .iter()
+            .filter(|kind| **kind != HypothesisKind::LargeStep)
+        {
             let burst = burst(kind);
             if let Some(copy) = &mut self.copies[kind as usize] {
                 copy.take(m, noise, burst.as_ref());
@@ -100,20 +114,20 @@ impl Spawn {
         &self.origin
     }
 
-    pub(crate) fn copy(&self, kind: Kind) -> Option<&Filter> {
+    pub(crate) fn copy(&self, kind: HypothesisKind) -> Option<&Filter> {
         self.copies[kind as usize].as_deref()
     }
 
-    pub(crate) fn copy_mut(&mut self, kind: Kind) -> Option<&mut Filter> {
+    pub(crate) fn copy_mut(&mut self, kind: HypothesisKind) -> Option<&mut Filter> {
         self.copies[kind as usize].as_deref_mut()
     }
 
-    pub(crate) fn set(&mut self, kind: Kind, copy: Filter) {
+    pub(crate) fn set(&mut self, kind: HypothesisKind, copy: Filter) {
         self.copies[kind as usize] = Some(Box::new(copy));
     }
 
-    pub(crate) fn astray_deg(&self) -> f64 {
-        self.astray_deg
+    pub(crate) fn disturbance_deg(&self) -> f64 {
+        self.disturbance_deg
     }
 }
 
@@ -121,15 +135,15 @@ impl Spawn {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lead {
     pub(crate) nats: f64,
-    pub(crate) kind: Kind,
+    pub(crate) kind: HypothesisKind,
     /// The copy's place in the bank.
     pub(crate) spawn: usize,
 }
 
 #[derive(Default)]
-pub(crate) struct Bank {
+pub(crate) struct HypothesisBank {
     /// From the oldest to the latest.
-    pub(crate) spawns: Vec<Spawn>,
+    pub(crate) spawns: Vec<Fork>,
     /// The last measurements, the latest last, and its row.
     memory: VecDeque<Measurement>,
     latest: usize,
@@ -140,10 +154,15 @@ pub(crate) struct Bank {
     surprise: f64,
 }
 
-impl Bank {
+impl HypothesisBank {
     /// Forgets all that may have happened for good.
     pub(crate) fn forget_lasting(&mut self) {
-        let lasting = [Kind::Step, Kind::Large, Kind::Reference, Kind::Satellite];
+        let lasting = [
+            HypothesisKind::Step,
+            HypothesisKind::LargeStep,
+            HypothesisKind::ReferenceStep,
+            HypothesisKind::SatelliteStep,
+        ];
         for spawn in &mut self.spawns {
             for kind in lasting {
                 spawn.copies[kind as usize] = None;
@@ -162,18 +181,18 @@ impl Bank {
         &mut self,
         at: usize,
         now: &Filter,
-        noise: &Noise,
-        (earlier, in_port): (Option<Earlier<'_>>, bool),
+        noise: &NoiseVariances,
+        (earlier, in_port): (Option<EarlierState<'_>>, bool),
     ) {
         self.thin(at, now);
         self.rest(at, now);
-        let mut spawn = Spawn {
+        let mut spawn = Fork {
             at,
             astray_from: None,
             origin: Box::new(now.clone()),
-            copies: [const { None }; KINDS.len()],
+            copies: [const { None }; ALL_KINDS.len()],
             age_s: 0.0,
-            astray_deg: 0.0,
+            disturbance_deg: 0.0,
             is_fresh: false,
             beforehand_nats: if in_port {
                 priors::STEP_AT_PORT_CALL_LOG_ODDS
@@ -181,22 +200,22 @@ impl Bank {
                 0.0
             },
         };
-        let mut step = upset(now, Kind::Step);
+        let mut step = apply_jump(now, HypothesisKind::Step);
         step.log_likelihood += spawn.beforehand_nats;
-        spawn.copies[Kind::Step as usize] = Some(Box::new(step));
+        spawn.copies[HypothesisKind::Step as usize] = Some(Box::new(step));
         if self.are_rivals_awake {
             spawn.wake(earlier);
-            let astray = self.likeliest(&PASSING, now);
+            let astray = self.likeliest(&TRANSIENTS, now);
             if let Some(lead) =
                 astray.filter(|lead| lead.nats > TRANSIENT_END_FORK_LOG_LIKELIHOOD_RATIO)
             {
                 let astray = &self.spawns[lead.spawn];
                 spawn.astray_from = Some(astray.at);
                 let over = astray.copy(lead.kind).map(|copy| match lead.kind {
-                    Kind::Wild => calmed(copy, noise),
+                    HypothesisKind::SevereTransient => reset_variation(copy, noise),
                     _ => copy.clone(),
                 });
-                spawn.copies[Kind::Over as usize] = over.map(Box::new);
+                spawn.copies[HypothesisKind::TransientEnd as usize] = over.map(Box::new);
             }
         }
         self.spawns.push(spawn);
@@ -208,12 +227,12 @@ impl Bank {
         &mut self,
         at: usize,
         m: Measurement,
-        noise: &Noise,
+        noise: &NoiseVariances,
         (null, surprise): (&Filter, f64),
-        earlier: Option<Earlier<'_>>,
+        earlier: Option<EarlierState<'_>>,
     ) {
         for spawn in &mut self.spawns {
-            spawn.take(&m, noise, &KINDS);
+            spawn.take(&m, noise, &ALL_KINDS);
         }
         if self.memory.len() == REMEMBERED_ROWS {
             self.memory.pop_front();
@@ -222,7 +241,9 @@ impl Bank {
         self.latest = at;
         let counted = surprise.min(ROW_MAX_EXCESS_LOSS) - ROW_FORGOTTEN_EXCESS_LOSS;
         self.surprise = (self.surprise + counted).max(0.0);
-        let step = self.lead(Kind::Step, null).map_or(0.0, |lead| lead.nats);
+        let step = self
+            .lead(HypothesisKind::Step, null)
+            .map_or(0.0, |lead| lead.nats);
         let is_surprised = self.surprise > WAKE_EXCESS_LOSS;
         if is_surprised {
             self.surprise = 0.0;
@@ -234,26 +255,29 @@ impl Bank {
     }
 
     /// Makes the rivals, as if they had run all along.
-    fn wake(&mut self, noise: &Noise, earlier: Option<Earlier<'_>>) {
+    fn wake(&mut self, noise: &NoiseVariances, earlier: Option<EarlierState<'_>>) {
         self.are_rivals_awake = true;
         let known_from = self.latest + 1 - self.memory.len();
         for spawn in self.spawns.iter_mut().filter(|s| s.at >= known_from) {
             spawn.wake(earlier);
             spawn.age_s = 0.0;
-            spawn.astray_deg = 0.0;
+            spawn.disturbance_deg = 0.0;
             for m in self.memory.iter().skip(spawn.at - known_from) {
-                spawn.take(m, noise, &RIVALS);
+                spawn.take(m, noise, &OTHER_KINDS);
             }
         }
     }
 
     /// Gives up rivals when nothing leads, and steps that trail for good.
     fn rest(&mut self, at: usize, null: &Filter) {
-        let leads = KINDS.map(|kind| self.lead(kind, null).map_or(0.0, |lead| lead.nats));
+        let leads = ALL_KINDS.map(|kind| self.lead(kind, null).map_or(0.0, |lead| lead.nats));
         if at >= self.awake_until && leads.iter().all(|nats| *nats < SLEEP_LOG_LIKELIHOOD_RATIO) {
             self.are_rivals_awake = false;
             for spawn in &mut self.spawns {
-                for kind in KINDS.into_iter().filter(|kind| *kind != Kind::Step) {
+                for kind in ALL_KINDS
+                    .into_iter()
+                    .filter(|kind| *kind != HypothesisKind::Step)
+                {
                     spawn.copies[kind as usize] = None;
                 }
             }
@@ -264,7 +288,7 @@ impl Bank {
             .iter_mut()
             .filter(|s| at - s.at > STEP_DROPPED_MIN_ROWS)
         {
-            let step = &mut spawn.copies[Kind::Step as usize];
+            let step = &mut spawn.copies[HypothesisKind::Step as usize];
             if step.as_ref().is_some_and(|s| s.log_likelihood <= hopeless) {
                 *step = None;
             }
@@ -272,9 +296,9 @@ impl Bank {
     }
 
     /// The likeliest copy of a kind.
-    pub(crate) fn lead(&self, kind: Kind, null: &Filter) -> Option<Lead> {
+    pub(crate) fn lead(&self, kind: HypothesisKind, null: &Filter) -> Option<Lead> {
         // Asleep there are none.
-        if kind != Kind::Step && !self.are_rivals_awake {
+        if kind != HypothesisKind::Step && !self.are_rivals_awake {
             return None;
         }
         let copies = self.spawns.iter().enumerate();
@@ -289,7 +313,7 @@ impl Bank {
     /// By how much what leads was likelier beforehand than the same at another time.
     pub(crate) fn beforehand_nats(&self, lead: Lead) -> f64 {
         match lead.kind {
-            Kind::Step => self.spawns[lead.spawn].beforehand_nats,
+            HypothesisKind::Step => self.spawns[lead.spawn].beforehand_nats,
             _ => 0.0,
         }
     }
@@ -305,15 +329,22 @@ impl Bank {
 
     /// The likeliest copy of those in which the field goes or went astray.
     pub(crate) fn passing(&self, null: &Filter) -> Option<Lead> {
-        self.likeliest(&[Kind::Burst, Kind::Wild, Kind::Over], null)
+        self.likeliest(
+            &[
+                HypothesisKind::Transient,
+                HypothesisKind::SevereTransient,
+                HypothesisKind::TransientEnd,
+            ],
+            null,
+        )
     }
 
     /// The likeliest copy of those in which a reference changed.
     pub(crate) fn reference(&self, null: &Filter) -> Option<Lead> {
-        self.likeliest(&REFERENCES, null)
+        self.likeliest(&REFERENCE_STEPS, null)
     }
 
-    fn likeliest(&self, kinds: &[Kind], null: &Filter) -> Option<Lead> {
+    fn likeliest(&self, kinds: &[HypothesisKind], null: &Filter) -> Option<Lead> {
         let leads = kinds.iter().filter_map(|kind| self.lead(*kind, null));
         leads.max_by(|a, b| a.nats.total_cmp(&b.nats))
     }
@@ -324,7 +355,7 @@ impl Bank {
         if self.spawns.len() < CAPACITY {
             return;
         }
-        let leaders = KINDS.map(|kind| self.lead(kind, null).map(|lead| lead.spawn));
+        let leaders = ALL_KINDS.map(|kind| self.lead(kind, null).map(|lead| lead.spawn));
         let age = |i: usize| (at - self.spawns[i].at) as f64;
         let closest = (1..self.spawns.len() - 1)
             .filter(|&i| !leaders.contains(&Some(i)))

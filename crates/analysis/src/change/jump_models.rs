@@ -3,8 +3,10 @@
 //! What always holds: what is upset is known less afterwards, never better, but for what
 //! is again as it was known to be before.
 
-use super::filter::{Burst, CONSTANT_STATE, Filter, Measurement, Noise, OFFSET, STATES, VARIATION};
-use super::hypothesis_kind::Kind;
+use super::filter::{
+    CONSTANT_STATE, Filter, Measurement, NoiseVariances, OFFSET, STATES, TransientNoise, VARIATION,
+};
+use super::hypothesis_kind::HypothesisKind;
 use crate::change::priors;
 use crate::change::thresholds::SEVERE_TRANSIENT_DEG;
 use crate::estimate::{OFFSET_SD_DEG, POPULATION_SD};
@@ -13,20 +15,20 @@ use binnacle_compass::ship::PARAMETERS;
 
 /// What something was before it changed, and may become again.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Earlier<'a> {
+pub(crate) enum EarlierState<'a> {
     Ship(&'a Filter),
     Reference(&'a Filter),
     /// The compass's own zero.
     Zero(&'a Filter),
 }
 
-impl Earlier<'_> {
+impl EarlierState<'_> {
     /// The filter with that as it was.
     pub(crate) fn again(self, now: &Filter) -> Filter {
         match self {
-            Earlier::Ship(before) => set_back(now, before),
-            Earlier::Reference(before) => mended(now, before, &[CONSTANT_STATE, OFFSET]),
-            Earlier::Zero(before) => {
+            EarlierState::Ship(before) => restore_vessel(now, before),
+            EarlierState::Reference(before) => mended(now, before, &[CONSTANT_STATE, OFFSET]),
+            EarlierState::Zero(before) => {
                 let moved_deg = before.mean[CONSTANT_STATE] - now.mean[CONSTANT_STATE];
                 let mut back = now.clone();
                 back.mean = turned(now, moved_deg);
@@ -36,18 +38,18 @@ impl Earlier<'_> {
     }
 }
 
-pub(crate) const BURST: Burst = Burst {
+pub(crate) const USUAL_TRANSIENT: TransientNoise = TransientNoise {
     variance: priors::TRANSIENT_SD_DEG * priors::TRANSIENT_SD_DEG,
     memory_s: priors::TRANSIENT_CORRELATION_S,
 };
 
 /// The filter with that having happened just now, by how much not being known.
-pub(crate) fn upset(now: &Filter, kind: Kind) -> Filter {
+pub(crate) fn apply_jump(now: &Filter, kind: HypothesisKind) -> Filter {
     // All else sets in as it goes on: within its memory, not at once.
     match kind {
-        Kind::Step => stepped(now, priors::STEP_SD),
-        Kind::Large => {
-            let mut copy = struck(now);
+        HypothesisKind::Step => apply_step(now, priors::STEP_SD),
+        HypothesisKind::LargeStep => {
+            let mut copy = apply_large_step(now);
             copy.log_likelihood -= priors::AGAINST_LARGE_STEP_LOG_ODDS;
             copy
         }
@@ -56,11 +58,11 @@ pub(crate) fn upset(now: &Filter, kind: Kind) -> Filter {
 }
 
 /// The filter of a ship that may have been struck by far harder than she is as a rule.
-pub(crate) fn struck(now: &Filter) -> Filter {
-    stepped(now, priors::LARGE_STEP_SD)
+pub(crate) fn apply_large_step(now: &Filter) -> Filter {
+    apply_step(now, priors::LARGE_STEP_SD)
 }
 
-fn stepped(now: &Filter, permanent: f64) -> Filter {
+fn apply_step(now: &Filter, permanent: f64) -> Filter {
     let mut copy = now.clone();
     for j in 0..PARAMETERS {
         let step = if matches!(j, 0 | 2) {
@@ -79,15 +81,19 @@ fn stepped(now: &Filter, permanent: f64) -> Filter {
 /// their mean; the satellite compass's moves them in opposite senses; alone, either is
 /// the constant's. The step may be as large as the reading is astray: what is believed
 /// to be impossible is never learnt.
-pub(crate) fn misled(now: &Filter, next: &Measurement, which: Kind) -> Filter {
+pub(crate) fn misled(now: &Filter, next: &Measurement, which: HypothesisKind) -> Filter {
     let mut copy = now.clone();
-    let size = now.astray_deg(next).max(priors::REFERENCE_STEP_SD_DEG);
+    let size = now.innovation_deg(next).max(priors::REFERENCE_STEP_SD_DEG);
     let constant = if next.difference.is_some() {
         size / 2.0
     } else {
         size
     };
-    let sense = if which == Kind::Satellite { -1.0 } else { 1.0 };
+    let sense = if which == HypothesisKind::SatelliteStep {
+        -1.0
+    } else {
+        1.0
+    };
     let steps = [
         (CONSTANT_STATE, constant),
         (OFFSET, sense * size / OFFSET_SD_DEG),
@@ -102,7 +108,7 @@ pub(crate) fn misled(now: &Filter, next: &Measurement, which: Kind) -> Filter {
 
 /// The filter with the compass's zero having moved so that the constant is about another by
 /// `moved_deg`, where rows are to be linearised; how far, is not known but for its size.
-pub(crate) fn misaligned(now: &Filter, moved_deg: f64, size_deg: f64) -> Filter {
+pub(crate) fn apply_alignment_step(now: &Filter, moved_deg: f64, size_deg: f64) -> Filter {
     let mut copy = now.clone();
     copy.mean = turned(now, moved_deg);
     let [less, more] = [-1.0, 1.0].map(|by| turned(now, moved_deg + by));
@@ -150,7 +156,7 @@ fn mended(now: &Filter, before: &Filter, lasting: &[usize]) -> Filter {
 }
 
 /// The filter with the ship's own parameters as `base` had them.
-pub(crate) fn set_back(now: &Filter, base: &Filter) -> Filter {
+pub(crate) fn restore_vessel(now: &Filter, base: &Filter) -> Filter {
     let mut copy = now.clone();
     copy.mean[..PARAMETERS].copy_from_slice(&base.mean[..PARAMETERS]);
     for i in 0..PARAMETERS {
@@ -172,21 +178,21 @@ pub(crate) fn set_back(now: &Filter, base: &Filter) -> Filter {
 }
 
 /// A burst in which the furthest reading was so far astray: a wild one is as large.
-pub(crate) fn burst_of(astray_deg: f64) -> Burst {
+pub(crate) fn transient_noise(astray_deg: f64) -> TransientNoise {
     let deg = if astray_deg > SEVERE_TRANSIENT_DEG {
         astray_deg
     } else {
         priors::TRANSIENT_SD_DEG
     };
-    Burst {
+    TransientNoise {
         variance: deg * deg,
-        ..BURST
+        ..USUAL_TRANSIENT
     }
 }
 
 /// The filter with the variation as if it had never been astray: what swung wildly is
 /// itself again at once.
-pub(crate) fn calmed(now: &Filter, noise: &Noise) -> Filter {
+pub(crate) fn reset_variation(now: &Filter, noise: &NoiseVariances) -> Filter {
     let mut copy = now.clone();
     copy.mean[VARIATION] = 0.0;
     for j in 0..STATES {
@@ -204,7 +210,7 @@ mod tests {
 
     #[test]
     fn a_ship_set_back_is_known_as_she_was_and_no_worse() {
-        let noise = Noise::new(&NoiseLevels::TYPICAL);
+        let noise = NoiseVariances::new(&NoiseLevels::TYPICAL);
         let mut base = Filter::new(&Prior::population(0.5), &noise);
         for i in 0..STATES {
             for j in 0..=i {
@@ -212,7 +218,7 @@ mod tests {
                     .add(i, j, 0.01 / (1.0 + i.abs_diff(j) as f64));
             }
         }
-        let back = set_back(&upset(&base, Kind::Step), &base);
+        let back = restore_vessel(&apply_jump(&base, HypothesisKind::Step), &base);
         assert!((back.covariance.at(1, 3) - base.covariance.at(1, 3)).abs() < 1e-12);
         assert!(back.covariance.at(1, CONSTANT_STATE).abs() < 1e-12);
     }

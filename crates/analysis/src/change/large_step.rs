@@ -4,10 +4,10 @@
 //! that small changes are judged as if there were none; each reads every row linearised at
 //! the ship that it supposes, for deviation is not linear in a large step.
 
-use super::filter::{Filter, Measurement, Noise};
-use super::hypotheses::{Bank, Spawn};
-use super::hypothesis_kind::Kind;
-use super::jump_models::upset;
+use super::filter::{Filter, Measurement, NoiseVariances};
+use super::hypotheses::{Fork, HypothesisBank};
+use super::hypothesis_kind::HypothesisKind;
+use super::jump_models::apply_jump;
 use crate::change::thresholds::{LARGE_STEP_DEG, LARGE_STEP_MAX_ROWS};
 use crate::estimate::{USUAL_FUSION, Unknowns};
 
@@ -23,7 +23,7 @@ const OUTLIER_Z_SQUARED: f64 = 9.0;
 /// The share that the reference has in the heading at which rows are taken: all of it for a
 /// ship so strong a magnet that her compass may turn several times as fast as she does,
 /// for there what the compass has in it would explain whatever it shows.
-pub(crate) fn fusion(ship: &Unknowns) -> f64 {
+pub(crate) fn reference_share(ship: &Unknowns) -> f64 {
     if ship[0].hypot(ship[2]) > STRONG_MAGNET {
         1.0
     } else {
@@ -33,13 +33,13 @@ pub(crate) fn fusion(ship: &Unknowns) -> f64 {
 
 /// The row linearised at the ship that `filter` takes her for once it has read it, where
 /// that is far from the ship before.
-pub(crate) fn relinearised(
+pub(crate) fn relinearise(
     filter: &Filter,
-    noise: &Noise,
+    noise: &NoiseVariances,
     measure: impl Fn(&Unknowns) -> Measurement,
 ) -> Measurement {
     let mut m = measure(&filter.unknowns());
-    let mut moved = filter.astray_deg(&m);
+    let mut moved = filter.innovation_deg(&m);
     for _ in 0..LINEARISATION_ROUNDS {
         if moved < RELINEARISE_BEYOND_DEG || filter.z_squared(&m) > OUTLIER_Z_SQUARED {
             break;
@@ -47,37 +47,40 @@ pub(crate) fn relinearised(
         let mut after = filter.clone();
         after.take(&m, noise, None);
         m = measure(&after.unknowns());
-        moved = after.astray_deg(&m);
+        moved = after.innovation_deg(&m);
     }
     m
 }
 
-impl Bank {
+impl HypothesisBank {
     /// Takes row `at` in, which the other copies have taken in before, where a large step
     /// is supposed; `measure` is of any row at any ship.
     pub(crate) fn take_large(
         &mut self,
         at: usize,
-        noise: &Noise,
+        noise: &NoiseVariances,
         measure: impl Fn(usize, &Unknowns) -> Measurement,
     ) {
         if !self.are_rivals_awake() {
             return;
         }
         for spawn in &mut self.spawns {
-            let rows = if spawn.copy(Kind::Large).is_some() {
+            let rows = if spawn.copy(HypothesisKind::LargeStep).is_some() {
                 at..at + 1
             } else if is_new(spawn, at) {
-                spawn.set(Kind::Large, upset(spawn.origin(), Kind::Large));
+                spawn.set(
+                    HypothesisKind::LargeStep,
+                    apply_jump(spawn.origin(), HypothesisKind::LargeStep),
+                );
                 spawn.at..at + 1
             } else {
                 continue;
             };
-            let Some(copy) = spawn.copy_mut(Kind::Large) else {
+            let Some(copy) = spawn.copy_mut(HypothesisKind::LargeStep) else {
                 continue;
             };
             for row in rows {
-                let m = relinearised(copy, noise, |ship| measure(row, ship));
+                let m = relinearise(copy, noise, |ship| measure(row, ship));
                 copy.take(&m, noise, None);
             }
         }
@@ -85,6 +88,6 @@ impl Bank {
 }
 
 /// Whether a large step is to be supposed of that time from now on.
-fn is_new(spawn: &Spawn, at: usize) -> bool {
-    spawn.astray_deg() > LARGE_STEP_DEG && at <= spawn.at + LARGE_STEP_MAX_ROWS
+fn is_new(spawn: &Fork, at: usize) -> bool {
+    spawn.disturbance_deg() > LARGE_STEP_DEG && at <= spawn.at + LARGE_STEP_MAX_ROWS
 }

@@ -1,8 +1,8 @@
 //! Log-likelihood ratios and the odds that they stand for.
 
 /// Leads are of models that are only nearly right: they count for this much.
-pub(crate) const TEMPER: f64 = 0.5;
+pub(crate) const LIKELIHOOD_TEMPER: f64 = 0.5;
 /// The odds that a lead stands for.
-pub(crate) fn odds(nats: f64) -> f64 {
-    (TEMPER * nats).exp()
+pub(crate) fn tempered_odds(nats: f64) -> f64 {
+    (LIKELIHOOD_TEMPER * nats).exp()
 }

@@ -28,8 +28,8 @@ mod thresholds;
 
 pub(crate) use cause::{Circumstances, causes};
 pub(crate) use detect::detect;
-pub(crate) use detection::{Given, Loaded, Perhaps, Unnoticed};
-pub(crate) use event::{Event, Snapshot, What};
-pub(crate) use likelihood_ratio::odds;
+pub(crate) use detection::{CargoPeriod, DetectionInput, PossibleReturn, UndetectedStep};
+pub(crate) use event::{Event, EventKind, Snapshot};
+pub(crate) use likelihood_ratio::tempered_odds;
 pub(crate) use port_calls::{at_port, rows_since};
 pub(crate) use thresholds::SAILED_SINCE_ROWS;

@@ -4,9 +4,9 @@
 //! What always holds: at most [`MAX_PORT_CALLS`] calls and [`MAX_BASELINES`] earlier states are kept,
 //! and what has become unlikely is given up, so that the work a row is bounded.
 
-use super::filter::{Filter, Measurement, Noise};
-use super::jump_models::set_back;
-use super::likelihood_ratio::TEMPER;
+use super::filter::{Filter, Measurement, NoiseVariances};
+use super::jump_models::restore_vessel;
+use super::likelihood_ratio::LIKELIHOOD_TEMPER;
 use crate::change::priors;
 use crate::change::thresholds::RETURN_DROPPED_LOG_LIKELIHOOD_RATIO;
 use crate::estimate::Unknowns;
@@ -18,7 +18,7 @@ const MAX_BASELINES: usize = 3;
 
 /// What the logbook tells of cargo at a port call.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Said {
+pub(crate) enum LoggedCargo {
     Nothing,
     /// Cargo that had been loaded not before a time was discharged, and none stayed.
     Discharged {
@@ -31,7 +31,7 @@ pub(crate) enum Said {
 }
 
 /// Where a step happened, as far as the rows tell.
-pub(crate) enum Began {
+pub(crate) enum StepOrigin {
     AtPort,
     /// At sea, so soon after cargo came on board by the logbook that it may be that.
     SaidLoaded,
@@ -44,45 +44,45 @@ pub(crate) enum Began {
 }
 
 /// The ship as she was before a step.
-pub(crate) struct Base {
+pub(crate) struct Baseline {
     /// The step's place in the list of events.
     pub(crate) event: usize,
     pub(crate) filter: Filter,
-    pub(crate) began: Began,
+    pub(crate) began: StepOrigin,
     /// When the step happened at the latest.
     pub(crate) latest: Option<Timestamp>,
     /// Port calls since.
     pub(crate) calls: i32,
 }
 
-impl Base {
+impl Baseline {
     /// How likely the ship is herself again at the next port call: what has stayed
     /// through many was no cargo.
     fn chance(&self) -> f64 {
         let is_cargo = match self.began {
-            Began::AtPort | Began::SaidLoaded => priors::CARGO,
-            Began::NoticedLate => priors::CARGO_NOTICED_LATE,
-            Began::SoonAfter(_) => priors::CARGO_SOON_AFTER_CALL,
-            Began::AtSea => return priors::RETURN_AFTER_CHANGE_AT_SEA,
+            StepOrigin::AtPort | StepOrigin::SaidLoaded => priors::CARGO,
+            StepOrigin::NoticedLate => priors::CARGO_NOTICED_LATE,
+            StepOrigin::SoonAfter(_) => priors::CARGO_SOON_AFTER_CALL,
+            StepOrigin::AtSea => return priors::RETURN_AFTER_CHANGE_AT_SEA,
         };
         let still = is_cargo * (1.0 - priors::DISCHARGE).powi(self.calls);
         priors::DISCHARGE * still / (still + 1.0 - is_cargo)
     }
 
     /// What began at sea may end there.
-    pub(crate) fn began_at_port(&self) -> bool {
-        matches!(self.began, Began::AtPort)
+    pub(crate) fn began_at_port_call(&self) -> bool {
+        matches!(self.began, StepOrigin::AtPort)
     }
 
     /// Whether it came on board with cargo, as far as logbook and rows tell.
-    pub(crate) fn came_on_board(&self) -> bool {
-        matches!(self.began, Began::AtPort | Began::SaidLoaded)
+    pub(crate) fn is_cargo(&self) -> bool {
+        matches!(self.began, StepOrigin::AtPort | StepOrigin::SaidLoaded)
     }
 
     /// The ship without what changed her.
-    pub(crate) fn unladen(&self) -> &Filter {
+    pub(crate) fn without_cargo(&self) -> &Filter {
         match &self.began {
-            Began::SoonAfter(sailed) => sailed,
+            StepOrigin::SoonAfter(sailed) => sailed,
             _ => &self.filter,
         }
     }
@@ -104,7 +104,7 @@ struct Return {
 
 /// A return that may have been.
 #[derive(Clone, Debug)]
-pub(crate) struct Candidate {
+pub(crate) struct ReturnCandidate {
     /// The step that it would be the end of.
     pub(crate) event: usize,
     /// The first row after it.
@@ -119,14 +119,14 @@ pub(crate) struct Candidate {
 }
 
 #[derive(Default)]
-pub(crate) struct Calls {
+pub(crate) struct PortCallReturns {
     /// From the earliest step to the latest.
-    pub(crate) bases: Vec<Base>,
+    pub(crate) bases: Vec<Baseline>,
     calls: Vec<Call>,
 }
 
-impl Calls {
-    pub(crate) fn step(&mut self, base: Base) {
+impl PortCallReturns {
+    pub(crate) fn step(&mut self, base: Baseline) {
         if self.bases.len() == MAX_BASELINES {
             // The first is the ship without any cargo, and stays.
             self.bases.remove(1);
@@ -136,24 +136,24 @@ impl Calls {
 
     /// The ship lay in port before row `at`; `now` is the filter there, and the
     /// bases are those of steps before `until`, a place in the list of events.
-    pub(crate) fn call(&mut self, at: usize, now: &Filter, until: usize, said: Said) {
-        let unladen = match said {
-            Said::Discharged { loaded, at_port } => self.before_loading(loaded, at_port),
+    pub(crate) fn call(&mut self, at: usize, now: &Filter, until: usize, said: LoggedCargo) {
+        let without_cargo = match said {
+            LoggedCargo::Discharged { loaded, at_port } => self.before_loading(loaded, at_port),
             _ => None,
         };
         let before = self.bases.iter_mut().filter(|base| base.event < until);
         let returns: Vec<Return> = before
             .map(|base| {
-                let chance = match (said, unladen) {
+                let chance = match (said, without_cargo) {
                     (_, Some((event, chance))) if event == base.event => chance,
-                    (Said::OnBoard, _) => priors::LOGGED_ON_BOARD_FACTOR * base.chance(),
+                    (LoggedCargo::OnBoard, _) => priors::LOGGED_ON_BOARD_FACTOR * base.chance(),
                     _ => base.chance(),
                 };
                 base.calls += 1;
                 Return {
                     event: base.event,
                     prior_odds: chance / (1.0 - chance),
-                    filter: set_back(now, base.unladen()),
+                    filter: restore_vessel(now, base.without_cargo()),
                 }
             })
             .collect();
@@ -172,13 +172,13 @@ impl Calls {
     /// does not leave with the cargo, but cargo that moves the compass by little may be
     /// noticed at sea only.
     fn before_loading(&self, loaded: Timestamp, at_port: bool) -> Option<(usize, f64)> {
-        let since = |base: &&Base| base.latest.is_some_and(|latest| latest >= loaded);
+        let since = |base: &&Baseline| base.latest.is_some_and(|latest| latest >= loaded);
         let mut since = self.bases.iter().filter(since);
         let first = since.next()?;
-        if !since.all(Base::came_on_board) {
+        if !since.all(Baseline::is_cargo) {
             return None;
         }
-        let chance = match (first.came_on_board(), at_port) {
+        let chance = match (first.is_cargo(), at_port) {
             (true, true) => priors::LOGGED_DISCHARGE,
             (true, false) => priors::LOGGED_DISCHARGE_UNDER_WAY,
             (false, _) => priors::LOGGED_DISCHARGE_NOTICED_AT_SEA,
@@ -190,7 +190,7 @@ impl Calls {
     pub(crate) fn take(
         &mut self,
         measure: impl Fn(&Unknowns) -> Measurement,
-        noise: &Noise,
+        noise: &NoiseVariances,
         null: &Filter,
     ) {
         for call in &mut self.calls {
@@ -211,7 +211,7 @@ impl Calls {
         &mut self,
         first: usize,
         measure: impl Fn(&Unknowns) -> Measurement,
-        noise: &Noise,
+        noise: &NoiseVariances,
     ) {
         for call in self.calls.iter_mut().filter(|call| call.at >= first) {
             for back in &mut call.returns {
@@ -229,8 +229,8 @@ impl Calls {
         null: &Filter,
         rival: f64,
         is_astray: bool,
-    ) -> Option<Candidate> {
-        let odds = |back: &Return| {
+    ) -> Option<ReturnCandidate> {
+        let tempered_odds = |back: &Return| {
             let nats = back.filter.log_likelihood - null.log_likelihood;
             let beside = if is_astray {
                 nats.min(0.0)
@@ -238,7 +238,7 @@ impl Calls {
                 f64::NEG_INFINITY
             };
             let told = (nats - rival).max(beside);
-            (nats, back.prior_odds * (TEMPER * told).exp())
+            (nats, back.prior_odds * (LIKELIHOOD_TEMPER * told).exp())
         };
         let each = || {
             let calls = self.calls.iter();
@@ -246,9 +246,9 @@ impl Calls {
         };
         let of_event = |event: usize| -> f64 {
             let same = each().filter(|(_, back)| back.event == event);
-            same.map(|(_, back)| odds(back).1).sum()
+            same.map(|(_, back)| tempered_odds(back).1).sum()
         };
-        let sum: f64 = each().map(|(_, back)| odds(back).1).sum();
+        let sum: f64 = each().map(|(_, back)| tempered_odds(back).1).sum();
         // Which call it was matters less than whether she is the ship she was.
         let event = self
             .bases
@@ -257,11 +257,11 @@ impl Calls {
             .max_by(|a, b| of_event(*a).total_cmp(&of_event(*b)))?;
         let (at, back) = each()
             .filter(|(_, back)| back.event == event)
-            .max_by(|a, b| odds(a.1).1.total_cmp(&odds(b.1).1))?;
-        Some(Candidate {
+            .max_by(|a, b| tempered_odds(a.1).1.total_cmp(&tempered_odds(b.1).1))?;
+        Some(ReturnCandidate {
             event,
             at,
-            nats: odds(back).0,
+            nats: tempered_odds(back).0,
             probability: of_event(event) / (1.0 + sum),
             any: sum / (1.0 + sum),
             filter: back.filter.clone(),
@@ -305,23 +305,23 @@ mod tests {
     use binnacle_compass::result::NoiseLevels;
 
     fn ship() -> Filter {
-        let noise = Noise::new(&NoiseLevels::TYPICAL);
+        let noise = NoiseVariances::new(&NoiseLevels::TYPICAL);
         Filter::new(&Prior::population(0.5), &noise)
     }
 
     /// A ship that was laden at a call, and has lain at two since; by how much her being
     /// herself again leads from each.
-    fn after_two_calls(leads: [f64; 2]) -> Calls {
-        let mut calls = Calls::default();
-        calls.step(Base {
+    fn after_two_calls(leads: [f64; 2]) -> PortCallReturns {
+        let mut calls = PortCallReturns::default();
+        calls.step(Baseline {
             event: 0,
             filter: ship(),
-            began: Began::AtPort,
+            began: StepOrigin::AtPort,
             latest: None,
             calls: 0,
         });
         for at in [10, 20] {
-            calls.call(at, &ship(), usize::MAX, Said::Nothing);
+            calls.call(at, &ship(), usize::MAX, LoggedCargo::Nothing);
         }
         for (call, nats) in calls.calls.iter_mut().zip(leads) {
             call.returns[0].filter.log_likelihood = nats;

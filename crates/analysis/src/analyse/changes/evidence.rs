@@ -1,6 +1,6 @@
 //! Why an event is what it is taken for, in words that an officer knows.
 
-use crate::change::{Circumstances, Event, What, odds};
+use crate::change::{Circumstances, Event, EventKind, tempered_odds};
 
 /// What is further astray is worth a word, degrees where H is 24 µT.
 const WILD_DEG: f64 = 8.0;
@@ -29,30 +29,30 @@ pub(super) fn evidence(
 ) -> Vec<String> {
     let [step, reference, burst, _] = event.leads;
     let mut told = vec![match event.what {
-        What::Step | What::Return(_) => format!(
+        EventKind::Step | EventKind::Return(_) => format!(
             "a change of the ship's own magnetism explains the samples: {} none, {} a passing \
              disturbance and {} a fault of the reference",
             likelier(step),
             likelier(step - burst),
             likelier(step - reference)
         ),
-        What::Alignment => format!(
+        EventKind::Alignment => format!(
             "what changed is the same on every heading, and gyro and satellite compass agree: \
              that the compass's own zero moved is {} a change of the ship's magnetism",
-            likelier(event.over_step)
+            likelier(event.over_step_log_likelihood_ratio)
         ),
-        What::Drift => format!(
+        EventKind::Drift => format!(
             "{}: a drift is {} one sudden change",
             drifted(worst_deg),
-            likelier(event.over_step)
+            likelier(event.over_step_log_likelihood_ratio)
         ),
-        What::Reference => format!(
+        EventKind::ReferenceFault => format!(
             "what changed is the same on every heading: a fault of the reference is {} none and {} \
              a change of the ship",
             likelier(reference),
             likelier(reference - step)
         ),
-        What::Burst => format!(
+        EventKind::Transient => format!(
             "the compass went astray, but not for good: a passing disturbance is {} none and {} a \
              change of the ship",
             likelier(burst),
@@ -68,7 +68,7 @@ pub(super) fn evidence(
     match known.at_port {
         Some(true) => told.push("it began at a port call".to_owned()),
         Some(false) => told.push("it began at sea".to_owned()),
-        None if event.is_late => told.push(
+        None if event.noticed_late => told.push(
             "it may have begun at the port call before, where cargo comes on board, though it was \
              seen at sea only"
                 .to_owned(),
@@ -80,16 +80,18 @@ pub(super) fn evidence(
         Some(false) => told.push("the ship became herself again at sea".to_owned()),
         None => {}
     }
-    if known.in_a_day > 1 {
+    if known.changes_within_a_day > 1 {
         told.push(format!(
             "it is one of {} changes within a day of it",
-            known.in_a_day
+            known.changes_within_a_day
         ));
     }
     if known.creeps {
         told.push("another change within weeks went the same way".to_owned());
     }
-    let is_wild = known.astray_deg.is_some_and(|degrees| degrees > WILD_DEG);
+    let is_wild = known
+        .disturbance_deg
+        .is_some_and(|degrees| degrees > WILD_DEG);
     if let Some(degrees) = seen_deg.filter(|_| is_wild) {
         told.push(if degrees > POINTLESS_DEG {
             format!("it was astray by {degrees:.0} degrees: the compass no longer pointed north")
@@ -100,10 +102,10 @@ pub(super) fn evidence(
             told.push(EITHER.to_owned());
         }
     }
-    if event.what == What::Reference && known.one_reference && !known.is_over {
+    if event.what == EventKind::ReferenceFault && known.one_reference && !known.is_over {
         told.push(EITHER.to_owned());
     }
-    if let Some(seconds) = known.burst_s.filter(|_| known.is_over) {
+    if let Some(seconds) = known.transient_s.filter(|_| known.is_over) {
         told.push(lasted(seconds));
     }
     if !known.reported.is_empty() {
@@ -142,7 +144,7 @@ fn drifted(worst_deg: f64) -> String {
 /// By how much likelier than something one is that leads it by so many nats, with the
 /// temper of `causes`: the models are only nearly right.
 fn likelier(nats: f64) -> String {
-    let odds = odds(nats);
+    let odds = tempered_odds(nats);
     match odds {
         ..0.7 => "less likely than".to_owned(),
         ..1.5 => "about as likely as".to_owned(),

@@ -6,7 +6,7 @@ use super::report::Teller;
 use crate::analyse::epoch::Reference;
 use crate::analyse::logbook_rules::cause_of;
 use crate::analyse::reading::Reading;
-use crate::change::{Given, Loaded, What, detect};
+use crate::change::{CargoPeriod, DetectionInput, EventKind, detect};
 use crate::observation::Observation;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::result::SampleReason;
@@ -49,7 +49,7 @@ pub(crate) fn find(
         .unzip();
     let told = detect(
         &observations,
-        &Given {
+        &DetectionInput {
             prior: &known.prior,
             levels: known.levels.as_ref(),
             reported: &reported(logbook),
@@ -65,7 +65,7 @@ pub(crate) fn find(
     };
     let mut place_of = vec![None; events.len()];
     for (index, event) in events.iter().enumerate() {
-        if let What::Return(of) = event.what {
+        if let EventKind::Return(of) = event.what {
             let place: Option<usize> = place_of.get(of).copied().flatten();
             if let Some(place) = place {
                 let at = teller.date(event.first);
@@ -90,10 +90,10 @@ pub(crate) fn find(
             });
         }
         let spoilt = match event.what {
-            What::Burst if event.confirmed || event.last.is_none() => {
+            EventKind::Transient if event.confirmed || event.last.is_none() => {
                 Some(SampleReason::Disturbance)
             }
-            What::Reference if event.confirmed => Some(SampleReason::ReferenceFailed),
+            EventKind::ReferenceFault if event.confirmed => Some(SampleReason::ReferenceFailed),
             _ => None,
         };
         if let Some(reason) = spoilt {
@@ -126,10 +126,10 @@ fn reported(logbook: &[LogbookEntry]) -> Vec<Timestamp> {
 }
 
 /// Cargo that moves the compass.
-fn cargo(logbook: &[LogbookEntry]) -> Vec<Loaded> {
+fn cargo(logbook: &[LogbookEntry]) -> Vec<CargoPeriod> {
     let told = logbook.iter();
     told.filter(|e| e.kind == LogbookKind::MagneticCargo)
-        .map(|entry| Loaded {
+        .map(|entry| CargoPeriod {
             from: entry.from,
             to: entry.to,
         })

@@ -5,8 +5,8 @@ use super::evidence::evidence;
 use super::findings::{Begun, Ended, Misled};
 use crate::analyse::logbook_rules::cause_of;
 use crate::change::{
-    Circumstances, Event, Perhaps, SAILED_SINCE_ROWS, Snapshot, Unnoticed, What, at_port, causes,
-    rows_since,
+    Circumstances, Event, EventKind, PossibleReturn, SAILED_SINCE_ROWS, Snapshot, UndetectedStep,
+    at_port, causes, rows_since,
 };
 use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
@@ -84,7 +84,7 @@ impl Teller<'_> {
         let event = &self.events[index];
         let last = self.observations.len() - 1;
         match event.what {
-            What::Burst => event.last.unwrap_or(last),
+            EventKind::Transient => event.last.unwrap_or(last),
             _ => self.events[index + 1..]
                 .iter()
                 .find(|later| self.is_mended(later))
@@ -96,7 +96,7 @@ impl Teller<'_> {
     /// as long as days must show which it is.
     pub(super) fn spoilt(&self, index: usize) -> impl Iterator<Item = usize> {
         let event = &self.events[index];
-        let is_open = event.what == What::Reference && !self.one_reference();
+        let is_open = event.what == EventKind::ReferenceFault && !self.one_reference();
         let begun = self.time(event.first);
         (event.first..=self.last_spoilt(index)).filter(move |&row| {
             let has_both = self.observations[row].gyro_less_satellite_deg.is_some();
@@ -110,7 +110,7 @@ impl Teller<'_> {
 
     fn is_mended(&self, event: &Event) -> bool {
         match event.what {
-            What::Return(of) => self.events[of].what == What::Reference,
+            EventKind::Return(of) => self.events[of].what == EventKind::ReferenceFault,
             _ => false,
         }
     }
@@ -123,49 +123,51 @@ impl Teller<'_> {
         let from_latest = self.time(latest);
         let back = self.events[index + 1..]
             .iter()
-            .find(|later| later.what == What::Return(index));
+            .find(|later| later.what == EventKind::Return(index));
         let ended_row = match event.what {
-            What::Burst => event.last,
+            EventKind::Transient => event.last,
             _ => back.map(|later| later.first),
         };
         // A drift has no date: it is taken from one of the times that were tried.
         let at_port = match event.what {
-            What::Drift => None,
-            _ if event.is_late => None,
+            EventKind::Drift => None,
+            _ if event.noticed_late => None,
             _ => self.began_at_port(event),
         };
-        let astray = (event.what == What::Burst)
+        let astray = (event.what == EventKind::Transient)
             .then(|| size::astray(&event.before, self.rows_of_burst(index)));
         let known = Circumstances {
             leads: event.leads,
             at_port,
             ended_at_port: back.and_then(|later| self.began_at_port(later)),
-            burst_s: (event.what == What::Burst).then(|| {
+            transient_s: (event.what == EventKind::Transient).then(|| {
                 let last = self.time(self.last_spoilt(index));
                 last.seconds_since(self.time(event.first))
             }),
-            is_over: event.last.is_some() || (event.what == What::Reference && back.is_some()),
+            is_over: event.last.is_some()
+                || (event.what == EventKind::ReferenceFault && back.is_some()),
             alongside: false,
-            astray_deg: astray.as_ref().map(|astray| astray.usual_deg),
+            disturbance_deg: astray.as_ref().map(|astray| astray.usual_deg),
             is_open: !event.confirmed && event.withdrawn.is_none(),
             one_reference: self.one_reference(),
             creeps: self.creeps(index),
-            in_a_day: self.in_a_day(index),
-            over_step: event.over_step,
-            zero_over_step: event.zero_over_step,
-            told_after_s: self.time(event.told).seconds_since(from),
+            changes_within_a_day: self.changes_within_a_day(index),
+            over_step_log_likelihood_ratio: event.over_step_log_likelihood_ratio,
+            alignment_over_step_log_likelihood_ratio: event
+                .alignment_over_step_log_likelihood_ratio,
+            detection_delay_s: self.time(event.told).seconds_since(from),
             reported: self.reported(event, at_port),
         };
         let causes = causes(event.what, &known);
         let cause = causes.first().map_or(Cause::Unknown, |c| c.cause);
         let was_discharge = cause == Cause::MagneticCargo
-            && event.what == What::Step
+            && event.what == EventKind::Step
             && self.is_said_discharge(event);
         let seen_deg = astray.map(|astray| astray.seen_deg);
         let stands = event.withdrawn.is_none();
-        let has_step = matches!(event.what, What::Step | What::Drift) && stands;
+        let has_step = matches!(event.what, EventKind::Step | EventKind::Drift) && stands;
         let worst = match event.what {
-            What::Alignment => size::zero_change(&event.before, &event.after),
+            EventKind::Alignment => size::zero_change(&event.before, &event.after),
             _ => size::worst_change(
                 &event.before.parameters,
                 &event.after.parameters,
@@ -206,7 +208,7 @@ impl Teller<'_> {
     /// That a change may be over, if that is not out of question.
     pub(super) fn tell_end(
         &self,
-        perhaps: &Perhaps,
+        perhaps: &PossibleReturn,
         change: usize,
         evidence: &mut Vec<String>,
     ) -> Option<Ended> {
@@ -227,7 +229,7 @@ impl Teller<'_> {
     }
 
     /// That a change may have begun unnoticed, if that is likely enough to matter.
-    pub(super) fn begun(&self, unnoticed: &Unnoticed) -> Option<Begun> {
+    pub(super) fn begun(&self, unnoticed: &UndetectedStep) -> Option<Begun> {
         (unnoticed.probability > SELDOM).then(|| Begun {
             at: self.date(unnoticed.first),
             probability: unnoticed.probability,
@@ -240,7 +242,7 @@ impl Teller<'_> {
         if !self.one_reference() {
             return None;
         }
-        let is_fault = |event: &Event| event.what == What::Reference && event.confirmed;
+        let is_fault = |event: &Event| event.what == EventKind::ReferenceFault && event.confirmed;
         let index = self.events.iter().rposition(is_fault)?;
         if self.events[index + 1..]
             .iter()
@@ -272,7 +274,7 @@ impl Teller<'_> {
         let was_sudden =
             |event: &Event| self.time(event.told).seconds_since(time(event)) < SUDDEN_S;
         let is_alone = |event: &Event| {
-            event.what == What::Step
+            event.what == EventKind::Step
                 && event.confirmed
                 && self.began_at_port(event) == Some(false)
                 && !was_sudden(event)
@@ -289,11 +291,12 @@ impl Teller<'_> {
     }
 
     /// How many lasting changes there were within a day of a step, with it.
-    fn in_a_day(&self, index: usize) -> usize {
+    fn changes_within_a_day(&self, index: usize) -> usize {
         let time = |event: &Event| self.time(event.first);
         let event = &self.events[index];
-        let is_sudden =
-            |event: &Event| matches!(event.what, What::Step | What::Alignment) && event.confirmed;
+        let is_sudden = |event: &Event| {
+            matches!(event.what, EventKind::Step | EventKind::Alignment) && event.confirmed
+        };
         let others = self.events.iter().filter(|other| {
             is_sudden(other) && time(other).seconds_since(time(event)).abs() < CREEPS_FOR_S
         });
@@ -334,7 +337,7 @@ impl Teller<'_> {
 
     /// How long before a step at sea there was work that does not explain it, seconds.
     fn work_before(&self, event: &Event, reported: &[Cause]) -> Option<f64> {
-        if event.what != What::Step || reported.contains(&Cause::AdjustmentOrRepair) {
+        if event.what != EventKind::Step || reported.contains(&Cause::AdjustmentOrRepair) {
             return None;
         }
         let at = self.time(event.first);

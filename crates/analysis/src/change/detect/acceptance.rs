@@ -1,52 +1,56 @@
 //! What is believed takes over from the filter, and becomes an event.
 
-use super::dating::Dated;
-use super::state::{Leads, Lesson, Search, Unsettled};
-use crate::change::event::{Event, What, snapshot, take_out};
+use super::dating::DatedChange;
+use super::state::{Detector, ExtraDrift, Leads, LearningSchedule};
+use crate::change::event::{Event, EventKind, remove_events, snapshot};
 use crate::change::filter::Filter;
 use crate::change::hypotheses::Lead;
-use crate::change::hypothesis_kind::Kind;
-use crate::change::jump_models::{Earlier, misled, upset};
-use crate::change::port_call_returns::{Base, Began, Candidate};
+use crate::change::hypothesis_kind::HypothesisKind;
+use crate::change::jump_models::{EarlierState, apply_jump, misled};
+use crate::change::port_call_returns::{Baseline, ReturnCandidate, StepOrigin};
 use crate::change::thresholds::{
     BRIEF_CHANGE_S, FORK_INTERVAL_ROWS, LARGE_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO,
 };
 
-impl Search<'_> {
+impl Detector<'_> {
     /// The ship's magnetism or a reference changed: the copy that knew takes over.
-    pub(crate) fn adopt(&mut self, k: usize, kind: Kind, leads: Leads) {
+    pub(crate) fn adopt(&mut self, k: usize, kind: HypothesisKind, leads: Leads) {
         let Some(lead) = leads[kind as usize] else {
             return;
         };
-        let large = self.bank.lead(Kind::Large, &self.null);
+        let large = self.bank.lead(HypothesisKind::LargeStep, &self.null);
         let large = large.filter(|l| {
-            kind == Kind::Step && l.nats > lead.nats - LARGE_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO
+            kind == HypothesisKind::Step
+                && l.nats > lead.nats - LARGE_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO
         });
         let lead = large.unwrap_or(lead);
         let dated = self.date(lead.spawn, lead.kind, k);
         let earlier = self.calls.bases.last();
-        let at_sea = self.misaligned.is_some() || earlier.is_some_and(|base| !base.began_at_port());
-        if kind == Kind::Step && self.misled.is_none() && at_sea {
+        let at_sea = self.apply_alignment_step.is_some()
+            || earlier.is_some_and(|base| !base.began_at_port_call());
+        if kind == HypothesisKind::Step && self.misled.is_none() && at_sea {
             // Linearised each at its own end, either may be the likelier.
-            let back = leads[Kind::Return as usize];
-            let back = back.map(|lead| (lead, self.date(lead.spawn, Kind::Return, k)));
-            let likelier = |d: &Dated| d.filter.log_likelihood > dated.filter.log_likelihood;
+            let back = leads[HypothesisKind::Return as usize];
+            let back = back.map(|lead| (lead, self.date(lead.spawn, HypothesisKind::Return, k)));
+            let likelier = |d: &DatedChange| d.filter.log_likelihood > dated.filter.log_likelihood;
             if let Some((lead, back)) = back.filter(|(_, back)| likelier(back)) {
                 return self.come_back(k, lead, back, leads);
             }
         }
-        if kind == Kind::Step
+        if kind == HypothesisKind::Step
             && let Some((event, filter)) = self.same_step(k, &dated)
         {
             return self.step_is(k, event, filter);
         }
         self.supersede_burst(dated.first);
         let what = match kind {
-            Kind::Step => What::Step,
+            HypothesisKind::Step => EventKind::Step,
             _ => self
                 .misled
-                .take_if(|(_, before)| dated.filter.has_constant_of(before))
-                .map_or(What::Reference, |(event, _)| What::Return(event)),
+                .take_if(|(_, before)| dated.filter.agrees_in_constant(before))
+                .map_or(EventKind::ReferenceFault, |(event, _)| {
+                    EventKind::Return(event)
+                }),
         };
         self.push(
             k,
@@ -57,22 +61,22 @@ impl Search<'_> {
             Some((&dated.before, &dated.filter)),
         );
         if let Some(event) = self.events.last_mut() {
-            event.is_late = dated.is_late;
+            event.noticed_late = dated.noticed_late;
         }
         let mut rivals = Vec::new();
         let mut doubt = None;
-        if kind == Kind::Step {
-            self.misaligned = None;
+        if kind == HypothesisKind::Step {
+            self.apply_alignment_step = None;
             doubt = Some(self.doubt_of(k, &dated, &leads));
             rivals = self.rivals_of(k, &dated);
             // It may be that several steps were the same.
             rivals.append(&mut self.rivals);
             if !self.began_at_call(&dated) {
-                self.unsettled = Unsettled::after(dated.first, &dated.before, &dated.filter);
+                self.unsettled = ExtraDrift::after(dated.first, &dated.before, &dated.filter);
             }
             self.retrace(k, &dated);
         } else {
-            if what == What::Reference && self.misled.is_none() {
+            if what == EventKind::ReferenceFault && self.misled.is_none() {
                 self.misled = Some((self.events.len() - 1, dated.before));
             }
             let gained = dated.filter.log_likelihood - self.null.log_likelihood;
@@ -84,35 +88,35 @@ impl Search<'_> {
         self.take_over(k, dated.filter, dated.first);
         self.rivals = rivals;
         self.doubt = doubt;
-        if what == What::Reference {
+        if what == EventKind::ReferenceFault {
             // Its noise may be another, too.
-            self.lesson = Lesson::next(self.observations, dated.first, dated.first, 0.0);
+            self.lesson = LearningSchedule::next(self.observations, dated.first, dated.first, 0.0);
         }
     }
 
-    fn began_at_call(&self, dated: &Dated) -> bool {
+    fn began_at_call(&self, dated: &DatedChange) -> bool {
         let (earliest, latest) = dated.between;
         (earliest..=latest).any(|row| self.is_call(row))
     }
 
     /// The port calls since a step, and the one at which it happened, as the filter
     /// that knows of the step would have met them.
-    pub(crate) fn retrace(&mut self, k: usize, dated: &Dated) {
+    pub(crate) fn retrace(&mut self, k: usize, dated: &DatedChange) {
         let event = self.events.len() - 1;
         let is_said_loaded = self.is_said_loaded(dated.between);
-        let began = if dated.is_late && !is_said_loaded {
-            Began::NoticedLate
+        let began = if dated.noticed_late && !is_said_loaded {
+            StepOrigin::NoticedLate
         } else if self.began_at_call(dated) {
-            Began::AtPort
+            StepOrigin::AtPort
         } else if is_said_loaded {
-            Began::SaidLoaded
+            StepOrigin::SaidLoaded
         } else {
             let sailed = self.sailed(dated.first, &self.events[..event]);
-            sailed.map_or(Began::AtSea, |(_, sailed)| {
-                Began::SoonAfter(Box::new(sailed.clone()))
+            sailed.map_or(StepOrigin::AtSea, |(_, sailed)| {
+                StepOrigin::SoonAfter(Box::new(sailed.clone()))
             })
         };
-        let base = Base {
+        let base = Baseline {
             event,
             filter: dated.before.clone(),
             began,
@@ -128,7 +132,7 @@ impl Search<'_> {
             self.calls.call(dated.first, &dated.before, event, said);
         }
         let calm: Vec<usize> = self.calm(dated.first..k + 1).collect();
-        let mut since = upset(&dated.before, dated.kind);
+        let mut since = apply_jump(&dated.before, dated.kind);
         for row in dated.first..=k {
             if row > dated.first && calls.contains(&row) {
                 let said = self.said_at(row);
@@ -161,10 +165,10 @@ impl Search<'_> {
     }
 
     pub(crate) fn adopt_return(&mut self, k: usize, leads: Leads) {
-        let Some(lead) = leads[Kind::Return as usize] else {
+        let Some(lead) = leads[HypothesisKind::Return as usize] else {
             return;
         };
-        let mut dated = self.date(lead.spawn, Kind::Return, k);
+        let mut dated = self.date(lead.spawn, HypothesisKind::Return, k);
         if let Some(call) = self.discharge_near(dated.first, k) {
             // It may as well have been at the call.
             let (earliest, latest) = dated.between;
@@ -175,8 +179,8 @@ impl Search<'_> {
 
     /// The ship is herself again, or her compass's zero is where it was. What came and went
     /// within hours at sea was beside her, and no change of her own.
-    fn come_back(&mut self, k: usize, lead: Lead, dated: Dated, leads: Leads) {
-        let zero = self.misaligned.take().map(|(event, _)| event);
+    fn come_back(&mut self, k: usize, lead: Lead, dated: DatedChange, leads: Leads) {
+        let zero = self.apply_alignment_step.take().map(|(event, _)| event);
         let ship = || self.calls.bases.last().map(|base| base.event);
         let Some(event) = zero.or_else(ship) else {
             return;
@@ -188,7 +192,7 @@ impl Search<'_> {
         } else {
             self.push(
                 k,
-                What::Return(event),
+                EventKind::Return(event),
                 dated.first,
                 dated.between,
                 leads,
@@ -196,39 +200,39 @@ impl Search<'_> {
             );
         }
         self.calls.forget(event);
-        self.unsettled = Unsettled::default();
+        self.unsettled = ExtraDrift::default();
         self.take_over(k, dated.filter, dated.first);
     }
 
-    fn was_brief(&self, event: &Event, back: &Dated) -> bool {
+    fn was_brief(&self, event: &Event, back: &DatedChange) -> bool {
         let time = |row: usize| self.observations[row].time;
         let lasted_s = time(back.first)
             .zip(time(event.first))
             .map(|(end, begin)| end.seconds_since(begin));
         let mut rows = event.between.0..=back.between.1.max(back.first);
-        matches!(event.what, What::Step | What::Alignment)
+        matches!(event.what, EventKind::Step | EventKind::Alignment)
             && lasted_s.is_some_and(|s| s < BRIEF_CHANGE_S)
             && !rows.any(|row| self.is_call(row))
     }
 
     /// The reference is itself again.
     pub(crate) fn adopt_mended(&mut self, k: usize, leads: Leads) {
-        let Some(lead) = leads[Kind::Return as usize] else {
+        let Some(lead) = leads[HypothesisKind::Return as usize] else {
             return;
         };
-        let dated = self.date(lead.spawn, Kind::Return, k);
+        let dated = self.date(lead.spawn, HypothesisKind::Return, k);
         let before = self.bank.spawns[lead.spawn].origin().clone();
         self.supersede_burst(dated.first);
         let Some((event, mended)) = self.misled.take() else {
             return;
         };
         let gained = dated.filter.log_likelihood - self.null.log_likelihood;
-        let mended = Earlier::Reference(&mended);
+        let mended = EarlierState::Reference(&mended);
         self.calls
             .change_reference(gained, |back| mended.again(back));
         self.push(
             k,
-            What::Return(event),
+            EventKind::Return(event),
             dated.first,
             dated.between,
             leads,
@@ -238,37 +242,37 @@ impl Search<'_> {
     }
 
     /// The ship has been herself again since a port call.
-    pub(crate) fn adopt_call(&mut self, k: usize, back: Candidate, leads: Leads) {
+    pub(crate) fn adopt_call(&mut self, k: usize, back: ReturnCandidate, leads: Leads) {
         // Before places in the list move.
         self.note_zeros();
         self.rivals.clear();
         self.supersede_burst(back.at);
-        self.misaligned = None;
+        self.apply_alignment_step = None;
         // What was taken for a step to something else was this.
         let is_reference = |event: &Event| match event.what {
-            What::Return(of) => self.events[of].what == What::Reference,
-            what => what == What::Reference,
+            EventKind::Return(of) => self.events[of].what == EventKind::ReferenceFault,
+            what => what == EventKind::ReferenceFault,
         };
         let is_gone = |(place, event): (usize, &Event)| {
-            let is_past = event.what == What::Burst || is_reference(event);
+            let is_past = event.what == EventKind::Transient || is_reference(event);
             place > back.event && !is_past && event.between.1 >= back.at
         };
         let gone = self.events.iter().enumerate().map(is_gone).collect();
-        let moved = take_out(&mut self.events, gone);
+        let moved = remove_events(&mut self.events, gone);
         if let Some((place, _)) = &mut self.misled {
             *place = moved(*place);
         }
         let before = self.null.clone();
         self.push(
             k,
-            What::Return(back.event),
+            EventKind::Return(back.event),
             back.at,
             (back.at, back.at),
             leads,
             Some((&before, &back.filter)),
         );
         self.calls.forget(back.event);
-        self.unsettled = Unsettled::default();
+        self.unsettled = ExtraDrift::default();
         self.take_over(k, back.filter, back.at);
     }
 
@@ -283,13 +287,13 @@ impl Search<'_> {
         self.spawned = k;
         self.learn_from = first;
         // Neither seas nor instruments changed: of fewer days there is less to learn.
-        self.lesson = Lesson::next(self.observations, first, first, self.learnt_days);
+        self.lesson = LearningSchedule::next(self.observations, first, first, self.learnt_days);
     }
 
     pub(crate) fn push(
         &mut self,
         k: usize,
-        what: What,
+        what: EventKind,
         first: usize,
         between: (usize, usize),
         leads: Leads,
@@ -308,9 +312,9 @@ impl Search<'_> {
             confirmed: true,
             withdrawn: None,
             was_step: false,
-            over_step: 0.0,
-            zero_over_step: None,
-            is_late: false,
+            over_step_log_likelihood_ratio: 0.0,
+            alignment_over_step_log_likelihood_ratio: None,
+            noticed_late: false,
         };
         self.events.push(event);
     }

@@ -5,15 +5,15 @@
 //! first; what explains the rows since far better takes its place, once, and it stays
 //! one change.
 
-use super::dating::Dated;
-use super::state::Rival;
-use super::state::{Leads, Search, Unsettled};
-use crate::change::event::{Event, What, snapshot, take_out};
+use super::dating::DatedChange;
+use super::state::CompetingHypothesis;
+use super::state::{Detector, ExtraDrift, Leads};
+use crate::change::event::{Event, EventKind, remove_events, snapshot};
 use crate::change::filter::{CONSTANT_STATE, Filter, Measurement};
-use crate::change::hypotheses::Spawn;
-use crate::change::hypothesis_kind::Kind;
-use crate::change::jump_models::misaligned;
-use crate::change::port_call_returns::{Base, Began};
+use crate::change::hypotheses::Fork;
+use crate::change::hypothesis_kind::HypothesisKind;
+use crate::change::jump_models::apply_alignment_step;
+use crate::change::port_call_returns::{Baseline, StepOrigin};
 use crate::change::priors;
 use crate::change::thresholds::{
     ALIGNMENT_SECTOR_ROWS, ALIGNMENT_SECTORS, ALIGNMENT_SECTORS_BETWEEN,
@@ -27,20 +27,22 @@ use crate::change::thresholds::{
 /// further off.
 const LINEARISATION_ROUNDS: usize = 3;
 
-impl Search<'_> {
+impl Detector<'_> {
     /// The rivals of a step that was dated just now.
-    pub(crate) fn rivals_of(&self, k: usize, dated: &Dated) -> Vec<Rival> {
+    pub(crate) fn rivals_of(&self, k: usize, dated: &DatedChange) -> Vec<CompetingHypothesis> {
         let creeping = priors::DRIFT_VARIANCES
             .iter()
             .filter_map(|drift| self.creeping(k, dated, *drift));
-        let misaligned = self.has_both(k).then(|| self.misaligned(k, dated));
-        creeping.chain(misaligned).collect()
+        let apply_alignment_step = self
+            .has_both(k)
+            .then(|| self.apply_alignment_step(k, dated));
+        creeping.chain(apply_alignment_step).collect()
     }
 
     /// The zero moved when the step is dated.
-    fn misaligned(&self, k: usize, dated: &Dated) -> Rival {
-        Rival {
-            what: What::Alignment,
+    fn apply_alignment_step(&self, k: usize, dated: &DatedChange) -> CompetingHypothesis {
+        CompetingHypothesis {
+            what: EventKind::Alignment,
             event: self.events.len() - 1,
             drift: 0.0,
             first: dated.first,
@@ -58,15 +60,17 @@ impl Search<'_> {
             let at = filter.unknowns();
             let moved_deg = filter.mean[CONSTANT_STATE] - before.mean[CONSTANT_STATE];
             let next = self.measure(first, &at);
-            let size_deg = before.astray_deg(&next).max(priors::ALIGNMENT_STEP_SD_DEG);
-            let moved = misaligned(before, moved_deg, size_deg);
+            let size_deg = before
+                .innovation_deg(&next)
+                .max(priors::ALIGNMENT_STEP_SD_DEG);
+            let moved = apply_alignment_step(before, moved_deg, size_deg);
             filter = self.run(moved, first..k + 1, &at);
         }
         filter
     }
 
     /// The ship has drifted since the likeliest of the times that the bank keeps.
-    fn creeping(&self, k: usize, dated: &Dated, drift: f64) -> Option<Rival> {
+    fn creeping(&self, k: usize, dated: &DatedChange, drift: f64) -> Option<CompetingHypothesis> {
         let spawns = &self.bank.spawns;
         let oldest = spawns.first()?.at;
         let at = dated.filter.unknowns();
@@ -74,7 +78,7 @@ impl Search<'_> {
         let measured: Vec<Measurement> = rows
             .map(|row| self.measure_drifting(row, &at, drift))
             .collect();
-        let run = |(place, spawn): (usize, &Spawn)| {
+        let run = |(place, spawn): (usize, &Fork)| {
             let mut filter = spawn.origin().clone();
             for m in &measured[spawn.at - oldest..] {
                 filter.take(m, &self.noise, None);
@@ -86,8 +90,8 @@ impl Search<'_> {
             runs.max_by(|a, b| a.1.log_likelihood.total_cmp(&b.1.log_likelihood))?;
         let row = |place: usize| spawns[place].at;
         let first = row(place).max(1);
-        Some(Rival {
-            what: What::Drift,
+        Some(CompetingHypothesis {
+            what: EventKind::Drift,
             event: self.events.len() - 1,
             drift,
             first,
@@ -116,13 +120,17 @@ impl Search<'_> {
     /// Puts the likeliest rival in the place of the last step, if it explains the rows
     /// far better and no less well than another step would.
     pub(crate) fn settle_rivals(&mut self, k: usize, leads: &Leads) -> bool {
-        let of_kind = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
-        let (step, burst) = (of_kind(Kind::Step), of_kind(Kind::Burst));
+        let of_kind = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let (step, burst) = (
+            of_kind(HypothesisKind::Step),
+            of_kind(HypothesisKind::Transient),
+        );
         // What drifts may well have come back: that she did is simpler.
         let back = self.candidate(leads).map_or(0.0, |back| back.nats);
-        let back = back.max(of_kind(Kind::Return));
-        let lead = |rival: &Rival| rival.filter.log_likelihood - self.null.log_likelihood;
-        let later = |rival: &Rival| {
+        let back = back.max(of_kind(HypothesisKind::Return));
+        let lead =
+            |rival: &CompetingHypothesis| rival.filter.log_likelihood - self.null.log_likelihood;
+        let later = |rival: &CompetingHypothesis| {
             let later = rival.event + 1..self.events.len();
             later.filter(|event| self.is_standing_step(*event)).count()
         };
@@ -136,7 +144,7 @@ impl Search<'_> {
         };
         let (nats, of) = (lead(&self.rivals[place]), self.rivals[place].event);
         let mut steps = (of..self.events.len()).filter(|&e| self.is_standing_step(e));
-        let is_drift = self.rivals[place].what == What::Drift;
+        let is_drift = self.rivals[place].what == EventKind::Drift;
         let in_port = is_drift && steps.all(|event| self.is_cargo_likely(event));
         let mut enough = if later(&self.rivals[place]) > 0 {
             COMPETING_WITH_SEVERAL_LOG_LIKELIHOOD_RATIO
@@ -159,13 +167,13 @@ impl Search<'_> {
         }
         // Another step upon the first is the rarer by far.
         let is_needless = step > COMPETING_LOG_LIKELIHOOD_RATIO;
-        if self.rivals[place].what == What::Alignment
+        if self.rivals[place].what == EventKind::Alignment
             && !is_needless
             && !self.tells_from_step(place, k)
         {
             return false;
         }
-        if self.rivals[place].what == What::Alignment {
+        if self.rivals[place].what == EventKind::Alignment {
             let rival = &self.rivals[place];
             let mut step = self.step_anew(k, &rival.before, rival.first);
             let zero = self.zero_moved(k, &rival.before, rival.first);
@@ -182,7 +190,7 @@ impl Search<'_> {
         self.calls.forget(of);
         self.forget_later_steps(of);
         let event = &mut self.events[of];
-        let was = Rival {
+        let was = CompetingHypothesis {
             what: event.what,
             event: of,
             drift: 0.0,
@@ -192,23 +200,27 @@ impl Search<'_> {
             before: rival.before.clone(),
         };
         event.what = rival.what;
-        event.over_step = if rival.what == What::Step { 0.0 } else { nats };
+        event.over_step_log_likelihood_ratio = if rival.what == EventKind::Step {
+            0.0
+        } else {
+            nats
+        };
         event.before = snapshot(&rival.before);
         event.after = snapshot(&rival.filter);
         (event.first, event.between) = (rival.first, rival.between);
         self.unsettled = match rival.what {
-            What::Drift => Unsettled::creeping(k, rival.drift),
-            _ => Unsettled::default(),
+            EventKind::Drift => ExtraDrift::creeping(k, rival.drift),
+            _ => ExtraDrift::default(),
         };
-        self.misaligned = None;
+        self.apply_alignment_step = None;
         // Two courses may tell of either what the next one does not.
         let mut rivals = Vec::new();
         match rival.what {
-            What::Alignment => {
+            EventKind::Alignment => {
                 rivals.push(was);
-                self.misaligned = Some((of, rival.before));
+                self.apply_alignment_step = Some((of, rival.before));
             }
-            What::Step => self.step_after_all(&rival),
+            EventKind::Step => self.step_after_all(&rival),
             _ => {}
         }
         self.take_over(k, rival.filter, rival.first);
@@ -217,15 +229,19 @@ impl Search<'_> {
     }
 
     /// What had been taken for a zero that moved was a step.
-    fn step_after_all(&mut self, step: &Rival) {
+    fn step_after_all(&mut self, step: &CompetingHypothesis) {
         let at_port = self.began_in_port(step.event);
         if !at_port {
-            self.unsettled = Unsettled::after(step.first, &step.before, &step.filter);
+            self.unsettled = ExtraDrift::after(step.first, &step.before, &step.filter);
         }
-        self.calls.step(Base {
+        self.calls.step(Baseline {
             event: step.event,
             filter: step.before.clone(),
-            began: if at_port { Began::AtPort } else { Began::AtSea },
+            began: if at_port {
+                StepOrigin::AtPort
+            } else {
+                StepOrigin::AtSea
+            },
             latest: self.observations[step.between.1].time,
             calls: 0,
         });
@@ -234,10 +250,14 @@ impl Search<'_> {
     /// By how much it is likelier that the zero moved than that the ship did, for each step of
     /// which that is open.
     pub(crate) fn note_zeros(&mut self) {
-        for rival in self.rivals.iter().filter(|r| r.what == What::Alignment) {
+        for rival in self
+            .rivals
+            .iter()
+            .filter(|r| r.what == EventKind::Alignment)
+        {
             let nats = rival.filter.log_likelihood - self.null.log_likelihood;
             if let Some(event) = self.events.get_mut(rival.event) {
-                event.zero_over_step = Some(nats);
+                event.alignment_over_step_log_likelihood_ratio = Some(nats);
             }
         }
     }
@@ -258,8 +278,8 @@ impl Search<'_> {
     /// What had been taken for further steps was the same.
     pub(crate) fn forget_later_steps(&mut self, of: usize) {
         let is_gone = |place: usize, event: &Event| match event.what {
-            What::Step => place > of,
-            What::Return(step) => step >= of && self.events[step].what == What::Step,
+            EventKind::Step => place > of,
+            EventKind::Return(step) => step >= of && self.events[step].what == EventKind::Step,
             _ => false,
         };
         let gone: Vec<bool> = self
@@ -268,7 +288,7 @@ impl Search<'_> {
             .enumerate()
             .map(|(p, e)| is_gone(p, e))
             .collect();
-        let moved = take_out(&mut self.events, gone);
+        let moved = remove_events(&mut self.events, gone);
         self.burst = self.burst.map(&moved);
         if let Some((place, _)) = &mut self.misled {
             *place = moved(*place);
@@ -285,7 +305,7 @@ impl Search<'_> {
     }
 
     /// What the filter gained by being told of a burst, its rivals would have gained, too.
-    pub(crate) fn credit_rivals(&mut self, kind: Kind) {
+    pub(crate) fn credit_rivals(&mut self, kind: HypothesisKind) {
         let gained = self.bank.lead(kind, &self.null).map_or(0.0, |l| l.nats);
         let rivals = self.rivals.iter_mut().map(|rival| &mut rival.filter);
         let doubts = self.doubt.iter_mut().flat_map(|doubt| &mut doubt.without);

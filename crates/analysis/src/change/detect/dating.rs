@@ -1,10 +1,10 @@
 //! When a change happened, to the row.
 
-use super::state::{Search, earlier};
-use crate::change::event::{Event, What};
+use super::state::{Detector, earlier};
+use crate::change::event::{Event, EventKind};
 use crate::change::filter::{Filter, Measurement};
-use crate::change::hypothesis_kind::Kind;
-use crate::change::jump_models::{misled, upset};
+use crate::change::hypothesis_kind::HypothesisKind;
+use crate::change::jump_models::{apply_jump, misled};
 use crate::change::thresholds::{
     DATE_AT_PORT_CALL_LOG_LIKELIHOOD_RATIO, DATE_AT_PORT_CALL_ROWS, DATE_LOG_LIKELIHOOD_RATIO,
     FORK_AFTER_GAP_S,
@@ -21,42 +21,48 @@ const ROW_S: f64 = 600.0;
 const PORT_CALLS_TRIED: usize = 3;
 
 /// A change with its date.
-pub(crate) struct Dated {
+pub(crate) struct DatedChange {
     pub(crate) first: usize,
     pub(crate) between: (usize, usize),
-    pub(crate) kind: Kind,
+    pub(crate) kind: HypothesisKind,
     /// The filter just before it, and the one that knew of it, now.
     pub(crate) before: Filter,
     pub(crate) filter: Filter,
     /// Whether it is dated at a call though the likeliest row is of days after it, or comes
     /// after something that passed since.
-    pub(crate) is_late: bool,
+    pub(crate) noticed_late: bool,
 }
 
 /// Where rows before a change are linearised that led to `after`: before a large step at the
 /// ship that she was, who is another altogether.
-fn at_before(kind: Kind, origin: &Filter, after: &Unknowns) -> Unknowns {
+fn at_before(kind: HypothesisKind, origin: &Filter, after: &Unknowns) -> Unknowns {
     match kind {
-        Kind::Large => origin.unknowns(),
+        HypothesisKind::LargeStep => origin.unknowns(),
         _ => *after,
     }
 }
 
-impl Search<'_> {
+impl Detector<'_> {
     /// When it happened, to the row.
-    pub(crate) fn date(&self, winner: usize, kind: Kind, k: usize) -> Dated {
+    pub(crate) fn date(&self, winner: usize, kind: HypothesisKind, k: usize) -> DatedChange {
         let spawns = &self.bank.spawns;
         let origin = &spawns[winner.saturating_sub(1)];
         let until = spawns.get(winner + 1).map_or(k, |s| s.at);
-        let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
+        let earlier = earlier(
+            self.misled.as_ref(),
+            self.apply_alignment_step.as_ref(),
+            &self.calls,
+        );
         let began = |filter: &Filter, next: &Measurement| match (kind, earlier) {
-            (Kind::Return, Some(earlier)) => earlier.again(filter),
-            (Kind::Reference | Kind::Satellite, _) => misled(filter, next, kind),
-            _ => upset(filter, kind),
+            (HypothesisKind::Return, Some(earlier)) => earlier.again(filter),
+            (HypothesisKind::ReferenceStep | HypothesisKind::SatelliteStep, _) => {
+                misled(filter, next, kind)
+            }
+            _ => apply_jump(filter, kind),
         };
         // Twice, for the rows are to be linearised at where the ship is now.
         let mut at = match kind {
-            Kind::Large => spawns[winner]
+            HypothesisKind::LargeStep => spawns[winner]
                 .copy(kind)
                 .map_or_else(|| self.point(k), Filter::unknowns),
             _ => self.point(k),
@@ -99,7 +105,7 @@ impl Search<'_> {
             at = best.1.unknowns();
         }
         let (first, filter) = best;
-        if matches!(kind, Kind::Step | Kind::Large)
+        if matches!(kind, HypothesisKind::Step | HypothesisKind::LargeStep)
             && let Some(dated) = self.date_at_call((winner, kind), &filter, first, k)
         {
             return dated;
@@ -119,13 +125,13 @@ impl Search<'_> {
         let earliest = rows.iter().copied().min().unwrap_or(first);
         let latest = rows.iter().copied().max().unwrap_or(first);
         let calm = at_before(kind, origin.origin(), &filter.unknowns());
-        Dated {
+        DatedChange {
             first,
             between: (earliest, latest),
             kind,
             before: self.run(origin.origin().clone(), origin.at..first, &calm),
             filter,
-            is_late: false,
+            noticed_late: false,
         }
     }
 
@@ -152,11 +158,11 @@ impl Search<'_> {
     /// time at sea. `filter` is of the likeliest row.
     fn date_at_call(
         &self,
-        (winner, kind): (usize, Kind),
+        (winner, kind): (usize, HypothesisKind),
         filter: &Filter,
         row: usize,
         k: usize,
-    ) -> Option<Dated> {
+    ) -> Option<DatedChange> {
         let spawns = &self.bank.spawns;
         let since = row.saturating_sub(DATE_AT_PORT_CALL_ROWS);
         let from = spawns.partition_point(|s| s.at <= since).saturating_sub(1);
@@ -186,7 +192,7 @@ impl Search<'_> {
         }));
         let (call, before, filter) = tried
             .map(|(call, before)| {
-                let filter = self.run(upset(&before, kind), call..k + 1, &at);
+                let filter = self.run(apply_jump(&before, kind), call..k + 1, &at);
                 (call, before, filter)
             })
             .filter(|(_, _, at_call)| {
@@ -195,18 +201,18 @@ impl Search<'_> {
             })
             .max_by(|a, b| a.2.log_likelihood.total_cmp(&b.2.log_likelihood))?;
         let has_passed = |event: &Event| {
-            event.what == What::Burst
+            event.what == EventKind::Transient
                 && event.first > call
                 && event.last.is_some_and(|last| last < row)
         };
         let is_late = call < origin.at || self.events.iter().any(has_passed);
-        Some(Dated {
+        Some(DatedChange {
             first: call,
             between: (call.min(row), call.max(row)),
             kind,
             before,
             filter,
-            is_late,
+            noticed_late: is_late,
         })
     }
 }

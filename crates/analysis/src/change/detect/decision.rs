@@ -1,11 +1,11 @@
 //! Whether what leads leads by enough to be believed.
 
-use super::state::{Leads, Search};
-use crate::change::event::{Event, What};
+use super::state::{Detector, Leads};
+use crate::change::event::{Event, EventKind};
 use crate::change::filter::Filter;
 use crate::change::hypotheses::Lead;
-use crate::change::hypothesis_kind::Kind;
-use crate::change::port_call_returns::{Base, Candidate};
+use crate::change::hypothesis_kind::HypothesisKind;
+use crate::change::port_call_returns::{Baseline, ReturnCandidate};
 use crate::change::priors;
 use crate::change::thresholds::{
     BOTH_REFERENCES_ROWS, CARGO_RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO,
@@ -22,15 +22,15 @@ use crate::change::thresholds::{
 };
 use crate::observation::Observation;
 
-impl Search<'_> {
+impl Detector<'_> {
     pub(crate) fn judge(&mut self, k: usize) {
         let leads = self.leads();
-        let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let nats = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
         if k < self.young() {
             return self.judge_passing(k, leads);
         }
-        let burst = nats(Kind::Burst).max(0.0);
-        let back = nats(Kind::Return);
+        let burst = nats(HypothesisKind::Transient).max(0.0);
+        let back = nats(HypothesisKind::Return);
         if let Some(candidate) = self.candidate(&leads)
             && candidate.probability > RETURN_POSTERIOR
         {
@@ -40,7 +40,7 @@ impl Search<'_> {
         {
             return;
         }
-        let rival = nats(Kind::Step).max(nats(Kind::Reference));
+        let rival = nats(HypothesisKind::Step).max(nats(HypothesisKind::ReferenceStep));
         if self.misled.is_some()
             && back - burst > REFERENCE_REPAIR_LOG_LIKELIHOOD_RATIO
             && back > rival - REFERENCE_REPAIR_DEFICIT_LOG_LIKELIHOOD_RATIO
@@ -48,19 +48,30 @@ impl Search<'_> {
             return self.adopt_mended(k, leads);
         }
         let earlier = self.calls.bases.last();
-        let enough = if self.misaligned.is_none() && earlier.is_some_and(Base::began_at_port) {
+        let enough = if self.apply_alignment_step.is_none()
+            && earlier.is_some_and(Baseline::began_at_port_call)
+        {
             CARGO_RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO
         } else {
             RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO
         };
-        if self.misled.is_none() && back - burst > enough && back > nats(Kind::Step) {
+        if self.misled.is_none() && back - burst > enough && back > nats(HypothesisKind::Step) {
             return self.adopt_return(k, leads);
         }
-        let (kind, lasting, other) = if nats(Kind::Step) >= nats(Kind::Reference) {
-            (Kind::Step, nats(Kind::Step), nats(Kind::Reference))
-        } else {
-            (Kind::Reference, nats(Kind::Reference), nats(Kind::Step))
-        };
+        let (kind, lasting, other) =
+            if nats(HypothesisKind::Step) >= nats(HypothesisKind::ReferenceStep) {
+                (
+                    HypothesisKind::Step,
+                    nats(HypothesisKind::Step),
+                    nats(HypothesisKind::ReferenceStep),
+                )
+            } else {
+                (
+                    HypothesisKind::ReferenceStep,
+                    nats(HypothesisKind::ReferenceStep),
+                    nats(HypothesisKind::Step),
+                )
+            };
         let over_burst = lasting - burst;
         // One reference on one heading cannot tell a fault of its own from a change
         // of the ship.
@@ -68,7 +79,7 @@ impl Search<'_> {
         let is_clear = clear > VESSEL_OR_REFERENCE_LOG_LIKELIHOOD_RATIO || self.has_both(k);
         let is_told = is_clear
             && match kind {
-                Kind::Reference => {
+                HypothesisKind::ReferenceStep => {
                     self.has_lasted(REFERENCE_STEP_MIN_ROWS, kind, k, &leads)
                         && over_burst > REFERENCE_STEP_LOG_LIKELIHOOD_RATIO
                 }
@@ -80,11 +91,11 @@ impl Search<'_> {
         if is_told {
             let back = self.candidate_below(&leads, RETURN_FOR_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO);
             if let Some(back) = back.filter(|back| self.is_at_call(&leads, back))
-                && kind == Kind::Step
+                && kind == HypothesisKind::Step
             {
                 return self.adopt_call(k, back, leads);
             }
-            if kind == Kind::Step && self.is_discharge(k, &leads) {
+            if kind == HypothesisKind::Step && self.is_discharge(k, &leads) {
                 return self.adopt_return(k, leads);
             }
             return self.adopt(k, kind, leads);
@@ -94,15 +105,16 @@ impl Search<'_> {
 
     /// Whether the field is astray, for what lasts has not been told.
     fn judge_passing(&mut self, k: usize, leads: Leads) {
-        let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
-        let burst = nats(Kind::Burst);
-        let lasting = nats(Kind::Step).max(nats(Kind::Reference));
+        let nats = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let burst = nats(HypothesisKind::Transient);
+        let lasting = nats(HypothesisKind::Step).max(nats(HypothesisKind::ReferenceStep));
         if self.burst.is_none()
             && burst > TRANSIENT_LOG_LIKELIHOOD_RATIO + self.unlearnt_nats(k)
             && burst - lasting > TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
-            && leads[Kind::Burst as usize].is_some_and(|lead| self.is_no_few_readings(k, lead))
+            && leads[HypothesisKind::Transient as usize]
+                .is_some_and(|lead| self.is_no_few_readings(k, lead))
         {
-            let Some(lead) = leads[Kind::Burst as usize] else {
+            let Some(lead) = leads[HypothesisKind::Transient as usize] else {
                 return;
             };
             let first = self.began(lead);
@@ -115,7 +127,7 @@ impl Search<'_> {
             self.burst = Some(self.events.len());
             self.passed = self.before(first);
             self.faint = None;
-            self.push(k, What::Burst, first, (first, first), leads, None);
+            self.push(k, EventKind::Transient, first, (first, first), leads, None);
         } else {
             self.note_faint(k, leads, burst - lasting);
         }
@@ -123,7 +135,8 @@ impl Search<'_> {
 
     /// A few wild readings swing no compass.
     fn is_no_few_readings(&self, k: usize, lead: Lead) -> bool {
-        lead.kind != Kind::Wild || k + 1 >= self.bank.spawns[lead.spawn].at + STEP_MIN_ROWS
+        lead.kind != HypothesisKind::SevereTransient
+            || k + 1 >= self.bank.spawns[lead.spawn].at + STEP_MIN_ROWS
     }
 
     /// And while she drifts, for a drift goes on.
@@ -156,7 +169,9 @@ impl Search<'_> {
     /// The last event, if it is this passing disturbance.
     pub(crate) fn same_burst(&self, first: usize) -> Option<&Event> {
         let last = self.events.last();
-        last.filter(|event| event.what == What::Burst && event.first + FORK_INTERVAL_ROWS >= first)
+        last.filter(|event| {
+            event.what == EventKind::Transient && event.first + FORK_INTERVAL_ROWS >= first
+        })
     }
 
     /// The first row of a passing disturbance.
@@ -166,21 +181,21 @@ impl Search<'_> {
         over.unwrap_or(spawn.at)
     }
 
-    fn has_lasted(&self, rows: usize, kind: Kind, k: usize, leads: &Leads) -> bool {
+    fn has_lasted(&self, rows: usize, kind: HypothesisKind, k: usize, leads: &Leads) -> bool {
         leads[kind as usize].is_some_and(|lead| k + 1 >= self.bank.spawns[lead.spawn].at + rows)
     }
 
     /// By how much what leads was likelier beforehand than at another time.
-    fn beforehand_nats(&self, kind: Kind, leads: &Leads) -> f64 {
+    fn beforehand_nats(&self, kind: HypothesisKind, leads: &Leads) -> f64 {
         leads[kind as usize].map_or(0.0, |lead| self.bank.beforehand_nats(lead))
     }
 
     pub(crate) fn is_step(&self, k: usize, lead: f64, over_burst: f64, leads: &Leads) -> bool {
-        let step = leads[Kind::Step as usize];
+        let step = leads[HypothesisKind::Step as usize];
         // A large step would explain the first hour of a storm, too.
-        let is_usual = step.is_some_and(|lead| lead.kind == Kind::Step);
+        let is_usual = step.is_some_and(|lead| lead.kind == HypothesisKind::Step);
         // What is likelier beforehand must be as clear from the rows.
-        let beforehand = self.beforehand_nats(Kind::Step, leads);
+        let beforehand = self.beforehand_nats(HypothesisKind::Step, leads);
         if over_burst - beforehand <= CLEAR_STEP_LOG_LIKELIHOOD_RATIO
             || (over_burst
                 <= STEP_LOG_LIKELIHOOD_RATIO + self.unlearnt_nats(k) + self.creeping_nats(k)
@@ -200,16 +215,18 @@ impl Search<'_> {
 
     /// The likeliest return at a port call, if a step to something else is not
     /// likelier by far.
-    pub(crate) fn candidate(&self, leads: &Leads) -> Option<Candidate> {
+    pub(crate) fn candidate(&self, leads: &Leads) -> Option<ReturnCandidate> {
         self.candidate_below(leads, RETURN_DEFICIT_LOG_LIKELIHOOD_RATIO)
     }
 
-    fn candidate_below(&self, leads: &Leads, below: f64) -> Option<Candidate> {
-        let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
-        let rival = (nats(Kind::Burst) - priors::RETURN_OVER_TRANSIENT_LOG_ODDS).max(0.0);
-        let is_astray = self.burst.is_some() && nats(Kind::Burst) > nats(Kind::Step);
+    fn candidate_below(&self, leads: &Leads, below: f64) -> Option<ReturnCandidate> {
+        let nats = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let rival =
+            (nats(HypothesisKind::Transient) - priors::RETURN_OVER_TRANSIENT_LOG_ODDS).max(0.0);
+        let is_astray =
+            self.burst.is_some() && nats(HypothesisKind::Transient) > nats(HypothesisKind::Step);
         let likeliest = self.calls.likeliest(&self.null, rival, is_astray)?;
-        (is_astray || likeliest.nats > nats(Kind::Step) - below).then_some(likeliest)
+        (is_astray || likeliest.nats > nats(HypothesisKind::Step) - below).then_some(likeliest)
     }
 
     /// Whether a step that is certain is rather the end of what began in port: that explains
@@ -226,12 +243,8 @@ impl Search<'_> {
     /// The port call at about row `at`, until row `k`, at which what began in port may have
     /// ended.
     pub(crate) fn discharge_near(&self, at: usize, k: usize) -> Option<usize> {
-        let laden = self
-            .calls
-            .bases
-            .last()
-            .filter(|base| base.came_on_board())?;
-        if self.misaligned.is_some() || self.misled.is_some() {
+        let laden = self.calls.bases.last().filter(|base| base.is_cargo())?;
+        if self.apply_alignment_step.is_some() || self.misled.is_some() {
             return None;
         }
         let loaded = self.events[laden.event].first;
@@ -242,8 +255,8 @@ impl Search<'_> {
     }
 
     /// Whether a step that is certain may as well be a return at this call.
-    fn is_at_call(&self, leads: &Leads, back: &Candidate) -> bool {
-        let step = leads[Kind::Step as usize].map(|lead| self.bank.spawns[lead.spawn].at);
+    fn is_at_call(&self, leads: &Leads, back: &ReturnCandidate) -> bool {
+        let step = leads[HypothesisKind::Step as usize].map(|lead| self.bank.spawns[lead.spawn].at);
         let near = back.at.saturating_sub(RETURN_FOR_STEP_ROWS_BEFORE)
             ..=back.at + RETURN_FOR_STEP_ROWS_AFTER;
         back.probability > RETURN_FOR_STEP_POSTERIOR && step.is_some_and(|at| near.contains(&at))
@@ -257,7 +270,7 @@ impl Search<'_> {
 
     /// Whether a passing disturbance's lead is that of one that is over.
     pub(crate) fn is_over(&self, lead: Lead) -> bool {
-        let over = self.bank.lead(Kind::Over, &self.null);
+        let over = self.bank.lead(HypothesisKind::TransientEnd, &self.null);
         over.is_some_and(|over| over.spawn == lead.spawn && over.nats >= lead.nats)
     }
 }

@@ -1,27 +1,27 @@
 //! What the logbook tells of cargo where the ship lay, or may have.
 
-use super::state::Search;
-use crate::change::detection::Loaded;
-use crate::change::port_call_returns::Said;
+use super::state::Detector;
+use crate::change::detection::CargoPeriod;
+use crate::change::port_call_returns::LoggedCargo;
 use crate::change::port_calls::rows_since;
 use crate::change::thresholds::{LOGBOOK_TOLERANCE_S, OPEN_CARGO_ENTRY_S, SAILED_SINCE_ROWS};
 use binnacle_compass::time::Timestamp;
 
-impl Search<'_> {
+impl Detector<'_> {
     /// What the logbook tells of the cargo on board after the time between a row and the
     /// one before.
-    pub(crate) fn said_at(&self, k: usize) -> Said {
+    pub(crate) fn said_at(&self, k: usize) -> LoggedCargo {
         let Some((before, after)) = self.around(k) else {
-            return Said::Nothing;
+            return LoggedCargo::Nothing;
         };
-        let stays = |loaded: &&Loaded| {
+        let stays = |loaded: &&CargoPeriod| {
             loaded.from.seconds_since(before) < -LOGBOOK_TOLERANCE_S
                 && loaded
                     .to
                     .is_some_and(|to| to.seconds_since(after) > LOGBOOK_TOLERANCE_S)
         };
         if self.cargo.iter().any(|loaded| stays(&loaded)) {
-            return Said::OnBoard;
+            return LoggedCargo::OnBoard;
         }
         let ended = self.cargo.iter().filter(|loaded| {
             let is_about = |to: Timestamp| {
@@ -31,7 +31,7 @@ impl Search<'_> {
             loaded.to.is_some_and(is_about)
         });
         let from = ended.map(|loaded| loaded.from).min();
-        from.map_or(Said::Nothing, |from| Said::Discharged {
+        from.map_or(LoggedCargo::Nothing, |from| LoggedCargo::Discharged {
             loaded: from.plus_seconds(-LOGBOOK_TOLERANCE_S),
             at_port: self.is_call(k),
         })
@@ -56,7 +56,7 @@ impl Search<'_> {
         let Some(time) = self.observations[k].time else {
             return false;
         };
-        let on_board = |loaded: &Loaded| {
+        let on_board = |loaded: &CargoPeriod| {
             let until = loaded
                 .to
                 .unwrap_or(loaded.from.plus_seconds(OPEN_CARGO_ENTRY_S));

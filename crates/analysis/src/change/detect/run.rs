@@ -4,37 +4,37 @@
 //! What always holds: a row is read once in order of time and nothing later than it
 //! decides what it tells; every event lies between two rows; the search ends.
 
-use super::state::{Learnt, Lesson, Search, earlier};
+use super::state::{Detector, LearningSchedule, LearntNoise, earlier};
 use crate::change::thresholds::{
     FIRST_TRANSIENT_ROW, FORK_AFTER_GAP_S, FORK_INNOVATION_MIN_ROWS, FORK_INNOVATION_SD,
     FORK_INTERVAL_ROWS, SUSPICION_LOG_LIKELIHOOD_RATIO,
 };
 
-use crate::change::detection::{Given, Perhaps, Told};
-use crate::change::event::What;
+use crate::change::detection::{Detection, DetectionInput, PossibleReturn};
+use crate::change::event::EventKind;
 use crate::change::filter::Measurement;
 use crate::change::hypotheses::Lead;
-use crate::change::hypothesis_kind::Kind;
+use crate::change::hypothesis_kind::HypothesisKind;
 use crate::estimate::are_times_believed;
 use crate::observation::Observation;
 
 /// Searches rows, which are in order of time and all have one; where most share theirs
 /// nothing can be dated.
-pub(crate) fn detect(observations: &[Observation], given: &Given<'_>) -> Told {
+pub(crate) fn detect(observations: &[Observation], given: &DetectionInput<'_>) -> Detection {
     if !are_times_believed(observations) {
-        return Told::default();
+        return Detection::default();
     }
-    let Some(learnt) = Learnt::first(observations, given.prior, given.levels) else {
-        return Told::default();
+    let Some(learnt) = LearntNoise::first(observations, given.prior, given.levels) else {
+        return Detection::default();
     };
-    let mut search = Search::new(observations, given, learnt);
+    let mut search = Detector::new(observations, given, learnt);
     for k in 0..observations.len() {
         search.step(k);
     }
     search.finish()
 }
 
-impl Search<'_> {
+impl Detector<'_> {
     fn step(&mut self, k: usize) {
         if k >= self.lesson.at {
             self.learn(k);
@@ -48,7 +48,11 @@ impl Search<'_> {
         }
         let m = self.next(k);
         if is_due || (k >= FIRST_TRANSIENT_ROW && self.is_astray(k, &m)) {
-            let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
+            let earlier = earlier(
+                self.misled.as_ref(),
+                self.apply_alignment_step.as_ref(),
+                &self.calls,
+            );
             let known = (earlier, self.is_call(k));
             self.bank.spawn(k, &self.null, &self.noise, known);
             self.spawned = k;
@@ -66,7 +70,11 @@ impl Search<'_> {
         self.calls = calls;
         self.take_in_rivals(k);
         self.take_in_doubt(k);
-        let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
+        let earlier = earlier(
+            self.misled.as_ref(),
+            self.apply_alignment_step.as_ref(),
+            &self.calls,
+        );
         let null = (&self.null, surprise);
         self.bank.take(k, m, &self.noise, null, earlier);
         let mut bank = std::mem::take(&mut self.bank);
@@ -103,18 +111,20 @@ impl Search<'_> {
     /// The sizes of noise again, from the longer stretch there is now.
     fn learn(&mut self, k: usize) {
         let rows = self.learn_from..k;
-        if let Some(learnt) = Learnt::of(self.observations, rows, self.prior, Some(&self.levels)) {
+        if let Some(learnt) =
+            LearntNoise::of(self.observations, rows, self.prior, Some(&self.levels))
+        {
             self.levels = learnt.levels;
             self.noise = learnt.noise;
         }
         self.learnt_days = self.lesson.days;
-        self.lesson = Lesson::next(self.observations, self.learn_from, k, 0.0);
+        self.lesson = LearningSchedule::next(self.observations, self.learn_from, k, 0.0);
     }
 
     /// What is suspected when the rows end.
-    fn finish(mut self) -> Told {
+    fn finish(mut self) -> Detection {
         let leads = self.leads();
-        let perhaps = self.candidate(&leads).map(|candidate| Perhaps {
+        let perhaps = self.candidate(&leads).map(|candidate| PossibleReturn {
             of: candidate.event,
             first: candidate.at,
             probability: candidate.any,
@@ -125,7 +135,7 @@ impl Search<'_> {
         self.note_zeros();
         self.suspect();
         self.settle_faint(self.observations.len().saturating_sub(1), true);
-        Told {
+        Detection {
             events: self.events,
             perhaps,
             unnoticed,
@@ -144,24 +154,28 @@ impl Search<'_> {
             return;
         }
         let leads = self.leads();
-        let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
-        let likeliest = [Kind::Step, Kind::Reference, Kind::Burst]
-            .into_iter()
-            .max_by(|a, b| nats(*a).total_cmp(&nats(*b)))
-            .filter(|kind| nats(*kind) > SUSPICION_LOG_LIKELIHOOD_RATIO);
+        let nats = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let likeliest = [
+            HypothesisKind::Step,
+            HypothesisKind::ReferenceStep,
+            HypothesisKind::Transient,
+        ]
+        .into_iter()
+        .max_by(|a, b| nats(*a).total_cmp(&nats(*b)))
+        .filter(|kind| nats(*kind) > SUSPICION_LOG_LIKELIHOOD_RATIO);
         // A burst that has had its time keeps its lead.
         let is_news = |lead: Lead| self.has_time_left(self.bank.spawns[lead.spawn].at, k);
         let Some((kind, lead)) = likeliest.and_then(|kind| Some((kind, leads[kind as usize]?)))
         else {
             return;
         };
-        if k < self.young() || (kind == Kind::Burst && !is_news(lead)) {
+        if k < self.young() || (kind == HypothesisKind::Transient && !is_news(lead)) {
             return;
         }
         let what = match kind {
-            Kind::Reference => What::Reference,
-            Kind::Burst => What::Burst,
-            _ => What::Step,
+            HypothesisKind::ReferenceStep => EventKind::ReferenceFault,
+            HypothesisKind::Transient => EventKind::Transient,
+            _ => EventKind::Step,
         };
         let spawn = &self.bank.spawns[lead.spawn];
         let first = spawn.at;

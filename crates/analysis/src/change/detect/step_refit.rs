@@ -7,29 +7,29 @@
 //! A filter that took the little it saw of the latter for more than it was cannot follow when
 //! she turns: that speaks against the filter and not against the step.
 
-use super::dating::Dated;
-use super::state::Search;
-use crate::change::event::{What, snapshot};
+use super::dating::DatedChange;
+use super::state::Detector;
+use crate::change::event::{EventKind, snapshot};
 use crate::change::filter::Filter;
-use crate::change::hypothesis_kind::Kind;
-use crate::change::jump_models::upset;
-use crate::change::large_step::relinearised;
+use crate::change::hypothesis_kind::HypothesisKind;
+use crate::change::jump_models::apply_jump;
+use crate::change::large_step::relinearise;
 use crate::change::thresholds::{SAME_STEP_ROWS, STEP_KEPT_LOG_LIKELIHOOD_RATIO};
 
 /// So often are all rows linearised at where the last round ended.
 const LINEARISATION_ROUNDS: usize = 3;
 
-impl Search<'_> {
+impl Detector<'_> {
     /// The filter with a step before row `first`, or in it, having read all rows until `k`.
     /// The reading in which it happened is of neither ship.
     pub(crate) fn step_anew(&self, k: usize, before: &Filter, first: usize) -> Filter {
-        let mut likeliest = self.step_read(k, before, first, Kind::Step);
+        let mut likeliest = self.step_read(k, before, first, HypothesisKind::Step);
         let after = (first + 1).min(k);
         let within = self.run(before.clone(), first..after, &before.unknowns());
         for (before, first, kind) in [
-            (before, first, Kind::Large),
-            (&within, after, Kind::Step),
-            (&within, after, Kind::Large),
+            (before, first, HypothesisKind::LargeStep),
+            (&within, after, HypothesisKind::Step),
+            (&within, after, HypothesisKind::LargeStep),
         ] {
             let read = self.step_read(k, before, first, kind);
             if read.log_likelihood > likeliest.log_likelihood {
@@ -39,25 +39,25 @@ impl Search<'_> {
         likeliest
     }
 
-    fn step_read(&self, k: usize, before: &Filter, first: usize, kind: Kind) -> Filter {
-        let mut filter = upset(before, kind);
+    fn step_read(&self, k: usize, before: &Filter, first: usize, kind: HypothesisKind) -> Filter {
+        let mut filter = apply_jump(before, kind);
         for row in self.calm(first..k + 1) {
-            let m = relinearised(&filter, &self.noise, |at| self.measure(row, at));
+            let m = relinearise(&filter, &self.noise, |at| self.measure(row, at));
             filter.take(&m, &self.noise, None);
         }
         for _ in 0..LINEARISATION_ROUNDS {
             let at = filter.unknowns();
-            filter = self.run(upset(before, kind), first..k + 1, &at);
+            filter = self.run(apply_jump(before, kind), first..k + 1, &at);
         }
         filter
     }
 
     /// The step before this one, and its filter, where that one alone explains the rows.
-    pub(crate) fn same_step(&self, k: usize, dated: &Dated) -> Option<(usize, Filter)> {
+    pub(crate) fn same_step(&self, k: usize, dated: &DatedChange) -> Option<(usize, Filter)> {
         let base = self.calls.bases.last()?;
         let event = self.events.get(base.event)?;
         let later = &self.events[base.event + 1..];
-        let is_last = later.iter().all(|event| event.what == What::Burst);
+        let is_last = later.iter().all(|event| event.what == EventKind::Transient);
         if !is_last || !self.is_standing_step(base.event) || k > event.first + SAME_STEP_ROWS {
             return None;
         }

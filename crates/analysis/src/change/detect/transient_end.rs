@@ -1,15 +1,15 @@
 //! When a passing disturbance is over.
 
-use super::state::Search;
+use super::state::Detector;
 use crate::change::filter::VARIATION;
-use crate::change::hypothesis_kind::Kind;
-use crate::change::jump_models::{burst_of, upset};
+use crate::change::hypothesis_kind::HypothesisKind;
+use crate::change::jump_models::{apply_jump, transient_noise};
 use crate::change::thresholds::{
     DISTURBED_VARIATION_DEG, ENDED_TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO, TRANSIENT_MAX_S,
     TRANSIENT_OVER_FOR_S,
 };
 
-impl Search<'_> {
+impl Detector<'_> {
     /// Once a burst has had its time, the filter that knew of it takes over if it is
     /// still the likelier, so that the burst does not pass for the ship's.
     pub(crate) fn settle_burst(&mut self, k: usize) {
@@ -18,15 +18,24 @@ impl Search<'_> {
             _ => 0.0,
         };
         let leads = self.leads();
-        let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
-        let others = [Kind::Step, Kind::Reference, Kind::Return].map(nats);
+        let nats = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let others = [
+            HypothesisKind::Step,
+            HypothesisKind::ReferenceStep,
+            HypothesisKind::Return,
+        ]
+        .map(nats);
         let others = others.into_iter().fold(0.0, f64::max);
-        let knew = self.bank.lead(Kind::Over, &self.null).filter(|lead| {
-            age_s(self.bank.spawns[lead.spawn].at) >= TRANSIENT_OVER_FOR_S
-                && lead.nats > others + ENDED_TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
-        });
+        let knew = self
+            .bank
+            .lead(HypothesisKind::TransientEnd, &self.null)
+            .filter(|lead| {
+                age_s(self.bank.spawns[lead.spawn].at) >= TRANSIENT_OVER_FOR_S
+                    && lead.nats > others + ENDED_TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
+            });
         let knew = knew.map(|lead| &self.bank.spawns[lead.spawn]);
-        let knew = knew.and_then(|spawn| Some((spawn.at, spawn.copy(Kind::Over)?.clone())));
+        let knew = knew
+            .and_then(|spawn| Some((spawn.at, spawn.copy(HypothesisKind::TransientEnd)?.clone())));
         let is_over = self
             .burst
             .is_some_and(|event| age_s(self.events[event].first) >= 1.2 * TRANSIENT_MAX_S);
@@ -39,7 +48,7 @@ impl Search<'_> {
             self.events[event].last = Some(self.last_astray(first, until));
         }
         if let Some((_, filter)) = knew {
-            self.credit_rivals(Kind::Over);
+            self.credit_rivals(HypothesisKind::TransientEnd);
             let gained = filter.log_likelihood - self.null.log_likelihood;
             self.calls.credit(&self.null, gained);
             self.null = filter;
@@ -56,10 +65,10 @@ impl Search<'_> {
         };
         let at = self.null.unknowns();
         let measured: Vec<_> = (spawn.at..k).map(|row| self.measure(row, &at)).collect();
-        let astray_deg = |m| spawn.origin().variation_astray_deg(m);
+        let astray_deg = |m| spawn.origin().variation_innovation_deg(m);
         let most_deg = measured.iter().map(astray_deg).fold(0.0, f64::max);
-        let burst = burst_of(most_deg);
-        let mut filter = upset(spawn.origin(), Kind::Burst);
+        let burst = transient_noise(most_deg);
+        let mut filter = apply_jump(spawn.origin(), HypothesisKind::Transient);
         let mut last = first;
         for (row, m) in (spawn.at..k).zip(&measured) {
             filter.take(m, &self.noise, Some(&burst));

@@ -3,10 +3,10 @@
 //! What always holds: it is no event; until the rows tell, the band is to hold both the ship
 //! that she was and the one that she may be.
 
-use super::state::{Leads, Search};
+use super::state::{Detector, Leads};
 use crate::change::filter::Filter;
-use crate::change::hypothesis_kind::Kind;
-use crate::change::jump_models::struck;
+use crate::change::hypothesis_kind::HypothesisKind;
+use crate::change::jump_models::apply_large_step;
 use crate::change::thresholds::{
     EXCLUDED_STEP_LOG_LIKELIHOOD_RATIO, SEVERE_TRANSIENT_DEG, UNDECIDED_STEP_LOG_LIKELIHOOD_RATIO,
     UNDECIDED_STEP_MIN_SIZE, UNDECIDED_STEP_ROWS,
@@ -22,7 +22,7 @@ const MEDIAN_ROWS: usize = 3;
 /// Where H is this, an error of the variation has its nominal size.
 const NOMINAL_H_NT: f64 = 24_000.0;
 
-impl Search<'_> {
+impl Detector<'_> {
     /// What the step that may have been adds to the variance of bx and by, nT².
     pub(crate) fn open_nt2(&self, leads: &Leads) -> Option<f64> {
         let last = self.observations.len().checked_sub(1)?;
@@ -48,7 +48,7 @@ impl Search<'_> {
             .filter_map(|(at, first, before)| {
                 let after = self.after_strike(at..first, before);
                 let nats = after.log_likelihood - self.null.log_likelihood;
-                let size = after.far_from(before);
+                let size = after.permanent_distance(before);
                 let is_open = size > UNDECIDED_STEP_MIN_SIZE
                     && nats
                         > UNDECIDED_STEP_LOG_LIKELIHOOD_RATIO
@@ -65,12 +65,13 @@ impl Search<'_> {
     /// How far the compass is astray now, as a field in nT, while it swings by more than any
     /// storm makes it: whatever that is, the base model does not say what she shows.
     fn wild_nt(&self, leads: &Leads, last: usize) -> Option<f64> {
-        let lead = leads[Kind::Burst as usize].filter(|lead| lead.kind == Kind::Wild)?;
+        let lead = leads[HypothesisKind::Transient as usize]
+            .filter(|lead| lead.kind == HypothesisKind::SevereTransient)?;
         let spawn = &self.bank.spawns[lead.spawn];
         let origin = spawn.origin();
         let at = origin.unknowns();
         let rows = spawn.at.max((last + 1).saturating_sub(MEDIAN_ROWS))..=last;
-        let astray = rows.map(|row| origin.variation_astray_deg(&self.measure(row, &at)));
+        let astray = rows.map(|row| origin.variation_innovation_deg(&self.measure(row, &at)));
         let mut astray: Vec<f64> = astray.collect();
         if astray.len() < MEDIAN_ROWS {
             return None;
@@ -87,7 +88,7 @@ impl Search<'_> {
     fn after_strike(&self, calm: Range<usize>, before: &Filter) -> Filter {
         let first = calm.end;
         let before = self.run(before.clone(), calm, &before.unknowns());
-        let begun = struck(&before);
+        let begun = apply_large_step(&before);
         let rows = first..self.observations.len();
         let mut after = before;
         for _ in 0..LINEARISATION_ROUNDS {

@@ -3,26 +3,26 @@
 //! What always holds: it is no event and moves no date; it is only to make the band as
 //! wide as what is not known.
 
-use super::state::{Leads, Search};
-use crate::change::detection::Unnoticed;
-use crate::change::event::{Event, What};
+use super::state::{Detector, Leads};
+use crate::change::detection::UndetectedStep;
+use crate::change::event::{Event, EventKind};
 use crate::change::filter::Filter;
-use crate::change::hypothesis_kind::Kind;
-use crate::change::jump_models::upset;
-use crate::change::likelihood_ratio::odds;
+use crate::change::hypothesis_kind::HypothesisKind;
+use crate::change::jump_models::apply_jump;
+use crate::change::likelihood_ratio::tempered_odds;
 use crate::change::priors;
 use crate::change::thresholds::{CARGO_NOTICED_LATE_S, UNDETECTED_STEP_ROWS};
 
 /// Odds beyond this are certainty.
 const MAX_ODDS: f64 = 1e9;
 
-impl Search<'_> {
+impl Detector<'_> {
     /// The last port call, if that was soon before row `row`, and the ship as she sailed from
     /// it: cargo that was noticed at sea was on board by then. None where something else that
     /// lasts was told since, `earlier` being all that has been.
     pub(crate) fn sailed(&self, row: usize, earlier: &[Event]) -> Option<(usize, &Filter)> {
         let (at, filter) = self.ports.0.iter().rfind(|(at, _)| *at <= row)?;
-        let is_news = |event: &Event| event.told >= *at && event.what != What::Burst;
+        let is_news = |event: &Event| event.told >= *at && event.what != EventKind::Transient;
         let times = self.observations[*at].time.zip(self.observations[row].time);
         let is_soon =
             times.is_some_and(|(sailed, now)| now.seconds_since(sailed) < CARGO_NOTICED_LATE_S);
@@ -31,11 +31,13 @@ impl Search<'_> {
 
     /// The likeliest of the last port calls for a step that has not been told, and how
     /// likely one at any of them is; `returned` is how likely she is herself again.
-    pub(crate) fn unnoticed(&self, leads: &Leads, returned: f64) -> Option<Unnoticed> {
+    pub(crate) fn unnoticed(&self, leads: &Leads, returned: f64) -> Option<UndetectedStep> {
         let last = self.observations.len().checked_sub(1)?;
         let earliest = last.saturating_sub(UNDETECTED_STEP_ROWS).max(self.first());
         // A filter that did not know of what was told since is of no use.
-        let told = |event: &&Event| !matches!(event.what, What::Burst | What::Reference);
+        let told = |event: &&Event| {
+            !matches!(event.what, EventKind::Transient | EventKind::ReferenceFault)
+        };
         let told = self.events.iter().filter(told).map(|event| event.told);
         let earliest = told.max().map_or(earliest, |told| earliest.max(told + 1));
         let ports = self.ports.0.iter().filter(|(at, _)| *at >= earliest);
@@ -45,24 +47,24 @@ impl Search<'_> {
                 (
                     *at,
                     priors::CHANGE_AT_PORT_CALL / (1.0 - priors::CHANGE_AT_PORT_CALL)
-                        * odds(nats).min(MAX_ODDS),
+                        * tempered_odds(nats).min(MAX_ODDS),
                 )
             })
             .collect();
         let (first, _) = likely.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let sum: f64 = likely.iter().map(|(_, odds)| odds).sum();
+        let sum: f64 = likely.iter().map(|(_, tempered_odds)| tempered_odds).sum();
         // Against nothing, a reference's fault, what passes, and her being herself again.
-        let fault = leads[Kind::Reference as usize]
+        let fault = leads[HypothesisKind::ReferenceStep as usize]
             .filter(|lead| self.bank.spawns[lead.spawn].at >= *first)
             .map_or(0.0, |lead| {
-                priors::REFERENCE_FAULT * odds(lead.nats).min(MAX_ODDS)
+                priors::REFERENCE_FAULT * tempered_odds(lead.nats).min(MAX_ODDS)
             });
         // What passes explains the same rows, where it is not known to be over.
-        let astray = leads[Kind::Burst as usize].map_or(0.0, |lead| {
-            priors::TRANSIENT * odds(lead.nats.max(0.0)).min(MAX_ODDS)
+        let astray = leads[HypothesisKind::Transient as usize].map_or(0.0, |lead| {
+            priors::TRANSIENT * tempered_odds(lead.nats.max(0.0)).min(MAX_ODDS)
         });
         let others = (1.0 + fault + astray) / (1.0 - returned).max(f64::MIN_POSITIVE);
-        Some(Unnoticed {
+        Some(UndetectedStep {
             first: *first,
             probability: sum / (sum + others),
         })
@@ -87,7 +89,7 @@ impl Search<'_> {
             }
             end.log_likelihood
         };
-        run(&upset(before, Kind::Step)) - run(before)
+        run(&apply_jump(before, HypothesisKind::Step)) - run(before)
     }
 
     /// Whether a passing disturbance that is over, or a fault of a reference, is of this row.
@@ -95,11 +97,11 @@ impl Search<'_> {
         let mut told = self.events.iter().enumerate();
         told.any(|(place, event)| {
             let last = match event.what {
-                What::Burst if self.burst == Some(place) => return false,
-                What::Burst => event.last,
-                What::Reference => self.events[place + 1..]
+                EventKind::Transient if self.burst == Some(place) => return false,
+                EventKind::Transient => event.last,
+                EventKind::ReferenceFault => self.events[place + 1..]
                     .iter()
-                    .find(|later| later.what == What::Return(place))
+                    .find(|later| later.what == EventKind::Return(place))
                     .map(|later| later.first.saturating_sub(1)),
                 _ => return false,
             };

@@ -1,27 +1,28 @@
 //! Disturbances that the ship alone cannot be sure of: other ships may speak for them.
 
-use super::state::Faint;
-use super::state::{Leads, Search};
-use crate::change::event::What;
+use super::state::WeakTransient;
+use super::state::{Detector, Leads};
+use crate::change::event::EventKind;
 use crate::change::hypotheses::Lead;
-use crate::change::hypothesis_kind::Kind;
+use crate::change::hypothesis_kind::HypothesisKind;
 use crate::change::thresholds::{
     TRANSIENT_MAX_S, TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO,
     WEAK_TRANSIENT_LOG_LIKELIHOOD_RATIO, WEAK_TRANSIENT_OVER_ROWS,
 };
 
-impl Search<'_> {
+impl Detector<'_> {
     /// Keeps in mind what leads by too little to be told.
     pub(crate) fn note_faint(&mut self, k: usize, leads: Leads, over_lasting: f64) {
         // What is wild and faint is a few wild readings.
-        let is_news = |lead: &Lead| self.burst.is_none() && lead.kind != Kind::Wild;
-        let Some(lead) = leads[Kind::Burst as usize].filter(is_news) else {
+        let is_news =
+            |lead: &Lead| self.burst.is_none() && lead.kind != HypothesisKind::SevereTransient;
+        let Some(lead) = leads[HypothesisKind::Transient as usize].filter(is_news) else {
             return;
         };
         let most = self
             .faint
             .as_ref()
-            .and_then(|f| f.leads[Kind::Burst as usize]);
+            .and_then(|f| f.leads[HypothesisKind::Transient as usize]);
         let is_more = most.is_none_or(|most| lead.nats > most.nats);
         if lead.nats > WEAK_TRANSIENT_LOG_LIKELIHOOD_RATIO
             && over_lasting > TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
@@ -30,7 +31,7 @@ impl Search<'_> {
             let first = self.began(lead);
             if self.same_burst(first).is_none() && self.has_time_left(first, k) {
                 let last = k;
-                self.faint = Some(Faint { first, last, leads });
+                self.faint = Some(WeakTransient { first, last, leads });
             }
         }
     }
@@ -46,12 +47,13 @@ impl Search<'_> {
 
     /// Puts it among the events, unconfirmed, once it is over or the rows are.
     pub(crate) fn settle_faint(&mut self, k: usize, is_last: bool) {
-        let is_over = |faint: &mut Faint| is_last || k > faint.last + WEAK_TRANSIENT_OVER_ROWS;
+        let is_over =
+            |faint: &mut WeakTransient| is_last || k > faint.last + WEAK_TRANSIENT_OVER_ROWS;
         let Some(faint) = self.faint.take_if(is_over) else {
             return;
         };
-        let Faint { first, last, leads } = faint;
-        self.push(k, What::Burst, first, (first, first), leads, None);
+        let WeakTransient { first, last, leads } = faint;
+        self.push(k, EventKind::Transient, first, (first, first), leads, None);
         if let Some(event) = self.events.last_mut() {
             event.last = Some(last.max(first));
             event.confirmed = false;

@@ -4,31 +4,36 @@
 //! followed beside the filter that knows of the step, over the same rows; what is
 //! withdrawn stays so, whatever comes later, and its place in the list of events is kept.
 
-use super::dating::Dated;
-use super::state::{Doubt, Unsettled};
-use super::state::{Leads, Search};
-use crate::change::event::What;
-use crate::change::hypothesis_kind::Kind;
-use crate::change::jump_models::calmed;
+use super::dating::DatedChange;
+use super::state::{Detector, Leads};
+use super::state::{ExtraDrift, NoStepHypotheses};
+use crate::change::event::EventKind;
+use crate::change::hypothesis_kind::HypothesisKind;
+use crate::change::jump_models::reset_variation;
 use crate::change::thresholds::{
     NO_STEP_DROPPED_EARLY_LOG_LIKELIHOOD_RATIO, NO_STEP_DROPPED_LOG_LIKELIHOOD_RATIO,
     WITHDRAWAL_LOG_LIKELIHOOD_RATIO, WITHDRAWAL_MAX_TRANSIENT_LOG_LIKELIHOOD_RATIO,
     WITHDRAWAL_MIN_ROWS,
 };
 
-impl Search<'_> {
+impl Detector<'_> {
     /// The doubt of a step that was dated just now, and is the last event.
-    pub(crate) fn doubt_of(&self, k: usize, dated: &Dated, leads: &Leads) -> Doubt {
+    pub(crate) fn doubt_of(
+        &self,
+        k: usize,
+        dated: &DatedChange,
+        leads: &Leads,
+    ) -> NoStepHypotheses {
         let (before, rows) = (&dated.before, dated.first..k + 1);
         let nothing = self.run(before.clone(), rows, &before.unknowns());
-        let passed = leads[Kind::Burst as usize].and_then(|lead| {
+        let passed = leads[HypothesisKind::Transient as usize].and_then(|lead| {
             let copy = self.bank.spawns[lead.spawn].copy(lead.kind)?;
             Some(match lead.kind {
-                Kind::Wild => calmed(copy, &self.noise),
+                HypothesisKind::SevereTransient => reset_variation(copy, &self.noise),
                 _ => copy.clone(),
             })
         });
-        Doubt {
+        NoStepHypotheses {
             event: self.events.len() - 1,
             told: k,
             learn_from: self.learn_from,
@@ -60,13 +65,13 @@ impl Search<'_> {
 
     /// Withdraws the last step, if the rows since are likelier without it.
     pub(crate) fn settle_doubt(&mut self, k: usize, leads: &Leads) -> bool {
-        let of_kind = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let of_kind = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
         if self.burst.is_some()
-            || of_kind(Kind::Burst) > WITHDRAWAL_MAX_TRANSIENT_LOG_LIKELIHOOD_RATIO
+            || of_kind(HypothesisKind::Transient) > WITHDRAWAL_MAX_TRANSIENT_LOG_LIKELIHOOD_RATIO
         {
             return false;
         }
-        let likelier = |doubt: &Doubt| {
+        let likelier = |doubt: &NoStepHypotheses| {
             let each = doubt.without.iter().enumerate();
             let each = each.map(|(i, filter)| (i, filter.log_likelihood));
             let (place, nats) = each.max_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -83,7 +88,7 @@ impl Search<'_> {
         event.confirmed = false;
         event.withdrawn = Some(k);
         self.calls.forget(doubt.event);
-        self.unsettled = Unsettled::default();
+        self.unsettled = ExtraDrift::default();
         self.take_over(k, doubt.without.swap_remove(place), doubt.learn_from);
         true
     }
@@ -91,6 +96,6 @@ impl Search<'_> {
     /// Whether an event is a step that still stands.
     pub(crate) fn is_standing_step(&self, event: usize) -> bool {
         let event = &self.events[event];
-        event.what == What::Step && event.withdrawn.is_none()
+        event.what == EventKind::Step && event.withdrawn.is_none()
     }
 }

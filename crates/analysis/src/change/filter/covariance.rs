@@ -4,7 +4,7 @@
 use super::states::STATES;
 
 /// Columns of a panel.
-pub(crate) const WIDE: usize = STATES / 2;
+pub(crate) const PANEL_COLUMNS: usize = STATES / 2;
 
 /// In two panels of columns, one after the other, each from the diagonal down: sixteen
 /// rows, and eight. The squares about the diagonal are whole.
@@ -12,39 +12,39 @@ pub(crate) const WIDE: usize = STATES / 2;
 /// Loops run along rows and leave out those that a zero makes idle: so compilers work on
 /// several numbers of a row at a time, and not on several rows.
 #[derive(Clone, Debug)]
-pub(crate) struct Symmetric([[f64; WIDE]; STATES + WIDE]);
+pub(crate) struct SymmetricMatrix([[f64; PANEL_COLUMNS]; STATES + PANEL_COLUMNS]);
 
-impl Symmetric {
-    pub(crate) fn zeros() -> Symmetric {
-        Symmetric([[0.0; WIDE]; STATES + WIDE])
+impl SymmetricMatrix {
+    pub(crate) fn zeros() -> SymmetricMatrix {
+        SymmetricMatrix([[0.0; PANEL_COLUMNS]; STATES + PANEL_COLUMNS])
     }
 
-    /// The rows of either panel; the second's begin with row [`WIDE`].
-    fn panels(&self) -> [&[[f64; WIDE]]; 2] {
+    /// The rows of either panel; the second's begin with row [`PANEL_COLUMNS`].
+    fn panels(&self) -> [&[[f64; PANEL_COLUMNS]]; 2] {
         let (left, right) = self.0.split_at(STATES);
         [left, right]
     }
 
     /// The same, to be changed.
-    pub(crate) fn panels_mut(&mut self) -> [&mut [[f64; WIDE]]; 2] {
+    pub(crate) fn panels_mut(&mut self) -> [&mut [[f64; PANEL_COLUMNS]]; 2] {
         let (left, right) = self.0.split_at_mut(STATES);
         [left, right]
     }
 
     pub(crate) fn at(&self, i: usize, j: usize) -> f64 {
         let (i, j) = (i.max(j), i.min(j));
-        let panel = j / WIDE;
-        self.panels()[panel][i - panel * WIDE][j % WIDE]
+        let panel = j / PANEL_COLUMNS;
+        self.panels()[panel][i - panel * PANEL_COLUMNS][j % PANEL_COLUMNS]
     }
 
     /// Makes this one's element, and the one mirrored, a value.
     pub(crate) fn set(&mut self, i: usize, j: usize, value: f64) {
         let (i, j) = (i.max(j), i.min(j));
-        let panel = j / WIDE;
-        let (row, column) = (i - panel * WIDE, j % WIDE);
+        let panel = j / PANEL_COLUMNS;
+        let (row, column) = (i - panel * PANEL_COLUMNS, j % PANEL_COLUMNS);
         let rows = &mut self.panels_mut()[panel];
         rows[row][column] = value;
-        if row < WIDE {
+        if row < PANEL_COLUMNS {
             rows[column][row] = value;
         }
     }
@@ -57,9 +57,9 @@ impl Symmetric {
     pub(crate) fn times(&self, vector: &[f64; STATES]) -> [f64; STATES] {
         let mut product = [0.0; STATES];
         for (panel, rows) in self.panels().into_iter().enumerate() {
-            let vector = &vector[panel * WIDE..];
-            let product = &mut product[panel * WIDE..];
-            let mut sums = [0.0; WIDE];
+            let vector = &vector[panel * PANEL_COLUMNS..];
+            let product = &mut product[panel * PANEL_COLUMNS..];
+            let mut sums = [0.0; PANEL_COLUMNS];
             for (row, x) in rows.iter().zip(vector) {
                 if *x == 0.0 {
                     continue;
@@ -72,7 +72,7 @@ impl Symmetric {
                 *part += sum;
             }
             // What stands below the square stands mirrored beside it.
-            for (row, part) in rows.iter().zip(product).skip(WIDE) {
+            for (row, part) in rows.iter().zip(product).skip(PANEL_COLUMNS) {
                 *part += dot(row, vector);
             }
         }
@@ -80,10 +80,10 @@ impl Symmetric {
     }
 
     /// Takes off a vector's products with itself, times a factor.
-    pub(crate) fn take_off(&mut self, vector: &[f64; STATES], factor: f64) {
+    pub(crate) fn subtract_outer_product(&mut self, vector: &[f64; STATES], factor: f64) {
         for (panel, rows) in self.panels_mut().into_iter().enumerate() {
-            let vector = &vector[panel * WIDE..];
-            let own: [f64; WIDE] = std::array::from_fn(|column| vector[column]);
+            let vector = &vector[panel * PANEL_COLUMNS..];
+            let own: [f64; PANEL_COLUMNS] = std::array::from_fn(|column| vector[column]);
             for (row, x) in rows.iter_mut().zip(vector) {
                 if *x == 0.0 {
                     continue;
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn products_are_those_of_the_whole_matrix() {
-        let mut symmetric = Symmetric::zeros();
+        let mut symmetric = SymmetricMatrix::zeros();
         let mut whole = SMatrix::<f64, STATES, STATES>::zeros();
         for i in 0..STATES {
             symmetric.add(i, i, 2.0);
@@ -130,7 +130,7 @@ mod tests {
         }
         for seed in 0..STATES {
             let v = vector(seed);
-            symmetric.take_off(&v, 0.25);
+            symmetric.subtract_outer_product(&v, 0.25);
             let v = SVector::from(v);
             whole -= v * v.transpose() * 0.25;
         }

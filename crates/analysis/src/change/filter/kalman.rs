@@ -4,9 +4,9 @@
 //! What always holds: two filters that have taken in the same measurements can be
 //! compared by their log likelihoods.
 
-use super::covariance::{Symmetric, WIDE, dot};
+use super::covariance::{PANEL_COLUMNS, SymmetricMatrix, dot};
 use super::measurement::{Measurement, Scalar};
-use super::noise::{Burst, Noise};
+use super::noise::{NoiseVariances, TransientNoise};
 use super::states::{
     CONSTANT_STATE, DRIFTING, LASTING, OFFSET, OFFSET_UNKNOWN, RATE, SATELLITE, SLOW, SPEED,
     STATES, SWING, VARIATION,
@@ -17,17 +17,17 @@ use binnacle_compass::ship::PARAMETERS;
 #[derive(Clone, Debug)]
 pub(crate) struct Filter {
     pub(crate) mean: [f64; STATES],
-    pub(crate) covariance: Symmetric,
+    pub(crate) covariance: SymmetricMatrix,
     pub(crate) log_likelihood: f64,
 }
 
 impl Filter {
     /// Before the first measurement; none when the prior is no prior.
-    pub(crate) fn new(prior: &Prior, noise: &Noise) -> Filter {
+    pub(crate) fn new(prior: &Prior, noise: &NoiseVariances) -> Filter {
         let mut scale = [1.0; PARAMETERS + 1];
         scale[..PARAMETERS].copy_from_slice(&POPULATION_SD);
         let mut mean = [0.0; STATES];
-        let mut covariance = Symmetric::zeros();
+        let mut covariance = SymmetricMatrix::zeros();
         for i in 0..=PARAMETERS {
             mean[i] = prior.mean[i] / scale[i];
             for j in 0..=i {
@@ -56,7 +56,7 @@ impl Filter {
     }
 
     /// Whether the constant is what it was in another, as far as either knows.
-    pub(crate) fn has_constant_of(&self, other: &Filter) -> bool {
+    pub(crate) fn agrees_in_constant(&self, other: &Filter) -> bool {
         let k = CONSTANT_STATE;
         let apart = (self.mean[k] - other.mean[k]).abs();
         let variance = self.covariance.at(k, k) + other.covariance.at(k, k);
@@ -65,7 +65,7 @@ impl Filter {
 
     /// By how much the deviation, or the references' difference, is not as expected,
     /// degrees.
-    pub(crate) fn astray_deg(&self, m: &Measurement) -> f64 {
+    pub(crate) fn innovation_deg(&self, m: &Measurement) -> f64 {
         let off = |scalar: &Scalar| {
             let expected: f64 = scalar.load.iter().zip(&self.mean).map(|(l, x)| l * x).sum();
             (scalar.value - expected).abs()
@@ -74,13 +74,13 @@ impl Filter {
     }
 
     /// How far bx and by are from those of another, population units.
-    pub(crate) fn far_from(&self, other: &Filter) -> f64 {
+    pub(crate) fn permanent_distance(&self, other: &Filter) -> f64 {
         let [x, y] = DRIFTING.map(|s| self.mean[s] - other.mean[s]);
         x.hypot(y)
     }
 
     /// The same of the deviation alone, as an error of the variation where H is 24 µT.
-    pub(crate) fn variation_astray_deg(&self, m: &Measurement) -> f64 {
+    pub(crate) fn variation_innovation_deg(&self, m: &Measurement) -> f64 {
         let Scalar { value, load, .. } = &m.deviation;
         ((value - dot(load, &self.mean)) / load[VARIATION]).abs()
     }
@@ -98,13 +98,18 @@ impl Filter {
 
     /// Takes in what was measured; `burst` is what the variation does meanwhile, if
     /// not the usual. By how much that surprised, nats: 0 on the average.
-    pub(crate) fn take(&mut self, m: &Measurement, noise: &Noise, burst: Option<&Burst>) -> f64 {
+    pub(crate) fn take(
+        &mut self,
+        m: &Measurement,
+        noise: &NoiseVariances,
+        burst: Option<&TransientNoise>,
+    ) -> f64 {
         self.advance(m, noise, burst);
         let by_difference = m.difference.as_ref().map(|scalar| self.update(scalar));
         by_difference.unwrap_or(0.0) + self.update(&m.deviation)
     }
 
-    fn advance(&mut self, m: &Measurement, noise: &Noise, burst: Option<&Burst>) {
+    fn advance(&mut self, m: &Measurement, noise: &NoiseVariances, burst: Option<&TransientNoise>) {
         let t = &m.transition;
         let mut decay = t.decay;
         let mut stationary = noise.stationary;
@@ -120,7 +125,7 @@ impl Filter {
         }
         let p = &mut self.covariance;
         for (panel, rows) in p.panels_mut().into_iter().enumerate() {
-            let [swings, rates, slow @ ..] = &mut rows[SWING - panel * WIDE..] else {
+            let [swings, rates, slow @ ..] = &mut rows[SWING - panel * PANEL_COLUMNS..] else {
                 continue;
             };
             for (swing, rate) in swings.iter_mut().zip(rates) {
@@ -168,7 +173,7 @@ impl Filter {
         for (mean, gain) in self.mean.iter_mut().zip(&gain) {
             *mean += gain * (per_raised * innovation);
         }
-        self.covariance.take_off(&gain, per_raised);
+        self.covariance.subtract_outer_product(&gain, per_raised);
         0.5 * (loss - 1.0)
     }
 }

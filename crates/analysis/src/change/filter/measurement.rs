@@ -1,6 +1,6 @@
 //! Measurements as the filter reads them.
 
-use super::noise::Noise;
+use super::noise::NoiseVariances;
 use super::states::{LASTING, OFFSET, OFFSET_UNKNOWN, SPEED, STATES};
 use crate::estimate::{Row, Station, Transition, UNKNOWNS, Unknowns};
 
@@ -30,7 +30,7 @@ pub(crate) fn measurement(
     row: &Row,
     at: &Unknowns,
     seconds: f64,
-    noise: &Noise,
+    noise: &NoiseVariances,
     unsettled: f64,
 ) -> Measurement {
     let scalar = |residual: f64, columns: &[f64; UNKNOWNS], loads: &[f64], variance: f64| {

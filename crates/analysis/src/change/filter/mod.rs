@@ -8,5 +8,5 @@ mod states;
 
 pub(crate) use kalman::Filter;
 pub(crate) use measurement::{Measurement, measurement};
-pub(crate) use noise::{Burst, Noise};
+pub(crate) use noise::{NoiseVariances, TransientNoise};
 pub(crate) use states::{CONSTANT_STATE, OFFSET, STATES, VARIATION};

@@ -6,7 +6,7 @@ use binnacle_compass::result::NoiseLevels;
 
 /// The sizes of noise as the filter uses them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Noise {
+pub(crate) struct NoiseVariances {
     pub(crate) white: f64,
     pub(crate) difference_white: f64,
     pub(crate) stationary: [f64; STATES - LASTING],
@@ -14,10 +14,10 @@ pub(crate) struct Noise {
     pub(crate) drift: f64,
 }
 
-impl Noise {
-    pub(crate) fn new(levels: &NoiseLevels) -> Noise {
+impl NoiseVariances {
+    pub(crate) fn new(levels: &NoiseLevels) -> NoiseVariances {
         let squared = |sd: f64| sd * sd;
-        Noise {
+        NoiseVariances {
             white: squared(levels.white_deg),
             difference_white: squared(levels.difference_deg),
             stationary: [
@@ -41,7 +41,7 @@ impl Noise {
 
 /// Variation that is off by much more than usual, and otherwise every hour.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Burst {
+pub(crate) struct TransientNoise {
     /// Variance, degrees squared.
     pub(crate) variance: f64,
     pub(crate) memory_s: f64,

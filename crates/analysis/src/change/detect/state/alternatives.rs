@@ -1,12 +1,12 @@
 //! Alternatives to what has been accepted, and transients too weak to be accepted.
 
 use super::leads::Leads;
-use crate::change::event::What;
+use crate::change::event::EventKind;
 use crate::change::filter::Filter;
 
 /// Another reading of a step.
-pub(crate) struct Rival {
-    pub(crate) what: What,
+pub(crate) struct CompetingHypothesis {
+    pub(crate) what: EventKind,
     /// The step's place in the list of events.
     pub(crate) event: usize,
     /// What bx and by drift by beyond their usual.
@@ -19,7 +19,7 @@ pub(crate) struct Rival {
 }
 
 /// That the last step may be none.
-pub(crate) struct Doubt {
+pub(crate) struct NoStepHypotheses {
     /// The step's place in the list of events.
     pub(crate) event: usize,
     /// The row that told.
@@ -31,7 +31,7 @@ pub(crate) struct Doubt {
 }
 
 /// One that has not been told.
-pub(crate) struct Faint {
+pub(crate) struct WeakTransient {
     pub(crate) first: usize,
     /// The row at which it led most.
     pub(crate) last: usize,

@@ -1,18 +1,18 @@
 //! The detector's state, and rows as it reads them.
 
-use super::alternatives::{Doubt, Faint, Rival};
-use super::extra_drift::Unsettled;
+use super::alternatives::{CompetingHypothesis, NoStepHypotheses, WeakTransient};
+use super::extra_drift::ExtraDrift;
 use super::leads::Leads;
-use super::noise_learning::{Learnt, Lesson};
-use super::port_departures::Ports;
-use crate::change::detection::{Given, Loaded};
-use crate::change::event::{Event, What};
-use crate::change::filter::{Filter, Measurement, Noise, measurement};
-use crate::change::hypotheses::Bank;
-use crate::change::hypothesis_kind::Kind;
-use crate::change::jump_models::Earlier;
-use crate::change::large_step::{fusion, relinearised};
-use crate::change::port_call_returns::Calls;
+use super::noise_learning::{LearningSchedule, LearntNoise};
+use super::port_departures::PortDepartures;
+use crate::change::detection::{CargoPeriod, DetectionInput};
+use crate::change::event::{Event, EventKind};
+use crate::change::filter::{Filter, Measurement, NoiseVariances, measurement};
+use crate::change::hypotheses::HypothesisBank;
+use crate::change::hypothesis_kind::HypothesisKind;
+use crate::change::jump_models::EarlierState;
+use crate::change::large_step::{reference_share, relinearise};
+use crate::change::port_call_returns::PortCallReturns;
 use crate::change::port_calls::at_port;
 use crate::change::priors;
 use crate::change::thresholds::{
@@ -23,57 +23,57 @@ use crate::observation::Observation;
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::time::Timestamp;
 
-pub(crate) struct Search<'a> {
+pub(crate) struct Detector<'a> {
     pub(crate) observations: &'a [Observation],
     pub(crate) stations: Vec<Station>,
     pub(crate) reported: &'a [Timestamp],
-    pub(crate) cargo: &'a [Loaded],
+    pub(crate) cargo: &'a [CargoPeriod],
     pub(crate) prior: &'a Prior,
     /// Whether the sizes of noise were known before the rows.
     pub(crate) is_known: bool,
     pub(crate) levels: NoiseLevels,
-    pub(crate) noise: Noise,
+    pub(crate) noise: NoiseVariances,
     /// What rows are linearised at until the filter itself knows.
     pub(crate) start: Unknowns,
     pub(crate) start_until: usize,
     /// Where the present stretch of learning began, and which comes next.
     pub(crate) learn_from: usize,
-    pub(crate) lesson: Lesson,
+    pub(crate) lesson: LearningSchedule,
     /// Days that the levels were learnt from.
     pub(crate) learnt_days: f64,
     pub(crate) null: Filter,
-    pub(crate) bank: Bank,
+    pub(crate) bank: HypothesisBank,
     pub(crate) spawned: usize,
     /// What the ship was before steps, and where she may have become it again.
-    pub(crate) calls: Calls,
-    pub(crate) ports: Ports,
+    pub(crate) calls: PortCallReturns,
+    pub(crate) ports: PortDepartures,
     /// A reference's fault that goes on, if one does: its place in the list of
     /// events, and the filter before.
     pub(crate) misled: Option<(usize, Filter)>,
     /// The same of a compass's zero that moved, if nothing else has changed since.
-    pub(crate) misaligned: Option<(usize, Filter)>,
-    pub(crate) unsettled: Unsettled,
+    pub(crate) apply_alignment_step: Option<(usize, Filter)>,
+    pub(crate) unsettled: ExtraDrift,
     /// What else the last step may have been.
-    pub(crate) rivals: Vec<Rival>,
+    pub(crate) rivals: Vec<CompetingHypothesis>,
     /// That it may be none.
-    pub(crate) doubt: Option<Doubt>,
+    pub(crate) doubt: Option<NoStepHypotheses>,
     /// The burst that goes on, if one does.
     pub(crate) burst: Option<usize>,
     /// The filter before the last burst that was told, and its first row, as long as nothing
     /// that lasts was.
     pub(crate) passed: Option<(usize, Filter)>,
     /// A disturbance that leads by too little to be told.
-    pub(crate) faint: Option<Faint>,
+    pub(crate) faint: Option<WeakTransient>,
     pub(crate) events: Vec<Event>,
 }
 
-impl<'a> Search<'a> {
+impl<'a> Detector<'a> {
     pub(crate) fn new(
         observations: &'a [Observation],
-        given: &Given<'a>,
-        learnt: Learnt,
-    ) -> Search<'a> {
-        Search {
+        given: &DetectionInput<'a>,
+        learnt: LearntNoise,
+    ) -> Detector<'a> {
+        Detector {
             observations,
             stations: stations(observations),
             reported: given.reported,
@@ -86,15 +86,15 @@ impl<'a> Search<'a> {
             start: learnt.unknowns,
             start_until: learnt.until,
             learn_from: 0,
-            lesson: Lesson::next(observations, 0, learnt.until, 0.0),
+            lesson: LearningSchedule::next(observations, 0, learnt.until, 0.0),
             learnt_days: 0.0,
-            bank: Bank::default(),
+            bank: HypothesisBank::default(),
             spawned: 0,
-            calls: Calls::default(),
-            ports: Ports::default(),
+            calls: PortCallReturns::default(),
+            ports: PortDepartures::default(),
             misled: None,
-            misaligned: None,
-            unsettled: Unsettled::default(),
+            apply_alignment_step: None,
+            unsettled: ExtraDrift::default(),
             rivals: Vec::new(),
             doubt: None,
             burst: None,
@@ -126,7 +126,7 @@ impl<'a> Search<'a> {
             self.bank.step(&self.null),
             self.bank.reference(&self.null),
             self.bank.passing(&self.null),
-            self.bank.lead(Kind::Return, &self.null),
+            self.bank.lead(HypothesisKind::Return, &self.null),
         ]
     }
 
@@ -135,7 +135,7 @@ impl<'a> Search<'a> {
         if k < self.start_until {
             return self.measure(k, &self.start);
         }
-        relinearised(&self.null, &self.noise, |at| self.measure(k, at))
+        relinearise(&self.null, &self.noise, |at| self.measure(k, at))
     }
 
     /// Where row `k` is linearised.
@@ -166,7 +166,7 @@ impl<'a> Search<'a> {
 
     pub(crate) fn measured(&self, k: usize, at: &Unknowns, unsettled: f64) -> Measurement {
         let (o, station) = (&self.observations[k], &self.stations[k]);
-        let row = row(o, station, &Point::at(at, fusion(at)));
+        let row = row(o, station, &Point::at(at, reference_share(at)));
         measurement(station, &row, at, self.seconds(k), &self.noise, unsettled)
     }
 
@@ -198,7 +198,10 @@ impl<'a> Search<'a> {
 
     /// Those rows in which nothing was astray that passed.
     pub(crate) fn calm(&self, rows: std::ops::Range<usize>) -> impl Iterator<Item = usize> {
-        let passed = self.events.iter().filter(|event| event.what == What::Burst);
+        let passed = self
+            .events
+            .iter()
+            .filter(|event| event.what == EventKind::Transient);
         let passed = passed.filter_map(|burst| Some(burst.first..=burst.last?));
         let passed: Vec<_> = passed.filter(|p| *p.end() >= rows.start).collect();
         rows.filter(move |row| !passed.iter().any(|passed| passed.contains(row)))
@@ -209,11 +212,16 @@ impl<'a> Search<'a> {
 /// changed last.
 pub(crate) fn earlier<'a>(
     misled: Option<&'a (usize, Filter)>,
-    misaligned: Option<&'a (usize, Filter)>,
-    calls: &'a Calls,
-) -> Option<Earlier<'a>> {
-    let reference = misled.map(|(_, before)| Earlier::Reference(before));
-    let zero = || misaligned.map(|(_, before)| Earlier::Zero(before));
-    let ship = || calls.bases.last().map(|base| Earlier::Ship(base.unladen()));
+    apply_alignment_step: Option<&'a (usize, Filter)>,
+    calls: &'a PortCallReturns,
+) -> Option<EarlierState<'a>> {
+    let reference = misled.map(|(_, before)| EarlierState::Reference(before));
+    let zero = || apply_alignment_step.map(|(_, before)| EarlierState::Zero(before));
+    let ship = || {
+        calls
+            .bases
+            .last()
+            .map(|base| EarlierState::Ship(base.without_cargo()))
+    };
     reference.or_else(zero).or_else(ship)
 }

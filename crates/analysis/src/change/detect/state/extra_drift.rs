@@ -6,7 +6,7 @@ use crate::observation::Observation;
 
 /// A step that fades.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Unsettled {
+pub(crate) struct ExtraDrift {
     /// The first row after it.
     since: usize,
     /// Variance of bx's and by's drift in thirty days, population units.
@@ -15,11 +15,11 @@ pub(crate) struct Unsettled {
     is_drift: bool,
 }
 
-impl Unsettled {
-    pub(crate) fn after(since: usize, before: &Filter, after: &Filter) -> Unsettled {
+impl ExtraDrift {
+    pub(crate) fn after(since: usize, before: &Filter, after: &Filter) -> ExtraDrift {
         let moved = |state: usize| after.mean[state] - before.mean[state];
         let size = moved(0).hypot(moved(2));
-        Unsettled {
+        ExtraDrift {
             since,
             variance: (priors::STEP_DECAY_SHARE * size).powi(2),
             is_drift: false,
@@ -27,8 +27,8 @@ impl Unsettled {
     }
 
     /// A ship that drifts on from row `since`.
-    pub(crate) fn creeping(since: usize, variance: f64) -> Unsettled {
-        Unsettled {
+    pub(crate) fn creeping(since: usize, variance: f64) -> ExtraDrift {
+        ExtraDrift {
             since,
             variance,
             is_drift: true,

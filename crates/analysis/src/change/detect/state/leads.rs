@@ -2,5 +2,5 @@
 
 use crate::change::hypotheses::Lead;
 
-/// The likeliest copies by kind, in the order of [`Kind`].
+/// The likeliest copies by kind, in the order of [`HypothesisKind`].
 pub(crate) type Leads = [Option<Lead>; 4];

@@ -7,8 +7,8 @@ mod leads;
 mod noise_learning;
 mod port_departures;
 
-pub(crate) use alternatives::{Doubt, Faint, Rival};
-pub(crate) use detector::{Search, earlier};
-pub(crate) use extra_drift::Unsettled;
+pub(crate) use alternatives::{CompetingHypothesis, NoStepHypotheses, WeakTransient};
+pub(crate) use detector::{Detector, earlier};
+pub(crate) use extra_drift::ExtraDrift;
 pub(crate) use leads::Leads;
-pub(crate) use noise_learning::{Learnt, Lesson};
+pub(crate) use noise_learning::{LearningSchedule, LearntNoise};

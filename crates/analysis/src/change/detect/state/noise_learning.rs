@@ -1,6 +1,6 @@
 //! The sizes of noise, learnt from the rows so far.
 
-use crate::change::filter::{Filter, Noise};
+use crate::change::filter::{Filter, NoiseVariances};
 use crate::estimate::{Prior, Unknowns};
 use crate::fit::learn;
 use crate::observation::Observation;
@@ -12,34 +12,34 @@ const LEARN_DAYS: [f64; 3] = [10.0, 30.0, 90.0];
 
 /// What a stretch of rows told.
 #[derive(Clone, Copy)]
-pub(crate) struct Learnt {
+pub(crate) struct LearntNoise {
     pub(crate) levels: NoiseLevels,
-    pub(crate) noise: Noise,
+    pub(crate) noise: NoiseVariances,
     pub(crate) unknowns: Unknowns,
     /// Rows that it was of.
     pub(crate) until: usize,
 }
 
-impl Learnt {
+impl LearntNoise {
     /// What was known `before`, or else from the first days that suffice: what happened in
     /// them would be learnt with them.
     pub(crate) fn first(
         observations: &[Observation],
         prior: &Prior,
         before: Option<&NoiseLevels>,
-    ) -> Option<Learnt> {
+    ) -> Option<LearntNoise> {
         if let Some(levels) = before {
-            return Some(Learnt::beforehand(levels, prior));
+            return Some(LearntNoise::beforehand(levels, prior));
         }
         LEARN_DAYS.iter().find_map(|days| {
             let until = rows_within(observations, 0, *days);
-            Learnt::of(observations, 0..until, prior, None)
+            LearntNoise::of(observations, 0..until, prior, None)
         })
     }
 
-    fn beforehand(levels: &NoiseLevels, prior: &Prior) -> Learnt {
+    fn beforehand(levels: &NoiseLevels, prior: &Prior) -> LearntNoise {
         let noise = noise(levels);
-        Learnt {
+        LearntNoise {
             levels: *levels,
             noise,
             unknowns: Filter::new(prior, &noise).unknowns(),
@@ -53,7 +53,7 @@ impl Learnt {
         rows: std::ops::Range<usize>,
         prior: &Prior,
         before: Option<&NoiseLevels>,
-    ) -> Option<Learnt> {
+    ) -> Option<LearntNoise> {
         let until = rows.end;
         let rough = learn(&observations[rows], prior, before)?;
         let noise = noise(&rough.levels);
@@ -63,7 +63,7 @@ impl Learnt {
             mean,
             covariance: prior.covariance,
         };
-        Some(Learnt {
+        Some(LearntNoise {
             levels: rough.levels,
             noise,
             unknowns: Filter::new(&known, &noise).unknowns(),
@@ -73,8 +73,8 @@ impl Learnt {
 }
 
 /// A ship may drift more than she has yet.
-fn noise(levels: &NoiseLevels) -> Noise {
-    Noise::new(&NoiseLevels {
+fn noise(levels: &NoiseLevels) -> NoiseVariances {
+    NoiseVariances::new(&NoiseLevels {
         drift_nt: levels.drift_nt.max(NoiseLevels::TYPICAL.drift_nt),
         ..*levels
     })
@@ -82,26 +82,33 @@ fn noise(levels: &NoiseLevels) -> Noise {
 
 /// When levels are learnt again.
 #[derive(Clone, Copy)]
-pub(crate) struct Lesson {
+pub(crate) struct LearningSchedule {
     /// At this row.
     pub(crate) at: usize,
     /// From so many days.
     pub(crate) days: f64,
 }
 
-impl Lesson {
+impl LearningSchedule {
     /// The next after row `k`, of at least so many days since row `from`; one that
     /// never comes when there is none.
-    pub(crate) fn next(observations: &[Observation], from: usize, k: usize, days: f64) -> Lesson {
+    pub(crate) fn next(
+        observations: &[Observation],
+        from: usize,
+        k: usize,
+        days: f64,
+    ) -> LearningSchedule {
         let long = LEARN_DAYS.iter().filter(|long| **long >= days);
-        let mut lessons = long.map(|&days| Lesson {
+        let mut lessons = long.map(|&days| LearningSchedule {
             at: rows_within(observations, from, days),
             days,
         });
-        lessons.find(|lesson| lesson.at > k).unwrap_or(Lesson {
-            at: usize::MAX,
-            days,
-        })
+        lessons
+            .find(|lesson| lesson.at > k)
+            .unwrap_or(LearningSchedule {
+                at: usize::MAX,
+                days,
+            })
     }
 }
 

@@ -7,9 +7,9 @@ const CALLS: usize = 3;
 
 /// The last port calls, each with its first row after it and the filter there.
 #[derive(Default)]
-pub(crate) struct Ports(pub(crate) Vec<(usize, Filter)>);
+pub(crate) struct PortDepartures(pub(crate) Vec<(usize, Filter)>);
 
-impl Ports {
+impl PortDepartures {
     pub(crate) fn call(&mut self, at: usize, now: &Filter) {
         if self.0.len() == CALLS {
             self.0.remove(0);
