@@ -103,8 +103,8 @@ fn idle(entry: &LogbookEntry, epoch: &Epoch, found: &Found, own: &[Reading]) -> 
         let many = own.get(laden + IDLE_READINGS)?.sample().time;
         let by = many.max(since.plus_seconds(IDLE_DAYS * DAY_S));
         let is_apart = found.boundaries.iter().any(|b| b.at > after && b.at <= by);
-        let perhaps = found.perhaps.as_ref();
-        let may_be = perhaps.is_some_and(|ended| found.changes[ended.change].from <= by);
+        let possible_return = found.possible_return.as_ref();
+        let may_be = possible_return.is_some_and(|ended| found.changes[ended.change].from <= by);
         let later = found.boundaries.iter().map(|b| b.at).filter(|at| *at > by);
         (until > by && !is_apart && !may_be).then_some(Idle {
             entry: (entry.from, entry.to),

@@ -45,7 +45,7 @@ pub(crate) struct Circumstances {
     /// Whether there was no second reference.
     pub(crate) one_reference: bool,
     /// Whether another step at sea, weeks before or after, went the same way.
-    pub(crate) creeps: bool,
+    pub(crate) is_drifting: bool,
     /// How many lasting changes there were within a day of it, with it.
     pub(crate) changes_within_a_day: usize,
     /// From the change to the row that told.
@@ -63,7 +63,7 @@ struct CausePriors {
     ends_at_port: f64,
     ends_at_sea: f64,
     detected_late: f64,
-    creeps: f64,
+    is_drifting: f64,
 }
 
 const fn cause_priors(cause: Cause, numbers: [f64; 6]) -> CausePriors {
@@ -73,7 +73,7 @@ const fn cause_priors(cause: Cause, numbers: [f64; 6]) -> CausePriors {
         ends_at_port,
         ends_at_sea,
         detected_late,
-        creeps,
+        is_drifting,
     ] = numbers;
     CausePriors {
         cause,
@@ -82,7 +82,7 @@ const fn cause_priors(cause: Cause, numbers: [f64; 6]) -> CausePriors {
         ends_at_port,
         ends_at_sea,
         detected_late,
-        creeps,
+        is_drifting,
     }
 }
 
@@ -123,9 +123,9 @@ const OPEN_CONTRADICTION_FACTOR: f64 = 0.5;
 
 /// The causes of an event, the likeliest first.
 pub(crate) fn causes(what: EventKind, circumstances: &Circumstances) -> Vec<CauseProbability> {
-    let [step, reference, burst, _] = circumstances.leads.map(|lead| LIKELIHOOD_TEMPER * lead);
+    let [step, reference, transient, _] = circumstances.leads.map(|lead| LIKELIHOOD_TEMPER * lead);
     let instead_of_step = step + LIKELIHOOD_TEMPER * circumstances.over_step_log_likelihood_ratio;
-    let most = instead_of_step.max(reference).max(burst);
+    let most = instead_of_step.max(reference).max(transient);
     let mut weights: Vec<(Cause, f64)> = Vec::new();
     for cause_priors in &LASTING_CAUSES {
         let lead = if what == EventKind::Drift && cause_priors.cause == Cause::Drift {
@@ -154,7 +154,7 @@ pub(crate) fn causes(what: EventKind, circumstances: &Circumstances) -> Vec<Caus
         let zero = ALIGNMENT_RATE_PER_YEAR * (step + LIKELIHOOD_TEMPER * over - most).exp();
         weights.push((Cause::Alignment, zero.min(likeliest)));
     }
-    let passing = (burst - most).exp();
+    let passing = (transient - most).exp();
     let astray_deg = circumstances.disturbance_deg.unwrap_or(0.0);
     let in_storm = (-(astray_deg / STORM_DEG).powi(2)).exp();
     let over_anomaly = 1.0 / (1.0 + (astray_deg / ANOMALY_DEG).powi(2));
@@ -282,7 +282,7 @@ impl CausePriors {
             Some(false) => self.ends_at_sea,
             None => 1.0 - 0.3 * (self.ends_at_port + self.ends_at_sea),
         };
-        weight *= of(circumstances.creeps, self.creeps);
+        weight *= of(circumstances.is_drifting, self.is_drifting);
         weight
             * of(
                 circumstances.detection_delay_s > SLOW_DETECTION_S,

@@ -29,12 +29,12 @@ pub(crate) struct CargoPeriod {
 pub(crate) struct Detection {
     pub(crate) events: Vec<Event>,
     /// A return that may have been, and is not among the events.
-    pub(crate) perhaps: Option<PossibleReturn>,
+    pub(crate) possible_return: Option<PossibleReturn>,
     /// A step that may have been, and is not among them either.
-    pub(crate) unnoticed: Option<UndetectedStep>,
+    pub(crate) undetected_step: Option<UndetectedStep>,
     /// What bx and by may each be off by beyond what the model knows, while a large step is
     /// neither certain nor out of question, variance in nT².
-    pub(crate) open_nt2: Option<f64>,
+    pub(crate) undecided_step_nt2: Option<f64>,
     /// Whether a change would be among them: not of a ship of whom too little is known.
     pub(crate) is_watched: bool,
 }

@@ -46,7 +46,7 @@ pub(crate) struct Event {
     pub(crate) first: usize,
     pub(crate) between: (usize, usize),
     /// The row that told.
-    pub(crate) told: usize,
+    pub(crate) detected_row: usize,
     /// Leads over nothing having happened, nats, by kind.
     pub(crate) leads: [f64; 4],
     /// Before and when it was told.
@@ -72,10 +72,10 @@ pub(crate) struct Event {
 impl Event {
     /// What was told as the ship's or her compass's was gone again before row `end`.
     pub(crate) fn pass(&mut self, end: usize) {
-        let [step, reference, burst, back] = self.leads;
+        let [step, reference, transient, back] = self.leads;
         self.what = EventKind::Transient;
         self.last = Some(end.saturating_sub(1).max(self.first));
-        self.leads = [0.0, reference, burst.max(step), back];
+        self.leads = [0.0, reference, transient.max(step), back];
         self.was_step = true;
         self.over_step_log_likelihood_ratio = 0.0;
     }
@@ -134,7 +134,7 @@ mod tests {
             what,
             first: 0,
             between: (0, 0),
-            told: 0,
+            detected_row: 0,
             leads: [0.0; 4],
             before: snapshot(&known),
             after: snapshot(&known),

@@ -14,7 +14,7 @@ use super::hypothesis_kind::{
     ALL_KINDS, HypothesisKind, OTHER_KINDS, REFERENCE_STEPS, STEPS, TRANSIENTS,
 };
 use super::jump_models::{
-    EarlierState, USUAL_TRANSIENT, apply_jump, misled, reset_variation, transient_noise,
+    EarlierState, USUAL_TRANSIENT, apply_jump, reference_fault, reset_variation, transient_noise,
 };
 use crate::change::priors;
 use crate::change::thresholds::{
@@ -41,21 +41,21 @@ pub(crate) struct Fork {
     /// The filter then; boxed, as spawns move up whenever one is given up.
     origin: Box<Filter>,
     /// The first row of the burst that may be over.
-    pub(crate) astray_from: Option<usize>,
+    pub(crate) transient_from: Option<usize>,
     /// Boxed, as most are none.
     copies: [Option<Box<Filter>>; ALL_KINDS.len()],
     age_s: f64,
     /// How far the compass was astray since, degrees where H is 24 µT.
     disturbance_deg: f64,
     /// Whether the reference's copy is to be upset by the next reading.
-    is_fresh: bool,
+    awaits_reading: bool,
     /// By how much its step is likelier beforehand than one at sea.
-    beforehand_nats: f64,
+    prior_log_odds: f64,
 }
 
 impl Fork {
     /// Makes the copies that rival a step.
-    fn wake(&mut self, earlier: Option<EarlierState<'_>>) {
+    fn wake(&mut self, earlier_state: Option<EarlierState<'_>>) {
         let now = &self.origin;
         for kind in REFERENCE_STEPS {
             self.copies[kind as usize] = Some(now.clone());
@@ -63,39 +63,41 @@ impl Fork {
         self.copies[HypothesisKind::Transient as usize] =
             Some(Box::new(apply_jump(now, HypothesisKind::Transient)));
         self.copies[HypothesisKind::Return as usize] =
-            earlier.map(|earlier| Box::new(earlier.again(now)));
-        self.is_fresh = true;
+            earlier_state.map(|earlier_state| Box::new(earlier_state.again(now)));
+        self.awaits_reading = true;
     }
 
     /// All but a large step, which reads rows of its own.
-    fn take(&mut self, m: &Measurement, noise: &NoiseVariances, kinds: &[HypothesisKind]) {
+    fn observe(&mut self, m: &Measurement, noise: &NoiseVariances, kinds: &[HypothesisKind]) {
         let goes_on = self.age_s < TRANSIENT_MAX_S;
         self.age_s += m.seconds;
-        if let Some(burst) = &self.copies[HypothesisKind::Transient as usize] {
+        if let Some(transient) = &self.copies[HypothesisKind::Transient as usize] {
             self.disturbance_deg = self
                 .disturbance_deg
                 .max(self.origin.variation_innovation_deg(m));
             if self.disturbance_deg > SEVERE_TRANSIENT_DEG
                 && self.copies[HypothesisKind::SevereTransient as usize].is_none()
             {
-                self.copies[HypothesisKind::SevereTransient as usize] = Some(burst.clone());
+                self.copies[HypothesisKind::SevereTransient as usize] = Some(transient.clone());
             }
         }
-        let burst = |kind: HypothesisKind| match kind {
+        let transient = |kind: HypothesisKind| match kind {
             HypothesisKind::Transient if goes_on => Some(USUAL_TRANSIENT),
             HypothesisKind::SevereTransient if goes_on => {
                 Some(transient_noise(self.disturbance_deg))
             }
             _ => None,
         };
-        if kinds.contains(&HypothesisKind::ReferenceStep) && std::mem::take(&mut self.is_fresh) {
+        if kinds.contains(&HypothesisKind::ReferenceStep)
+            && std::mem::take(&mut self.awaits_reading)
+        {
             if m.difference.is_none() {
                 // Of one reference there is nothing that tells which it is.
                 self.copies[HypothesisKind::SatelliteStep as usize] = None;
             }
             for kind in REFERENCE_STEPS {
                 if let Some(copy) = &mut self.copies[kind as usize] {
-                    **copy = misled(copy, m, kind);
+                    **copy = reference_fault(copy, m, kind);
                 }
             }
         }
@@ -103,9 +105,9 @@ impl Fork {
             .iter()
             .filter(|kind| **kind != HypothesisKind::LargeStep)
         {
-            let burst = burst(kind);
+            let transient = transient(kind);
             if let Some(copy) = &mut self.copies[kind as usize] {
-                copy.take(m, noise, burst.as_ref());
+                copy.observe(m, noise, transient.as_ref());
             }
         }
     }
@@ -134,161 +136,168 @@ impl Fork {
 /// By how much a copy is likelier than the filter that knows of nothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lead {
-    pub(crate) nats: f64,
+    pub(crate) log_likelihood_ratio: f64,
     pub(crate) kind: HypothesisKind,
     /// The copy's place in the bank.
-    pub(crate) spawn: usize,
+    pub(crate) fork: usize,
 }
 
 #[derive(Default)]
 pub(crate) struct HypothesisBank {
     /// From the oldest to the latest.
-    pub(crate) spawns: Vec<Fork>,
+    pub(crate) forks: Vec<Fork>,
     /// The last measurements, the latest last, and its row.
     memory: VecDeque<Measurement>,
     latest: usize,
-    are_rivals_awake: bool,
+    other_kinds_run: bool,
     /// At least until this row.
-    awake_until: usize,
+    run_others_until: usize,
     /// What surprises have added up to since they last woke the rivals, nats.
-    surprise: f64,
+    excess_loss: f64,
 }
 
 impl HypothesisBank {
     /// Forgets all that may have happened for good.
-    pub(crate) fn forget_lasting(&mut self) {
+    pub(crate) fn drop_lasting(&mut self) {
         let lasting = [
             HypothesisKind::Step,
             HypothesisKind::LargeStep,
             HypothesisKind::ReferenceStep,
             HypothesisKind::SatelliteStep,
         ];
-        for spawn in &mut self.spawns {
+        for fork in &mut self.forks {
             for kind in lasting {
-                spawn.copies[kind as usize] = None;
+                fork.copies[kind as usize] = None;
             }
         }
     }
 
     /// Forgets all that may have happened.
     pub(crate) fn clear(&mut self) {
-        self.spawns.clear();
-        self.are_rivals_awake = false;
+        self.forks.clear();
+        self.other_kinds_run = false;
     }
 
     /// New copies of `now`, which are to begin with row `at`.
-    pub(crate) fn spawn(
+    pub(crate) fn fork(
         &mut self,
         at: usize,
         now: &Filter,
         noise: &NoiseVariances,
-        (earlier, in_port): (Option<EarlierState<'_>>, bool),
+        (earlier_state, in_port): (Option<EarlierState<'_>>, bool),
     ) {
         self.thin(at, now);
         self.rest(at, now);
-        let mut spawn = Fork {
+        let mut fork = Fork {
             at,
-            astray_from: None,
+            transient_from: None,
             origin: Box::new(now.clone()),
             copies: [const { None }; ALL_KINDS.len()],
             age_s: 0.0,
             disturbance_deg: 0.0,
-            is_fresh: false,
-            beforehand_nats: if in_port {
+            awaits_reading: false,
+            prior_log_odds: if in_port {
                 priors::STEP_AT_PORT_CALL_LOG_ODDS
             } else {
                 0.0
             },
         };
         let mut step = apply_jump(now, HypothesisKind::Step);
-        step.log_likelihood += spawn.beforehand_nats;
-        spawn.copies[HypothesisKind::Step as usize] = Some(Box::new(step));
-        if self.are_rivals_awake {
-            spawn.wake(earlier);
+        step.log_likelihood += fork.prior_log_odds;
+        fork.copies[HypothesisKind::Step as usize] = Some(Box::new(step));
+        if self.other_kinds_run {
+            fork.wake(earlier_state);
             let astray = self.likeliest(&TRANSIENTS, now);
-            if let Some(lead) =
-                astray.filter(|lead| lead.nats > TRANSIENT_END_FORK_LOG_LIKELIHOOD_RATIO)
+            if let Some(lead) = astray
+                .filter(|lead| lead.log_likelihood_ratio > TRANSIENT_END_FORK_LOG_LIKELIHOOD_RATIO)
             {
-                let astray = &self.spawns[lead.spawn];
-                spawn.astray_from = Some(astray.at);
+                let astray = &self.forks[lead.fork];
+                fork.transient_from = Some(astray.at);
                 let over = astray.copy(lead.kind).map(|copy| match lead.kind {
                     HypothesisKind::SevereTransient => reset_variation(copy, noise),
                     _ => copy.clone(),
                 });
-                spawn.copies[HypothesisKind::TransientEnd as usize] = over.map(Box::new);
+                fork.copies[HypothesisKind::TransientEnd as usize] = over.map(Box::new);
             }
         }
-        self.spawns.push(spawn);
+        self.forks.push(fork);
     }
 
     /// Takes in the measurement of row `at`; `null` has taken it in before, and it
     /// surprised by so much.
-    pub(crate) fn take(
+    pub(crate) fn observe(
         &mut self,
         at: usize,
         m: Measurement,
         noise: &NoiseVariances,
-        (null, surprise): (&Filter, f64),
-        earlier: Option<EarlierState<'_>>,
+        (null, excess_loss): (&Filter, f64),
+        earlier_state: Option<EarlierState<'_>>,
     ) {
-        for spawn in &mut self.spawns {
-            spawn.take(&m, noise, &ALL_KINDS);
+        for fork in &mut self.forks {
+            fork.observe(&m, noise, &ALL_KINDS);
         }
         if self.memory.len() == REMEMBERED_ROWS {
             self.memory.pop_front();
         }
         self.memory.push_back(m);
         self.latest = at;
-        let counted = surprise.min(ROW_MAX_EXCESS_LOSS) - ROW_FORGOTTEN_EXCESS_LOSS;
-        self.surprise = (self.surprise + counted).max(0.0);
+        let counted = excess_loss.min(ROW_MAX_EXCESS_LOSS) - ROW_FORGOTTEN_EXCESS_LOSS;
+        self.excess_loss = (self.excess_loss + counted).max(0.0);
         let step = self
             .lead(HypothesisKind::Step, null)
-            .map_or(0.0, |lead| lead.nats);
-        let is_surprised = self.surprise > WAKE_EXCESS_LOSS;
-        if is_surprised {
-            self.surprise = 0.0;
-            self.awake_until = at + AWAKE_MIN_ROWS;
+            .map_or(0.0, |lead| lead.log_likelihood_ratio);
+        let is_excessive = self.excess_loss > WAKE_EXCESS_LOSS;
+        if is_excessive {
+            self.excess_loss = 0.0;
+            self.run_others_until = at + AWAKE_MIN_ROWS;
         }
-        if (is_surprised || step > WAKE_LOG_LIKELIHOOD_RATIO) && !self.are_rivals_awake {
-            self.wake(noise, earlier);
+        if (is_excessive || step > WAKE_LOG_LIKELIHOOD_RATIO) && !self.other_kinds_run {
+            self.wake(noise, earlier_state);
         }
     }
 
     /// Makes the rivals, as if they had run all along.
-    fn wake(&mut self, noise: &NoiseVariances, earlier: Option<EarlierState<'_>>) {
-        self.are_rivals_awake = true;
+    fn wake(&mut self, noise: &NoiseVariances, earlier_state: Option<EarlierState<'_>>) {
+        self.other_kinds_run = true;
         let known_from = self.latest + 1 - self.memory.len();
-        for spawn in self.spawns.iter_mut().filter(|s| s.at >= known_from) {
-            spawn.wake(earlier);
-            spawn.age_s = 0.0;
-            spawn.disturbance_deg = 0.0;
-            for m in self.memory.iter().skip(spawn.at - known_from) {
-                spawn.take(m, noise, &OTHER_KINDS);
+        for fork in self.forks.iter_mut().filter(|s| s.at >= known_from) {
+            fork.wake(earlier_state);
+            fork.age_s = 0.0;
+            fork.disturbance_deg = 0.0;
+            for m in self.memory.iter().skip(fork.at - known_from) {
+                fork.observe(m, noise, &OTHER_KINDS);
             }
         }
     }
 
     /// Gives up rivals when nothing leads, and steps that trail for good.
     fn rest(&mut self, at: usize, null: &Filter) {
-        let leads = ALL_KINDS.map(|kind| self.lead(kind, null).map_or(0.0, |lead| lead.nats));
-        if at >= self.awake_until && leads.iter().all(|nats| *nats < SLEEP_LOG_LIKELIHOOD_RATIO) {
-            self.are_rivals_awake = false;
-            for spawn in &mut self.spawns {
+        let leads = ALL_KINDS.map(|kind| {
+            self.lead(kind, null)
+                .map_or(0.0, |lead| lead.log_likelihood_ratio)
+        });
+        if at >= self.run_others_until
+            && leads
+                .iter()
+                .all(|ratio| *ratio < SLEEP_LOG_LIKELIHOOD_RATIO)
+        {
+            self.other_kinds_run = false;
+            for fork in &mut self.forks {
                 for kind in ALL_KINDS
                     .into_iter()
                     .filter(|kind| *kind != HypothesisKind::Step)
                 {
-                    spawn.copies[kind as usize] = None;
+                    fork.copies[kind as usize] = None;
                 }
             }
         }
         let hopeless = null.log_likelihood - STEP_DROPPED_LOG_LIKELIHOOD_RATIO;
-        for spawn in self
-            .spawns
+        for fork in self
+            .forks
             .iter_mut()
             .filter(|s| at - s.at > STEP_DROPPED_MIN_ROWS)
         {
-            let step = &mut spawn.copies[HypothesisKind::Step as usize];
+            let step = &mut fork.copies[HypothesisKind::Step as usize];
             if step.as_ref().is_some_and(|s| s.log_likelihood <= hopeless) {
                 *step = None;
             }
@@ -298,28 +307,32 @@ impl HypothesisBank {
     /// The likeliest copy of a kind.
     pub(crate) fn lead(&self, kind: HypothesisKind, null: &Filter) -> Option<Lead> {
         // Asleep there are none.
-        if kind != HypothesisKind::Step && !self.are_rivals_awake {
+        if kind != HypothesisKind::Step && !self.other_kinds_run {
             return None;
         }
-        let copies = self.spawns.iter().enumerate();
+        let copies = self.forks.iter().enumerate();
         copies
-            .filter_map(|(spawn, s)| {
-                let nats = s.copy(kind)?.log_likelihood - null.log_likelihood;
-                Some(Lead { nats, kind, spawn })
+            .filter_map(|(fork, s)| {
+                let ratio = s.copy(kind)?.log_likelihood - null.log_likelihood;
+                Some(Lead {
+                    log_likelihood_ratio: ratio,
+                    kind,
+                    fork,
+                })
             })
-            .max_by(|a, b| a.nats.total_cmp(&b.nats))
+            .max_by(|a, b| a.log_likelihood_ratio.total_cmp(&b.log_likelihood_ratio))
     }
 
     /// By how much what leads was likelier beforehand than the same at another time.
-    pub(crate) fn beforehand_nats(&self, lead: Lead) -> f64 {
+    pub(crate) fn prior_log_odds(&self, lead: Lead) -> f64 {
         match lead.kind {
-            HypothesisKind::Step => self.spawns[lead.spawn].beforehand_nats,
+            HypothesisKind::Step => self.forks[lead.fork].prior_log_odds,
             _ => 0.0,
         }
     }
 
-    pub(crate) fn are_rivals_awake(&self) -> bool {
-        self.are_rivals_awake
+    pub(crate) fn other_kinds_run(&self) -> bool {
+        self.other_kinds_run
     }
 
     /// The likeliest copy of those in which the ship changed for good.
@@ -346,25 +359,25 @@ impl HypothesisBank {
 
     fn likeliest(&self, kinds: &[HypothesisKind], null: &Filter) -> Option<Lead> {
         let leads = kinds.iter().filter_map(|kind| self.lead(*kind, null));
-        leads.max_by(|a, b| a.nats.total_cmp(&b.nats))
+        leads.max_by(|a, b| a.log_likelihood_ratio.total_cmp(&b.log_likelihood_ratio))
     }
 
     /// Makes room for one more.
     fn thin(&mut self, at: usize, null: &Filter) {
-        self.spawns.retain(|s| at - s.at <= MAX_AGE_ROWS);
-        if self.spawns.len() < CAPACITY {
+        self.forks.retain(|s| at - s.at <= MAX_AGE_ROWS);
+        if self.forks.len() < CAPACITY {
             return;
         }
-        let leaders = ALL_KINDS.map(|kind| self.lead(kind, null).map(|lead| lead.spawn));
-        let age = |i: usize| (at - self.spawns[i].at) as f64;
-        let closest = (1..self.spawns.len() - 1)
+        let leaders = ALL_KINDS.map(|kind| self.lead(kind, null).map(|lead| lead.fork));
+        let age = |i: usize| (at - self.forks[i].at) as f64;
+        let closest = (1..self.forks.len() - 1)
             .filter(|&i| !leaders.contains(&Some(i)))
             .min_by(|&i, &j| {
                 let gap = |i: usize| age(i - 1) / age(i + 1);
                 gap(i).total_cmp(&gap(j))
             });
         if let Some(closest) = closest {
-            self.spawns.remove(closest);
+            self.forks.remove(closest);
         }
     }
 }

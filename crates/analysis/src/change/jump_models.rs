@@ -81,7 +81,7 @@ fn apply_step(now: &Filter, permanent: f64) -> Filter {
 /// their mean; the satellite compass's moves them in opposite senses; alone, either is
 /// the constant's. The step may be as large as the reading is astray: what is believed
 /// to be impossible is never learnt.
-pub(crate) fn misled(now: &Filter, next: &Measurement, which: HypothesisKind) -> Filter {
+pub(crate) fn reference_fault(now: &Filter, next: &Measurement, which: HypothesisKind) -> Filter {
     let mut copy = now.clone();
     let size = now.innovation_deg(next).max(priors::REFERENCE_STEP_SD_DEG);
     let constant = if next.difference.is_some() {

@@ -45,7 +45,7 @@ pub(crate) fn relinearise(
             break;
         }
         let mut after = filter.clone();
-        after.take(&m, noise, None);
+        after.observe(&m, noise, None);
         m = measure(&after.unknowns());
         moved = after.innovation_deg(&m);
     }
@@ -55,39 +55,39 @@ pub(crate) fn relinearise(
 impl HypothesisBank {
     /// Takes row `at` in, which the other copies have taken in before, where a large step
     /// is supposed; `measure` is of any row at any ship.
-    pub(crate) fn take_large(
+    pub(crate) fn observe_large_steps(
         &mut self,
         at: usize,
         noise: &NoiseVariances,
         measure: impl Fn(usize, &Unknowns) -> Measurement,
     ) {
-        if !self.are_rivals_awake() {
+        if !self.other_kinds_run() {
             return;
         }
-        for spawn in &mut self.spawns {
-            let rows = if spawn.copy(HypothesisKind::LargeStep).is_some() {
+        for fork in &mut self.forks {
+            let rows = if fork.copy(HypothesisKind::LargeStep).is_some() {
                 at..at + 1
-            } else if is_new(spawn, at) {
-                spawn.set(
+            } else if is_new(fork, at) {
+                fork.set(
                     HypothesisKind::LargeStep,
-                    apply_jump(spawn.origin(), HypothesisKind::LargeStep),
+                    apply_jump(fork.origin(), HypothesisKind::LargeStep),
                 );
-                spawn.at..at + 1
+                fork.at..at + 1
             } else {
                 continue;
             };
-            let Some(copy) = spawn.copy_mut(HypothesisKind::LargeStep) else {
+            let Some(copy) = fork.copy_mut(HypothesisKind::LargeStep) else {
                 continue;
             };
             for row in rows {
                 let m = relinearise(copy, noise, |ship| measure(row, ship));
-                copy.take(&m, noise, None);
+                copy.observe(&m, noise, None);
             }
         }
     }
 }
 
 /// Whether a large step is to be supposed of that time from now on.
-fn is_new(spawn: &Fork, at: usize) -> bool {
-    spawn.disturbance_deg() > LARGE_STEP_DEG && at <= spawn.at + LARGE_STEP_MAX_ROWS
+fn is_new(fork: &Fork, at: usize) -> bool {
+    fork.disturbance_deg() > LARGE_STEP_DEG && at <= fork.at + LARGE_STEP_MAX_ROWS
 }

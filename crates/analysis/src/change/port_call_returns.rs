@@ -52,7 +52,7 @@ pub(crate) struct Baseline {
     /// When the step happened at the latest.
     pub(crate) latest: Option<Timestamp>,
     /// Port calls since.
-    pub(crate) calls: i32,
+    pub(crate) port_calls: i32,
 }
 
 impl Baseline {
@@ -65,7 +65,7 @@ impl Baseline {
             StepOrigin::SoonAfter(_) => priors::CARGO_SOON_AFTER_CALL,
             StepOrigin::AtSea => return priors::RETURN_AFTER_CHANGE_AT_SEA,
         };
-        let still = is_cargo * (1.0 - priors::DISCHARGE).powi(self.calls);
+        let still = is_cargo * (1.0 - priors::DISCHARGE).powi(self.port_calls);
         priors::DISCHARGE * still / (still + 1.0 - is_cargo)
     }
 
@@ -82,7 +82,7 @@ impl Baseline {
     /// The ship without what changed her.
     pub(crate) fn without_cargo(&self) -> &Filter {
         match &self.began {
-            StepOrigin::SoonAfter(sailed) => sailed,
+            StepOrigin::SoonAfter(departure_before) => departure_before,
             _ => &self.filter,
         }
     }
@@ -110,7 +110,7 @@ pub(crate) struct ReturnCandidate {
     /// The first row after it.
     pub(crate) at: usize,
     /// By how much it is likelier than none by the rows alone.
-    pub(crate) nats: f64,
+    pub(crate) log_likelihood_ratio: f64,
     /// How likely the ship is again what she was before that step, at whatever call, and how
     /// likely any return is.
     pub(crate) probability: f64,
@@ -121,27 +121,33 @@ pub(crate) struct ReturnCandidate {
 #[derive(Default)]
 pub(crate) struct PortCallReturns {
     /// From the earliest step to the latest.
-    pub(crate) bases: Vec<Baseline>,
+    pub(crate) baselines: Vec<Baseline>,
     calls: Vec<Call>,
 }
 
 impl PortCallReturns {
-    pub(crate) fn step(&mut self, base: Baseline) {
-        if self.bases.len() == MAX_BASELINES {
+    pub(crate) fn add_baseline(&mut self, base: Baseline) {
+        if self.baselines.len() == MAX_BASELINES {
             // The first is the ship without any cargo, and stays.
-            self.bases.remove(1);
+            self.baselines.remove(1);
         }
-        self.bases.push(base);
+        self.baselines.push(base);
     }
 
     /// The ship lay in port before row `at`; `now` is the filter there, and the
-    /// bases are those of steps before `until`, a place in the list of events.
-    pub(crate) fn call(&mut self, at: usize, now: &Filter, until: usize, said: LoggedCargo) {
+    /// baselines are those of steps before `until`, a place in the list of events.
+    pub(crate) fn add_port_call(
+        &mut self,
+        at: usize,
+        now: &Filter,
+        until: usize,
+        said: LoggedCargo,
+    ) {
         let without_cargo = match said {
             LoggedCargo::Discharged { loaded, at_port } => self.before_loading(loaded, at_port),
             _ => None,
         };
-        let before = self.bases.iter_mut().filter(|base| base.event < until);
+        let before = self.baselines.iter_mut().filter(|base| base.event < until);
         let returns: Vec<Return> = before
             .map(|base| {
                 let chance = match (said, without_cargo) {
@@ -149,7 +155,7 @@ impl PortCallReturns {
                     (LoggedCargo::OnBoard, _) => priors::LOGGED_ON_BOARD_FACTOR * base.chance(),
                     _ => base.chance(),
                 };
-                base.calls += 1;
+                base.port_calls += 1;
                 Return {
                     event: base.event,
                     prior_odds: chance / (1.0 - chance),
@@ -173,7 +179,7 @@ impl PortCallReturns {
     /// noticed at sea only.
     fn before_loading(&self, loaded: Timestamp, at_port: bool) -> Option<(usize, f64)> {
         let since = |base: &&Baseline| base.latest.is_some_and(|latest| latest >= loaded);
-        let mut since = self.bases.iter().filter(since);
+        let mut since = self.baselines.iter().filter(since);
         let first = since.next()?;
         if !since.all(Baseline::is_cargo) {
             return None;
@@ -187,7 +193,7 @@ impl PortCallReturns {
     }
 
     /// Takes in a row, linearised at what each return has of the ship.
-    pub(crate) fn take(
+    pub(crate) fn observe(
         &mut self,
         measure: impl Fn(&Unknowns) -> Measurement,
         noise: &NoiseVariances,
@@ -196,7 +202,7 @@ impl PortCallReturns {
         for call in &mut self.calls {
             for back in &mut call.returns {
                 let m = measure(&back.filter.unknowns());
-                back.filter.take(&m, noise, None);
+                back.filter.observe(&m, noise, None);
             }
             call.returns.retain(|back| {
                 back.filter.log_likelihood
@@ -207,7 +213,7 @@ impl PortCallReturns {
     }
 
     /// The same for calls at row `first` and later, which are being retraced.
-    pub(crate) fn take_since(
+    pub(crate) fn observe_since(
         &mut self,
         first: usize,
         measure: impl Fn(&Unknowns) -> Measurement,
@@ -216,29 +222,29 @@ impl PortCallReturns {
         for call in self.calls.iter_mut().filter(|call| call.at >= first) {
             for back in &mut call.returns {
                 let m = measure(&back.filter.unknowns());
-                back.filter.take(&m, noise, None);
+                back.filter.observe(&m, noise, None);
             }
         }
     }
 
-    /// The likeliest return. `rival` is by how much the likeliest passing disturbance leads;
-    /// while one goes on that was told, `is_astray`, the rows speak for no return, but not
+    /// The likeliest return. `competitor` is by how much the likeliest passing disturbance leads;
+    /// while one goes on that was told, `is_outlying`, the rows speak for no return, but not
     /// against one either, for both may be.
     pub(crate) fn likeliest(
         &self,
         null: &Filter,
-        rival: f64,
-        is_astray: bool,
+        competitor: f64,
+        is_outlying: bool,
     ) -> Option<ReturnCandidate> {
         let tempered_odds = |back: &Return| {
-            let nats = back.filter.log_likelihood - null.log_likelihood;
-            let beside = if is_astray {
-                nats.min(0.0)
+            let ratio = back.filter.log_likelihood - null.log_likelihood;
+            let beside = if is_outlying {
+                ratio.min(0.0)
             } else {
                 f64::NEG_INFINITY
             };
-            let told = (nats - rival).max(beside);
-            (nats, back.prior_odds * (LIKELIHOOD_TEMPER * told).exp())
+            let told = (ratio - competitor).max(beside);
+            (ratio, back.prior_odds * (LIKELIHOOD_TEMPER * told).exp())
         };
         let each = || {
             let calls = self.calls.iter();
@@ -251,7 +257,7 @@ impl PortCallReturns {
         let sum: f64 = each().map(|(_, back)| tempered_odds(back).1).sum();
         // Which call it was matters less than whether she is the ship she was.
         let event = self
-            .bases
+            .baselines
             .iter()
             .map(|base| base.event)
             .max_by(|a, b| of_event(*a).total_cmp(&of_event(*b)))?;
@@ -261,7 +267,7 @@ impl PortCallReturns {
         Some(ReturnCandidate {
             event,
             at,
-            nats: tempered_odds(back).0,
+            log_likelihood_ratio: tempered_odds(back).0,
             probability: of_event(event) / (1.0 + sum),
             any: sum / (1.0 + sum),
             filter: back.filter.clone(),
@@ -270,7 +276,7 @@ impl PortCallReturns {
 
     /// A reference's error changed, or is again what it was: `now` does that to each return,
     /// and each is likelier by what the filter gained by it.
-    pub(crate) fn change_reference(&mut self, gained: f64, now: impl Fn(&Filter) -> Filter) {
+    pub(crate) fn apply_reference_change(&mut self, gained: f64, now: impl Fn(&Filter) -> Filter) {
         let returns = self.calls.iter_mut().flat_map(|call| &mut call.returns);
         for back in returns {
             back.filter = now(&back.filter);
@@ -281,7 +287,7 @@ impl PortCallReturns {
     /// The filter, `null`, is likelier by `gained` now that it knows of a disturbance that
     /// passed. So would a return be, but by no more than that it leads no longer: what it led
     /// by may be what the disturbance explains.
-    pub(crate) fn credit(&mut self, null: &Filter, gained: f64) {
+    pub(crate) fn credit_transient(&mut self, null: &Filter, gained: f64) {
         let returns = self.calls.iter_mut().flat_map(|call| &mut call.returns);
         for back in returns {
             let led = back.filter.log_likelihood - null.log_likelihood;
@@ -293,7 +299,7 @@ impl PortCallReturns {
     /// The ship is as she was before `event`, or it was no step of hers: later ones are of the
     /// past.
     pub(crate) fn forget(&mut self, event: usize) {
-        self.bases.retain(|base| base.event < event);
+        self.baselines.retain(|base| base.event < event);
         self.calls.clear();
     }
 }
@@ -313,18 +319,18 @@ mod tests {
     /// herself again leads from each.
     fn after_two_calls(leads: [f64; 2]) -> PortCallReturns {
         let mut calls = PortCallReturns::default();
-        calls.step(Baseline {
+        returns.add_baseline(Baseline {
             event: 0,
             filter: ship(),
             began: StepOrigin::AtPort,
             latest: None,
-            calls: 0,
+            port_calls: 0,
         });
         for at in [10, 20] {
-            calls.call(at, &ship(), usize::MAX, LoggedCargo::Nothing);
+            returns.add_port_call(at, &ship(), usize::MAX, LoggedCargo::Nothing);
         }
-        for (call, nats) in calls.calls.iter_mut().zip(leads) {
-            call.returns[0].filter.log_likelihood = nats;
+        for (call, ratio) in calls.calls.iter_mut().zip(leads) {
+            call.returns[0].filter.log_likelihood = ratio;
         }
         calls
     }
@@ -343,8 +349,8 @@ mod tests {
     #[test]
     fn a_disturbance_that_was_told_speaks_neither_for_a_return_nor_against_it() {
         let calls = after_two_calls([5.0, -30.0]);
-        let probability = |is_astray: bool| {
-            let likeliest = calls.likeliest(&ship(), 60.0, is_astray);
+        let probability = |is_outlying: bool| {
+            let likeliest = calls.likeliest(&ship(), 60.0, is_outlying);
             likeliest.unwrap().probability
         };
         assert!(probability(false) < 1e-6);
@@ -357,7 +363,7 @@ mod tests {
         let null = ship();
         for (led, gained, leads) in [(5.0, 20.0, 0.0), (-3.0, 20.0, -3.0), (5.0, 2.0, 3.0)] {
             let mut calls = after_two_calls([led, led]);
-            calls.credit(&null, gained);
+            returns.credit_transient(&null, gained);
             let now = calls.calls[0].returns[0].filter.log_likelihood - gained;
             assert!((now - leads).abs() < 1e-9, "{led}, {gained}: {now}");
         }

@@ -86,7 +86,7 @@ pub(super) fn evidence(
             known.changes_within_a_day
         ));
     }
-    if known.creeps {
+    if known.is_drifting {
         told.push("another change within weeks went the same way".to_owned());
     }
     let is_wild = known

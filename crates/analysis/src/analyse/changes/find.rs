@@ -23,10 +23,10 @@ pub(crate) fn find(
     let mut found = Found {
         changes: Vec::new(),
         boundaries: Vec::new(),
-        perhaps: None,
-        unnoticed: None,
+        possible_return: None,
+        undetected_step: None,
         misled: None,
-        open_nt2: None,
+        undecided_step_nt2: None,
         is_watched: true,
     };
     let usable = |reading: &Reading| {
@@ -105,14 +105,14 @@ pub(crate) fn find(
         found.changes.push(change);
     }
     found.misled = teller.misled(&found.changes, &place_of);
-    found.open_nt2 = told.open_nt2;
-    found.unnoticed = told
-        .unnoticed
-        .and_then(|unnoticed| teller.begun(&unnoticed));
-    found.perhaps = told.perhaps.and_then(|perhaps| {
-        let change = place_of.get(perhaps.of).copied().flatten()?;
+    found.undecided_step_nt2 = told.undecided_step_nt2;
+    found.undetected_step = told
+        .undetected_step
+        .and_then(|undetected_step| teller.begun(&undetected_step));
+    found.possible_return = told.possible_return.and_then(|possible_return| {
+        let change = place_of.get(possible_return.of).copied().flatten()?;
         let evidence = &mut found.changes[change].evidence;
-        teller.tell_end(&perhaps, change, evidence)
+        teller.tell_end(&possible_return, change, evidence)
     });
     found
 }

@@ -14,13 +14,13 @@ pub(crate) struct Found {
     /// Where epochs begin beside the logbook's.
     pub(crate) boundaries: Vec<Boundary>,
     /// The end that a change may have had, if that is open.
-    pub(crate) perhaps: Option<Ended>,
+    pub(crate) possible_return: Option<Ended>,
     /// A change that may have begun at a port call, and has not been told.
-    pub(crate) unnoticed: Option<Begun>,
+    pub(crate) undetected_step: Option<Begun>,
     /// A zero that may have moved in place of the only reference's.
     pub(crate) misled: Option<Misled>,
     /// What a step that is not certain may have done to bx and by, variance in nT².
-    pub(crate) open_nt2: Option<f64>,
+    pub(crate) undecided_step_nt2: Option<f64>,
     /// Whether a change would have been noticed.
     pub(crate) is_watched: bool,
 }

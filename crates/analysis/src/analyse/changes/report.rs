@@ -150,12 +150,12 @@ impl Teller<'_> {
             disturbance_deg: astray.as_ref().map(|astray| astray.usual_deg),
             is_open: !event.confirmed && event.withdrawn.is_none(),
             one_reference: self.one_reference(),
-            creeps: self.creeps(index),
+            is_drifting: self.is_drifting(index),
             changes_within_a_day: self.changes_within_a_day(index),
             over_step_log_likelihood_ratio: event.over_step_log_likelihood_ratio,
             alignment_over_step_log_likelihood_ratio: event
                 .alignment_over_step_log_likelihood_ratio,
-            detection_delay_s: self.time(event.told).seconds_since(from),
+            detection_delay_s: self.time(event.detected_row).seconds_since(from),
             reported: self.reported(event, at_port),
         };
         let causes = causes(event.what, &known);
@@ -171,7 +171,7 @@ impl Teller<'_> {
             _ => size::worst_change(
                 &event.before.parameters,
                 &event.after.parameters,
-                self.earth(event.told),
+                self.earth(event.detected_row),
             ),
         };
         let mut told = evidence(event, &known, worst, seen_deg);
@@ -193,7 +193,7 @@ impl Teller<'_> {
             from,
             from_earliest: from_earliest.min(from),
             from_latest: from_latest.max(from),
-            detected_at: self.time(event.told),
+            detected_at: self.time(event.detected_row),
             confirmed: event.confirmed,
             cause,
             evidence: told,
@@ -208,31 +208,31 @@ impl Teller<'_> {
     /// That a change may be over, if that is not out of question.
     pub(super) fn tell_end(
         &self,
-        perhaps: &PossibleReturn,
+        possible_return: &PossibleReturn,
         change: usize,
         evidence: &mut Vec<String>,
     ) -> Option<Ended> {
-        let probability = perhaps.probability;
+        let probability = possible_return.probability;
         if probability < SELDOM {
             return None;
         }
         evidence.push(format!(
             "it may have ended at the port call before {}: {:.0} %",
-            self.time(perhaps.first),
+            self.time(possible_return.first),
             100.0 * probability
         ));
         Some(Ended {
-            at: self.date(perhaps.first),
+            at: self.date(possible_return.first),
             change,
             probability,
         })
     }
 
     /// That a change may have begun unnoticed, if that is likely enough to matter.
-    pub(super) fn begun(&self, unnoticed: &UndetectedStep) -> Option<Begun> {
-        (unnoticed.probability > SELDOM).then(|| Begun {
-            at: self.date(unnoticed.first),
-            probability: unnoticed.probability,
+    pub(super) fn begun(&self, undetected_step: &UndetectedStep) -> Option<Begun> {
+        (undetected_step.probability > SELDOM).then(|| Begun {
+            at: self.date(undetected_step.first),
+            probability: undetected_step.probability,
         })
     }
 
@@ -268,11 +268,11 @@ impl Teller<'_> {
 
     /// Whether a step is one of several that go the same way for days: of something that
     /// creeps.
-    fn creeps(&self, index: usize) -> bool {
+    fn is_drifting(&self, index: usize) -> bool {
         let event = &self.events[index];
         let time = |event: &Event| self.time(event.first);
         let was_sudden =
-            |event: &Event| self.time(event.told).seconds_since(time(event)) < SUDDEN_S;
+            |event: &Event| self.time(event.detected_row).seconds_since(time(event)) < SUDDEN_S;
         let is_alone = |event: &Event| {
             event.what == EventKind::Step
                 && event.confirmed

@@ -174,7 +174,7 @@ impl Course {
         }
         epoch.to = until;
         self.add(epoch, from..readings.len(), readings, reference);
-        if let Some(ended) = &found.perhaps {
+        if let Some(ended) = &found.possible_return {
             let base = happened_in[ended.change];
             self.allow_for_end(ended, base, readings, reference);
         }
@@ -184,7 +184,7 @@ impl Course {
                 sharpen(change, old, new, readings);
             }
         }
-        if let Some(begun) = found.unnoticed.as_ref().filter(|_| until.is_none()) {
+        if let Some(begun) = found.undetected_step.as_ref().filter(|_| until.is_none()) {
             self.allow_for_change(begun, readings, reference);
         }
         if let Some(probability) = zero_moved.filter(|_| until.is_none()) {
@@ -193,7 +193,7 @@ impl Course {
         if let Some(misled) = found.misled.as_ref().filter(|_| until.is_none()) {
             self.allow_for_misled(misled);
         }
-        if let Some(variance_nt2) = found.open_nt2.filter(|_| until.is_none()) {
+        if let Some(variance_nt2) = found.undecided_step_nt2.filter(|_| until.is_none()) {
             self.allow_for_step(variance_nt2);
         }
         self.changes.append(&mut found.changes);

@@ -6,7 +6,7 @@ use crate::change::event::{Event, EventKind, remove_events, snapshot};
 use crate::change::filter::Filter;
 use crate::change::hypotheses::Lead;
 use crate::change::hypothesis_kind::HypothesisKind;
-use crate::change::jump_models::{EarlierState, apply_jump, misled};
+use crate::change::jump_models::{EarlierState, apply_jump, reference_fault};
 use crate::change::port_call_returns::{Baseline, ReturnCandidate, StepOrigin};
 use crate::change::thresholds::{
     BRIEF_CHANGE_S, FORK_INTERVAL_ROWS, LARGE_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO,
@@ -14,39 +14,41 @@ use crate::change::thresholds::{
 
 impl Detector<'_> {
     /// The ship's magnetism or a reference changed: the copy that knew takes over.
-    pub(crate) fn adopt(&mut self, k: usize, kind: HypothesisKind, leads: Leads) {
+    pub(crate) fn accept_change(&mut self, k: usize, kind: HypothesisKind, leads: Leads) {
         let Some(lead) = leads[kind as usize] else {
             return;
         };
         let large = self.bank.lead(HypothesisKind::LargeStep, &self.null);
         let large = large.filter(|l| {
             kind == HypothesisKind::Step
-                && l.nats > lead.nats - LARGE_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO
+                && l.log_likelihood_ratio
+                    > lead.log_likelihood_ratio - LARGE_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO
         });
         let lead = large.unwrap_or(lead);
-        let dated = self.date(lead.spawn, lead.kind, k);
-        let earlier = self.calls.bases.last();
+        let dated = self.date_change(lead.fork, lead.kind, k);
+        let earlier_state = self.returns.baselines.last();
         let at_sea = self.apply_alignment_step.is_some()
-            || earlier.is_some_and(|base| !base.began_at_port_call());
-        if kind == HypothesisKind::Step && self.misled.is_none() && at_sea {
+            || earlier_state.is_some_and(|base| !base.began_at_port_call());
+        if kind == HypothesisKind::Step && self.reference_fault.is_none() && at_sea {
             // Linearised each at its own end, either may be the likelier.
             let back = leads[HypothesisKind::Return as usize];
-            let back = back.map(|lead| (lead, self.date(lead.spawn, HypothesisKind::Return, k)));
+            let back =
+                back.map(|lead| (lead, self.date_change(lead.fork, HypothesisKind::Return, k)));
             let likelier = |d: &DatedChange| d.filter.log_likelihood > dated.filter.log_likelihood;
             if let Some((lead, back)) = back.filter(|(_, back)| likelier(back)) {
-                return self.come_back(k, lead, back, leads);
+                return self.accept_dated_return(k, lead, back, leads);
             }
         }
         if kind == HypothesisKind::Step
             && let Some((event, filter)) = self.same_step(k, &dated)
         {
-            return self.step_is(k, event, filter);
+            return self.replace_step(k, event, filter);
         }
-        self.supersede_burst(dated.first);
+        self.close_transient(dated.first);
         let what = match kind {
             HypothesisKind::Step => EventKind::Step,
             _ => self
-                .misled
+                .reference_fault
                 .take_if(|(_, before)| dated.filter.agrees_in_constant(before))
                 .map_or(EventKind::ReferenceFault, |(event, _)| {
                     EventKind::Return(event)
@@ -63,57 +65,60 @@ impl Detector<'_> {
         if let Some(event) = self.events.last_mut() {
             event.noticed_late = dated.noticed_late;
         }
-        let mut rivals = Vec::new();
-        let mut doubt = None;
+        let mut competing = Vec::new();
+        let mut no_step = None;
         if kind == HypothesisKind::Step {
             self.apply_alignment_step = None;
-            doubt = Some(self.doubt_of(k, &dated, &leads));
-            rivals = self.rivals_of(k, &dated);
+            no_step = Some(self.no_step_hypotheses(k, &dated, &leads));
+            competing = self.competing_hypotheses(k, &dated);
             // It may be that several steps were the same.
-            rivals.append(&mut self.rivals);
-            if !self.began_at_call(&dated) {
-                self.unsettled = ExtraDrift::after(dated.first, &dated.before, &dated.filter);
+            competing.append(&mut self.competing);
+            if !self.began_at_port_call(&dated) {
+                self.extra_drift = ExtraDrift::after(dated.first, &dated.before, &dated.filter);
             }
-            self.retrace(k, &dated);
+            self.replay_port_calls(k, &dated);
         } else {
-            if what == EventKind::ReferenceFault && self.misled.is_none() {
-                self.misled = Some((self.events.len() - 1, dated.before));
+            if what == EventKind::ReferenceFault && self.reference_fault.is_none() {
+                self.reference_fault = Some((self.events.len() - 1, dated.before));
             }
             let gained = dated.filter.log_likelihood - self.null.log_likelihood;
-            let mut calls = std::mem::take(&mut self.calls);
+            let mut returns = std::mem::take(&mut self.returns);
             let next = |back: &Filter| self.measure(k, &back.unknowns());
-            calls.change_reference(gained, |back| misled(back, &next(back), lead.kind));
-            self.calls = calls;
+            returns.apply_reference_change(gained, |back| {
+                reference_fault(back, &next(back), lead.kind)
+            });
+            self.returns = returns;
         }
-        self.take_over(k, dated.filter, dated.first);
-        self.rivals = rivals;
-        self.doubt = doubt;
+        self.replace_null(k, dated.filter, dated.first);
+        self.competing = competing;
+        self.no_step = no_step;
         if what == EventKind::ReferenceFault {
             // Its noise may be another, too.
-            self.lesson = LearningSchedule::next(self.observations, dated.first, dated.first, 0.0);
+            self.next_learning =
+                LearningSchedule::next(self.observations, dated.first, dated.first, 0.0);
         }
     }
 
-    fn began_at_call(&self, dated: &DatedChange) -> bool {
+    fn began_at_port_call(&self, dated: &DatedChange) -> bool {
         let (earliest, latest) = dated.between;
-        (earliest..=latest).any(|row| self.is_call(row))
+        (earliest..=latest).any(|row| self.is_port_call(row))
     }
 
     /// The port calls since a step, and the one at which it happened, as the filter
     /// that knows of the step would have met them.
-    pub(crate) fn retrace(&mut self, k: usize, dated: &DatedChange) {
+    pub(crate) fn replay_port_calls(&mut self, k: usize, dated: &DatedChange) {
         let event = self.events.len() - 1;
-        let is_said_loaded = self.is_said_loaded(dated.between);
-        let began = if dated.noticed_late && !is_said_loaded {
+        let is_loading_logged = self.is_loading_logged(dated.between);
+        let began = if dated.noticed_late && !is_loading_logged {
             StepOrigin::NoticedLate
-        } else if self.began_at_call(dated) {
+        } else if self.began_at_port_call(dated) {
             StepOrigin::AtPort
-        } else if is_said_loaded {
+        } else if is_loading_logged {
             StepOrigin::SaidLoaded
         } else {
-            let sailed = self.sailed(dated.first, &self.events[..event]);
-            sailed.map_or(StepOrigin::AtSea, |(_, sailed)| {
-                StepOrigin::SoonAfter(Box::new(sailed.clone()))
+            let departure_before = self.departure_before(dated.first, &self.events[..event]);
+            departure_before.map_or(StepOrigin::AtSea, |(_, departure_before)| {
+                StepOrigin::SoonAfter(Box::new(departure_before.clone()))
             })
         };
         let base = Baseline {
@@ -121,72 +126,73 @@ impl Detector<'_> {
             filter: dated.before.clone(),
             began,
             latest: self.observations[dated.between.1].time,
-            calls: 0,
+            port_calls: 0,
         };
-        self.calls.step(base);
+        self.returns.add_baseline(base);
         let at = dated.filter.unknowns();
-        let is_call = |row: usize| self.is_call(row) || self.is_said_discharged(row);
-        let calls: Vec<usize> = (dated.first..=k).filter(|row| is_call(*row)).collect();
+        let is_port_call = |row: usize| self.is_port_call(row) || self.is_discharge_logged(row);
+        let calls: Vec<usize> = (dated.first..=k).filter(|row| is_port_call(*row)).collect();
         if calls.first() == Some(&dated.first) {
-            let said = self.said_at(dated.first);
-            self.calls.call(dated.first, &dated.before, event, said);
+            let said = self.logged_cargo_at(dated.first);
+            self.returns
+                .add_port_call(dated.first, &dated.before, event, said);
         }
-        let calm: Vec<usize> = self.calm(dated.first..k + 1).collect();
+        let undisturbed_rows: Vec<usize> = self.undisturbed_rows(dated.first..k + 1).collect();
         let mut since = apply_jump(&dated.before, dated.kind);
         for row in dated.first..=k {
             if row > dated.first && calls.contains(&row) {
-                let said = self.said_at(row);
-                self.calls.call(row, &since, usize::MAX, said);
+                let said = self.logged_cargo_at(row);
+                self.returns.add_port_call(row, &since, usize::MAX, said);
             }
-            if calm.binary_search(&row).is_err() {
+            if undisturbed_rows.binary_search(&row).is_err() {
                 continue;
             }
             let m = self.measure(row, &at);
-            since.take(&m, &self.noise, None);
-            let mut calls = std::mem::take(&mut self.calls);
-            calls.take_since(dated.first, |at| self.measure(row, at), &self.noise);
-            self.calls = calls;
+            since.observe(&m, &self.noise, None);
+            let mut returns = std::mem::take(&mut self.returns);
+            returns.observe_since(dated.first, |at| self.measure(row, at), &self.noise);
+            self.returns = returns;
         }
     }
 
     /// A burst that went on until now ended where a change is dated; if it began
     /// there too, or nothing before the change told of it, it was the change's first sign
     /// and nothing else.
-    pub(crate) fn supersede_burst(&mut self, first: usize) {
-        let Some(event) = self.burst.take() else {
+    pub(crate) fn close_transient(&mut self, first: usize) {
+        let Some(event) = self.transient.take() else {
             return;
         };
-        let burst = &self.events[event];
-        if burst.first + 2 * FORK_INTERVAL_ROWS >= first || burst.told >= first {
+        let transient = &self.events[event];
+        if transient.first + 2 * FORK_INTERVAL_ROWS >= first || transient.detected_row >= first {
             self.events.remove(event);
         } else {
             self.events[event].last = Some(first - 1);
         }
     }
 
-    pub(crate) fn adopt_return(&mut self, k: usize, leads: Leads) {
+    pub(crate) fn accept_return(&mut self, k: usize, leads: Leads) {
         let Some(lead) = leads[HypothesisKind::Return as usize] else {
             return;
         };
-        let mut dated = self.date(lead.spawn, HypothesisKind::Return, k);
+        let mut dated = self.date_change(lead.fork, HypothesisKind::Return, k);
         if let Some(call) = self.discharge_near(dated.first, k) {
             // It may as well have been at the call.
             let (earliest, latest) = dated.between;
             dated.between = (earliest.min(call), latest.max(call));
         }
-        self.come_back(k, lead, dated, leads);
+        self.accept_dated_return(k, lead, dated, leads);
     }
 
     /// The ship is herself again, or her compass's zero is where it was. What came and went
     /// within hours at sea was beside her, and no change of her own.
-    fn come_back(&mut self, k: usize, lead: Lead, dated: DatedChange, leads: Leads) {
+    fn accept_dated_return(&mut self, k: usize, lead: Lead, dated: DatedChange, leads: Leads) {
         let zero = self.apply_alignment_step.take().map(|(event, _)| event);
-        let ship = || self.calls.bases.last().map(|base| base.event);
+        let ship = || self.returns.baselines.last().map(|base| base.event);
         let Some(event) = zero.or_else(ship) else {
             return;
         };
-        let before = self.bank.spawns[lead.spawn].origin().clone();
-        self.supersede_burst(dated.first);
+        let before = self.bank.forks[lead.fork].origin().clone();
+        self.close_transient(dated.first);
         if self.was_brief(&self.events[event], &dated) {
             self.events[event].pass(dated.first);
         } else {
@@ -199,9 +205,9 @@ impl Detector<'_> {
                 Some((&before, &dated.filter)),
             );
         }
-        self.calls.forget(event);
-        self.unsettled = ExtraDrift::default();
-        self.take_over(k, dated.filter, dated.first);
+        self.returns.forget(event);
+        self.extra_drift = ExtraDrift::default();
+        self.replace_null(k, dated.filter, dated.first);
     }
 
     fn was_brief(&self, event: &Event, back: &DatedChange) -> bool {
@@ -212,24 +218,24 @@ impl Detector<'_> {
         let mut rows = event.between.0..=back.between.1.max(back.first);
         matches!(event.what, EventKind::Step | EventKind::Alignment)
             && lasted_s.is_some_and(|s| s < BRIEF_CHANGE_S)
-            && !rows.any(|row| self.is_call(row))
+            && !rows.any(|row| self.is_port_call(row))
     }
 
     /// The reference is itself again.
-    pub(crate) fn adopt_mended(&mut self, k: usize, leads: Leads) {
+    pub(crate) fn accept_reference_repair(&mut self, k: usize, leads: Leads) {
         let Some(lead) = leads[HypothesisKind::Return as usize] else {
             return;
         };
-        let dated = self.date(lead.spawn, HypothesisKind::Return, k);
-        let before = self.bank.spawns[lead.spawn].origin().clone();
-        self.supersede_burst(dated.first);
-        let Some((event, mended)) = self.misled.take() else {
+        let dated = self.date_change(lead.fork, HypothesisKind::Return, k);
+        let before = self.bank.forks[lead.fork].origin().clone();
+        self.close_transient(dated.first);
+        let Some((event, mended)) = self.reference_fault.take() else {
             return;
         };
         let gained = dated.filter.log_likelihood - self.null.log_likelihood;
         let mended = EarlierState::Reference(&mended);
-        self.calls
-            .change_reference(gained, |back| mended.again(back));
+        self.returns
+            .apply_reference_change(gained, |back| mended.again(back));
         self.push(
             k,
             EventKind::Return(event),
@@ -238,15 +244,20 @@ impl Detector<'_> {
             leads,
             Some((&before, &dated.filter)),
         );
-        self.take_over(k, dated.filter, dated.first);
+        self.replace_null(k, dated.filter, dated.first);
     }
 
     /// The ship has been herself again since a port call.
-    pub(crate) fn adopt_call(&mut self, k: usize, back: ReturnCandidate, leads: Leads) {
+    pub(crate) fn accept_port_call_return(
+        &mut self,
+        k: usize,
+        back: ReturnCandidate,
+        leads: Leads,
+    ) {
         // Before places in the list move.
-        self.note_zeros();
-        self.rivals.clear();
-        self.supersede_burst(back.at);
+        self.record_alignment_ratios();
+        self.competing.clear();
+        self.close_transient(back.at);
         self.apply_alignment_step = None;
         // What was taken for a step to something else was this.
         let is_reference = |event: &Event| match event.what {
@@ -259,7 +270,7 @@ impl Detector<'_> {
         };
         let gone = self.events.iter().enumerate().map(is_gone).collect();
         let moved = remove_events(&mut self.events, gone);
-        if let Some((place, _)) = &mut self.misled {
+        if let Some((place, _)) = &mut self.reference_fault {
             *place = moved(*place);
         }
         let before = self.null.clone();
@@ -271,23 +282,24 @@ impl Detector<'_> {
             leads,
             Some((&before, &back.filter)),
         );
-        self.calls.forget(back.event);
-        self.unsettled = ExtraDrift::default();
-        self.take_over(k, back.filter, back.at);
+        self.returns.forget(back.event);
+        self.extra_drift = ExtraDrift::default();
+        self.replace_null(k, back.filter, back.at);
     }
 
-    pub(crate) fn take_over(&mut self, k: usize, filter: Filter, first: usize) {
-        self.note_zeros();
+    pub(crate) fn replace_null(&mut self, k: usize, filter: Filter, first: usize) {
+        self.record_alignment_ratios();
         self.null = filter;
         self.bank.clear();
-        self.faint = None;
-        self.passed = None;
-        self.rivals.clear();
-        self.doubt = None;
-        self.spawned = k;
+        self.weak_transient = None;
+        self.before_transient = None;
+        self.competing.clear();
+        self.no_step = None;
+        self.last_fork = k;
         self.learn_from = first;
         // Neither seas nor instruments changed: of fewer days there is less to learn.
-        self.lesson = LearningSchedule::next(self.observations, first, first, self.learnt_days);
+        self.next_learning =
+            LearningSchedule::next(self.observations, first, first, self.learnt_days);
     }
 
     pub(crate) fn push(
@@ -304,8 +316,8 @@ impl Detector<'_> {
             what,
             first,
             between,
-            told: k,
-            leads: leads.map(|lead| lead.map_or(0.0, |lead| lead.nats)),
+            detected_row: k,
+            leads: leads.map(|lead| lead.map_or(0.0, |lead| lead.log_likelihood_ratio)),
             before: snapshot(before),
             after: snapshot(after),
             last: None,

@@ -29,14 +29,18 @@ const LINEARISATION_ROUNDS: usize = 3;
 
 impl Detector<'_> {
     /// The rivals of a step that was dated just now.
-    pub(crate) fn rivals_of(&self, k: usize, dated: &DatedChange) -> Vec<CompetingHypothesis> {
-        let creeping = priors::DRIFT_VARIANCES
+    pub(crate) fn competing_hypotheses(
+        &self,
+        k: usize,
+        dated: &DatedChange,
+    ) -> Vec<CompetingHypothesis> {
+        let drift_hypothesis = priors::DRIFT_VARIANCES
             .iter()
-            .filter_map(|drift| self.creeping(k, dated, *drift));
+            .filter_map(|drift| self.drift_hypothesis(k, dated, *drift));
         let apply_alignment_step = self
-            .has_both(k)
+            .has_both_references(k)
             .then(|| self.apply_alignment_step(k, dated));
-        creeping.chain(apply_alignment_step).collect()
+        drift_hypothesis.chain(apply_alignment_step).collect()
     }
 
     /// The zero moved when the step is dated.
@@ -47,13 +51,13 @@ impl Detector<'_> {
             drift: 0.0,
             first: dated.first,
             between: dated.between,
-            filter: self.zero_moved(k, &dated.before, dated.first),
+            filter: self.filter_with_alignment_change(k, &dated.before, dated.first),
             before: dated.before.clone(),
         }
     }
 
     /// The filter with the zero having moved before row `first`, having read all rows until `k`.
-    fn zero_moved(&self, k: usize, before: &Filter, first: usize) -> Filter {
+    fn filter_with_alignment_change(&self, k: usize, before: &Filter, first: usize) -> Filter {
         let mut filter = before.clone();
         // So often, for the rows are to be linearised at where it ends.
         for _ in 0..LINEARISATION_ROUNDS {
@@ -70,25 +74,30 @@ impl Detector<'_> {
     }
 
     /// The ship has drifted since the likeliest of the times that the bank keeps.
-    fn creeping(&self, k: usize, dated: &DatedChange, drift: f64) -> Option<CompetingHypothesis> {
-        let spawns = &self.bank.spawns;
-        let oldest = spawns.first()?.at;
+    fn drift_hypothesis(
+        &self,
+        k: usize,
+        dated: &DatedChange,
+        drift: f64,
+    ) -> Option<CompetingHypothesis> {
+        let forks = &self.bank.forks;
+        let oldest = forks.first()?.at;
         let at = dated.filter.unknowns();
         let rows = oldest..k + 1;
         let measured: Vec<Measurement> = rows
             .map(|row| self.measure_drifting(row, &at, drift))
             .collect();
-        let run = |(place, spawn): (usize, &Fork)| {
-            let mut filter = spawn.origin().clone();
-            for m in &measured[spawn.at - oldest..] {
-                filter.take(m, &self.noise, None);
+        let run = |(place, fork): (usize, &Fork)| {
+            let mut filter = fork.origin().clone();
+            for m in &measured[fork.at - oldest..] {
+                filter.observe(m, &self.noise, None);
             }
             (place, filter)
         };
-        let runs = spawns.iter().enumerate().map(run);
+        let runs = forks.iter().enumerate().map(run);
         let (place, filter) =
             runs.max_by(|a, b| a.1.log_likelihood.total_cmp(&b.1.log_likelihood))?;
-        let row = |place: usize| spawns[place].at;
+        let row = |place: usize| forks[place].at;
         let first = row(place).max(1);
         Some(CompetingHypothesis {
             what: EventKind::Drift,
@@ -97,98 +106,104 @@ impl Detector<'_> {
             first,
             between: (
                 row(place.saturating_sub(1)).clamp(1, first),
-                row((place + 1).min(spawns.len() - 1)).max(first),
+                row((place + 1).min(forks.len() - 1)).max(first),
             ),
             filter,
-            before: spawns[place].origin().clone(),
+            before: forks[place].origin().clone(),
         })
     }
 
     /// They read the row that the filter has read.
-    pub(crate) fn take_in_rivals(&mut self, k: usize) {
-        let mut rivals = std::mem::take(&mut self.rivals);
-        for rival in &mut rivals {
-            let at = rival.filter.unknowns();
-            let m = self.measure_drifting(k, &at, rival.drift);
-            rival.filter.take(&m, &self.noise, None);
+    pub(crate) fn observe_competing(&mut self, k: usize) {
+        let mut competing = std::mem::take(&mut self.competing);
+        for competitor in &mut competing {
+            let at = competitor.filter.unknowns();
+            let m = self.measure_drifting(k, &at, competitor.drift);
+            competitor.filter.observe(&m, &self.noise, None);
         }
         let hopeless = self.null.log_likelihood - COMPETING_DROPPED_LOG_LIKELIHOOD_RATIO;
-        rivals.retain(|r| r.filter.log_likelihood > hopeless && k < r.first + COMPETING_MAX_ROWS);
-        self.rivals = rivals;
+        competing
+            .retain(|r| r.filter.log_likelihood > hopeless && k < r.first + COMPETING_MAX_ROWS);
+        self.competing = competing;
     }
 
     /// Puts the likeliest rival in the place of the last step, if it explains the rows
     /// far better and no less well than another step would.
-    pub(crate) fn settle_rivals(&mut self, k: usize, leads: &Leads) -> bool {
-        let of_kind = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
-        let (step, burst) = (
+    pub(crate) fn decide_competing(&mut self, k: usize, leads: &Leads) -> bool {
+        let of_kind = |kind: HypothesisKind| {
+            leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
+        };
+        let (step, transient) = (
             of_kind(HypothesisKind::Step),
             of_kind(HypothesisKind::Transient),
         );
         // What drifts may well have come back: that she did is simpler.
-        let back = self.candidate(leads).map_or(0.0, |back| back.nats);
+        let back = self
+            .return_candidate(leads)
+            .map_or(0.0, |back| back.log_likelihood_ratio);
         let back = back.max(of_kind(HypothesisKind::Return));
-        let lead =
-            |rival: &CompetingHypothesis| rival.filter.log_likelihood - self.null.log_likelihood;
-        let later = |rival: &CompetingHypothesis| {
-            let later = rival.event + 1..self.events.len();
-            later.filter(|event| self.is_standing_step(*event)).count()
+        let lead = |competitor: &CompetingHypothesis| {
+            competitor.filter.log_likelihood - self.null.log_likelihood
+        };
+        let later = |competitor: &CompetingHypothesis| {
+            let later = competitor.event + 1..self.events.len();
+            later.filter(|event| self.is_step_in_force(*event)).count()
         };
         let worth = |place: usize| {
-            let rival = &self.rivals[place];
-            lead(rival) + priors::SPARED_STEP_LOG_ODDS * later(rival) as f64
+            let competitor = &self.competing[place];
+            lead(competitor) + priors::SPARED_STEP_LOG_ODDS * later(competitor) as f64
         };
-        let likeliest = (0..self.rivals.len()).max_by(|&a, &b| worth(a).total_cmp(&worth(b)));
+        let likeliest = (0..self.competing.len()).max_by(|&a, &b| worth(a).total_cmp(&worth(b)));
         let Some(place) = likeliest else {
             return false;
         };
-        let (nats, of) = (lead(&self.rivals[place]), self.rivals[place].event);
-        let mut steps = (of..self.events.len()).filter(|&e| self.is_standing_step(e));
-        let is_drift = self.rivals[place].what == EventKind::Drift;
+        let (ratio, of) = (lead(&self.competing[place]), self.competing[place].event);
+        let mut steps = (of..self.events.len()).filter(|&e| self.is_step_in_force(e));
+        let is_drift = self.competing[place].what == EventKind::Drift;
         let in_port = is_drift && steps.all(|event| self.is_cargo_likely(event));
-        let mut enough = if later(&self.rivals[place]) > 0 {
+        let mut enough = if later(&self.competing[place]) > 0 {
             COMPETING_WITH_SEVERAL_LOG_LIKELIHOOD_RATIO
         } else {
             COMPETING_LOG_LIKELIHOOD_RATIO
         };
         if in_port {
             // Cargo comes on board at once: nothing went before it.
-            if self.rivals[place].first + DRIFT_BEFORE_CARGO_ROWS > self.events[of].between.0 {
+            if self.competing[place].first + DRIFT_BEFORE_CARGO_ROWS > self.events[of].between.0 {
                 return false;
             }
             enough += DRIFT_WITH_CARGO_EXTRA_LOG_LIKELIHOOD_RATIO;
         }
-        if nats < enough
-            || nats < step - COMPETING_DEFICIT_LOG_LIKELIHOOD_RATIO
-            || nats < burst
-            || nats < back
+        if ratio < enough
+            || ratio < step - COMPETING_DEFICIT_LOG_LIKELIHOOD_RATIO
+            || ratio < transient
+            || ratio < back
         {
             return false;
         }
         // Another step upon the first is the rarer by far.
         let is_needless = step > COMPETING_LOG_LIKELIHOOD_RATIO;
-        if self.rivals[place].what == EventKind::Alignment
+        if self.competing[place].what == EventKind::Alignment
             && !is_needless
-            && !self.tells_from_step(place, k)
+            && !self.headings_tell_alignment(place, k)
         {
             return false;
         }
-        if self.rivals[place].what == EventKind::Alignment {
-            let rival = &self.rivals[place];
-            let mut step = self.step_anew(k, &rival.before, rival.first);
-            let zero = self.zero_moved(k, &rival.before, rival.first);
+        if self.competing[place].what == EventKind::Alignment {
+            let competitor = &self.competing[place];
+            let mut step = self.refit_step(k, &competitor.before, competitor.first);
+            let zero = self.filter_with_alignment_change(k, &competitor.before, competitor.first);
             let trails = zero.log_likelihood - step.log_likelihood;
             if trails < STEP_KEPT_LOG_LIKELIHOOD_RATIO {
                 // What was gained meanwhile by being told of a burst, it has gained, too.
-                step.log_likelihood = rival.filter.log_likelihood - trails;
-                self.step_is(k, of, step);
+                step.log_likelihood = competitor.filter.log_likelihood - trails;
+                self.replace_step(k, of, step);
                 return true;
             }
         }
-        let rival = self.rivals.swap_remove(place);
-        self.rivals.clear();
-        self.calls.forget(of);
-        self.forget_later_steps(of);
+        let competitor = self.competing.swap_remove(place);
+        self.competing.clear();
+        self.returns.forget(of);
+        self.remove_later_steps(of);
         let event = &mut self.events[of];
         let was = CompetingHypothesis {
             what: event.what,
@@ -197,44 +212,44 @@ impl Detector<'_> {
             first: event.first,
             between: event.between,
             filter: self.null.clone(),
-            before: rival.before.clone(),
+            before: competitor.before.clone(),
         };
-        event.what = rival.what;
-        event.over_step_log_likelihood_ratio = if rival.what == EventKind::Step {
+        event.what = competitor.what;
+        event.over_step_log_likelihood_ratio = if competitor.what == EventKind::Step {
             0.0
         } else {
-            nats
+            ratio
         };
-        event.before = snapshot(&rival.before);
-        event.after = snapshot(&rival.filter);
-        (event.first, event.between) = (rival.first, rival.between);
-        self.unsettled = match rival.what {
-            EventKind::Drift => ExtraDrift::creeping(k, rival.drift),
+        event.before = snapshot(&competitor.before);
+        event.after = snapshot(&competitor.filter);
+        (event.first, event.between) = (competitor.first, competitor.between);
+        self.extra_drift = match competitor.what {
+            EventKind::Drift => ExtraDrift::drift_hypothesis(k, competitor.drift),
             _ => ExtraDrift::default(),
         };
         self.apply_alignment_step = None;
         // Two courses may tell of either what the next one does not.
-        let mut rivals = Vec::new();
-        match rival.what {
+        let mut competing = Vec::new();
+        match competitor.what {
             EventKind::Alignment => {
-                rivals.push(was);
-                self.apply_alignment_step = Some((of, rival.before));
+                competing.push(was);
+                self.apply_alignment_step = Some((of, competitor.before));
             }
-            EventKind::Step => self.step_after_all(&rival),
+            EventKind::Step => self.revert_to_step(&competitor),
             _ => {}
         }
-        self.take_over(k, rival.filter, rival.first);
-        self.rivals = rivals;
+        self.replace_null(k, competitor.filter, competitor.first);
+        self.competing = competing;
         true
     }
 
     /// What had been taken for a zero that moved was a step.
-    fn step_after_all(&mut self, step: &CompetingHypothesis) {
+    fn revert_to_step(&mut self, step: &CompetingHypothesis) {
         let at_port = self.began_in_port(step.event);
         if !at_port {
-            self.unsettled = ExtraDrift::after(step.first, &step.before, &step.filter);
+            self.extra_drift = ExtraDrift::after(step.first, &step.before, &step.filter);
         }
-        self.calls.step(Baseline {
+        self.returns.add_baseline(Baseline {
             event: step.event,
             filter: step.before.clone(),
             began: if at_port {
@@ -243,40 +258,43 @@ impl Detector<'_> {
                 StepOrigin::AtSea
             },
             latest: self.observations[step.between.1].time,
-            calls: 0,
+            port_calls: 0,
         });
     }
 
     /// By how much it is likelier that the zero moved than that the ship did, for each step of
     /// which that is open.
-    pub(crate) fn note_zeros(&mut self) {
-        for rival in self
-            .rivals
+    pub(crate) fn record_alignment_ratios(&mut self) {
+        for competitor in self
+            .competing
             .iter()
             .filter(|r| r.what == EventKind::Alignment)
         {
-            let nats = rival.filter.log_likelihood - self.null.log_likelihood;
-            if let Some(event) = self.events.get_mut(rival.event) {
-                event.alignment_over_step_log_likelihood_ratio = Some(nats);
+            let ratio = competitor.filter.log_likelihood - self.null.log_likelihood;
+            if let Some(event) = self.events.get_mut(competitor.event) {
+                event.alignment_over_step_log_likelihood_ratio = Some(ratio);
             }
         }
     }
 
     /// Whether she has sailed on headings since that tell a zero that moved from a step: on
     /// one, and on two that lie close, a step does the same.
-    fn tells_from_step(&self, place: usize, k: usize) -> bool {
+    fn headings_tell_alignment(&self, place: usize, k: usize) -> bool {
         let mut rows = [0; ALIGNMENT_SECTORS];
-        for o in &self.observations[self.rivals[place].first..=k] {
+        for o in &self.observations[self.competing[place].first..=k] {
             rows[(o.compass.degrees() / 360.0 * ALIGNMENT_SECTORS as f64) as usize
                 % ALIGNMENT_SECTORS] += 1;
         }
-        let sailed = |sector: usize| rows[sector % ALIGNMENT_SECTORS] >= ALIGNMENT_SECTOR_ROWS;
+        let departure_before =
+            |sector: usize| rows[sector % ALIGNMENT_SECTORS] >= ALIGNMENT_SECTOR_ROWS;
         let apart = ALIGNMENT_SECTORS_BETWEEN + 1..ALIGNMENT_SECTORS - ALIGNMENT_SECTORS_BETWEEN;
-        (0..ALIGNMENT_SECTORS).any(|one| sailed(one) && apart.clone().any(|far| sailed(one + far)))
+        (0..ALIGNMENT_SECTORS).any(|one| {
+            departure_before(one) && apart.clone().any(|far| departure_before(one + far))
+        })
     }
 
     /// What had been taken for further steps was the same.
-    pub(crate) fn forget_later_steps(&mut self, of: usize) {
+    pub(crate) fn remove_later_steps(&mut self, of: usize) {
         let is_gone = |place: usize, event: &Event| match event.what {
             EventKind::Step => place > of,
             EventKind::Return(step) => step >= of && self.events[step].what == EventKind::Step,
@@ -289,27 +307,36 @@ impl Detector<'_> {
             .map(|(p, e)| is_gone(p, e))
             .collect();
         let moved = remove_events(&mut self.events, gone);
-        self.burst = self.burst.map(&moved);
-        if let Some((place, _)) = &mut self.misled {
+        self.transient = self.transient.map(&moved);
+        if let Some((place, _)) = &mut self.reference_fault {
             *place = moved(*place);
         }
     }
 
     fn is_cargo_likely(&self, event: usize) -> bool {
-        self.began_in_port(event) || self.is_said_on_board(self.events[event].first)
+        self.began_in_port(event) || self.is_cargo_logged(self.events[event].first)
     }
 
     fn began_in_port(&self, event: usize) -> bool {
         let (earliest, latest) = self.events[event].between;
-        (earliest..=latest).any(|row| self.is_call(row))
+        (earliest..=latest).any(|row| self.is_port_call(row))
     }
 
     /// What the filter gained by being told of a burst, its rivals would have gained, too.
-    pub(crate) fn credit_rivals(&mut self, kind: HypothesisKind) {
-        let gained = self.bank.lead(kind, &self.null).map_or(0.0, |l| l.nats);
-        let rivals = self.rivals.iter_mut().map(|rival| &mut rival.filter);
-        let doubts = self.doubt.iter_mut().flat_map(|doubt| &mut doubt.without);
-        for filter in rivals.chain(doubts) {
+    pub(crate) fn credit_alternatives(&mut self, kind: HypothesisKind) {
+        let gained = self
+            .bank
+            .lead(kind, &self.null)
+            .map_or(0.0, |l| l.log_likelihood_ratio);
+        let competing = self
+            .competing
+            .iter_mut()
+            .map(|competitor| &mut competitor.filter);
+        let no_steps = self
+            .no_step
+            .iter_mut()
+            .flat_map(|no_step| &mut no_step.without);
+        for filter in competing.chain(no_steps) {
             filter.log_likelihood += gained;
         }
     }

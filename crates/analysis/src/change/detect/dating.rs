@@ -1,10 +1,10 @@
 //! When a change happened, to the row.
 
-use super::state::{Detector, earlier};
+use super::state::{Detector, earlier_state};
 use crate::change::event::{Event, EventKind};
 use crate::change::filter::{Filter, Measurement};
 use crate::change::hypothesis_kind::HypothesisKind;
-use crate::change::jump_models::{apply_jump, misled};
+use crate::change::jump_models::{apply_jump, reference_fault};
 use crate::change::thresholds::{
     DATE_AT_PORT_CALL_LOG_LIKELIHOOD_RATIO, DATE_AT_PORT_CALL_ROWS, DATE_LOG_LIKELIHOOD_RATIO,
     FORK_AFTER_GAP_S,
@@ -35,7 +35,7 @@ pub(crate) struct DatedChange {
 
 /// Where rows before a change are linearised that led to `after`: before a large step at the
 /// ship that she was, who is another altogether.
-fn at_before(kind: HypothesisKind, origin: &Filter, after: &Unknowns) -> Unknowns {
+fn linearisation_before(kind: HypothesisKind, origin: &Filter, after: &Unknowns) -> Unknowns {
     match kind {
         HypothesisKind::LargeStep => origin.unknowns(),
         _ => *after,
@@ -44,25 +44,25 @@ fn at_before(kind: HypothesisKind, origin: &Filter, after: &Unknowns) -> Unknown
 
 impl Detector<'_> {
     /// When it happened, to the row.
-    pub(crate) fn date(&self, winner: usize, kind: HypothesisKind, k: usize) -> DatedChange {
-        let spawns = &self.bank.spawns;
-        let origin = &spawns[winner.saturating_sub(1)];
-        let until = spawns.get(winner + 1).map_or(k, |s| s.at);
-        let earlier = earlier(
-            self.misled.as_ref(),
+    pub(crate) fn date_change(&self, winner: usize, kind: HypothesisKind, k: usize) -> DatedChange {
+        let forks = &self.bank.forks;
+        let origin = &forks[winner.saturating_sub(1)];
+        let until = forks.get(winner + 1).map_or(k, |s| s.at);
+        let earlier_state = earlier_state(
+            self.reference_fault.as_ref(),
             self.apply_alignment_step.as_ref(),
-            &self.calls,
+            &self.returns,
         );
-        let began = |filter: &Filter, next: &Measurement| match (kind, earlier) {
-            (HypothesisKind::Return, Some(earlier)) => earlier.again(filter),
+        let began = |filter: &Filter, next: &Measurement| match (kind, earlier_state) {
+            (HypothesisKind::Return, Some(earlier_state)) => earlier_state.again(filter),
             (HypothesisKind::ReferenceStep | HypothesisKind::SatelliteStep, _) => {
-                misled(filter, next, kind)
+                reference_fault(filter, next, kind)
             }
             _ => apply_jump(filter, kind),
         };
         // Twice, for the rows are to be linearised at where the ship is now.
         let mut at = match kind {
-            HypothesisKind::LargeStep => spawns[winner]
+            HypothesisKind::LargeStep => forks[winner]
                 .copy(kind)
                 .map_or_else(|| self.point(k), Filter::unknowns),
             _ => self.point(k),
@@ -85,28 +85,37 @@ impl Detector<'_> {
             };
             let measured = measure(&at);
             let since = |row: usize| &measured[row - origin.at..];
-            let calm = measure(&at_before(kind, origin.origin(), &at));
-            let mut before = self.take(origin.origin().clone(), &calm[..low - origin.at]);
+            let undisturbed_rows = measure(&linearisation_before(kind, origin.origin(), &at));
+            let mut before = self.observe_all(
+                origin.origin().clone(),
+                &undisturbed_rows[..low - origin.at],
+            );
             let mut tried: Vec<(usize, Filter)> = Vec::new();
             let mut row = low;
             while row <= high.min(k) {
-                let filter = self.take(began(&before, &since(row)[0]), since(row));
+                let filter = self.observe_all(began(&before, &since(row)[0]), since(row));
                 tried.push((row, filter));
                 let next = row + stride;
                 let until = next.min(k + 1);
-                before = self.take(before, &calm[row - origin.at..until - origin.at]);
+                before = self.observe_all(
+                    before,
+                    &undisturbed_rows[row - origin.at..until - origin.at],
+                );
                 row = next;
             }
-            let nats = |(row, f): &(usize, Filter)| f.log_likelihood + self.in_gap_nats(*row);
-            likely.extend(tried.iter().map(|one| (round, one.0, nats(one))));
-            if let Some(found) = tried.into_iter().max_by(|a, b| nats(a).total_cmp(&nats(b))) {
+            let ratio = |(row, f): &(usize, Filter)| f.log_likelihood + self.gap_log_odds(*row);
+            likely.extend(tried.iter().map(|one| (round, one.0, ratio(one))));
+            if let Some(found) = tried
+                .into_iter()
+                .max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
+            {
                 best = found;
             }
             at = best.1.unknowns();
         }
         let (first, filter) = best;
         if matches!(kind, HypothesisKind::Step | HypothesisKind::LargeStep)
-            && let Some(dated) = self.date_at_call((winner, kind), &filter, first, k)
+            && let Some(dated) = self.date_at_port_call((winner, kind), &filter, first, k)
         {
             return dated;
         }
@@ -124,12 +133,12 @@ impl Detector<'_> {
         let rows: Vec<usize> = near(0).into_iter().chain(near(1)).chain([first]).collect();
         let earliest = rows.iter().copied().min().unwrap_or(first);
         let latest = rows.iter().copied().max().unwrap_or(first);
-        let calm = at_before(kind, origin.origin(), &filter.unknowns());
+        let undisturbed_rows = linearisation_before(kind, origin.origin(), &filter.unknowns());
         DatedChange {
             first,
             between: (earliest, latest),
             kind,
-            before: self.run(origin.origin().clone(), origin.at..first, &calm),
+            before: self.run(origin.origin().clone(), origin.at..first, &undisturbed_rows),
             filter,
             noticed_late: false,
         }
@@ -137,7 +146,7 @@ impl Detector<'_> {
 
     /// By how much likelier beforehand it is that something happened in the gap before a row
     /// than between two rows: the gap is as many times as long, nats.
-    fn in_gap_nats(&self, row: usize) -> f64 {
+    fn gap_log_odds(&self, row: usize) -> f64 {
         let seconds = self.seconds(row);
         if seconds > FORK_AFTER_GAP_S {
             (seconds / ROW_S).ln()
@@ -147,43 +156,46 @@ impl Detector<'_> {
     }
 
     /// The filter after some measurements.
-    fn take(&self, mut filter: Filter, measured: &[Measurement]) -> Filter {
+    fn observe_all(&self, mut filter: Filter, measured: &[Measurement]) -> Filter {
         for m in measured {
-            filter.take(m, &self.noise, None);
+            filter.observe(m, &self.noise, None);
         }
         filter
     }
 
     /// Whether it rather happened at a port call: many more steps do than at any one
     /// time at sea. `filter` is of the likeliest row.
-    fn date_at_call(
+    fn date_at_port_call(
         &self,
         (winner, kind): (usize, HypothesisKind),
         filter: &Filter,
         row: usize,
         k: usize,
     ) -> Option<DatedChange> {
-        let spawns = &self.bank.spawns;
+        let forks = &self.bank.forks;
         let since = row.saturating_sub(DATE_AT_PORT_CALL_ROWS);
-        let from = spawns.partition_point(|s| s.at <= since).saturating_sub(1);
-        let origin = &spawns[from.min(winner)];
-        let until = spawns
+        let from = forks.partition_point(|s| s.at <= since).saturating_sub(1);
+        let origin = &forks[from.min(winner)];
+        let until = forks
             .get(winner + 1)
             .map_or(k, |s| s.at)
             .max(row + DATE_AT_PORT_CALL_ROWS);
         let calls = (origin.at.max(since).max(1)..=until.min(k)).rev();
         let calls = calls
-            .filter(|&row| self.is_call(row))
+            .filter(|&row| self.is_port_call(row))
             .take(PORT_CALLS_TRIED);
         let at = filter.unknowns();
-        let calm = at_before(kind, origin.origin(), &at);
+        let undisturbed_rows = linearisation_before(kind, origin.origin(), &at);
         let before = calls.map(|call| {
             let rows = origin.at..call;
-            (call, self.run(origin.origin().clone(), rows, &calm))
+            (
+                call,
+                self.run(origin.origin().clone(), rows, &undisturbed_rows),
+            )
         });
-        let sailed = self.sailed(row, &self.events);
-        let sailed = sailed.filter(|(call, _)| *call < origin.at);
-        let tried = before.chain(sailed.map(|(call, before)| {
+        let departure_before = self.departure_before(row, &self.events);
+        let departure_before = departure_before.filter(|(call, _)| *call < origin.at);
+        let tried = before.chain(departure_before.map(|(call, before)| {
             // As likely as the filter that may have been told of what passed since.
             let nothing = self.run(before.clone(), call..k + 1, &self.null.unknowns());
             let mut before = before.clone();

@@ -23,60 +23,67 @@ use crate::change::thresholds::{
 use crate::observation::Observation;
 
 impl Detector<'_> {
-    pub(crate) fn judge(&mut self, k: usize) {
+    pub(crate) fn decide(&mut self, k: usize) {
         let leads = self.leads();
-        let nats = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let ratio = |kind: HypothesisKind| {
+            leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
+        };
         if k < self.young() {
-            return self.judge_passing(k, leads);
+            return self.decide_transient(k, leads);
         }
-        let burst = nats(HypothesisKind::Transient).max(0.0);
-        let back = nats(HypothesisKind::Return);
-        if let Some(candidate) = self.candidate(&leads)
-            && candidate.probability > RETURN_POSTERIOR
+        let transient = ratio(HypothesisKind::Transient).max(0.0);
+        let back = ratio(HypothesisKind::Return);
+        if let Some(return_candidate) = self.return_candidate(&leads)
+            && return_candidate.probability > RETURN_POSTERIOR
         {
-            return self.adopt_call(k, candidate, leads);
+            return self.accept_port_call_return(k, return_candidate, leads);
         }
-        if self.misled.is_none() && (self.settle_rivals(k, &leads) || self.settle_doubt(k, &leads))
+        if self.reference_fault.is_none()
+            && (self.decide_competing(k, &leads) || self.decide_withdrawal(k, &leads))
         {
             return;
         }
-        let rival = nats(HypothesisKind::Step).max(nats(HypothesisKind::ReferenceStep));
-        if self.misled.is_some()
-            && back - burst > REFERENCE_REPAIR_LOG_LIKELIHOOD_RATIO
-            && back > rival - REFERENCE_REPAIR_DEFICIT_LOG_LIKELIHOOD_RATIO
+        let competitor = ratio(HypothesisKind::Step).max(ratio(HypothesisKind::ReferenceStep));
+        if self.reference_fault.is_some()
+            && back - transient > REFERENCE_REPAIR_LOG_LIKELIHOOD_RATIO
+            && back > competitor - REFERENCE_REPAIR_DEFICIT_LOG_LIKELIHOOD_RATIO
         {
-            return self.adopt_mended(k, leads);
+            return self.accept_reference_repair(k, leads);
         }
-        let earlier = self.calls.bases.last();
+        let earlier_state = self.returns.baselines.last();
         let enough = if self.apply_alignment_step.is_none()
-            && earlier.is_some_and(Baseline::began_at_port_call)
+            && earlier_state.is_some_and(Baseline::began_at_port_call)
         {
             CARGO_RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO
         } else {
             RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO
         };
-        if self.misled.is_none() && back - burst > enough && back > nats(HypothesisKind::Step) {
-            return self.adopt_return(k, leads);
+        if self.reference_fault.is_none()
+            && back - transient > enough
+            && back > ratio(HypothesisKind::Step)
+        {
+            return self.accept_return(k, leads);
         }
         let (kind, lasting, other) =
-            if nats(HypothesisKind::Step) >= nats(HypothesisKind::ReferenceStep) {
+            if ratio(HypothesisKind::Step) >= ratio(HypothesisKind::ReferenceStep) {
                 (
                     HypothesisKind::Step,
-                    nats(HypothesisKind::Step),
-                    nats(HypothesisKind::ReferenceStep),
+                    ratio(HypothesisKind::Step),
+                    ratio(HypothesisKind::ReferenceStep),
                 )
             } else {
                 (
                     HypothesisKind::ReferenceStep,
-                    nats(HypothesisKind::ReferenceStep),
-                    nats(HypothesisKind::Step),
+                    ratio(HypothesisKind::ReferenceStep),
+                    ratio(HypothesisKind::Step),
                 )
             };
-        let over_burst = lasting - burst;
+        let over_burst = lasting - transient;
         // One reference on one heading cannot tell a fault of its own from a change
         // of the ship.
-        let clear = lasting - self.beforehand_nats(kind, &leads) - other.max(0.0);
-        let is_clear = clear > VESSEL_OR_REFERENCE_LOG_LIKELIHOOD_RATIO || self.has_both(k);
+        let clear = lasting - self.prior_log_odds(kind, &leads) - other.max(0.0);
+        let is_clear =
+            clear > VESSEL_OR_REFERENCE_LOG_LIKELIHOOD_RATIO || self.has_both_references(k);
         let is_told = is_clear
             && match kind {
                 HypothesisKind::ReferenceStep => {
@@ -89,59 +96,62 @@ impl Detector<'_> {
                 }
             };
         if is_told {
-            let back = self.candidate_below(&leads, RETURN_FOR_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO);
-            if let Some(back) = back.filter(|back| self.is_at_call(&leads, back))
+            let back =
+                self.return_candidate_within(&leads, RETURN_FOR_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO);
+            if let Some(back) = back.filter(|back| self.replaces_step(&leads, back))
                 && kind == HypothesisKind::Step
             {
-                return self.adopt_call(k, back, leads);
+                return self.accept_port_call_return(k, back, leads);
             }
             if kind == HypothesisKind::Step && self.is_discharge(k, &leads) {
-                return self.adopt_return(k, leads);
+                return self.accept_return(k, leads);
             }
-            return self.adopt(k, kind, leads);
+            return self.accept_change(k, kind, leads);
         }
-        self.judge_passing(k, leads);
+        self.decide_transient(k, leads);
     }
 
     /// Whether the field is astray, for what lasts has not been told.
-    fn judge_passing(&mut self, k: usize, leads: Leads) {
-        let nats = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
-        let burst = nats(HypothesisKind::Transient);
-        let lasting = nats(HypothesisKind::Step).max(nats(HypothesisKind::ReferenceStep));
-        if self.burst.is_none()
-            && burst > TRANSIENT_LOG_LIKELIHOOD_RATIO + self.unlearnt_nats(k)
-            && burst - lasting > TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
+    fn decide_transient(&mut self, k: usize, leads: Leads) {
+        let ratio = |kind: HypothesisKind| {
+            leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
+        };
+        let transient = ratio(HypothesisKind::Transient);
+        let lasting = ratio(HypothesisKind::Step).max(ratio(HypothesisKind::ReferenceStep));
+        if self.transient.is_none()
+            && transient > TRANSIENT_LOG_LIKELIHOOD_RATIO + self.new_vessel_extra(k)
+            && transient - lasting > TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
             && leads[HypothesisKind::Transient as usize]
-                .is_some_and(|lead| self.is_no_few_readings(k, lead))
+                .is_some_and(|lead| self.has_enough_rows(k, lead))
         {
             let Some(lead) = leads[HypothesisKind::Transient as usize] else {
                 return;
             };
             let first = self.began(lead);
-            match self.same_burst(first) {
+            match self.same_transient(first) {
                 // One that has had its time keeps its lead, but is told once.
                 Some(event) if event.confirmed => return,
                 Some(_) => _ = self.events.pop(),
                 None => {}
             }
-            self.burst = Some(self.events.len());
-            self.passed = self.before(first);
-            self.faint = None;
+            self.transient = Some(self.events.len());
+            self.before_transient = self.before(first);
+            self.weak_transient = None;
             self.push(k, EventKind::Transient, first, (first, first), leads, None);
         } else {
-            self.note_faint(k, leads, burst - lasting);
+            self.note_weak_transient(k, leads, transient - lasting);
         }
     }
 
     /// A few wild readings swing no compass.
-    fn is_no_few_readings(&self, k: usize, lead: Lead) -> bool {
+    fn has_enough_rows(&self, k: usize, lead: Lead) -> bool {
         lead.kind != HypothesisKind::SevereTransient
-            || k + 1 >= self.bank.spawns[lead.spawn].at + STEP_MIN_ROWS
+            || k + 1 >= self.bank.forks[lead.fork].at + STEP_MIN_ROWS
     }
 
     /// And while she drifts, for a drift goes on.
-    fn creeping_nats(&self, k: usize) -> f64 {
-        if self.unsettled.creeps(self.observations, k) {
+    fn drifting_extra(&self, k: usize) -> f64 {
+        if self.extra_drift.is_drifting(self.observations, k) {
             DRIFTING_EXTRA_LOG_LIKELIHOOD_RATIO
         } else {
             0.0
@@ -149,7 +159,7 @@ impl Detector<'_> {
     }
 
     /// What is asked beyond the usual while little is known of this ship's noise.
-    fn unlearnt_nats(&self, k: usize) -> f64 {
+    fn new_vessel_extra(&self, k: usize) -> f64 {
         let since = self.observations[0].time.zip(self.observations[k].time);
         let is_new = since.is_some_and(|(first, now)| now.seconds_since(first) < NEW_VESSEL_S);
         if is_new && !self.is_known {
@@ -161,13 +171,13 @@ impl Detector<'_> {
 
     /// The filter before a row, or soon before it, and the row that it is of.
     fn before(&self, row: usize) -> Option<(usize, Filter)> {
-        let mut spawns = self.bank.spawns.iter();
-        let spawn = spawns.rfind(|spawn| spawn.at <= row)?;
-        Some((spawn.at, spawn.origin().clone()))
+        let mut forks = self.bank.forks.iter();
+        let fork = forks.rfind(|fork| fork.at <= row)?;
+        Some((fork.at, fork.origin().clone()))
     }
 
     /// The last event, if it is this passing disturbance.
-    pub(crate) fn same_burst(&self, first: usize) -> Option<&Event> {
+    pub(crate) fn same_transient(&self, first: usize) -> Option<&Event> {
         let last = self.events.last();
         last.filter(|event| {
             event.what == EventKind::Transient && event.first + FORK_INTERVAL_ROWS >= first
@@ -176,18 +186,18 @@ impl Detector<'_> {
 
     /// The first row of a passing disturbance.
     pub(crate) fn began(&self, lead: Lead) -> usize {
-        let spawn = &self.bank.spawns[lead.spawn];
-        let over = spawn.astray_from.filter(|_| self.is_over(lead));
-        over.unwrap_or(spawn.at)
+        let fork = &self.bank.forks[lead.fork];
+        let over = fork.transient_from.filter(|_| self.is_over(lead));
+        over.unwrap_or(fork.at)
     }
 
     fn has_lasted(&self, rows: usize, kind: HypothesisKind, k: usize, leads: &Leads) -> bool {
-        leads[kind as usize].is_some_and(|lead| k + 1 >= self.bank.spawns[lead.spawn].at + rows)
+        leads[kind as usize].is_some_and(|lead| k + 1 >= self.bank.forks[lead.fork].at + rows)
     }
 
     /// By how much what leads was likelier beforehand than at another time.
-    fn beforehand_nats(&self, kind: HypothesisKind, leads: &Leads) -> f64 {
-        leads[kind as usize].map_or(0.0, |lead| self.bank.beforehand_nats(lead))
+    fn prior_log_odds(&self, kind: HypothesisKind, leads: &Leads) -> f64 {
+        leads[kind as usize].map_or(0.0, |lead| self.bank.prior_log_odds(lead))
     }
 
     pub(crate) fn is_step(&self, k: usize, lead: f64, over_burst: f64, leads: &Leads) -> bool {
@@ -195,15 +205,15 @@ impl Detector<'_> {
         // A large step would explain the first hour of a storm, too.
         let is_usual = step.is_some_and(|lead| lead.kind == HypothesisKind::Step);
         // What is likelier beforehand must be as clear from the rows.
-        let beforehand = self.beforehand_nats(HypothesisKind::Step, leads);
+        let beforehand = self.prior_log_odds(HypothesisKind::Step, leads);
         if over_burst - beforehand <= CLEAR_STEP_LOG_LIKELIHOOD_RATIO
             || (over_burst
-                <= STEP_LOG_LIKELIHOOD_RATIO + self.unlearnt_nats(k) + self.creeping_nats(k)
+                <= STEP_LOG_LIKELIHOOD_RATIO + self.new_vessel_extra(k) + self.drifting_extra(k)
                 && !(is_usual && lead - beforehand > CLEAR_AGAINST_NULL_LOG_LIKELIHOOD_RATIO))
         {
             return false;
         }
-        let since = step.map_or(k, |lead| self.bank.spawns[lead.spawn].at);
+        let since = step.map_or(k, |lead| self.bank.forks[lead.fork].at);
         let with_one = |rows: &[Observation]| {
             let one = rows.iter().filter(|o| o.gyro_less_satellite_deg.is_none());
             one.count() as f64 > ONE_REFERENCE_SHARE * rows.len() as f64
@@ -215,18 +225,23 @@ impl Detector<'_> {
 
     /// The likeliest return at a port call, if a step to something else is not
     /// likelier by far.
-    pub(crate) fn candidate(&self, leads: &Leads) -> Option<ReturnCandidate> {
-        self.candidate_below(leads, RETURN_DEFICIT_LOG_LIKELIHOOD_RATIO)
+    pub(crate) fn return_candidate(&self, leads: &Leads) -> Option<ReturnCandidate> {
+        self.return_candidate_within(leads, RETURN_DEFICIT_LOG_LIKELIHOOD_RATIO)
     }
 
-    fn candidate_below(&self, leads: &Leads, below: f64) -> Option<ReturnCandidate> {
-        let nats = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
-        let rival =
-            (nats(HypothesisKind::Transient) - priors::RETURN_OVER_TRANSIENT_LOG_ODDS).max(0.0);
-        let is_astray =
-            self.burst.is_some() && nats(HypothesisKind::Transient) > nats(HypothesisKind::Step);
-        let likeliest = self.calls.likeliest(&self.null, rival, is_astray)?;
-        (is_astray || likeliest.nats > nats(HypothesisKind::Step) - below).then_some(likeliest)
+    fn return_candidate_within(&self, leads: &Leads, below: f64) -> Option<ReturnCandidate> {
+        let ratio = |kind: HypothesisKind| {
+            leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
+        };
+        let competitor =
+            (ratio(HypothesisKind::Transient) - priors::RETURN_OVER_TRANSIENT_LOG_ODDS).max(0.0);
+        let is_outlying = self.transient.is_some()
+            && ratio(HypothesisKind::Transient) > ratio(HypothesisKind::Step);
+        let likeliest = self
+            .returns
+            .likeliest(&self.null, competitor, is_outlying)?;
+        (is_outlying || likeliest.log_likelihood_ratio > ratio(HypothesisKind::Step) - below)
+            .then_some(likeliest)
     }
 
     /// Whether a step that is certain is rather the end of what began in port: that explains
@@ -235,35 +250,40 @@ impl Detector<'_> {
     fn is_discharge(&self, k: usize, leads: &Leads) -> bool {
         let [step, _, _, back] = *leads;
         step.zip(back).is_some_and(|(step, back)| {
-            let at = self.bank.spawns[back.spawn].at;
-            back.nats > step.nats && self.discharge_near(at, k).is_some()
+            let at = self.bank.forks[back.fork].at;
+            back.log_likelihood_ratio > step.log_likelihood_ratio
+                && self.discharge_near(at, k).is_some()
         })
     }
 
     /// The port call at about row `at`, until row `k`, at which what began in port may have
     /// ended.
     pub(crate) fn discharge_near(&self, at: usize, k: usize) -> Option<usize> {
-        let laden = self.calls.bases.last().filter(|base| base.is_cargo())?;
-        if self.apply_alignment_step.is_some() || self.misled.is_some() {
+        let laden = self
+            .returns
+            .baselines
+            .last()
+            .filter(|base| base.is_cargo())?;
+        if self.apply_alignment_step.is_some() || self.reference_fault.is_some() {
             return None;
         }
         let loaded = self.events[laden.event].first;
         let rows = at.saturating_sub(RETURN_FOR_STEP_ROWS_AFTER)
             ..=(at + RETURN_FOR_STEP_ROWS_BEFORE).min(k);
-        let calls = rows.filter(|row| *row > loaded && self.is_call(*row));
+        let calls = rows.filter(|row| *row > loaded && self.is_port_call(*row));
         calls.min_by_key(|row| row.abs_diff(at))
     }
 
     /// Whether a step that is certain may as well be a return at this call.
-    fn is_at_call(&self, leads: &Leads, back: &ReturnCandidate) -> bool {
-        let step = leads[HypothesisKind::Step as usize].map(|lead| self.bank.spawns[lead.spawn].at);
+    fn replaces_step(&self, leads: &Leads, back: &ReturnCandidate) -> bool {
+        let step = leads[HypothesisKind::Step as usize].map(|lead| self.bank.forks[lead.fork].at);
         let near = back.at.saturating_sub(RETURN_FOR_STEP_ROWS_BEFORE)
             ..=back.at + RETURN_FOR_STEP_ROWS_AFTER;
         back.probability > RETURN_FOR_STEP_POSTERIOR && step.is_some_and(|at| near.contains(&at))
     }
 
     /// Whether both references were read lately.
-    pub(crate) fn has_both(&self, k: usize) -> bool {
+    pub(crate) fn has_both_references(&self, k: usize) -> bool {
         let lately = &self.observations[k.saturating_sub(BOTH_REFERENCES_ROWS)..=k];
         lately.iter().any(|o| o.gyro_less_satellite_deg.is_some())
     }
@@ -271,6 +291,8 @@ impl Detector<'_> {
     /// Whether a passing disturbance's lead is that of one that is over.
     pub(crate) fn is_over(&self, lead: Lead) -> bool {
         let over = self.bank.lead(HypothesisKind::TransientEnd, &self.null);
-        over.is_some_and(|over| over.spawn == lead.spawn && over.nats >= lead.nats)
+        over.is_some_and(|over| {
+            over.fork == lead.fork && over.log_likelihood_ratio >= lead.log_likelihood_ratio
+        })
     }
 }

@@ -10,8 +10,8 @@ use binnacle_compass::time::Timestamp;
 impl Detector<'_> {
     /// What the logbook tells of the cargo on board after the time between a row and the
     /// one before.
-    pub(crate) fn said_at(&self, k: usize) -> LoggedCargo {
-        let Some((before, after)) = self.around(k) else {
+    pub(crate) fn logged_cargo_at(&self, k: usize) -> LoggedCargo {
+        let Some((before, after)) = self.interval_before(k) else {
             return LoggedCargo::Nothing;
         };
         let stays = |loaded: &&CargoPeriod| {
@@ -33,26 +33,28 @@ impl Detector<'_> {
         let from = ended.map(|loaded| loaded.from).min();
         from.map_or(LoggedCargo::Nothing, |from| LoggedCargo::Discharged {
             loaded: from.plus_seconds(-LOGBOOK_TOLERANCE_S),
-            at_port: self.is_call(k),
+            at_port: self.is_port_call(k),
         })
     }
 
     /// Whether the logbook has it that cargo came on board when a step happened.
-    pub(crate) fn is_said_loaded(&self, (earliest, latest): (usize, usize)) -> bool {
-        let sailed = &self.observations[..earliest];
-        let earliest = self.around(earliest).map(|around| around.0);
+    pub(crate) fn is_loading_logged(&self, (earliest, latest): (usize, usize)) -> bool {
+        let departure_before = &self.observations[..earliest];
+        let earliest = self
+            .interval_before(earliest)
+            .map(|interval_before| interval_before.0);
         let Some((earliest, latest)) = earliest.zip(self.observations[latest].time) else {
             return false;
         };
         self.cargo.iter().any(|loaded| {
             loaded.from.seconds_since(earliest) > -2.0 * LOGBOOK_TOLERANCE_S
                 && loaded.from.seconds_since(latest) < LOGBOOK_TOLERANCE_S
-                && rows_since(sailed, loaded.from) < SAILED_SINCE_ROWS
+                && rows_since(departure_before, loaded.from) < SAILED_SINCE_ROWS
         })
     }
 
     /// Whether the logbook has it that cargo was on board when a row was read.
-    pub(crate) fn is_said_on_board(&self, k: usize) -> bool {
+    pub(crate) fn is_cargo_logged(&self, k: usize) -> bool {
         let Some(time) = self.observations[k].time else {
             return false;
         };
@@ -67,8 +69,8 @@ impl Detector<'_> {
 
     /// Whether the logbook has it that cargo was discharged between a row and the one
     /// before, whether or not she seems to have lain there.
-    pub(crate) fn is_said_discharged(&self, k: usize) -> bool {
-        let Some((before, after)) = self.around(k) else {
+    pub(crate) fn is_discharge_logged(&self, k: usize) -> bool {
+        let Some((before, after)) = self.interval_before(k) else {
             return false;
         };
         let ends = self.cargo.iter().filter_map(|loaded| loaded.to);
@@ -76,7 +78,7 @@ impl Detector<'_> {
     }
 
     /// The time between a row and the one before.
-    fn around(&self, k: usize) -> Option<(Timestamp, Timestamp)> {
+    fn interval_before(&self, k: usize) -> Option<(Timestamp, Timestamp)> {
         let before = self.observations[k.checked_sub(1)?].time?;
         Some((before, self.observations[k].time?))
     }

@@ -4,7 +4,7 @@
 //! What always holds: a row is read once in order of time and nothing later than it
 //! decides what it tells; every event lies between two rows; the search ends.
 
-use super::state::{Detector, LearningSchedule, LearntNoise, earlier};
+use super::state::{Detector, LearningSchedule, LearntNoise, earlier_state};
 use crate::change::thresholds::{
     FIRST_TRANSIENT_ROW, FORK_AFTER_GAP_S, FORK_INNOVATION_MIN_ROWS, FORK_INNOVATION_SD,
     FORK_INTERVAL_ROWS, SUSPICION_LOG_LIKELIHOOD_RATIO,
@@ -36,57 +36,57 @@ pub(crate) fn detect(observations: &[Observation], given: &DetectionInput<'_>) -
 
 impl Detector<'_> {
     fn step(&mut self, k: usize) {
-        if k >= self.lesson.at {
+        if k >= self.next_learning.at {
             self.learn(k);
         }
         if k == self.first() {
-            self.bank.forget_lasting();
+            self.bank.drop_lasting();
         }
-        let is_due = k >= FIRST_TRANSIENT_ROW && self.is_due(k);
-        if is_due {
-            self.settle_burst(k);
+        let is_fork_due = k >= FIRST_TRANSIENT_ROW && self.is_fork_due(k);
+        if is_fork_due {
+            self.end_transient(k);
         }
         let m = self.next(k);
-        if is_due || (k >= FIRST_TRANSIENT_ROW && self.is_astray(k, &m)) {
-            let earlier = earlier(
-                self.misled.as_ref(),
+        if is_fork_due || (k >= FIRST_TRANSIENT_ROW && self.is_outlying(k, &m)) {
+            let earlier_state = earlier_state(
+                self.reference_fault.as_ref(),
                 self.apply_alignment_step.as_ref(),
-                &self.calls,
+                &self.returns,
             );
-            let known = (earlier, self.is_call(k));
-            self.bank.spawn(k, &self.null, &self.noise, known);
-            self.spawned = k;
+            let known = (earlier_state, self.is_port_call(k));
+            self.bank.fork(k, &self.null, &self.noise, known);
+            self.last_fork = k;
         }
-        if self.is_call(k) || self.is_said_discharged(k) {
-            let said = self.said_at(k);
-            self.calls.call(k, &self.null, usize::MAX, said);
+        if self.is_port_call(k) || self.is_discharge_logged(k) {
+            let said = self.logged_cargo_at(k);
+            self.returns.add_port_call(k, &self.null, usize::MAX, said);
         }
-        if self.is_call(k) {
-            self.ports.call(k, &self.null);
+        if self.is_port_call(k) {
+            self.departures.add(k, &self.null);
         }
-        let surprise = self.null.take(&m, &self.noise, None);
-        let mut calls = std::mem::take(&mut self.calls);
-        calls.take(|at| self.measure(k, at), &self.noise, &self.null);
-        self.calls = calls;
-        self.take_in_rivals(k);
-        self.take_in_doubt(k);
-        let earlier = earlier(
-            self.misled.as_ref(),
+        let excess_loss = self.null.observe(&m, &self.noise, None);
+        let mut returns = std::mem::take(&mut self.returns);
+        returns.observe(|at| self.measure(k, at), &self.noise, &self.null);
+        self.returns = returns;
+        self.observe_competing(k);
+        self.observe_no_step(k);
+        let earlier_state = earlier_state(
+            self.reference_fault.as_ref(),
             self.apply_alignment_step.as_ref(),
-            &self.calls,
+            &self.returns,
         );
-        let null = (&self.null, surprise);
-        self.bank.take(k, m, &self.noise, null, earlier);
+        let null = (&self.null, excess_loss);
+        self.bank.observe(k, m, &self.noise, null, earlier_state);
         let mut bank = std::mem::take(&mut self.bank);
-        bank.take_large(k, &self.noise, |row, at| self.measure(row, at));
+        bank.observe_large_steps(k, &self.noise, |row, at| self.measure(row, at));
         self.bank = bank;
         if k >= FIRST_TRANSIENT_ROW {
-            self.judge(k);
-            self.settle_faint(k, false);
+            self.decide(k);
+            self.close_weak_transient(k, false);
         }
     }
 
-    fn is_due(&self, k: usize) -> bool {
+    fn is_fork_due(&self, k: usize) -> bool {
         let reported = || {
             let Some((before, now)) = k
                 .checked_sub(1)
@@ -97,14 +97,14 @@ impl Detector<'_> {
             };
             self.reported.iter().any(|t| before < *t && *t <= now)
         };
-        k >= self.spawned + FORK_INTERVAL_ROWS
+        k >= self.last_fork + FORK_INTERVAL_ROWS
             || (k > 0 && self.seconds(k) > FORK_AFTER_GAP_S)
             || reported()
     }
 
     /// Whether something may have happened just before this row.
-    fn is_astray(&self, k: usize, m: &Measurement) -> bool {
-        k >= self.spawned + FORK_INNOVATION_MIN_ROWS
+    fn is_outlying(&self, k: usize, m: &Measurement) -> bool {
+        k >= self.last_fork + FORK_INNOVATION_MIN_ROWS
             && self.null.z_squared(m) > FORK_INNOVATION_SD * FORK_INNOVATION_SD
     }
 
@@ -117,54 +117,58 @@ impl Detector<'_> {
             self.levels = learnt.levels;
             self.noise = learnt.noise;
         }
-        self.learnt_days = self.lesson.days;
-        self.lesson = LearningSchedule::next(self.observations, self.learn_from, k, 0.0);
+        self.learnt_days = self.next_learning.days;
+        self.next_learning = LearningSchedule::next(self.observations, self.learn_from, k, 0.0);
     }
 
     /// What is suspected when the rows end.
     fn finish(mut self) -> Detection {
         let leads = self.leads();
-        let perhaps = self.candidate(&leads).map(|candidate| PossibleReturn {
-            of: candidate.event,
-            first: candidate.at,
-            probability: candidate.any,
-        });
-        let returned = perhaps.map_or(0.0, |perhaps| perhaps.probability);
-        let unnoticed = self.unnoticed(&leads, returned);
-        let open_nt2 = self.open_nt2(&leads);
-        self.note_zeros();
-        self.suspect();
-        self.settle_faint(self.observations.len().saturating_sub(1), true);
+        let possible_return =
+            self.return_candidate(&leads)
+                .map(|return_candidate| PossibleReturn {
+                    of: return_candidate.event,
+                    first: return_candidate.at,
+                    probability: return_candidate.any,
+                });
+        let returned = possible_return.map_or(0.0, |possible_return| possible_return.probability);
+        let undetected_step = self.undetected_step(&leads, returned);
+        let undecided_step_nt2 = self.undecided_step_nt2(&leads);
+        self.record_alignment_ratios();
+        self.report_suspicion();
+        self.close_weak_transient(self.observations.len().saturating_sub(1), true);
         Detection {
             events: self.events,
-            perhaps,
-            unnoticed,
-            open_nt2,
+            possible_return,
+            undetected_step,
+            undecided_step_nt2,
             is_watched: true,
         }
     }
 
-    fn suspect(&mut self) {
+    fn report_suspicion(&mut self) {
         let Some(k) = self.observations.len().checked_sub(1) else {
             return;
         };
-        if let Some(event) = self.burst {
-            let last = self.last_astray(self.events[event].first, k + 1);
+        if let Some(event) = self.transient {
+            let last = self.last_disturbed_row(self.events[event].first, k + 1);
             self.events[event].last = (last + FORK_INTERVAL_ROWS < k).then_some(last);
             return;
         }
         let leads = self.leads();
-        let nats = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let ratio = |kind: HypothesisKind| {
+            leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
+        };
         let likeliest = [
             HypothesisKind::Step,
             HypothesisKind::ReferenceStep,
             HypothesisKind::Transient,
         ]
         .into_iter()
-        .max_by(|a, b| nats(*a).total_cmp(&nats(*b)))
-        .filter(|kind| nats(*kind) > SUSPICION_LOG_LIKELIHOOD_RATIO);
+        .max_by(|a, b| ratio(*a).total_cmp(&ratio(*b)))
+        .filter(|kind| ratio(*kind) > SUSPICION_LOG_LIKELIHOOD_RATIO);
         // A burst that has had its time keeps its lead.
-        let is_news = |lead: Lead| self.has_time_left(self.bank.spawns[lead.spawn].at, k);
+        let is_news = |lead: Lead| self.may_continue(self.bank.forks[lead.fork].at, k);
         let Some((kind, lead)) = likeliest.and_then(|kind| Some((kind, leads[kind as usize]?)))
         else {
             return;
@@ -177,11 +181,11 @@ impl Detector<'_> {
             HypothesisKind::Transient => EventKind::Transient,
             _ => EventKind::Step,
         };
-        let spawn = &self.bank.spawns[lead.spawn];
-        let first = spawn.at;
-        let filters = spawn
+        let fork = &self.bank.forks[lead.fork];
+        let first = fork.at;
+        let filters = fork
             .copy(lead.kind)
-            .map(|f| (spawn.origin().clone(), f.clone()));
+            .map(|f| (fork.origin().clone(), f.clone()));
         let change = filters.as_ref().map(|(before, after)| (before, after));
         self.push(k, what, first, (first, first), leads, change);
         if let Some(event) = self.events.last_mut() {

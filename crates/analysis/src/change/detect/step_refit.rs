@@ -22,8 +22,8 @@ const LINEARISATION_ROUNDS: usize = 3;
 impl Detector<'_> {
     /// The filter with a step before row `first`, or in it, having read all rows until `k`.
     /// The reading in which it happened is of neither ship.
-    pub(crate) fn step_anew(&self, k: usize, before: &Filter, first: usize) -> Filter {
-        let mut likeliest = self.step_read(k, before, first, HypothesisKind::Step);
+    pub(crate) fn refit_step(&self, k: usize, before: &Filter, first: usize) -> Filter {
+        let mut likeliest = self.filter_with_step(k, before, first, HypothesisKind::Step);
         let after = (first + 1).min(k);
         let within = self.run(before.clone(), first..after, &before.unknowns());
         for (before, first, kind) in [
@@ -31,7 +31,7 @@ impl Detector<'_> {
             (&within, after, HypothesisKind::Step),
             (&within, after, HypothesisKind::LargeStep),
         ] {
-            let read = self.step_read(k, before, first, kind);
+            let read = self.filter_with_step(k, before, first, kind);
             if read.log_likelihood > likeliest.log_likelihood {
                 likeliest = read;
             }
@@ -39,11 +39,17 @@ impl Detector<'_> {
         likeliest
     }
 
-    fn step_read(&self, k: usize, before: &Filter, first: usize, kind: HypothesisKind) -> Filter {
+    fn filter_with_step(
+        &self,
+        k: usize,
+        before: &Filter,
+        first: usize,
+        kind: HypothesisKind,
+    ) -> Filter {
         let mut filter = apply_jump(before, kind);
-        for row in self.calm(first..k + 1) {
+        for row in self.undisturbed_rows(first..k + 1) {
             let m = relinearise(&filter, &self.noise, |at| self.measure(row, at));
-            filter.take(&m, &self.noise, None);
+            filter.observe(&m, &self.noise, None);
         }
         for _ in 0..LINEARISATION_ROUNDS {
             let at = filter.unknowns();
@@ -54,26 +60,26 @@ impl Detector<'_> {
 
     /// The step before this one, and its filter, where that one alone explains the rows.
     pub(crate) fn same_step(&self, k: usize, dated: &DatedChange) -> Option<(usize, Filter)> {
-        let base = self.calls.bases.last()?;
+        let base = self.returns.baselines.last()?;
         let event = self.events.get(base.event)?;
         let later = &self.events[base.event + 1..];
         let is_last = later.iter().all(|event| event.what == EventKind::Transient);
-        if !is_last || !self.is_standing_step(base.event) || k > event.first + SAME_STEP_ROWS {
+        if !is_last || !self.is_step_in_force(base.event) || k > event.first + SAME_STEP_ROWS {
             return None;
         }
-        let filter = self.step_anew(k, &base.filter, event.first);
+        let filter = self.refit_step(k, &base.filter, event.first);
         let enough = dated.filter.log_likelihood - STEP_KEPT_LOG_LIKELIHOOD_RATIO;
         (filter.log_likelihood > enough).then_some((base.event, filter))
     }
 
     /// The step is what `filter` says, and what was told after it was the same.
-    pub(crate) fn step_is(&mut self, k: usize, of: usize, filter: Filter) {
-        self.forget_later_steps(of);
+    pub(crate) fn replace_step(&mut self, k: usize, of: usize, filter: Filter) {
+        self.remove_later_steps(of);
         let event = &mut self.events[of];
         event.after = snapshot(&filter);
         let first = event.first;
-        let (rivals, doubt) = (std::mem::take(&mut self.rivals), self.doubt.take());
-        self.take_over(k, filter, first);
-        (self.rivals, self.doubt) = (rivals, doubt);
+        let (competing, no_step) = (std::mem::take(&mut self.competing), self.no_step.take());
+        self.replace_null(k, filter, first);
+        (self.competing, self.no_step) = (competing, no_step);
     }
 }

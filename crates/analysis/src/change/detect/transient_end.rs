@@ -12,66 +12,69 @@ use crate::change::thresholds::{
 impl Detector<'_> {
     /// Once a burst has had its time, the filter that knew of it takes over if it is
     /// still the likelier, so that the burst does not pass for the ship's.
-    pub(crate) fn settle_burst(&mut self, k: usize) {
+    pub(crate) fn end_transient(&mut self, k: usize) {
         let age_s = |row: usize| match (self.observations[row].time, self.observations[k].time) {
             (Some(then), Some(now)) => now.seconds_since(then),
             _ => 0.0,
         };
         let leads = self.leads();
-        let nats = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let ratio = |kind: HypothesisKind| {
+            leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
+        };
         let others = [
             HypothesisKind::Step,
             HypothesisKind::ReferenceStep,
             HypothesisKind::Return,
         ]
-        .map(nats);
+        .map(ratio);
         let others = others.into_iter().fold(0.0, f64::max);
         let knew = self
             .bank
             .lead(HypothesisKind::TransientEnd, &self.null)
             .filter(|lead| {
-                age_s(self.bank.spawns[lead.spawn].at) >= TRANSIENT_OVER_FOR_S
-                    && lead.nats > others + ENDED_TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
+                age_s(self.bank.forks[lead.fork].at) >= TRANSIENT_OVER_FOR_S
+                    && lead.log_likelihood_ratio
+                        > others + ENDED_TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
             });
-        let knew = knew.map(|lead| &self.bank.spawns[lead.spawn]);
-        let knew = knew
-            .and_then(|spawn| Some((spawn.at, spawn.copy(HypothesisKind::TransientEnd)?.clone())));
+        let knew = knew.map(|lead| &self.bank.forks[lead.fork]);
+        let knew =
+            knew.and_then(|fork| Some((fork.at, fork.copy(HypothesisKind::TransientEnd)?.clone())));
         let is_over = self
-            .burst
+            .transient
             .is_some_and(|event| age_s(self.events[event].first) >= 1.2 * TRANSIENT_MAX_S);
         if knew.is_none() && !is_over {
             return;
         }
-        if let Some(event) = self.burst.take() {
+        if let Some(event) = self.transient.take() {
             let first = self.events[event].first;
             let until = knew.as_ref().map_or(k, |(until, _)| *until);
-            self.events[event].last = Some(self.last_astray(first, until));
+            self.events[event].last = Some(self.last_disturbed_row(first, until));
         }
         if let Some((_, filter)) = knew {
-            self.credit_rivals(HypothesisKind::TransientEnd);
+            self.credit_alternatives(HypothesisKind::TransientEnd);
             let gained = filter.log_likelihood - self.null.log_likelihood;
-            self.calls.credit(&self.null, gained);
+            self.returns.credit_transient(&self.null, gained);
             self.null = filter;
             self.bank.clear();
-            self.spawned = k;
+            self.last_fork = k;
         }
     }
 
     /// The last row from `first` to `k` at which a filter that expects a burst found
     /// the variation astray.
-    pub(crate) fn last_astray(&self, first: usize, k: usize) -> usize {
-        let Some(spawn) = self.bank.spawns.iter().rfind(|s| s.at <= first) else {
+    pub(crate) fn last_disturbed_row(&self, first: usize, k: usize) -> usize {
+        let Some(fork) = self.bank.forks.iter().rfind(|s| s.at <= first) else {
             return first;
         };
         let at = self.null.unknowns();
-        let measured: Vec<_> = (spawn.at..k).map(|row| self.measure(row, &at)).collect();
-        let astray_deg = |m| spawn.origin().variation_innovation_deg(m);
+        let measured: Vec<_> = (fork.at..k).map(|row| self.measure(row, &at)).collect();
+        let astray_deg = |m| fork.origin().variation_innovation_deg(m);
         let most_deg = measured.iter().map(astray_deg).fold(0.0, f64::max);
-        let burst = transient_noise(most_deg);
-        let mut filter = apply_jump(spawn.origin(), HypothesisKind::Transient);
+        let transient = transient_noise(most_deg);
+        let mut filter = apply_jump(fork.origin(), HypothesisKind::Transient);
         let mut last = first;
-        for (row, m) in (spawn.at..k).zip(&measured) {
-            filter.take(m, &self.noise, Some(&burst));
+        for (row, m) in (fork.at..k).zip(&measured) {
+            filter.observe(m, &self.noise, Some(&transient));
             if row >= first && filter.mean[VARIATION].abs() > DISTURBED_VARIATION_DEG {
                 last = row;
             }

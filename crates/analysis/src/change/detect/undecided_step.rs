@@ -24,53 +24,53 @@ const NOMINAL_H_NT: f64 = 24_000.0;
 
 impl Detector<'_> {
     /// What the step that may have been adds to the variance of bx and by, nT².
-    pub(crate) fn open_nt2(&self, leads: &Leads) -> Option<f64> {
+    pub(crate) fn undecided_step_nt2(&self, leads: &Leads) -> Option<f64> {
         let last = self.observations.len().checked_sub(1)?;
-        let others = leads.iter().flatten().map(|lead| lead.nats);
+        let others = leads.iter().flatten().map(|lead| lead.log_likelihood_ratio);
         let likeliest = others.fold(0.0, f64::max);
         let passed = self
-            .passed
+            .before_transient
             .as_ref()
             .filter(|(at, _)| last < at + UNDECIDED_STEP_ROWS);
         if likeliest < UNDECIDED_STEP_LOG_LIKELIHOOD_RATIO && passed.is_none() {
             return None;
         }
-        let spawns = self
+        let forks = self
             .bank
-            .spawns
+            .forks
             .iter()
             .filter(|s| last < s.at + UNDECIDED_STEP_ROWS);
-        let spawns = spawns.map(|spawn| (spawn.at, spawn.origin()));
-        let open = spawns
+        let forks = forks.map(|fork| (fork.at, fork.origin()));
+        let open = forks
             .chain(passed.map(|(at, before)| (*at, before)))
             // The reading in which it happened is of neither ship.
             .flat_map(|(at, before)| [at, at + 1].map(|first| (at, first, before)))
             .filter_map(|(at, first, before)| {
-                let after = self.after_strike(at..first, before);
-                let nats = after.log_likelihood - self.null.log_likelihood;
+                let after = self.filter_after_large_step(at..first, before);
+                let ratio = after.log_likelihood - self.null.log_likelihood;
                 let size = after.permanent_distance(before);
                 let is_open = size > UNDECIDED_STEP_MIN_SIZE
-                    && nats
+                    && ratio
                         > UNDECIDED_STEP_LOG_LIKELIHOOD_RATIO
                             .max(likeliest - EXCLUDED_STEP_LOG_LIKELIHOOD_RATIO);
-                is_open.then_some((nats, size))
+                is_open.then_some((ratio, size))
             })
             .max_by(|a, b| a.0.total_cmp(&b.0))
             .map(|(_, size)| size * POPULATION_SD[0]);
-        let wild = self.wild_nt(leads, last);
+        let wild = self.severe_transient_nt(leads, last);
         let seen_nt = open.into_iter().chain(wild).max_by(f64::total_cmp)?;
         Some(unseen_sd_nt(seen_nt).powi(2))
     }
 
     /// How far the compass is astray now, as a field in nT, while it swings by more than any
     /// storm makes it: whatever that is, the base model does not say what she shows.
-    fn wild_nt(&self, leads: &Leads, last: usize) -> Option<f64> {
+    fn severe_transient_nt(&self, leads: &Leads, last: usize) -> Option<f64> {
         let lead = leads[HypothesisKind::Transient as usize]
             .filter(|lead| lead.kind == HypothesisKind::SevereTransient)?;
-        let spawn = &self.bank.spawns[lead.spawn];
-        let origin = spawn.origin();
+        let fork = &self.bank.forks[lead.fork];
+        let origin = fork.origin();
         let at = origin.unknowns();
-        let rows = spawn.at.max((last + 1).saturating_sub(MEDIAN_ROWS))..=last;
+        let rows = fork.at.max((last + 1).saturating_sub(MEDIAN_ROWS))..=last;
         let astray = rows.map(|row| origin.variation_innovation_deg(&self.measure(row, &at)));
         let mut astray: Vec<f64> = astray.collect();
         if astray.len() < MEDIAN_ROWS {
@@ -83,11 +83,11 @@ impl Detector<'_> {
         Some(median.to_radians().min(1.0) * NOMINAL_H_NT)
     }
 
-    /// The filter of a ship that was as `before` until the end of the rows `calm`, and struck
+    /// The filter of a ship that was as `before` until the end of the rows `undisturbed_rows`, and struck
     /// then, at the last row.
-    fn after_strike(&self, calm: Range<usize>, before: &Filter) -> Filter {
-        let first = calm.end;
-        let before = self.run(before.clone(), calm, &before.unknowns());
+    fn filter_after_large_step(&self, undisturbed_rows: Range<usize>, before: &Filter) -> Filter {
+        let first = undisturbed_rows.end;
+        let before = self.run(before.clone(), undisturbed_rows, &before.unknowns());
         let begun = apply_large_step(&before);
         let rows = first..self.observations.len();
         let mut after = before;

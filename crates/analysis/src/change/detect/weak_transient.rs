@@ -12,32 +12,32 @@ use crate::change::thresholds::{
 
 impl Detector<'_> {
     /// Keeps in mind what leads by too little to be told.
-    pub(crate) fn note_faint(&mut self, k: usize, leads: Leads, over_lasting: f64) {
+    pub(crate) fn note_weak_transient(&mut self, k: usize, leads: Leads, over_lasting: f64) {
         // What is wild and faint is a few wild readings.
         let is_news =
-            |lead: &Lead| self.burst.is_none() && lead.kind != HypothesisKind::SevereTransient;
+            |lead: &Lead| self.transient.is_none() && lead.kind != HypothesisKind::SevereTransient;
         let Some(lead) = leads[HypothesisKind::Transient as usize].filter(is_news) else {
             return;
         };
         let most = self
-            .faint
+            .weak_transient
             .as_ref()
             .and_then(|f| f.leads[HypothesisKind::Transient as usize]);
-        let is_more = most.is_none_or(|most| lead.nats > most.nats);
-        if lead.nats > WEAK_TRANSIENT_LOG_LIKELIHOOD_RATIO
+        let is_more = most.is_none_or(|most| lead.log_likelihood_ratio > most.log_likelihood_ratio);
+        if lead.log_likelihood_ratio > WEAK_TRANSIENT_LOG_LIKELIHOOD_RATIO
             && over_lasting > TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
             && is_more
         {
             let first = self.began(lead);
-            if self.same_burst(first).is_none() && self.has_time_left(first, k) {
+            if self.same_transient(first).is_none() && self.may_continue(first, k) {
                 let last = k;
-                self.faint = Some(WeakTransient { first, last, leads });
+                self.weak_transient = Some(WeakTransient { first, last, leads });
             }
         }
     }
 
     /// Whether a burst of row `first` may go on still.
-    pub(crate) fn has_time_left(&self, first: usize, k: usize) -> bool {
+    pub(crate) fn may_continue(&self, first: usize, k: usize) -> bool {
         let time = |row: usize| self.observations[row].time;
         let age_s = time(k)
             .zip(time(first))
@@ -46,13 +46,14 @@ impl Detector<'_> {
     }
 
     /// Puts it among the events, unconfirmed, once it is over or the rows are.
-    pub(crate) fn settle_faint(&mut self, k: usize, is_last: bool) {
-        let is_over =
-            |faint: &mut WeakTransient| is_last || k > faint.last + WEAK_TRANSIENT_OVER_ROWS;
-        let Some(faint) = self.faint.take_if(is_over) else {
+    pub(crate) fn close_weak_transient(&mut self, k: usize, is_last: bool) {
+        let is_over = |weak_transient: &mut WeakTransient| {
+            is_last || k > weak_transient.last + WEAK_TRANSIENT_OVER_ROWS
+        };
+        let Some(weak_transient) = self.weak_transient.take_if(is_over) else {
             return;
         };
-        let WeakTransient { first, last, leads } = faint;
+        let WeakTransient { first, last, leads } = weak_transient;
         self.push(k, EventKind::Transient, first, (first, first), leads, None);
         if let Some(event) = self.events.last_mut() {
             event.last = Some(last.max(first));

@@ -18,7 +18,7 @@ use crate::change::thresholds::{
 
 impl Detector<'_> {
     /// The doubt of a step that was dated just now, and is the last event.
-    pub(crate) fn doubt_of(
+    pub(crate) fn no_step_hypotheses(
         &self,
         k: usize,
         dated: &DatedChange,
@@ -27,7 +27,7 @@ impl Detector<'_> {
         let (before, rows) = (&dated.before, dated.first..k + 1);
         let nothing = self.run(before.clone(), rows, &before.unknowns());
         let passed = leads[HypothesisKind::Transient as usize].and_then(|lead| {
-            let copy = self.bank.spawns[lead.spawn].copy(lead.kind)?;
+            let copy = self.bank.forks[lead.fork].copy(lead.kind)?;
             Some(match lead.kind {
                 HypothesisKind::SevereTransient => reset_variation(copy, &self.noise),
                 _ => copy.clone(),
@@ -35,66 +35,68 @@ impl Detector<'_> {
         });
         NoStepHypotheses {
             event: self.events.len() - 1,
-            told: k,
+            detected_row: k,
             learn_from: self.learn_from,
             without: std::iter::once(nothing).chain(passed).collect(),
         }
     }
 
     /// It reads the row that the filter has read.
-    pub(crate) fn take_in_doubt(&mut self, k: usize) {
-        let Some(mut doubt) = self.doubt.take() else {
+    pub(crate) fn observe_no_step(&mut self, k: usize) {
+        let Some(mut no_step) = self.no_step.take() else {
             return;
         };
-        for filter in &mut doubt.without {
+        for filter in &mut no_step.without {
             // A ship that was not struck has nothing that fades.
             let m = self.measure_settled(k, &filter.unknowns());
-            filter.take(&m, &self.noise, None);
+            filter.observe(&m, &self.noise, None);
         }
-        let trails = if k < doubt.told + WITHDRAWAL_MIN_ROWS {
+        let trails = if k < no_step.detected_row + WITHDRAWAL_MIN_ROWS {
             NO_STEP_DROPPED_EARLY_LOG_LIKELIHOOD_RATIO
         } else {
             NO_STEP_DROPPED_LOG_LIKELIHOOD_RATIO
         };
         let hopeless = self.null.log_likelihood - trails;
-        doubt
+        no_step
             .without
             .retain(|filter| filter.log_likelihood > hopeless);
-        self.doubt = Some(doubt).filter(|doubt| !doubt.without.is_empty());
+        self.no_step = Some(no_step).filter(|no_step| !no_step.without.is_empty());
     }
 
     /// Withdraws the last step, if the rows since are likelier without it.
-    pub(crate) fn settle_doubt(&mut self, k: usize, leads: &Leads) -> bool {
-        let of_kind = |kind: HypothesisKind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
-        if self.burst.is_some()
+    pub(crate) fn decide_withdrawal(&mut self, k: usize, leads: &Leads) -> bool {
+        let of_kind = |kind: HypothesisKind| {
+            leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
+        };
+        if self.transient.is_some()
             || of_kind(HypothesisKind::Transient) > WITHDRAWAL_MAX_TRANSIENT_LOG_LIKELIHOOD_RATIO
         {
             return false;
         }
-        let likelier = |doubt: &NoStepHypotheses| {
-            let each = doubt.without.iter().enumerate();
+        let likelier = |no_step: &NoStepHypotheses| {
+            let each = no_step.without.iter().enumerate();
             let each = each.map(|(i, filter)| (i, filter.log_likelihood));
-            let (place, nats) = each.max_by(|a, b| a.1.total_cmp(&b.1))?;
+            let (place, ratio) = each.max_by(|a, b| a.1.total_cmp(&b.1))?;
             let enough = self.null.log_likelihood + WITHDRAWAL_LOG_LIKELIHOOD_RATIO;
-            (k >= doubt.told + WITHDRAWAL_MIN_ROWS && nats > enough).then_some(place)
+            (k >= no_step.detected_row + WITHDRAWAL_MIN_ROWS && ratio > enough).then_some(place)
         };
-        let Some(place) = self.doubt.as_ref().and_then(likelier) else {
+        let Some(place) = self.no_step.as_ref().and_then(likelier) else {
             return false;
         };
-        let Some(mut doubt) = self.doubt.take() else {
+        let Some(mut no_step) = self.no_step.take() else {
             return false;
         };
-        let event = &mut self.events[doubt.event];
+        let event = &mut self.events[no_step.event];
         event.confirmed = false;
         event.withdrawn = Some(k);
-        self.calls.forget(doubt.event);
-        self.unsettled = ExtraDrift::default();
-        self.take_over(k, doubt.without.swap_remove(place), doubt.learn_from);
+        self.returns.forget(no_step.event);
+        self.extra_drift = ExtraDrift::default();
+        self.replace_null(k, no_step.without.swap_remove(place), no_step.learn_from);
         true
     }
 
     /// Whether an event is a step that still stands.
-    pub(crate) fn is_standing_step(&self, event: usize) -> bool {
+    pub(crate) fn is_step_in_force(&self, event: usize) -> bool {
         let event = &self.events[event];
         event.what == EventKind::Step && event.withdrawn.is_none()
     }

@@ -96,26 +96,31 @@ impl Filter {
         innovation * innovation / (variance + dot(load, &self.covariance.times(load)))
     }
 
-    /// Takes in what was measured; `burst` is what the variation does meanwhile, if
+    /// Takes in what was measured; `transient` is what the variation does meanwhile, if
     /// not the usual. By how much that surprised, nats: 0 on the average.
-    pub(crate) fn take(
+    pub(crate) fn observe(
         &mut self,
         m: &Measurement,
         noise: &NoiseVariances,
-        burst: Option<&TransientNoise>,
+        transient: Option<&TransientNoise>,
     ) -> f64 {
-        self.advance(m, noise, burst);
+        self.advance(m, noise, transient);
         let by_difference = m.difference.as_ref().map(|scalar| self.update(scalar));
         by_difference.unwrap_or(0.0) + self.update(&m.deviation)
     }
 
-    fn advance(&mut self, m: &Measurement, noise: &NoiseVariances, burst: Option<&TransientNoise>) {
+    fn advance(
+        &mut self,
+        m: &Measurement,
+        noise: &NoiseVariances,
+        transient: Option<&TransientNoise>,
+    ) {
         let t = &m.transition;
         let mut decay = t.decay;
         let mut stationary = noise.stationary;
-        if let Some(burst) = burst {
-            decay[VARIATION - SLOW] = (-m.seconds / burst.memory_s).exp();
-            stationary[VARIATION - LASTING] = burst.variance;
+        if let Some(transient) = transient {
+            decay[VARIATION - SLOW] = (-m.seconds / transient.memory_s).exp();
+            stationary[VARIATION - LASTING] = transient.variance;
         }
         let [[a, b], [c, d]] = t.schuler;
         let turned = |swing: f64, rate: f64| (a * swing + b * rate, c * swing + d * rate);

@@ -23,7 +23,7 @@ pub(crate) struct Scalar {
     pub(crate) variance: f64,
 }
 
-/// What `station` and `row` measure, as a filter takes it in; `unsettled` is what bx and
+/// What `station` and `row` measure, as a filter takes it in; `extra_drift` is what bx and
 /// by drift beyond their usual, variance in thirty days.
 pub(crate) fn measurement(
     station: &Station,
@@ -31,7 +31,7 @@ pub(crate) fn measurement(
     at: &Unknowns,
     seconds: f64,
     noise: &NoiseVariances,
-    unsettled: f64,
+    extra_drift: f64,
 ) -> Measurement {
     let scalar = |residual: f64, columns: &[f64; UNKNOWNS], loads: &[f64], variance: f64| {
         let mut load = [0.0; STATES];
@@ -48,7 +48,7 @@ pub(crate) fn measurement(
     Measurement {
         transition: station.transition,
         seconds,
-        drift: (noise.drift + unsettled) * station.transition.drift_share,
+        drift: (noise.drift + extra_drift) * station.transition.drift_share,
         deviation: scalar(
             row.residual,
             &row.columns,

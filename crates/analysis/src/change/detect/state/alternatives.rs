@@ -23,7 +23,7 @@ pub(crate) struct NoStepHypotheses {
     /// The step's place in the list of events.
     pub(crate) event: usize,
     /// The row that told.
-    pub(crate) told: usize,
+    pub(crate) detected_row: usize,
     /// Where the stretch of learning began before it was told.
     pub(crate) learn_from: usize,
     /// Of a ship to whom nothing happened, and by whom something passed.

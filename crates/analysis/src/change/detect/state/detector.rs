@@ -38,32 +38,32 @@ pub(crate) struct Detector<'a> {
     pub(crate) start_until: usize,
     /// Where the present stretch of learning began, and which comes next.
     pub(crate) learn_from: usize,
-    pub(crate) lesson: LearningSchedule,
+    pub(crate) next_learning: LearningSchedule,
     /// Days that the levels were learnt from.
     pub(crate) learnt_days: f64,
     pub(crate) null: Filter,
     pub(crate) bank: HypothesisBank,
-    pub(crate) spawned: usize,
+    pub(crate) last_fork: usize,
     /// What the ship was before steps, and where she may have become it again.
-    pub(crate) calls: PortCallReturns,
-    pub(crate) ports: PortDepartures,
+    pub(crate) returns: PortCallReturns,
+    pub(crate) departures: PortDepartures,
     /// A reference's fault that goes on, if one does: its place in the list of
     /// events, and the filter before.
-    pub(crate) misled: Option<(usize, Filter)>,
+    pub(crate) reference_fault: Option<(usize, Filter)>,
     /// The same of a compass's zero that moved, if nothing else has changed since.
     pub(crate) apply_alignment_step: Option<(usize, Filter)>,
-    pub(crate) unsettled: ExtraDrift,
+    pub(crate) extra_drift: ExtraDrift,
     /// What else the last step may have been.
-    pub(crate) rivals: Vec<CompetingHypothesis>,
+    pub(crate) competing: Vec<CompetingHypothesis>,
     /// That it may be none.
-    pub(crate) doubt: Option<NoStepHypotheses>,
+    pub(crate) no_step: Option<NoStepHypotheses>,
     /// The burst that goes on, if one does.
-    pub(crate) burst: Option<usize>,
+    pub(crate) transient: Option<usize>,
     /// The filter before the last burst that was told, and its first row, as long as nothing
     /// that lasts was.
-    pub(crate) passed: Option<(usize, Filter)>,
+    pub(crate) before_transient: Option<(usize, Filter)>,
     /// A disturbance that leads by too little to be told.
-    pub(crate) faint: Option<WeakTransient>,
+    pub(crate) weak_transient: Option<WeakTransient>,
     pub(crate) events: Vec<Event>,
 }
 
@@ -86,20 +86,20 @@ impl<'a> Detector<'a> {
             start: learnt.unknowns,
             start_until: learnt.until,
             learn_from: 0,
-            lesson: LearningSchedule::next(observations, 0, learnt.until, 0.0),
+            next_learning: LearningSchedule::next(observations, 0, learnt.until, 0.0),
             learnt_days: 0.0,
             bank: HypothesisBank::default(),
-            spawned: 0,
-            calls: PortCallReturns::default(),
-            ports: PortDepartures::default(),
-            misled: None,
+            last_fork: 0,
+            returns: PortCallReturns::default(),
+            departures: PortDepartures::default(),
+            reference_fault: None,
             apply_alignment_step: None,
-            unsettled: ExtraDrift::default(),
-            rivals: Vec::new(),
-            doubt: None,
-            burst: None,
-            passed: None,
-            faint: None,
+            extra_drift: ExtraDrift::default(),
+            competing: Vec::new(),
+            no_step: None,
+            transient: None,
+            before_transient: None,
+            weak_transient: None,
             events: Vec::new(),
         }
     }
@@ -154,9 +154,9 @@ impl<'a> Detector<'a> {
     /// The same for a ship that drifts by so much more in thirty days, variance in
     /// population units.
     pub(crate) fn measure_drifting(&self, k: usize, at: &Unknowns, drift: f64) -> Measurement {
-        let unsettled = self.unsettled.variance(self.observations, k);
+        let extra_drift = self.extra_drift.variance(self.observations, k);
         let seen = (priors::DRIFT_IN_GAP_MAX_S / self.seconds(k)).min(1.0);
-        self.measured(k, at, unsettled.max(seen * drift))
+        self.measured(k, at, extra_drift.max(seen * drift))
     }
 
     /// The same for a ship that drifts as ships do.
@@ -164,22 +164,22 @@ impl<'a> Detector<'a> {
         self.measured(k, at, 0.0)
     }
 
-    pub(crate) fn measured(&self, k: usize, at: &Unknowns, unsettled: f64) -> Measurement {
+    pub(crate) fn measured(&self, k: usize, at: &Unknowns, extra_drift: f64) -> Measurement {
         let (o, station) = (&self.observations[k], &self.stations[k]);
         let row = row(o, station, &Point::at(at, reference_share(at)));
-        measurement(station, &row, at, self.seconds(k), &self.noise, unsettled)
+        measurement(station, &row, at, self.seconds(k), &self.noise, extra_drift)
     }
 
     /// Since the row before.
     pub(crate) fn seconds(&self, k: usize) -> f64 {
-        let earlier = k.checked_sub(1).and_then(|j| self.observations[j].time);
-        match (earlier, self.observations[k].time) {
-            (Some(earlier), Some(time)) => time.seconds_since(earlier).max(0.0),
+        let earlier_state = k.checked_sub(1).and_then(|j| self.observations[j].time);
+        match (earlier_state, self.observations[k].time) {
+            (Some(earlier_state), Some(time)) => time.seconds_since(earlier_state).max(0.0),
             _ => 0.0,
         }
     }
 
-    pub(crate) fn is_call(&self, k: usize) -> bool {
+    pub(crate) fn is_port_call(&self, k: usize) -> bool {
         at_port(self.observations, k) == Some(true)
     }
 
@@ -190,19 +190,22 @@ impl<'a> Detector<'a> {
         rows: std::ops::Range<usize>,
         at: &Unknowns,
     ) -> Filter {
-        for k in self.calm(rows) {
-            filter.take(&self.measure(k, at), &self.noise, None);
+        for k in self.undisturbed_rows(rows) {
+            filter.observe(&self.measure(k, at), &self.noise, None);
         }
         filter
     }
 
     /// Those rows in which nothing was astray that passed.
-    pub(crate) fn calm(&self, rows: std::ops::Range<usize>) -> impl Iterator<Item = usize> {
+    pub(crate) fn undisturbed_rows(
+        &self,
+        rows: std::ops::Range<usize>,
+    ) -> impl Iterator<Item = usize> {
         let passed = self
             .events
             .iter()
             .filter(|event| event.what == EventKind::Transient);
-        let passed = passed.filter_map(|burst| Some(burst.first..=burst.last?));
+        let passed = passed.filter_map(|transient| Some(transient.first..=transient.last?));
         let passed: Vec<_> = passed.filter(|p| *p.end() >= rows.start).collect();
         rows.filter(move |row| !passed.iter().any(|passed| passed.contains(row)))
     }
@@ -210,16 +213,16 @@ impl<'a> Detector<'a> {
 
 /// What may be again what it was: a reference first, which is soon mended; then what
 /// changed last.
-pub(crate) fn earlier<'a>(
-    misled: Option<&'a (usize, Filter)>,
+pub(crate) fn earlier_state<'a>(
+    reference_fault: Option<&'a (usize, Filter)>,
     apply_alignment_step: Option<&'a (usize, Filter)>,
     calls: &'a PortCallReturns,
 ) -> Option<EarlierState<'a>> {
-    let reference = misled.map(|(_, before)| EarlierState::Reference(before));
+    let reference = reference_fault.map(|(_, before)| EarlierState::Reference(before));
     let zero = || apply_alignment_step.map(|(_, before)| EarlierState::Zero(before));
     let ship = || {
         calls
-            .bases
+            .baselines
             .last()
             .map(|base| EarlierState::Ship(base.without_cargo()))
     };

@@ -27,7 +27,7 @@ impl ExtraDrift {
     }
 
     /// A ship that drifts on from row `since`.
-    pub(crate) fn creeping(since: usize, variance: f64) -> ExtraDrift {
+    pub(crate) fn drift_hypothesis(since: usize, variance: f64) -> ExtraDrift {
         ExtraDrift {
             since,
             variance,
@@ -36,7 +36,7 @@ impl ExtraDrift {
     }
 
     /// Whether the ship drifts when row `k` is read.
-    pub(crate) fn creeps(&self, observations: &[Observation], k: usize) -> bool {
+    pub(crate) fn is_drifting(&self, observations: &[Observation], k: usize) -> bool {
         self.is_drift && self.variance(observations, k) > 0.0
     }
 

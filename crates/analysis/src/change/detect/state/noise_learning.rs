@@ -8,7 +8,7 @@ use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::ship::PARAMETERS;
 
 /// Days of data from which the sizes of noise are learnt, again and again.
-const LEARN_DAYS: [f64; 3] = [10.0, 30.0, 90.0];
+const LEARNING_DAYS: [f64; 3] = [10.0, 30.0, 90.0];
 
 /// What a stretch of rows told.
 #[derive(Clone, Copy)]
@@ -31,7 +31,7 @@ impl LearntNoise {
         if let Some(levels) = before {
             return Some(LearntNoise::beforehand(levels, prior));
         }
-        LEARN_DAYS.iter().find_map(|days| {
+        LEARNING_DAYS.iter().find_map(|days| {
             let until = rows_within(observations, 0, *days);
             LearntNoise::of(observations, 0..until, prior, None)
         })
@@ -98,13 +98,13 @@ impl LearningSchedule {
         k: usize,
         days: f64,
     ) -> LearningSchedule {
-        let long = LEARN_DAYS.iter().filter(|long| **long >= days);
-        let mut lessons = long.map(|&days| LearningSchedule {
+        let long = LEARNING_DAYS.iter().filter(|long| **long >= days);
+        let mut schedules = long.map(|&days| LearningSchedule {
             at: rows_within(observations, from, days),
             days,
         });
-        lessons
-            .find(|lesson| lesson.at > k)
+        schedules
+            .find(|next_learning| next_learning.at > k)
             .unwrap_or(LearningSchedule {
                 at: usize::MAX,
                 days,
