@@ -122,13 +122,17 @@ const CONTRADICTION_FACTOR: f64 = 0.02;
 const OPEN_CONTRADICTION_FACTOR: f64 = 0.5;
 
 /// The causes of an event, the likeliest first.
-pub(crate) fn causes(what: EventKind, circumstances: &Circumstances) -> Vec<CauseProbability> {
-    let [step, reference, transient, _] = circumstances.leads.map(|lead| LIKELIHOOD_TEMPER * lead);
+pub(crate) fn causes(
+    event_kind: EventKind,
+    circumstances: &Circumstances,
+) -> Vec<CauseProbability> {
+    let [step, reference_step, transient, _] =
+        circumstances.leads.map(|lead| LIKELIHOOD_TEMPER * lead);
     let instead_of_step = step + LIKELIHOOD_TEMPER * circumstances.over_step_log_likelihood_ratio;
-    let most = instead_of_step.max(reference).max(transient);
+    let most = instead_of_step.max(reference_step).max(transient);
     let mut weights: Vec<(Cause, f64)> = Vec::new();
     for cause_priors in &LASTING_CAUSES {
-        let lead = if what == EventKind::Drift && cause_priors.cause == Cause::Drift {
+        let lead = if event_kind == EventKind::Drift && cause_priors.cause == Cause::Drift {
             instead_of_step
         } else {
             step
@@ -138,7 +142,7 @@ pub(crate) fn causes(what: EventKind, circumstances: &Circumstances) -> Vec<Caus
             cause_priors.weight(circumstances) * (lead - most).exp(),
         ));
     }
-    if what == EventKind::Alignment {
+    if event_kind == EventKind::Alignment {
         weights.push((
             Cause::Alignment,
             ALIGNMENT_RATE_PER_YEAR * (instead_of_step - most).exp(),
@@ -146,7 +150,7 @@ pub(crate) fn causes(what: EventKind, circumstances: &Circumstances) -> Vec<Caus
     }
     if let Some(over) = circumstances
         .alignment_over_step_log_likelihood_ratio
-        .filter(|_| what == EventKind::Step)
+        .filter(|_| event_kind == EventKind::Step)
     {
         // The headings sailed do not tell: it is not named for what may be as well.
         let steps = weights.iter().map(|(_, weight)| *weight);
@@ -154,23 +158,23 @@ pub(crate) fn causes(what: EventKind, circumstances: &Circumstances) -> Vec<Caus
         let zero = ALIGNMENT_RATE_PER_YEAR * (step + LIKELIHOOD_TEMPER * over - most).exp();
         weights.push((Cause::Alignment, zero.min(likeliest)));
     }
-    let passing = (transient - most).exp();
+    let transient_lead = (transient - most).exp();
     let astray_deg = circumstances.disturbance_deg.unwrap_or(0.0);
     let in_storm = (-(astray_deg / STORM_DEG).powi(2)).exp();
     let over_anomaly = 1.0 / (1.0 + (astray_deg / ANOMALY_DEG).powi(2));
     let by_fault = astray_deg.powi(2) / (astray_deg.powi(2) + COMPASS_FAULT_DEG.powi(2));
     weights.push((
         Cause::CompassFault,
-        COMPASS_FAULT_RATE_PER_YEAR * passing * by_fault,
+        COMPASS_FAULT_RATE_PER_YEAR * transient_lead * by_fault,
     ));
     let by_lone_reference = if circumstances.one_reference {
-        LONE_REFERENCE_FAULT_RATE_PER_YEAR * passing * by_fault
+        LONE_REFERENCE_FAULT_RATE_PER_YEAR * transient_lead * by_fault
     } else {
         0.0
     };
-    let of_reference = 0.5 * (reference - most).exp() + by_lone_reference;
+    let of_reference = 0.5 * (reference_step - most).exp() + by_lone_reference;
     weights.push((Cause::ReferenceFault, of_reference));
-    if what == EventKind::ReferenceFault && circumstances.one_reference {
+    if event_kind == EventKind::ReferenceFault && circumstances.one_reference {
         // The same on every heading: which of the two was moved, nothing tells but its end.
         let share = if circumstances.is_over {
             ALIGNMENT_REPAIRED
@@ -192,11 +196,11 @@ pub(crate) fn causes(what: EventKind, circumstances: &Circumstances) -> Vec<Caus
     };
     weights.push((
         Cause::MagneticStorm,
-        6.0 * passing * in_storm * (0.1 + 0.8 * long) * elsewhere,
+        6.0 * transient_lead * in_storm * (0.1 + 0.8 * long) * elsewhere,
     ));
     weights.push((
         Cause::LocalAnomaly,
-        3.0 * passing * over_anomaly * (0.9 - 0.8 * long) * elsewhere,
+        3.0 * transient_lead * over_anomaly * (0.9 - 0.8 * long) * elsewhere,
     ));
     let at_berth = match circumstances.at_port {
         // It lasts as long as she lies there.
@@ -204,14 +208,17 @@ pub(crate) fn causes(what: EventKind, circumstances: &Circumstances) -> Vec<Caus
         Some(true) => 0.9 - 0.8 * long,
         _ => 0.01 * (0.9 - 0.8 * long),
     };
-    weights.push((Cause::BerthSteel, 3.0 * passing * over_anomaly * at_berth));
+    weights.push((
+        Cause::BerthSteel,
+        3.0 * transient_lead * over_anomaly * at_berth,
+    ));
     for (cause, weight) in &mut weights {
         if circumstances.reported.contains(cause) {
             *weight *= REPORTED_FACTOR;
         }
     }
-    let agrees = |cause: Cause| is_consistent(what, cause, circumstances);
-    discount_contradictions(what, circumstances, &mut weights);
+    let agrees = |cause: Cause| is_consistent(event_kind, cause, circumstances);
+    discount_contradictions(event_kind, circumstances, &mut weights);
     let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
     let mut causes: Vec<CauseProbability> = weights
         .into_iter()
@@ -236,12 +243,12 @@ pub(crate) fn causes(what: EventKind, circumstances: &Circumstances) -> Vec<Caus
 
 /// Takes from the weight of what contradicts what the search decided.
 fn discount_contradictions(
-    what: EventKind,
+    event_kind: EventKind,
     circumstances: &Circumstances,
     weights: &mut [(Cause, f64)],
 ) {
-    let agrees = |cause: Cause| is_consistent(what, cause, circumstances);
-    let is_of_the_ship = matches!(what, EventKind::Return(_)) || what.is_lasting();
+    let agrees = |cause: Cause| is_consistent(event_kind, cause, circumstances);
+    let is_of_the_ship = matches!(event_kind, EventKind::Return(_)) || event_kind.is_lasting();
     let agreeing = weights.iter().filter(|(cause, _)| agrees(*cause));
     let most = agreeing
         .map(|(_, weight)| *weight)
@@ -263,10 +270,10 @@ fn discount_contradictions(
 
 /// Whether a cause is of what the search decided, or in port of what it may yet be: there she
 /// may be another since, as long as she has not sailed.
-fn is_consistent(what: EventKind, cause: Cause, circumstances: &Circumstances) -> bool {
+fn is_consistent(event_kind: EventKind, cause: Cause, circumstances: &Circumstances) -> bool {
     let may_be_hers = circumstances.alongside && !circumstances.is_over;
     let is_hers = matches!(cause, Cause::MagneticCargo | Cause::AdjustmentOrRepair);
-    agrees(what, cause, circumstances.one_reference) || (may_be_hers && is_hers)
+    agrees(event_kind, cause, circumstances.one_reference) || (may_be_hers && is_hers)
 }
 
 impl CausePriors {
@@ -292,8 +299,8 @@ impl CausePriors {
 }
 
 /// Whether a cause is of what the search decided.
-fn agrees(what: EventKind, cause: Cause, one_reference: bool) -> bool {
-    match what {
+fn agrees(event_kind: EventKind, cause: Cause, one_reference: bool) -> bool {
+    match event_kind {
         EventKind::Step | EventKind::Return(_) => cause.is_the_ships(),
         EventKind::Alignment => cause == Cause::Alignment,
         EventKind::Drift => cause == Cause::Drift,

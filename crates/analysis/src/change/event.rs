@@ -41,7 +41,7 @@ impl EventKind {
 /// Something that happened, found among the rows.
 #[derive(Clone, Debug)]
 pub(crate) struct Event {
-    pub(crate) what: EventKind,
+    pub(crate) kind: EventKind,
     /// The first row after it, and the first and last that may be.
     pub(crate) first: usize,
     pub(crate) between: (usize, usize),
@@ -72,10 +72,10 @@ pub(crate) struct Event {
 impl Event {
     /// What was told as the ship's or her compass's was gone again before row `end`.
     pub(crate) fn pass(&mut self, end: usize) {
-        let [step, reference, transient, back] = self.leads;
-        self.what = EventKind::Transient;
+        let [step, reference_step, transient, back] = self.leads;
+        self.kind = EventKind::Transient;
         self.last = Some(end.saturating_sub(1).max(self.first));
-        self.leads = [0.0, reference, transient.max(step), back];
+        self.leads = [0.0, reference_step, transient.max(step), back];
         self.was_step = true;
         self.over_step_log_likelihood_ratio = 0.0;
     }
@@ -91,7 +91,7 @@ pub(crate) fn remove_events(
     events.retain(|_| each.next() != Some(&true));
     let moved = move |place: usize| place - gone[..place].iter().filter(|gone| **gone).count();
     for event in events {
-        if let EventKind::Return(of) = &mut event.what {
+        if let EventKind::Return(of) = &mut event.kind {
             *of = moved(*of);
         }
     }
@@ -125,13 +125,13 @@ mod tests {
     use crate::estimate::Prior;
     use binnacle_compass::result::NoiseLevels;
 
-    fn event(what: EventKind) -> Event {
+    fn event(event_kind: EventKind) -> Event {
         let known = Filter::new(
             &Prior::population(0.5),
             &NoiseVariances::new(&NoiseLevels::TYPICAL),
         );
         Event {
-            what,
+            kind: event_kind,
             first: 0,
             between: (0, 0),
             detected_row: 0,
@@ -159,8 +159,8 @@ mod tests {
         let mut events: Vec<Event> = told.into_iter().map(event).collect();
         let moved = remove_events(&mut events, vec![false, true, false, false]);
         assert_eq!(events.len(), 3);
-        assert_eq!(events[moved(2)].what, EventKind::ReferenceFault);
-        assert_eq!(events[2].what, EventKind::Return(moved(2)));
+        assert_eq!(events[moved(2)].kind, EventKind::ReferenceFault);
+        assert_eq!(events[2].kind, EventKind::Return(moved(2)));
         assert_eq!(moved(0), 0);
     }
 }

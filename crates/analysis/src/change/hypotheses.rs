@@ -14,9 +14,9 @@ use super::hypothesis_kind::{
     ALL_KINDS, HypothesisKind, OTHER_KINDS, REFERENCE_STEPS, STEPS, TRANSIENTS,
 };
 use super::jump_models::{
-    EarlierState, USUAL_TRANSIENT, apply_jump, reference_fault, reset_variation, transient_noise,
+    EarlierState, USUAL_TRANSIENT, apply_jump, apply_reference_step, reset_variation,
+    transient_noise,
 };
-use crate::change::priors;
 use crate::change::thresholds::{
     AWAKE_MIN_ROWS, ROW_FORGOTTEN_EXCESS_LOSS, ROW_MAX_EXCESS_LOSS, SEVERE_TRANSIENT_DEG,
     SLEEP_LOG_LIKELIHOOD_RATIO, STEP_DROPPED_LOG_LIKELIHOOD_RATIO, STEP_DROPPED_MIN_ROWS,
@@ -43,7 +43,7 @@ pub(crate) struct Fork {
     /// The first row of the burst that may be over.
     pub(crate) transient_from: Option<usize>,
     /// Boxed, as most are none.
-    copies: [Option<Box<Filter>>; ALL_KINDS.len()],
+    hypotheses: [Option<Box<Filter>>; ALL_KINDS.len()],
     age_s: f64,
     /// How far the compass was astray since, degrees where H is 24 µT.
     disturbance_deg: f64,
@@ -55,15 +55,15 @@ pub(crate) struct Fork {
 
 impl Fork {
     /// Makes the copies that rival a step.
-    fn wake(&mut self, earlier_state: Option<EarlierState<'_>>) {
+    fn start_other_hypotheses(&mut self, earlier_state: Option<EarlierState<'_>>) {
         let now = &self.origin;
         for kind in REFERENCE_STEPS {
-            self.copies[kind as usize] = Some(now.clone());
+            self.hypotheses[kind as usize] = Some(now.clone());
         }
-        self.copies[HypothesisKind::Transient as usize] =
+        self.hypotheses[HypothesisKind::Transient as usize] =
             Some(Box::new(apply_jump(now, HypothesisKind::Transient)));
-        self.copies[HypothesisKind::Return as usize] =
-            earlier_state.map(|earlier_state| Box::new(earlier_state.again(now)));
+        self.hypotheses[HypothesisKind::Return as usize] =
+            earlier_state.map(|earlier_state| Box::new(earlier_state.restore(now)));
         self.awaits_reading = true;
     }
 
@@ -71,14 +71,14 @@ impl Fork {
     fn observe(&mut self, m: &Measurement, noise: &NoiseVariances, kinds: &[HypothesisKind]) {
         let goes_on = self.age_s < TRANSIENT_MAX_S;
         self.age_s += m.seconds;
-        if let Some(transient) = &self.copies[HypothesisKind::Transient as usize] {
+        if let Some(transient) = &self.hypotheses[HypothesisKind::Transient as usize] {
             self.disturbance_deg = self
                 .disturbance_deg
                 .max(self.origin.variation_innovation_deg(m));
             if self.disturbance_deg > SEVERE_TRANSIENT_DEG
-                && self.copies[HypothesisKind::SevereTransient as usize].is_none()
+                && self.hypotheses[HypothesisKind::SevereTransient as usize].is_none()
             {
-                self.copies[HypothesisKind::SevereTransient as usize] = Some(transient.clone());
+                self.hypotheses[HypothesisKind::SevereTransient as usize] = Some(transient.clone());
             }
         }
         let transient = |kind: HypothesisKind| match kind {
@@ -93,11 +93,11 @@ impl Fork {
         {
             if m.difference.is_none() {
                 // Of one reference there is nothing that tells which it is.
-                self.copies[HypothesisKind::SatelliteStep as usize] = None;
+                self.hypotheses[HypothesisKind::SatelliteStep as usize] = None;
             }
             for kind in REFERENCE_STEPS {
-                if let Some(copy) = &mut self.copies[kind as usize] {
-                    **copy = reference_fault(copy, m, kind);
+                if let Some(hypothesis) = &mut self.hypotheses[kind as usize] {
+                    **hypothesis = apply_reference_step(hypothesis, m, kind);
                 }
             }
         }
@@ -106,8 +106,8 @@ impl Fork {
             .filter(|kind| **kind != HypothesisKind::LargeStep)
         {
             let transient = transient(kind);
-            if let Some(copy) = &mut self.copies[kind as usize] {
-                copy.observe(m, noise, transient.as_ref());
+            if let Some(hypothesis) = &mut self.hypotheses[kind as usize] {
+                hypothesis.observe(m, noise, transient.as_ref());
             }
         }
     }
@@ -116,16 +116,16 @@ impl Fork {
         &self.origin
     }
 
-    pub(crate) fn copy(&self, kind: HypothesisKind) -> Option<&Filter> {
-        self.copies[kind as usize].as_deref()
+    pub(crate) fn hypothesis(&self, kind: HypothesisKind) -> Option<&Filter> {
+        self.hypotheses[kind as usize].as_deref()
     }
 
-    pub(crate) fn copy_mut(&mut self, kind: HypothesisKind) -> Option<&mut Filter> {
-        self.copies[kind as usize].as_deref_mut()
+    pub(crate) fn hypothesis_mut(&mut self, kind: HypothesisKind) -> Option<&mut Filter> {
+        self.hypotheses[kind as usize].as_deref_mut()
     }
 
-    pub(crate) fn set(&mut self, kind: HypothesisKind, copy: Filter) {
-        self.copies[kind as usize] = Some(Box::new(copy));
+    pub(crate) fn set_hypothesis(&mut self, kind: HypothesisKind, hypothesis: Filter) {
+        self.hypotheses[kind as usize] = Some(Box::new(hypothesis));
     }
 
     pub(crate) fn disturbance_deg(&self) -> f64 {
@@ -147,8 +147,8 @@ pub(crate) struct HypothesisBank {
     /// From the oldest to the latest.
     pub(crate) forks: Vec<Fork>,
     /// The last measurements, the latest last, and its row.
-    memory: VecDeque<Measurement>,
-    latest: usize,
+    recent: VecDeque<Measurement>,
+    latest_row: usize,
     other_kinds_run: bool,
     /// At least until this row.
     run_others_until: usize,
@@ -167,7 +167,7 @@ impl HypothesisBank {
         ];
         for fork in &mut self.forks {
             for kind in lasting {
-                fork.copies[kind as usize] = None;
+                fork.hypotheses[kind as usize] = None;
             }
         }
     }
@@ -184,40 +184,39 @@ impl HypothesisBank {
         at: usize,
         now: &Filter,
         noise: &NoiseVariances,
-        (earlier_state, in_port): (Option<EarlierState<'_>>, bool),
+        earlier_state: Option<EarlierState<'_>>,
+        step_prior_log_odds: f64,
     ) {
         self.thin(at, now);
-        self.rest(at, now);
+        self.stop_idle_hypotheses(at, now);
         let mut fork = Fork {
             at,
             transient_from: None,
             origin: Box::new(now.clone()),
-            copies: [const { None }; ALL_KINDS.len()],
+            hypotheses: [const { None }; ALL_KINDS.len()],
             age_s: 0.0,
             disturbance_deg: 0.0,
             awaits_reading: false,
-            prior_log_odds: if in_port {
-                priors::STEP_AT_PORT_CALL_LOG_ODDS
-            } else {
-                0.0
-            },
+            prior_log_odds: step_prior_log_odds,
         };
         let mut step = apply_jump(now, HypothesisKind::Step);
         step.log_likelihood += fork.prior_log_odds;
-        fork.copies[HypothesisKind::Step as usize] = Some(Box::new(step));
+        fork.hypotheses[HypothesisKind::Step as usize] = Some(Box::new(step));
         if self.other_kinds_run {
-            fork.wake(earlier_state);
-            let astray = self.likeliest(&TRANSIENTS, now);
-            if let Some(lead) = astray
+            fork.start_other_hypotheses(earlier_state);
+            let transient = self.likeliest(&TRANSIENTS, now);
+            if let Some(lead) = transient
                 .filter(|lead| lead.log_likelihood_ratio > TRANSIENT_END_FORK_LOG_LIKELIHOOD_RATIO)
             {
-                let astray = &self.forks[lead.fork];
-                fork.transient_from = Some(astray.at);
-                let over = astray.copy(lead.kind).map(|copy| match lead.kind {
-                    HypothesisKind::SevereTransient => reset_variation(copy, noise),
-                    _ => copy.clone(),
-                });
-                fork.copies[HypothesisKind::TransientEnd as usize] = over.map(Box::new);
+                let transient = &self.forks[lead.fork];
+                fork.transient_from = Some(transient.at);
+                let ended = transient
+                    .hypothesis(lead.kind)
+                    .map(|hypothesis| match lead.kind {
+                        HypothesisKind::SevereTransient => reset_variation(hypothesis, noise),
+                        _ => hypothesis.clone(),
+                    });
+                fork.hypotheses[HypothesisKind::TransientEnd as usize] = ended.map(Box::new);
             }
         }
         self.forks.push(fork);
@@ -230,17 +229,18 @@ impl HypothesisBank {
         at: usize,
         m: Measurement,
         noise: &NoiseVariances,
-        (null, excess_loss): (&Filter, f64),
+        null: &Filter,
+        excess_loss: f64,
         earlier_state: Option<EarlierState<'_>>,
     ) {
         for fork in &mut self.forks {
             fork.observe(&m, noise, &ALL_KINDS);
         }
-        if self.memory.len() == REMEMBERED_ROWS {
-            self.memory.pop_front();
+        if self.recent.len() == REMEMBERED_ROWS {
+            self.recent.pop_front();
         }
-        self.memory.push_back(m);
-        self.latest = at;
+        self.recent.push_back(m);
+        self.latest_row = at;
         let counted = excess_loss.min(ROW_MAX_EXCESS_LOSS) - ROW_FORGOTTEN_EXCESS_LOSS;
         self.excess_loss = (self.excess_loss + counted).max(0.0);
         let step = self
@@ -252,26 +252,30 @@ impl HypothesisBank {
             self.run_others_until = at + AWAKE_MIN_ROWS;
         }
         if (is_excessive || step > WAKE_LOG_LIKELIHOOD_RATIO) && !self.other_kinds_run {
-            self.wake(noise, earlier_state);
+            self.start_other_hypotheses(noise, earlier_state);
         }
     }
 
     /// Makes the rivals, as if they had run all along.
-    fn wake(&mut self, noise: &NoiseVariances, earlier_state: Option<EarlierState<'_>>) {
+    fn start_other_hypotheses(
+        &mut self,
+        noise: &NoiseVariances,
+        earlier_state: Option<EarlierState<'_>>,
+    ) {
         self.other_kinds_run = true;
-        let known_from = self.latest + 1 - self.memory.len();
+        let known_from = self.latest_row + 1 - self.recent.len();
         for fork in self.forks.iter_mut().filter(|s| s.at >= known_from) {
-            fork.wake(earlier_state);
+            fork.start_other_hypotheses(earlier_state);
             fork.age_s = 0.0;
             fork.disturbance_deg = 0.0;
-            for m in self.memory.iter().skip(fork.at - known_from) {
+            for m in self.recent.iter().skip(fork.at - known_from) {
                 fork.observe(m, noise, &OTHER_KINDS);
             }
         }
     }
 
     /// Gives up rivals when nothing leads, and steps that trail for good.
-    fn rest(&mut self, at: usize, null: &Filter) {
+    fn stop_idle_hypotheses(&mut self, at: usize, null: &Filter) {
         let leads = ALL_KINDS.map(|kind| {
             self.lead(kind, null)
                 .map_or(0.0, |lead| lead.log_likelihood_ratio)
@@ -287,18 +291,21 @@ impl HypothesisBank {
                     .into_iter()
                     .filter(|kind| *kind != HypothesisKind::Step)
                 {
-                    fork.copies[kind as usize] = None;
+                    fork.hypotheses[kind as usize] = None;
                 }
             }
         }
-        let hopeless = null.log_likelihood - STEP_DROPPED_LOG_LIKELIHOOD_RATIO;
+        let lower_bound = null.log_likelihood - STEP_DROPPED_LOG_LIKELIHOOD_RATIO;
         for fork in self
             .forks
             .iter_mut()
             .filter(|s| at - s.at > STEP_DROPPED_MIN_ROWS)
         {
-            let step = &mut fork.copies[HypothesisKind::Step as usize];
-            if step.as_ref().is_some_and(|s| s.log_likelihood <= hopeless) {
+            let step = &mut fork.hypotheses[HypothesisKind::Step as usize];
+            if step
+                .as_ref()
+                .is_some_and(|s| s.log_likelihood <= lower_bound)
+            {
                 *step = None;
             }
         }
@@ -310,10 +317,10 @@ impl HypothesisBank {
         if kind != HypothesisKind::Step && !self.other_kinds_run {
             return None;
         }
-        let copies = self.forks.iter().enumerate();
-        copies
+        let leads = self.forks.iter().enumerate();
+        leads
             .filter_map(|(fork, s)| {
-                let ratio = s.copy(kind)?.log_likelihood - null.log_likelihood;
+                let ratio = s.hypothesis(kind)?.log_likelihood - null.log_likelihood;
                 Some(Lead {
                     log_likelihood_ratio: ratio,
                     kind,
@@ -341,7 +348,7 @@ impl HypothesisBank {
     }
 
     /// The likeliest copy of those in which the field goes or went astray.
-    pub(crate) fn passing(&self, null: &Filter) -> Option<Lead> {
+    pub(crate) fn transient_lead(&self, null: &Filter) -> Option<Lead> {
         self.likeliest(
             &[
                 HypothesisKind::Transient,
@@ -353,7 +360,7 @@ impl HypothesisBank {
     }
 
     /// The likeliest copy of those in which a reference changed.
-    pub(crate) fn reference(&self, null: &Filter) -> Option<Lead> {
+    pub(crate) fn reference_step(&self, null: &Filter) -> Option<Lead> {
         self.likeliest(&REFERENCE_STEPS, null)
     }
 

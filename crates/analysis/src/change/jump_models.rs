@@ -24,14 +24,14 @@ pub(crate) enum EarlierState<'a> {
 
 impl EarlierState<'_> {
     /// The filter with that as it was.
-    pub(crate) fn again(self, now: &Filter) -> Filter {
+    pub(crate) fn restore(self, now: &Filter) -> Filter {
         match self {
             EarlierState::Ship(before) => restore_vessel(now, before),
             EarlierState::Reference(before) => mended(now, before, &[CONSTANT_STATE, OFFSET]),
             EarlierState::Zero(before) => {
                 let moved_deg = before.mean[CONSTANT_STATE] - now.mean[CONSTANT_STATE];
                 let mut back = now.clone();
-                back.mean = turned(now, moved_deg);
+                back.mean = mean_of_turned_compass(now, moved_deg);
                 mended(&back, before, &[CONSTANT_STATE])
             }
         }
@@ -49,9 +49,9 @@ pub(crate) fn apply_jump(now: &Filter, kind: HypothesisKind) -> Filter {
     match kind {
         HypothesisKind::Step => apply_step(now, priors::STEP_SD),
         HypothesisKind::LargeStep => {
-            let mut copy = apply_large_step(now);
-            copy.log_likelihood -= priors::AGAINST_LARGE_STEP_LOG_ODDS;
-            copy
+            let mut jumped = apply_large_step(now);
+            jumped.log_likelihood -= priors::AGAINST_LARGE_STEP_LOG_ODDS;
+            jumped
         }
         _ => now.clone(),
     }
@@ -62,17 +62,17 @@ pub(crate) fn apply_large_step(now: &Filter) -> Filter {
     apply_step(now, priors::LARGE_STEP_SD)
 }
 
-fn apply_step(now: &Filter, permanent: f64) -> Filter {
-    let mut copy = now.clone();
+fn apply_step(now: &Filter, permanent_sd: f64) -> Filter {
+    let mut jumped = now.clone();
     for j in 0..PARAMETERS {
         let step = if matches!(j, 0 | 2) {
-            permanent
+            permanent_sd
         } else {
             priors::INDUCED_STEP_SD
         };
-        copy.covariance.add(j, j, step * step);
+        jumped.covariance.add(j, j, step * step);
     }
-    copy
+    jumped
 }
 
 /// The filter with a reference's step having happened just before `next` was read.
@@ -81,58 +81,63 @@ fn apply_step(now: &Filter, permanent: f64) -> Filter {
 /// their mean; the satellite compass's moves them in opposite senses; alone, either is
 /// the constant's. The step may be as large as the reading is astray: what is believed
 /// to be impossible is never learnt.
-pub(crate) fn reference_fault(now: &Filter, next: &Measurement, which: HypothesisKind) -> Filter {
-    let mut copy = now.clone();
+pub(crate) fn apply_reference_step(
+    now: &Filter,
+    next: &Measurement,
+    which: HypothesisKind,
+) -> Filter {
+    let mut jumped = now.clone();
     let size = now.innovation_deg(next).max(priors::REFERENCE_STEP_SD_DEG);
     let constant = if next.difference.is_some() {
         size / 2.0
     } else {
         size
     };
-    let sense = if which == HypothesisKind::SatelliteStep {
+    let sign = if which == HypothesisKind::SatelliteStep {
         -1.0
     } else {
         1.0
     };
     let steps = [
         (CONSTANT_STATE, constant),
-        (OFFSET, sense * size / OFFSET_SD_DEG),
+        (OFFSET, sign * size / OFFSET_SD_DEG),
     ];
     for (n, (i, a)) in steps.into_iter().enumerate() {
         for (j, b) in &steps[..=n] {
-            copy.covariance.add(i, *j, a * b);
+            jumped.covariance.add(i, *j, a * b);
         }
     }
-    copy
+    jumped
 }
 
 /// The filter with the compass's zero having moved so that the constant is about another by
 /// `moved_deg`, where rows are to be linearised; how far, is not known but for its size.
 pub(crate) fn apply_alignment_step(now: &Filter, moved_deg: f64, size_deg: f64) -> Filter {
-    let mut copy = now.clone();
-    copy.mean = turned(now, moved_deg);
-    let [less, more] = [-1.0, 1.0].map(|by| turned(now, moved_deg + by));
+    let mut jumped = now.clone();
+    jumped.mean = mean_of_turned_compass(now, moved_deg);
+    let [less, more] = [-1.0, 1.0].map(|by| mean_of_turned_compass(now, moved_deg + by));
     let slope: [f64; STATES] = std::array::from_fn(|i| (more[i] - less[i]) / 2.0);
     for i in 0..=CONSTANT_STATE {
-        copy.mean[i] -= moved_deg * slope[i];
+        jumped.mean[i] -= moved_deg * slope[i];
         for j in 0..=i {
-            copy.covariance
+            jumped
+                .covariance
                 .add(i, j, size_deg * size_deg * slope[i] * slope[j]);
         }
     }
-    copy
+    jumped
 }
 
 /// What the filter expects with a constant that is more by so much, degrees: the ship's own
 /// iron lies as much nearer to the lubber line.
-fn turned(now: &Filter, moved_deg: f64) -> [f64; STATES] {
+fn mean_of_turned_compass(now: &Filter, moved_deg: f64) -> [f64; STATES] {
     let own = |j: usize| now.mean[j] * POPULATION_SD[j];
-    let turned = Parameters::from_array(std::array::from_fn(own))
+    let mean_of_turned_compass = Parameters::from_array(std::array::from_fn(own))
         .by_turned_compass(-moved_deg.to_radians())
         .to_array();
     let mut mean = now.mean;
     for j in 0..PARAMETERS {
-        mean[j] = turned[j] / POPULATION_SD[j];
+        mean[j] = mean_of_turned_compass[j] / POPULATION_SD[j];
     }
     mean[CONSTANT_STATE] += moved_deg;
     mean
@@ -140,25 +145,25 @@ fn turned(now: &Filter, moved_deg: f64) -> [f64; STATES] {
 
 /// The filter with some of the instruments' lasting errors as `before` had them.
 fn mended(now: &Filter, before: &Filter, lasting: &[usize]) -> Filter {
-    let mut copy = now.clone();
+    let mut jumped = now.clone();
     for &i in lasting {
-        copy.mean[i] = before.mean[i];
+        jumped.mean[i] = before.mean[i];
         for j in 0..STATES {
             let known = if lasting.contains(&j) {
                 before.covariance.at(i, j)
             } else {
                 0.0
             };
-            copy.covariance.set(i, j, known);
+            jumped.covariance.set(i, j, known);
         }
     }
-    copy
+    jumped
 }
 
 /// The filter with the ship's own parameters as `base` had them.
 pub(crate) fn restore_vessel(now: &Filter, base: &Filter) -> Filter {
-    let mut copy = now.clone();
-    copy.mean[..PARAMETERS].copy_from_slice(&base.mean[..PARAMETERS]);
+    let mut jumped = now.clone();
+    jumped.mean[..PARAMETERS].copy_from_slice(&base.mean[..PARAMETERS]);
     for i in 0..PARAMETERS {
         for j in 0..STATES {
             let of_the_ship = j < PARAMETERS;
@@ -167,20 +172,21 @@ pub(crate) fn restore_vessel(now: &Filter, base: &Filter) -> Filter {
             } else {
                 0.0
             };
-            copy.covariance.set(i, j, known);
+            jumped.covariance.set(i, j, known);
         }
     }
     for j in [0, 2] {
-        copy.covariance
+        jumped
+            .covariance
             .add(j, j, priors::RETURN_SD * priors::RETURN_SD);
     }
-    copy
+    jumped
 }
 
 /// A burst in which the furthest reading was so far astray: a wild one is as large.
-pub(crate) fn transient_noise(astray_deg: f64) -> TransientNoise {
-    let deg = if astray_deg > SEVERE_TRANSIENT_DEG {
-        astray_deg
+pub(crate) fn transient_noise(disturbance_deg: f64) -> TransientNoise {
+    let deg = if disturbance_deg > SEVERE_TRANSIENT_DEG {
+        disturbance_deg
     } else {
         priors::TRANSIENT_SD_DEG
     };
@@ -193,13 +199,15 @@ pub(crate) fn transient_noise(astray_deg: f64) -> TransientNoise {
 /// The filter with the variation as if it had never been astray: what swung wildly is
 /// itself again at once.
 pub(crate) fn reset_variation(now: &Filter, noise: &NoiseVariances) -> Filter {
-    let mut copy = now.clone();
-    copy.mean[VARIATION] = 0.0;
+    let mut jumped = now.clone();
+    jumped.mean[VARIATION] = 0.0;
     for j in 0..STATES {
-        copy.covariance.set(VARIATION, j, 0.0);
+        jumped.covariance.set(VARIATION, j, 0.0);
     }
-    copy.covariance.set(VARIATION, VARIATION, noise.variation());
-    copy
+    jumped
+        .covariance
+        .set(VARIATION, VARIATION, noise.variation());
+    jumped
 }
 
 #[cfg(test)]

@@ -39,15 +39,15 @@ pub(crate) fn relinearise(
     measure: impl Fn(&Unknowns) -> Measurement,
 ) -> Measurement {
     let mut m = measure(&filter.unknowns());
-    let mut moved = filter.innovation_deg(&m);
+    let mut innovation_deg = filter.innovation_deg(&m);
     for _ in 0..LINEARISATION_ROUNDS {
-        if moved < RELINEARISE_BEYOND_DEG || filter.z_squared(&m) > OUTLIER_Z_SQUARED {
+        if innovation_deg < RELINEARISE_BEYOND_DEG || filter.z_squared(&m) > OUTLIER_Z_SQUARED {
             break;
         }
         let mut after = filter.clone();
         after.observe(&m, noise, None);
         m = measure(&after.unknowns());
-        moved = after.innovation_deg(&m);
+        innovation_deg = after.innovation_deg(&m);
     }
     m
 }
@@ -65,10 +65,10 @@ impl HypothesisBank {
             return;
         }
         for fork in &mut self.forks {
-            let rows = if fork.copy(HypothesisKind::LargeStep).is_some() {
+            let rows = if fork.hypothesis(HypothesisKind::LargeStep).is_some() {
                 at..at + 1
-            } else if is_new(fork, at) {
-                fork.set(
+            } else if begins_large_step(fork, at) {
+                fork.set_hypothesis(
                     HypothesisKind::LargeStep,
                     apply_jump(fork.origin(), HypothesisKind::LargeStep),
                 );
@@ -76,18 +76,18 @@ impl HypothesisBank {
             } else {
                 continue;
             };
-            let Some(copy) = fork.copy_mut(HypothesisKind::LargeStep) else {
+            let Some(hypothesis) = fork.hypothesis_mut(HypothesisKind::LargeStep) else {
                 continue;
             };
             for row in rows {
-                let m = relinearise(copy, noise, |ship| measure(row, ship));
-                copy.observe(&m, noise, None);
+                let m = relinearise(hypothesis, noise, |ship| measure(row, ship));
+                hypothesis.observe(&m, noise, None);
             }
         }
     }
 }
 
 /// Whether a large step is to be supposed of that time from now on.
-fn is_new(fork: &Fork, at: usize) -> bool {
+fn begins_large_step(fork: &Fork, at: usize) -> bool {
     fork.disturbance_deg() > LARGE_STEP_DEG && at <= fork.at + LARGE_STEP_MAX_ROWS
 }

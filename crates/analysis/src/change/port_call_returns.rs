@@ -48,7 +48,7 @@ pub(crate) struct Baseline {
     /// The step's place in the list of events.
     pub(crate) event: usize,
     pub(crate) filter: Filter,
-    pub(crate) began: StepOrigin,
+    pub(crate) origin: StepOrigin,
     /// When the step happened at the latest.
     pub(crate) latest: Option<Timestamp>,
     /// Port calls since.
@@ -58,8 +58,8 @@ pub(crate) struct Baseline {
 impl Baseline {
     /// How likely the ship is herself again at the next port call: what has stayed
     /// through many was no cargo.
-    fn chance(&self) -> f64 {
-        let is_cargo = match self.began {
+    fn return_probability(&self) -> f64 {
+        let is_cargo = match self.origin {
             StepOrigin::AtPort | StepOrigin::SaidLoaded => priors::CARGO,
             StepOrigin::NoticedLate => priors::CARGO_NOTICED_LATE,
             StepOrigin::SoonAfter(_) => priors::CARGO_SOON_AFTER_CALL,
@@ -71,17 +71,17 @@ impl Baseline {
 
     /// What began at sea may end there.
     pub(crate) fn began_at_port_call(&self) -> bool {
-        matches!(self.began, StepOrigin::AtPort)
+        matches!(self.origin, StepOrigin::AtPort)
     }
 
     /// Whether it came on board with cargo, as far as logbook and rows tell.
     pub(crate) fn is_cargo(&self) -> bool {
-        matches!(self.began, StepOrigin::AtPort | StepOrigin::SaidLoaded)
+        matches!(self.origin, StepOrigin::AtPort | StepOrigin::SaidLoaded)
     }
 
     /// The ship without what changed her.
     pub(crate) fn without_cargo(&self) -> &Filter {
-        match &self.began {
+        match &self.origin {
             StepOrigin::SoonAfter(departure_before) => departure_before,
             _ => &self.filter,
         }
@@ -141,24 +141,28 @@ impl PortCallReturns {
         at: usize,
         now: &Filter,
         until: usize,
-        said: LoggedCargo,
+        logged: LoggedCargo,
     ) {
-        let without_cargo = match said {
+        let without_cargo = match logged {
             LoggedCargo::Discharged { loaded, at_port } => self.before_loading(loaded, at_port),
             _ => None,
         };
         let before = self.baselines.iter_mut().filter(|base| base.event < until);
         let returns: Vec<Return> = before
             .map(|base| {
-                let chance = match (said, without_cargo) {
-                    (_, Some((event, chance))) if event == base.event => chance,
-                    (LoggedCargo::OnBoard, _) => priors::LOGGED_ON_BOARD_FACTOR * base.chance(),
-                    _ => base.chance(),
+                let return_probability = match (logged, without_cargo) {
+                    (_, Some((event, return_probability))) if event == base.event => {
+                        return_probability
+                    }
+                    (LoggedCargo::OnBoard, _) => {
+                        priors::LOGGED_ON_BOARD_FACTOR * base.return_probability()
+                    }
+                    _ => base.return_probability(),
                 };
                 base.port_calls += 1;
                 Return {
                     event: base.event,
-                    prior_odds: chance / (1.0 - chance),
+                    prior_odds: return_probability / (1.0 - return_probability),
                     filter: restore_vessel(now, base.without_cargo()),
                 }
             })
@@ -184,12 +188,12 @@ impl PortCallReturns {
         if !since.all(Baseline::is_cargo) {
             return None;
         }
-        let chance = match (first.is_cargo(), at_port) {
+        let return_probability = match (first.is_cargo(), at_port) {
             (true, true) => priors::LOGGED_DISCHARGE,
             (true, false) => priors::LOGGED_DISCHARGE_UNDER_WAY,
             (false, _) => priors::LOGGED_DISCHARGE_NOTICED_AT_SEA,
         };
-        Some((first.event, chance))
+        Some((first.event, return_probability))
     }
 
     /// Takes in a row, linearised at what each return has of the ship.
@@ -200,12 +204,12 @@ impl PortCallReturns {
         null: &Filter,
     ) {
         for call in &mut self.calls {
-            for back in &mut call.returns {
-                let m = measure(&back.filter.unknowns());
-                back.filter.observe(&m, noise, None);
+            for candidate in &mut call.returns {
+                let m = measure(&candidate.filter.unknowns());
+                candidate.filter.observe(&m, noise, None);
             }
-            call.returns.retain(|back| {
-                back.filter.log_likelihood
+            call.returns.retain(|candidate| {
+                candidate.filter.log_likelihood
                     > null.log_likelihood - RETURN_DROPPED_LOG_LIKELIHOOD_RATIO
             });
         }
@@ -220,57 +224,66 @@ impl PortCallReturns {
         noise: &NoiseVariances,
     ) {
         for call in self.calls.iter_mut().filter(|call| call.at >= first) {
-            for back in &mut call.returns {
-                let m = measure(&back.filter.unknowns());
-                back.filter.observe(&m, noise, None);
+            for candidate in &mut call.returns {
+                let m = measure(&candidate.filter.unknowns());
+                candidate.filter.observe(&m, noise, None);
             }
         }
     }
 
-    /// The likeliest return. `competitor` is by how much the likeliest passing disturbance leads;
-    /// while one goes on that was told, `is_outlying`, the rows speak for no return, but not
+    /// The likeliest return. `transient` is by how much the likeliest passing disturbance leads;
+    /// while one goes on that was told, `is_disturbed`, the rows speak for no return, but not
     /// against one either, for both may be.
     pub(crate) fn likeliest(
         &self,
         null: &Filter,
-        competitor: f64,
-        is_outlying: bool,
+        transient: f64,
+        is_disturbed: bool,
     ) -> Option<ReturnCandidate> {
-        let tempered_odds = |back: &Return| {
-            let ratio = back.filter.log_likelihood - null.log_likelihood;
-            let beside = if is_outlying {
+        let tempered_odds = |candidate: &Return| {
+            let ratio = candidate.filter.log_likelihood - null.log_likelihood;
+            let beside = if is_disturbed {
                 ratio.min(0.0)
             } else {
                 f64::NEG_INFINITY
             };
-            let told = (ratio - competitor).max(beside);
-            (ratio, back.prior_odds * (LIKELIHOOD_TEMPER * told).exp())
+            let evidence = (ratio - transient).max(beside);
+            (
+                ratio,
+                candidate.prior_odds * (LIKELIHOOD_TEMPER * evidence).exp(),
+            )
         };
         let each = || {
             let calls = self.calls.iter();
-            calls.flat_map(|call| call.returns.iter().map(move |back| (call.at, back)))
+            calls.flat_map(|call| {
+                call.returns
+                    .iter()
+                    .map(move |candidate| (call.at, candidate))
+            })
         };
         let of_event = |event: usize| -> f64 {
-            let same = each().filter(|(_, back)| back.event == event);
-            same.map(|(_, back)| tempered_odds(back).1).sum()
+            let same = each().filter(|(_, candidate)| candidate.event == event);
+            same.map(|(_, candidate)| tempered_odds(candidate).1).sum()
         };
-        let sum: f64 = each().map(|(_, back)| tempered_odds(back).1).sum();
+        let sum: f64 = each()
+            .map(|(_, candidate)| tempered_odds(candidate).1)
+            .sum();
         // Which call it was matters less than whether she is the ship she was.
         let event = self
             .baselines
             .iter()
             .map(|base| base.event)
             .max_by(|a, b| of_event(*a).total_cmp(&of_event(*b)))?;
-        let (at, back) = each()
-            .filter(|(_, back)| back.event == event)
+        let (at, candidate) = each()
+            .filter(|(_, candidate)| candidate.event == event)
             .max_by(|a, b| tempered_odds(a.1).1.total_cmp(&tempered_odds(b.1).1))?;
         Some(ReturnCandidate {
             event,
             at,
-            log_likelihood_ratio: tempered_odds(back).0,
+            log_likelihood_ratio: tempered_odds(candidate).0,
             probability: of_event(event) / (1.0 + sum),
             any: sum / (1.0 + sum),
-            filter: back.filter.clone(),
+            filter: candidate.filter.clone(),
         })
     }
 
@@ -278,9 +291,9 @@ impl PortCallReturns {
     /// and each is likelier by what the filter gained by it.
     pub(crate) fn apply_reference_change(&mut self, gained: f64, now: impl Fn(&Filter) -> Filter) {
         let returns = self.calls.iter_mut().flat_map(|call| &mut call.returns);
-        for back in returns {
-            back.filter = now(&back.filter);
-            back.filter.log_likelihood += gained;
+        for candidate in returns {
+            candidate.filter = now(&candidate.filter);
+            candidate.filter.log_likelihood += gained;
         }
     }
 
@@ -289,10 +302,10 @@ impl PortCallReturns {
     /// by may be what the disturbance explains.
     pub(crate) fn credit_transient(&mut self, null: &Filter, gained: f64) {
         let returns = self.calls.iter_mut().flat_map(|call| &mut call.returns);
-        for back in returns {
-            let led = back.filter.log_likelihood - null.log_likelihood;
+        for candidate in returns {
+            let led = candidate.filter.log_likelihood - null.log_likelihood;
             let leads = led.min(0.0).max(led - gained);
-            back.filter.log_likelihood = null.log_likelihood + gained + leads;
+            candidate.filter.log_likelihood = null.log_likelihood + gained + leads;
         }
     }
 
@@ -319,15 +332,15 @@ mod tests {
     /// herself again leads from each.
     fn after_two_calls(leads: [f64; 2]) -> PortCallReturns {
         let mut calls = PortCallReturns::default();
-        returns.add_baseline(Baseline {
+        calls.add_baseline(Baseline {
             event: 0,
             filter: ship(),
-            began: StepOrigin::AtPort,
+            origin: StepOrigin::AtPort,
             latest: None,
             port_calls: 0,
         });
         for at in [10, 20] {
-            returns.add_port_call(at, &ship(), usize::MAX, LoggedCargo::Nothing);
+            calls.add_port_call(at, &ship(), usize::MAX, LoggedCargo::Nothing);
         }
         for (call, ratio) in calls.calls.iter_mut().zip(leads) {
             call.returns[0].filter.log_likelihood = ratio;
@@ -349,8 +362,8 @@ mod tests {
     #[test]
     fn a_disturbance_that_was_told_speaks_neither_for_a_return_nor_against_it() {
         let calls = after_two_calls([5.0, -30.0]);
-        let probability = |is_outlying: bool| {
-            let likeliest = calls.likeliest(&ship(), 60.0, is_outlying);
+        let probability = |is_disturbed: bool| {
+            let likeliest = calls.likeliest(&ship(), 60.0, is_disturbed);
             likeliest.unwrap().probability
         };
         assert!(probability(false) < 1e-6);
@@ -363,7 +376,7 @@ mod tests {
         let null = ship();
         for (led, gained, leads) in [(5.0, 20.0, 0.0), (-3.0, 20.0, -3.0), (5.0, 2.0, 3.0)] {
             let mut calls = after_two_calls([led, led]);
-            returns.credit_transient(&null, gained);
+            calls.credit_transient(&null, gained);
             let now = calls.calls[0].returns[0].filter.log_likelihood - gained;
             assert!((now - leads).abs() < 1e-9, "{led}, {gained}: {now}");
         }

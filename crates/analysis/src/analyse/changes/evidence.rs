@@ -28,7 +28,7 @@ pub(super) fn evidence(
     seen_deg: Option<f64>,
 ) -> Vec<String> {
     let [step, reference, burst, _] = event.leads;
-    let mut told = vec![match event.what {
+    let mut told = vec![match event.kind {
         EventKind::Step | EventKind::Return(_) => format!(
             "a change of the ship's own magnetism explains the samples: {} none, {} a passing \
              disturbance and {} a fault of the reference",
@@ -102,7 +102,7 @@ pub(super) fn evidence(
             told.push(EITHER.to_owned());
         }
     }
-    if event.what == EventKind::ReferenceFault && known.one_reference && !known.is_over {
+    if event.kind == EventKind::ReferenceFault && known.one_reference && !known.is_over {
         told.push(EITHER.to_owned());
     }
     if let Some(seconds) = known.transient_s.filter(|_| known.is_over) {

@@ -65,12 +65,12 @@ pub(crate) fn find(
     };
     let mut place_of = vec![None; events.len()];
     for (index, event) in events.iter().enumerate() {
-        if let EventKind::Return(of) = event.what {
+        if let EventKind::Return(of) = event.kind {
             let place: Option<usize> = place_of.get(of).copied().flatten();
             if let Some(place) = place {
                 let at = teller.date(event.first);
                 found.changes[place].ended = Some(at);
-                if events[of].what.is_lasting() {
+                if events[of].kind.is_lasting() {
                     found.boundaries.push(Boundary {
                         at,
                         change: place,
@@ -82,14 +82,14 @@ pub(crate) fn find(
         }
         place_of[index] = Some(found.changes.len());
         let change = teller.tell(index);
-        if event.what.is_lasting() && event.confirmed {
+        if event.kind.is_lasting() && event.confirmed {
             found.boundaries.push(Boundary {
                 at: change.from,
                 change: found.changes.len(),
                 resumes: false,
             });
         }
-        let spoilt = match event.what {
+        let spoilt = match event.kind {
             EventKind::Transient if event.confirmed || event.last.is_none() => {
                 Some(SampleReason::Disturbance)
             }

@@ -83,7 +83,7 @@ impl Teller<'_> {
     pub(super) fn last_spoilt(&self, index: usize) -> usize {
         let event = &self.events[index];
         let last = self.observations.len() - 1;
-        match event.what {
+        match event.kind {
             EventKind::Transient => event.last.unwrap_or(last),
             _ => self.events[index + 1..]
                 .iter()
@@ -96,7 +96,7 @@ impl Teller<'_> {
     /// as long as days must show which it is.
     pub(super) fn spoilt(&self, index: usize) -> impl Iterator<Item = usize> {
         let event = &self.events[index];
-        let is_open = event.what == EventKind::ReferenceFault && !self.one_reference();
+        let is_open = event.kind == EventKind::ReferenceFault && !self.one_reference();
         let begun = self.time(event.first);
         (event.first..=self.last_spoilt(index)).filter(move |&row| {
             let has_both = self.observations[row].gyro_less_satellite_deg.is_some();
@@ -109,8 +109,8 @@ impl Teller<'_> {
     }
 
     fn is_mended(&self, event: &Event) -> bool {
-        match event.what {
-            EventKind::Return(of) => self.events[of].what == EventKind::ReferenceFault,
+        match event.kind {
+            EventKind::Return(of) => self.events[of].kind == EventKind::ReferenceFault,
             _ => false,
         }
     }
@@ -123,29 +123,29 @@ impl Teller<'_> {
         let from_latest = self.time(latest);
         let back = self.events[index + 1..]
             .iter()
-            .find(|later| later.what == EventKind::Return(index));
-        let ended_row = match event.what {
+            .find(|later| later.kind == EventKind::Return(index));
+        let ended_row = match event.kind {
             EventKind::Transient => event.last,
             _ => back.map(|later| later.first),
         };
         // A drift has no date: it is taken from one of the times that were tried.
-        let at_port = match event.what {
+        let at_port = match event.kind {
             EventKind::Drift => None,
             _ if event.noticed_late => None,
             _ => self.began_at_port(event),
         };
-        let astray = (event.what == EventKind::Transient)
+        let astray = (event.kind == EventKind::Transient)
             .then(|| size::astray(&event.before, self.rows_of_burst(index)));
         let known = Circumstances {
             leads: event.leads,
             at_port,
             ended_at_port: back.and_then(|later| self.began_at_port(later)),
-            transient_s: (event.what == EventKind::Transient).then(|| {
+            transient_s: (event.kind == EventKind::Transient).then(|| {
                 let last = self.time(self.last_spoilt(index));
                 last.seconds_since(self.time(event.first))
             }),
             is_over: event.last.is_some()
-                || (event.what == EventKind::ReferenceFault && back.is_some()),
+                || (event.kind == EventKind::ReferenceFault && back.is_some()),
             alongside: false,
             disturbance_deg: astray.as_ref().map(|astray| astray.usual_deg),
             is_open: !event.confirmed && event.withdrawn.is_none(),
@@ -158,15 +158,15 @@ impl Teller<'_> {
             detection_delay_s: self.time(event.detected_row).seconds_since(from),
             reported: self.reported(event, at_port),
         };
-        let causes = causes(event.what, &known);
+        let causes = causes(event.kind, &known);
         let cause = causes.first().map_or(Cause::Unknown, |c| c.cause);
         let was_discharge = cause == Cause::MagneticCargo
-            && event.what == EventKind::Step
+            && event.kind == EventKind::Step
             && self.is_said_discharge(event);
         let seen_deg = astray.map(|astray| astray.seen_deg);
         let stands = event.withdrawn.is_none();
-        let has_step = matches!(event.what, EventKind::Step | EventKind::Drift) && stands;
-        let worst = match event.what {
+        let has_step = matches!(event.kind, EventKind::Step | EventKind::Drift) && stands;
+        let worst = match event.kind {
             EventKind::Alignment => size::zero_change(&event.before, &event.after),
             _ => size::worst_change(
                 &event.before.parameters,
@@ -199,7 +199,7 @@ impl Teller<'_> {
             evidence: told,
             causes,
             withdrawn: !stands,
-            deviation_change_deg: (event.what.is_lasting() && stands).then_some(worst),
+            deviation_change_deg: (event.kind.is_lasting() && stands).then_some(worst),
             step: has_step.then(|| size::step(&event.before, &event.after)),
             ended: over,
         }
@@ -242,7 +242,7 @@ impl Teller<'_> {
         if !self.one_reference() {
             return None;
         }
-        let is_fault = |event: &Event| event.what == EventKind::ReferenceFault && event.confirmed;
+        let is_fault = |event: &Event| event.kind == EventKind::ReferenceFault && event.confirmed;
         let index = self.events.iter().rposition(is_fault)?;
         if self.events[index + 1..]
             .iter()
@@ -274,7 +274,7 @@ impl Teller<'_> {
         let was_sudden =
             |event: &Event| self.time(event.detected_row).seconds_since(time(event)) < SUDDEN_S;
         let is_alone = |event: &Event| {
-            event.what == EventKind::Step
+            event.kind == EventKind::Step
                 && event.confirmed
                 && self.began_at_port(event) == Some(false)
                 && !was_sudden(event)
@@ -295,7 +295,7 @@ impl Teller<'_> {
         let time = |event: &Event| self.time(event.first);
         let event = &self.events[index];
         let is_sudden = |event: &Event| {
-            matches!(event.what, EventKind::Step | EventKind::Alignment) && event.confirmed
+            matches!(event.kind, EventKind::Step | EventKind::Alignment) && event.confirmed
         };
         let others = self.events.iter().filter(|other| {
             is_sudden(other) && time(other).seconds_since(time(event)).abs() < CREEPS_FOR_S
@@ -337,7 +337,7 @@ impl Teller<'_> {
 
     /// How long before a step at sea there was work that does not explain it, seconds.
     fn work_before(&self, event: &Event, reported: &[Cause]) -> Option<f64> {
-        if event.what != EventKind::Step || reported.contains(&Cause::AdjustmentOrRepair) {
+        if event.kind != EventKind::Step || reported.contains(&Cause::AdjustmentOrRepair) {
             return None;
         }
         let at = self.time(event.first);

@@ -6,7 +6,7 @@ use crate::change::event::{Event, EventKind, remove_events, snapshot};
 use crate::change::filter::Filter;
 use crate::change::hypotheses::Lead;
 use crate::change::hypothesis_kind::HypothesisKind;
-use crate::change::jump_models::{EarlierState, apply_jump, reference_fault};
+use crate::change::jump_models::{EarlierState, apply_jump, apply_reference_step};
 use crate::change::port_call_returns::{Baseline, ReturnCandidate, StepOrigin};
 use crate::change::thresholds::{
     BRIEF_CHANGE_S, FORK_INTERVAL_ROWS, LARGE_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO,
@@ -27,7 +27,7 @@ impl Detector<'_> {
         let lead = large.unwrap_or(lead);
         let dated = self.date_change(lead.fork, lead.kind, k);
         let earlier_state = self.returns.baselines.last();
-        let at_sea = self.apply_alignment_step.is_some()
+        let at_sea = self.alignment_change.is_some()
             || earlier_state.is_some_and(|base| !base.began_at_port_call());
         if kind == HypothesisKind::Step && self.reference_fault.is_none() && at_sea {
             // Linearised each at its own end, either may be the likelier.
@@ -45,7 +45,7 @@ impl Detector<'_> {
             return self.replace_step(k, event, filter);
         }
         self.close_transient(dated.first);
-        let what = match kind {
+        let event_kind = match kind {
             HypothesisKind::Step => EventKind::Step,
             _ => self
                 .reference_fault
@@ -56,7 +56,7 @@ impl Detector<'_> {
         };
         self.push(
             k,
-            what,
+            event_kind,
             dated.first,
             dated.between,
             leads,
@@ -68,31 +68,31 @@ impl Detector<'_> {
         let mut competing = Vec::new();
         let mut no_step = None;
         if kind == HypothesisKind::Step {
-            self.apply_alignment_step = None;
+            self.alignment_change = None;
             no_step = Some(self.no_step_hypotheses(k, &dated, &leads));
             competing = self.competing_hypotheses(k, &dated);
             // It may be that several steps were the same.
             competing.append(&mut self.competing);
             if !self.began_at_port_call(&dated) {
-                self.extra_drift = ExtraDrift::after(dated.first, &dated.before, &dated.filter);
+                self.extra_drift = ExtraDrift::from_step(dated.first, &dated.before, &dated.filter);
             }
             self.replay_port_calls(k, &dated);
         } else {
-            if what == EventKind::ReferenceFault && self.reference_fault.is_none() {
+            if event_kind == EventKind::ReferenceFault && self.reference_fault.is_none() {
                 self.reference_fault = Some((self.events.len() - 1, dated.before));
             }
             let gained = dated.filter.log_likelihood - self.null.log_likelihood;
             let mut returns = std::mem::take(&mut self.returns);
             let next = |back: &Filter| self.measure(k, &back.unknowns());
             returns.apply_reference_change(gained, |back| {
-                reference_fault(back, &next(back), lead.kind)
+                apply_reference_step(back, &next(back), lead.kind)
             });
             self.returns = returns;
         }
         self.replace_null(k, dated.filter, dated.first);
         self.competing = competing;
         self.no_step = no_step;
-        if what == EventKind::ReferenceFault {
+        if event_kind == EventKind::ReferenceFault {
             // Its noise may be another, too.
             self.next_learning =
                 LearningSchedule::next(self.observations, dated.first, dated.first, 0.0);
@@ -108,8 +108,8 @@ impl Detector<'_> {
     /// that knows of the step would have met them.
     pub(crate) fn replay_port_calls(&mut self, k: usize, dated: &DatedChange) {
         let event = self.events.len() - 1;
-        let is_loading_logged = self.is_loading_logged(dated.between);
-        let began = if dated.noticed_late && !is_loading_logged {
+        let is_loading_logged = self.is_loading_logged(dated.between.0, dated.between.1);
+        let origin = if dated.noticed_late && !is_loading_logged {
             StepOrigin::NoticedLate
         } else if self.began_at_port_call(dated) {
             StepOrigin::AtPort
@@ -124,7 +124,7 @@ impl Detector<'_> {
         let base = Baseline {
             event,
             filter: dated.before.clone(),
-            began,
+            origin,
             latest: self.observations[dated.between.1].time,
             port_calls: 0,
         };
@@ -186,7 +186,7 @@ impl Detector<'_> {
     /// The ship is herself again, or her compass's zero is where it was. What came and went
     /// within hours at sea was beside her, and no change of her own.
     fn accept_dated_return(&mut self, k: usize, lead: Lead, dated: DatedChange, leads: Leads) {
-        let zero = self.apply_alignment_step.take().map(|(event, _)| event);
+        let zero = self.alignment_change.take().map(|(event, _)| event);
         let ship = || self.returns.baselines.last().map(|base| base.event);
         let Some(event) = zero.or_else(ship) else {
             return;
@@ -216,7 +216,7 @@ impl Detector<'_> {
             .zip(time(event.first))
             .map(|(end, begin)| end.seconds_since(begin));
         let mut rows = event.between.0..=back.between.1.max(back.first);
-        matches!(event.what, EventKind::Step | EventKind::Alignment)
+        matches!(event.kind, EventKind::Step | EventKind::Alignment)
             && lasted_s.is_some_and(|s| s < BRIEF_CHANGE_S)
             && !rows.any(|row| self.is_port_call(row))
     }
@@ -235,7 +235,7 @@ impl Detector<'_> {
         let gained = dated.filter.log_likelihood - self.null.log_likelihood;
         let mended = EarlierState::Reference(&mended);
         self.returns
-            .apply_reference_change(gained, |back| mended.again(back));
+            .apply_reference_change(gained, |back| mended.restore(back));
         self.push(
             k,
             EventKind::Return(event),
@@ -258,14 +258,14 @@ impl Detector<'_> {
         self.record_alignment_ratios();
         self.competing.clear();
         self.close_transient(back.at);
-        self.apply_alignment_step = None;
+        self.alignment_change = None;
         // What was taken for a step to something else was this.
-        let is_reference = |event: &Event| match event.what {
-            EventKind::Return(of) => self.events[of].what == EventKind::ReferenceFault,
-            what => what == EventKind::ReferenceFault,
+        let is_reference = |event: &Event| match event.kind {
+            EventKind::Return(of) => self.events[of].kind == EventKind::ReferenceFault,
+            event_kind => event_kind == EventKind::ReferenceFault,
         };
         let is_gone = |(place, event): (usize, &Event)| {
-            let is_past = event.what == EventKind::Transient || is_reference(event);
+            let is_past = event.kind == EventKind::Transient || is_reference(event);
             place > back.event && !is_past && event.between.1 >= back.at
         };
         let gone = self.events.iter().enumerate().map(is_gone).collect();
@@ -305,7 +305,7 @@ impl Detector<'_> {
     pub(crate) fn push(
         &mut self,
         k: usize,
-        what: EventKind,
+        event_kind: EventKind,
         first: usize,
         between: (usize, usize),
         leads: Leads,
@@ -313,7 +313,7 @@ impl Detector<'_> {
     ) {
         let (before, after) = change.unwrap_or((&self.null, &self.null));
         let event = Event {
-            what,
+            kind: event_kind,
             first,
             between,
             detected_row: k,

@@ -37,16 +37,16 @@ impl Detector<'_> {
         let drift_hypothesis = priors::DRIFT_VARIANCES
             .iter()
             .filter_map(|drift| self.drift_hypothesis(k, dated, *drift));
-        let apply_alignment_step = self
+        let alignment = self
             .has_both_references(k)
-            .then(|| self.apply_alignment_step(k, dated));
-        drift_hypothesis.chain(apply_alignment_step).collect()
+            .then(|| self.alignment_hypothesis(k, dated));
+        drift_hypothesis.chain(alignment).collect()
     }
 
     /// The zero moved when the step is dated.
-    fn apply_alignment_step(&self, k: usize, dated: &DatedChange) -> CompetingHypothesis {
+    fn alignment_hypothesis(&self, k: usize, dated: &DatedChange) -> CompetingHypothesis {
         CompetingHypothesis {
-            what: EventKind::Alignment,
+            kind: EventKind::Alignment,
             event: self.events.len() - 1,
             drift: 0.0,
             first: dated.first,
@@ -68,7 +68,7 @@ impl Detector<'_> {
                 .innovation_deg(&next)
                 .max(priors::ALIGNMENT_STEP_SD_DEG);
             let moved = apply_alignment_step(before, moved_deg, size_deg);
-            filter = self.run(moved, first..k + 1, &at);
+            filter = self.run_filter(moved, first..k + 1, &at);
         }
         filter
     }
@@ -100,7 +100,7 @@ impl Detector<'_> {
         let row = |place: usize| forks[place].at;
         let first = row(place).max(1);
         Some(CompetingHypothesis {
-            what: EventKind::Drift,
+            kind: EventKind::Drift,
             event: self.events.len() - 1,
             drift,
             first,
@@ -121,9 +121,9 @@ impl Detector<'_> {
             let m = self.measure_drifting(k, &at, competitor.drift);
             competitor.filter.observe(&m, &self.noise, None);
         }
-        let hopeless = self.null.log_likelihood - COMPETING_DROPPED_LOG_LIKELIHOOD_RATIO;
+        let lower_bound = self.null.log_likelihood - COMPETING_DROPPED_LOG_LIKELIHOOD_RATIO;
         competing
-            .retain(|r| r.filter.log_likelihood > hopeless && k < r.first + COMPETING_MAX_ROWS);
+            .retain(|r| r.filter.log_likelihood > lower_bound && k < r.first + COMPETING_MAX_ROWS);
         self.competing = competing;
     }
 
@@ -159,7 +159,7 @@ impl Detector<'_> {
         };
         let (ratio, of) = (lead(&self.competing[place]), self.competing[place].event);
         let mut steps = (of..self.events.len()).filter(|&e| self.is_step_in_force(e));
-        let is_drift = self.competing[place].what == EventKind::Drift;
+        let is_drift = self.competing[place].kind == EventKind::Drift;
         let in_port = is_drift && steps.all(|event| self.is_cargo_likely(event));
         let mut enough = if later(&self.competing[place]) > 0 {
             COMPETING_WITH_SEVERAL_LOG_LIKELIHOOD_RATIO
@@ -182,13 +182,13 @@ impl Detector<'_> {
         }
         // Another step upon the first is the rarer by far.
         let is_needless = step > COMPETING_LOG_LIKELIHOOD_RATIO;
-        if self.competing[place].what == EventKind::Alignment
+        if self.competing[place].kind == EventKind::Alignment
             && !is_needless
             && !self.headings_tell_alignment(place, k)
         {
             return false;
         }
-        if self.competing[place].what == EventKind::Alignment {
+        if self.competing[place].kind == EventKind::Alignment {
             let competitor = &self.competing[place];
             let mut step = self.refit_step(k, &competitor.before, competitor.first);
             let zero = self.filter_with_alignment_change(k, &competitor.before, competitor.first);
@@ -206,7 +206,7 @@ impl Detector<'_> {
         self.remove_later_steps(of);
         let event = &mut self.events[of];
         let was = CompetingHypothesis {
-            what: event.what,
+            kind: event.kind,
             event: of,
             drift: 0.0,
             first: event.first,
@@ -214,8 +214,8 @@ impl Detector<'_> {
             filter: self.null.clone(),
             before: competitor.before.clone(),
         };
-        event.what = competitor.what;
-        event.over_step_log_likelihood_ratio = if competitor.what == EventKind::Step {
+        event.kind = competitor.kind;
+        event.over_step_log_likelihood_ratio = if competitor.kind == EventKind::Step {
             0.0
         } else {
             ratio
@@ -223,17 +223,17 @@ impl Detector<'_> {
         event.before = snapshot(&competitor.before);
         event.after = snapshot(&competitor.filter);
         (event.first, event.between) = (competitor.first, competitor.between);
-        self.extra_drift = match competitor.what {
-            EventKind::Drift => ExtraDrift::drift_hypothesis(k, competitor.drift),
+        self.extra_drift = match competitor.kind {
+            EventKind::Drift => ExtraDrift::from_drift(k, competitor.drift),
             _ => ExtraDrift::default(),
         };
-        self.apply_alignment_step = None;
+        self.alignment_change = None;
         // Two courses may tell of either what the next one does not.
         let mut competing = Vec::new();
-        match competitor.what {
+        match competitor.kind {
             EventKind::Alignment => {
                 competing.push(was);
-                self.apply_alignment_step = Some((of, competitor.before));
+                self.alignment_change = Some((of, competitor.before));
             }
             EventKind::Step => self.revert_to_step(&competitor),
             _ => {}
@@ -247,12 +247,12 @@ impl Detector<'_> {
     fn revert_to_step(&mut self, step: &CompetingHypothesis) {
         let at_port = self.began_in_port(step.event);
         if !at_port {
-            self.extra_drift = ExtraDrift::after(step.first, &step.before, &step.filter);
+            self.extra_drift = ExtraDrift::from_step(step.first, &step.before, &step.filter);
         }
         self.returns.add_baseline(Baseline {
             event: step.event,
             filter: step.before.clone(),
-            began: if at_port {
+            origin: if at_port {
                 StepOrigin::AtPort
             } else {
                 StepOrigin::AtSea
@@ -268,7 +268,7 @@ impl Detector<'_> {
         for competitor in self
             .competing
             .iter()
-            .filter(|r| r.what == EventKind::Alignment)
+            .filter(|r| r.kind == EventKind::Alignment)
         {
             let ratio = competitor.filter.log_likelihood - self.null.log_likelihood;
             if let Some(event) = self.events.get_mut(competitor.event) {
@@ -295,9 +295,9 @@ impl Detector<'_> {
 
     /// What had been taken for further steps was the same.
     pub(crate) fn remove_later_steps(&mut self, of: usize) {
-        let is_gone = |place: usize, event: &Event| match event.what {
+        let is_gone = |place: usize, event: &Event| match event.kind {
             EventKind::Step => place > of,
-            EventKind::Return(step) => step >= of && self.events[step].what == EventKind::Step,
+            EventKind::Return(step) => step >= of && self.events[step].kind == EventKind::Step,
             _ => false,
         };
         let gone: Vec<bool> = self

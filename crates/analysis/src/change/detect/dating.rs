@@ -4,7 +4,7 @@ use super::state::{Detector, earlier_state};
 use crate::change::event::{Event, EventKind};
 use crate::change::filter::{Filter, Measurement};
 use crate::change::hypothesis_kind::HypothesisKind;
-use crate::change::jump_models::{apply_jump, reference_fault};
+use crate::change::jump_models::{apply_jump, apply_reference_step};
 use crate::change::thresholds::{
     DATE_AT_PORT_CALL_LOG_LIKELIHOOD_RATIO, DATE_AT_PORT_CALL_ROWS, DATE_LOG_LIKELIHOOD_RATIO,
     FORK_AFTER_GAP_S,
@@ -44,31 +44,36 @@ fn linearisation_before(kind: HypothesisKind, origin: &Filter, after: &Unknowns)
 
 impl Detector<'_> {
     /// When it happened, to the row.
-    pub(crate) fn date_change(&self, winner: usize, kind: HypothesisKind, k: usize) -> DatedChange {
+    pub(crate) fn date_change(
+        &self,
+        leading_fork: usize,
+        kind: HypothesisKind,
+        k: usize,
+    ) -> DatedChange {
         let forks = &self.bank.forks;
-        let origin = &forks[winner.saturating_sub(1)];
-        let until = forks.get(winner + 1).map_or(k, |s| s.at);
+        let origin = &forks[leading_fork.saturating_sub(1)];
+        let until = forks.get(leading_fork + 1).map_or(k, |s| s.at);
         let earlier_state = earlier_state(
             self.reference_fault.as_ref(),
-            self.apply_alignment_step.as_ref(),
+            self.alignment_change.as_ref(),
             &self.returns,
         );
-        let began = |filter: &Filter, next: &Measurement| match (kind, earlier_state) {
-            (HypothesisKind::Return, Some(earlier_state)) => earlier_state.again(filter),
+        let with_jump = |filter: &Filter, next: &Measurement| match (kind, earlier_state) {
+            (HypothesisKind::Return, Some(earlier_state)) => earlier_state.restore(filter),
             (HypothesisKind::ReferenceStep | HypothesisKind::SatelliteStep, _) => {
-                reference_fault(filter, next, kind)
+                apply_reference_step(filter, next, kind)
             }
             _ => apply_jump(filter, kind),
         };
         // Twice, for the rows are to be linearised at where the ship is now.
         let mut at = match kind {
-            HypothesisKind::LargeStep => forks[winner]
-                .copy(kind)
-                .map_or_else(|| self.point(k), Filter::unknowns),
-            _ => self.point(k),
+            HypothesisKind::LargeStep => forks[leading_fork]
+                .hypothesis(kind)
+                .map_or_else(|| self.linearisation_point(k), Filter::unknowns),
+            _ => self.linearisation_point(k),
         };
         let next = self.measure(origin.at, &at);
-        let mut best = (origin.at, began(origin.origin(), &next));
+        let mut best = (origin.at, with_jump(origin.origin(), &next));
         let mut likely = Vec::new();
         for round in 0..2 {
             let (low, high) = if round == 0 {
@@ -85,22 +90,18 @@ impl Detector<'_> {
             };
             let measured = measure(&at);
             let since = |row: usize| &measured[row - origin.at..];
-            let undisturbed_rows = measure(&linearisation_before(kind, origin.origin(), &at));
-            let mut before = self.observe_all(
-                origin.origin().clone(),
-                &undisturbed_rows[..low - origin.at],
-            );
+            let before_change = measure(&linearisation_before(kind, origin.origin(), &at));
+            let mut before =
+                self.observe_all(origin.origin().clone(), &before_change[..low - origin.at]);
             let mut tried: Vec<(usize, Filter)> = Vec::new();
             let mut row = low;
             while row <= high.min(k) {
-                let filter = self.observe_all(began(&before, &since(row)[0]), since(row));
+                let filter = self.observe_all(with_jump(&before, &since(row)[0]), since(row));
                 tried.push((row, filter));
                 let next = row + stride;
                 let until = next.min(k + 1);
-                before = self.observe_all(
-                    before,
-                    &undisturbed_rows[row - origin.at..until - origin.at],
-                );
+                before =
+                    self.observe_all(before, &before_change[row - origin.at..until - origin.at]);
                 row = next;
             }
             let ratio = |(row, f): &(usize, Filter)| f.log_likelihood + self.gap_log_odds(*row);
@@ -115,7 +116,7 @@ impl Detector<'_> {
         }
         let (first, filter) = best;
         if matches!(kind, HypothesisKind::Step | HypothesisKind::LargeStep)
-            && let Some(dated) = self.date_at_port_call((winner, kind), &filter, first, k)
+            && let Some(dated) = self.date_at_port_call(leading_fork, kind, &filter, first, k)
         {
             return dated;
         }
@@ -133,12 +134,12 @@ impl Detector<'_> {
         let rows: Vec<usize> = near(0).into_iter().chain(near(1)).chain([first]).collect();
         let earliest = rows.iter().copied().min().unwrap_or(first);
         let latest = rows.iter().copied().max().unwrap_or(first);
-        let undisturbed_rows = linearisation_before(kind, origin.origin(), &filter.unknowns());
+        let at_before = linearisation_before(kind, origin.origin(), &filter.unknowns());
         DatedChange {
             first,
             between: (earliest, latest),
             kind,
-            before: self.run(origin.origin().clone(), origin.at..first, &undisturbed_rows),
+            before: self.run_filter(origin.origin().clone(), origin.at..first, &at_before),
             filter,
             noticed_late: false,
         }
@@ -147,7 +148,7 @@ impl Detector<'_> {
     /// By how much likelier beforehand it is that something happened in the gap before a row
     /// than between two rows: the gap is as many times as long, nats.
     fn gap_log_odds(&self, row: usize) -> f64 {
-        let seconds = self.seconds(row);
+        let seconds = self.seconds_since_previous(row);
         if seconds > FORK_AFTER_GAP_S {
             (seconds / ROW_S).ln()
         } else {
@@ -167,7 +168,8 @@ impl Detector<'_> {
     /// time at sea. `filter` is of the likeliest row.
     fn date_at_port_call(
         &self,
-        (winner, kind): (usize, HypothesisKind),
+        leading_fork: usize,
+        kind: HypothesisKind,
         filter: &Filter,
         row: usize,
         k: usize,
@@ -175,9 +177,9 @@ impl Detector<'_> {
         let forks = &self.bank.forks;
         let since = row.saturating_sub(DATE_AT_PORT_CALL_ROWS);
         let from = forks.partition_point(|s| s.at <= since).saturating_sub(1);
-        let origin = &forks[from.min(winner)];
+        let origin = &forks[from.min(leading_fork)];
         let until = forks
-            .get(winner + 1)
+            .get(leading_fork + 1)
             .map_or(k, |s| s.at)
             .max(row + DATE_AT_PORT_CALL_ROWS);
         let calls = (origin.at.max(since).max(1)..=until.min(k)).rev();
@@ -185,26 +187,26 @@ impl Detector<'_> {
             .filter(|&row| self.is_port_call(row))
             .take(PORT_CALLS_TRIED);
         let at = filter.unknowns();
-        let undisturbed_rows = linearisation_before(kind, origin.origin(), &at);
+        let at_before = linearisation_before(kind, origin.origin(), &at);
         let before = calls.map(|call| {
             let rows = origin.at..call;
             (
                 call,
-                self.run(origin.origin().clone(), rows, &undisturbed_rows),
+                self.run_filter(origin.origin().clone(), rows, &at_before),
             )
         });
         let departure_before = self.departure_before(row, &self.events);
         let departure_before = departure_before.filter(|(call, _)| *call < origin.at);
         let tried = before.chain(departure_before.map(|(call, before)| {
             // As likely as the filter that may have been told of what passed since.
-            let nothing = self.run(before.clone(), call..k + 1, &self.null.unknowns());
+            let nothing = self.run_filter(before.clone(), call..k + 1, &self.null.unknowns());
             let mut before = before.clone();
             before.log_likelihood += self.null.log_likelihood - nothing.log_likelihood;
             (call, before)
         }));
         let (call, before, filter) = tried
             .map(|(call, before)| {
-                let filter = self.run(apply_jump(&before, kind), call..k + 1, &at);
+                let filter = self.run_filter(apply_jump(&before, kind), call..k + 1, &at);
                 (call, before, filter)
             })
             .filter(|(_, _, at_call)| {
@@ -213,7 +215,7 @@ impl Detector<'_> {
             })
             .max_by(|a, b| a.2.log_likelihood.total_cmp(&b.2.log_likelihood))?;
         let has_passed = |event: &Event| {
-            event.what == EventKind::Transient
+            event.kind == EventKind::Transient
                 && event.first > call
                 && event.last.is_some_and(|last| last < row)
         };

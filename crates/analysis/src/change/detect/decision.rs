@@ -28,7 +28,7 @@ impl Detector<'_> {
         let ratio = |kind: HypothesisKind| {
             leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
         };
-        if k < self.young() {
+        if k < self.warm_up_rows() {
             return self.decide_transient(k, leads);
         }
         let transient = ratio(HypothesisKind::Transient).max(0.0);
@@ -51,7 +51,7 @@ impl Detector<'_> {
             return self.accept_reference_repair(k, leads);
         }
         let earlier_state = self.returns.baselines.last();
-        let enough = if self.apply_alignment_step.is_none()
+        let enough = if self.alignment_change.is_none()
             && earlier_state.is_some_and(Baseline::began_at_port_call)
         {
             CARGO_RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO
@@ -127,7 +127,7 @@ impl Detector<'_> {
             let Some(lead) = leads[HypothesisKind::Transient as usize] else {
                 return;
             };
-            let first = self.began(lead);
+            let first = self.transient_start(lead);
             match self.same_transient(first) {
                 // One that has had its time keeps its lead, but is told once.
                 Some(event) if event.confirmed => return,
@@ -162,7 +162,7 @@ impl Detector<'_> {
     fn new_vessel_extra(&self, k: usize) -> f64 {
         let since = self.observations[0].time.zip(self.observations[k].time);
         let is_new = since.is_some_and(|(first, now)| now.seconds_since(first) < NEW_VESSEL_S);
-        if is_new && !self.is_known {
+        if is_new && !self.is_noise_known {
             NEW_VESSEL_EXTRA_LOG_LIKELIHOOD_RATIO
         } else {
             0.0
@@ -180,12 +180,12 @@ impl Detector<'_> {
     pub(crate) fn same_transient(&self, first: usize) -> Option<&Event> {
         let last = self.events.last();
         last.filter(|event| {
-            event.what == EventKind::Transient && event.first + FORK_INTERVAL_ROWS >= first
+            event.kind == EventKind::Transient && event.first + FORK_INTERVAL_ROWS >= first
         })
     }
 
     /// The first row of a passing disturbance.
-    pub(crate) fn began(&self, lead: Lead) -> usize {
+    pub(crate) fn transient_start(&self, lead: Lead) -> usize {
         let fork = &self.bank.forks[lead.fork];
         let over = fork.transient_from.filter(|_| self.is_over(lead));
         over.unwrap_or(fork.at)
@@ -264,7 +264,7 @@ impl Detector<'_> {
             .baselines
             .last()
             .filter(|base| base.is_cargo())?;
-        if self.apply_alignment_step.is_some() || self.reference_fault.is_some() {
+        if self.alignment_change.is_some() || self.reference_fault.is_some() {
             return None;
         }
         let loaded = self.events[laden.event].first;

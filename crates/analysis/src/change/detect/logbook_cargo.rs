@@ -38,7 +38,7 @@ impl Detector<'_> {
     }
 
     /// Whether the logbook has it that cargo came on board when a step happened.
-    pub(crate) fn is_loading_logged(&self, (earliest, latest): (usize, usize)) -> bool {
+    pub(crate) fn is_loading_logged(&self, earliest: usize, latest: usize) -> bool {
         let departure_before = &self.observations[..earliest];
         let earliest = self
             .interval_before(earliest)

@@ -5,6 +5,7 @@
 //! decides what it tells; every event lies between two rows; the search ends.
 
 use super::state::{Detector, LearningSchedule, LearntNoise, earlier_state};
+use crate::change::priors;
 use crate::change::thresholds::{
     FIRST_TRANSIENT_ROW, FORK_AFTER_GAP_S, FORK_INNOVATION_MIN_ROWS, FORK_INNOVATION_SD,
     FORK_INTERVAL_ROWS, SUSPICION_LOG_LIKELIHOOD_RATIO,
@@ -37,24 +38,34 @@ pub(crate) fn detect(observations: &[Observation], given: &DetectionInput<'_>) -
 impl Detector<'_> {
     fn step(&mut self, k: usize) {
         if k >= self.next_learning.at {
-            self.learn(k);
+            self.relearn(k);
         }
-        if k == self.first() {
+        if k == self.first_change_row() {
             self.bank.drop_lasting();
         }
         let is_fork_due = k >= FIRST_TRANSIENT_ROW && self.is_fork_due(k);
         if is_fork_due {
             self.end_transient(k);
         }
-        let m = self.next(k);
+        let m = self.measure_next(k);
         if is_fork_due || (k >= FIRST_TRANSIENT_ROW && self.is_outlying(k, &m)) {
             let earlier_state = earlier_state(
                 self.reference_fault.as_ref(),
-                self.apply_alignment_step.as_ref(),
+                self.alignment_change.as_ref(),
                 &self.returns,
             );
-            let known = (earlier_state, self.is_port_call(k));
-            self.bank.fork(k, &self.null, &self.noise, known);
+            let step_prior_log_odds = if self.is_port_call(k) {
+                priors::STEP_AT_PORT_CALL_LOG_ODDS
+            } else {
+                0.0
+            };
+            self.bank.fork(
+                k,
+                &self.null,
+                &self.noise,
+                earlier_state,
+                step_prior_log_odds,
+            );
             self.last_fork = k;
         }
         if self.is_port_call(k) || self.is_discharge_logged(k) {
@@ -72,11 +83,11 @@ impl Detector<'_> {
         self.observe_no_step(k);
         let earlier_state = earlier_state(
             self.reference_fault.as_ref(),
-            self.apply_alignment_step.as_ref(),
+            self.alignment_change.as_ref(),
             &self.returns,
         );
-        let null = (&self.null, excess_loss);
-        self.bank.observe(k, m, &self.noise, null, earlier_state);
+        self.bank
+            .observe(k, m, &self.noise, &self.null, excess_loss, earlier_state);
         let mut bank = std::mem::take(&mut self.bank);
         bank.observe_large_steps(k, &self.noise, |row, at| self.measure(row, at));
         self.bank = bank;
@@ -98,7 +109,7 @@ impl Detector<'_> {
             self.reported.iter().any(|t| before < *t && *t <= now)
         };
         k >= self.last_fork + FORK_INTERVAL_ROWS
-            || (k > 0 && self.seconds(k) > FORK_AFTER_GAP_S)
+            || (k > 0 && self.seconds_since_previous(k) > FORK_AFTER_GAP_S)
             || reported()
     }
 
@@ -109,10 +120,10 @@ impl Detector<'_> {
     }
 
     /// The sizes of noise again, from the longer stretch there is now.
-    fn learn(&mut self, k: usize) {
+    fn relearn(&mut self, k: usize) {
         let rows = self.learn_from..k;
         if let Some(learnt) =
-            LearntNoise::of(self.observations, rows, self.prior, Some(&self.levels))
+            LearntNoise::from_rows(self.observations, rows, self.prior, Some(&self.levels))
         {
             self.levels = learnt.levels;
             self.noise = learnt.noise;
@@ -173,10 +184,10 @@ impl Detector<'_> {
         else {
             return;
         };
-        if k < self.young() || (kind == HypothesisKind::Transient && !is_news(lead)) {
+        if k < self.warm_up_rows() || (kind == HypothesisKind::Transient && !is_news(lead)) {
             return;
         }
-        let what = match kind {
+        let event_kind = match kind {
             HypothesisKind::ReferenceStep => EventKind::ReferenceFault,
             HypothesisKind::Transient => EventKind::Transient,
             _ => EventKind::Step,
@@ -184,10 +195,10 @@ impl Detector<'_> {
         let fork = &self.bank.forks[lead.fork];
         let first = fork.at;
         let filters = fork
-            .copy(lead.kind)
+            .hypothesis(lead.kind)
             .map(|f| (fork.origin().clone(), f.clone()));
         let change = filters.as_ref().map(|(before, after)| (before, after));
-        self.push(k, what, first, (first, first), leads, change);
+        self.push(k, event_kind, first, (first, first), leads, change);
         if let Some(event) = self.events.last_mut() {
             event.confirmed = false;
         }

@@ -25,7 +25,7 @@ impl Detector<'_> {
     pub(crate) fn refit_step(&self, k: usize, before: &Filter, first: usize) -> Filter {
         let mut likeliest = self.filter_with_step(k, before, first, HypothesisKind::Step);
         let after = (first + 1).min(k);
-        let within = self.run(before.clone(), first..after, &before.unknowns());
+        let within = self.run_filter(before.clone(), first..after, &before.unknowns());
         for (before, first, kind) in [
             (before, first, HypothesisKind::LargeStep),
             (&within, after, HypothesisKind::Step),
@@ -53,7 +53,7 @@ impl Detector<'_> {
         }
         for _ in 0..LINEARISATION_ROUNDS {
             let at = filter.unknowns();
-            filter = self.run(apply_jump(before, kind), first..k + 1, &at);
+            filter = self.run_filter(apply_jump(before, kind), first..k + 1, &at);
         }
         filter
     }
@@ -63,7 +63,7 @@ impl Detector<'_> {
         let base = self.returns.baselines.last()?;
         let event = self.events.get(base.event)?;
         let later = &self.events[base.event + 1..];
-        let is_last = later.iter().all(|event| event.what == EventKind::Transient);
+        let is_last = later.iter().all(|event| event.kind == EventKind::Transient);
         if !is_last || !self.is_step_in_force(base.event) || k > event.first + SAME_STEP_ROWS {
             return None;
         }

@@ -28,7 +28,7 @@ impl Detector<'_> {
         ]
         .map(ratio);
         let others = others.into_iter().fold(0.0, f64::max);
-        let knew = self
+        let ended = self
             .bank
             .lead(HypothesisKind::TransientEnd, &self.null)
             .filter(|lead| {
@@ -36,21 +36,25 @@ impl Detector<'_> {
                     && lead.log_likelihood_ratio
                         > others + ENDED_TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
             });
-        let knew = knew.map(|lead| &self.bank.forks[lead.fork]);
-        let knew =
-            knew.and_then(|fork| Some((fork.at, fork.copy(HypothesisKind::TransientEnd)?.clone())));
+        let ended = ended.map(|lead| &self.bank.forks[lead.fork]);
+        let ended = ended.and_then(|fork| {
+            Some((
+                fork.at,
+                fork.hypothesis(HypothesisKind::TransientEnd)?.clone(),
+            ))
+        });
         let is_over = self
             .transient
             .is_some_and(|event| age_s(self.events[event].first) >= 1.2 * TRANSIENT_MAX_S);
-        if knew.is_none() && !is_over {
+        if ended.is_none() && !is_over {
             return;
         }
         if let Some(event) = self.transient.take() {
             let first = self.events[event].first;
-            let until = knew.as_ref().map_or(k, |(until, _)| *until);
+            let until = ended.as_ref().map_or(k, |(until, _)| *until);
             self.events[event].last = Some(self.last_disturbed_row(first, until));
         }
-        if let Some((_, filter)) = knew {
+        if let Some((_, filter)) = ended {
             self.credit_alternatives(HypothesisKind::TransientEnd);
             let gained = filter.log_likelihood - self.null.log_likelihood;
             self.returns.credit_transient(&self.null, gained);

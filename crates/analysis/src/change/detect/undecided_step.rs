@@ -87,12 +87,12 @@ impl Detector<'_> {
     /// then, at the last row.
     fn filter_after_large_step(&self, undisturbed_rows: Range<usize>, before: &Filter) -> Filter {
         let first = undisturbed_rows.end;
-        let before = self.run(before.clone(), undisturbed_rows, &before.unknowns());
+        let before = self.run_filter(before.clone(), undisturbed_rows, &before.unknowns());
         let begun = apply_large_step(&before);
         let rows = first..self.observations.len();
         let mut after = before;
         for _ in 0..LINEARISATION_ROUNDS {
-            after = self.run(begun.clone(), rows.clone(), &after.unknowns());
+            after = self.run_filter(begun.clone(), rows.clone(), &after.unknowns());
         }
         after
     }

@@ -27,7 +27,7 @@ impl Detector<'_> {
     ) -> Option<(usize, &Filter)> {
         let (at, filter) = self.departures.0.iter().rfind(|(at, _)| *at <= row)?;
         let is_news =
-            |event: &Event| event.detected_row >= *at && event.what != EventKind::Transient;
+            |event: &Event| event.detected_row >= *at && event.kind != EventKind::Transient;
         let times = self.observations[*at].time.zip(self.observations[row].time);
         let is_soon = times.is_some_and(|(departure_before, now)| {
             now.seconds_since(departure_before) < CARGO_NOTICED_LATE_S
@@ -39,10 +39,12 @@ impl Detector<'_> {
     /// likely one at any of them is; `returned` is how likely she is herself again.
     pub(crate) fn undetected_step(&self, leads: &Leads, returned: f64) -> Option<UndetectedStep> {
         let last = self.observations.len().checked_sub(1)?;
-        let earliest = last.saturating_sub(UNDETECTED_STEP_ROWS).max(self.first());
+        let earliest = last
+            .saturating_sub(UNDETECTED_STEP_ROWS)
+            .max(self.first_change_row());
         // A filter that did not know of what was told since is of no use.
         let told = |event: &&Event| {
-            !matches!(event.what, EventKind::Transient | EventKind::ReferenceFault)
+            !matches!(event.kind, EventKind::Transient | EventKind::ReferenceFault)
         };
         let told = self
             .events
@@ -106,12 +108,12 @@ impl Detector<'_> {
     fn is_disturbed(&self, row: usize) -> bool {
         let mut told = self.events.iter().enumerate();
         told.any(|(place, event)| {
-            let last = match event.what {
+            let last = match event.kind {
                 EventKind::Transient if self.transient == Some(place) => return false,
                 EventKind::Transient => event.last,
                 EventKind::ReferenceFault => self.events[place + 1..]
                     .iter()
-                    .find(|later| later.what == EventKind::Return(place))
+                    .find(|later| later.kind == EventKind::Return(place))
                     .map(|later| later.first.saturating_sub(1)),
                 _ => return false,
             };

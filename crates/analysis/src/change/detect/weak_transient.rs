@@ -28,7 +28,7 @@ impl Detector<'_> {
             && over_lasting > TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO
             && is_more
         {
-            let first = self.began(lead);
+            let first = self.transient_start(lead);
             if self.same_transient(first).is_none() && self.may_continue(first, k) {
                 let last = k;
                 self.weak_transient = Some(WeakTransient { first, last, leads });

@@ -25,12 +25,12 @@ impl Detector<'_> {
         leads: &Leads,
     ) -> NoStepHypotheses {
         let (before, rows) = (&dated.before, dated.first..k + 1);
-        let nothing = self.run(before.clone(), rows, &before.unknowns());
+        let nothing = self.run_filter(before.clone(), rows, &before.unknowns());
         let passed = leads[HypothesisKind::Transient as usize].and_then(|lead| {
-            let copy = self.bank.forks[lead.fork].copy(lead.kind)?;
+            let hypothesis = self.bank.forks[lead.fork].hypothesis(lead.kind)?;
             Some(match lead.kind {
-                HypothesisKind::SevereTransient => reset_variation(copy, &self.noise),
-                _ => copy.clone(),
+                HypothesisKind::SevereTransient => reset_variation(hypothesis, &self.noise),
+                _ => hypothesis.clone(),
             })
         });
         NoStepHypotheses {
@@ -56,10 +56,10 @@ impl Detector<'_> {
         } else {
             NO_STEP_DROPPED_LOG_LIKELIHOOD_RATIO
         };
-        let hopeless = self.null.log_likelihood - trails;
+        let lower_bound = self.null.log_likelihood - trails;
         no_step
             .without
-            .retain(|filter| filter.log_likelihood > hopeless);
+            .retain(|filter| filter.log_likelihood > lower_bound);
         self.no_step = Some(no_step).filter(|no_step| !no_step.without.is_empty());
     }
 
@@ -98,6 +98,6 @@ impl Detector<'_> {
     /// Whether an event is a step that still stands.
     pub(crate) fn is_step_in_force(&self, event: usize) -> bool {
         let event = &self.events[event];
-        event.what == EventKind::Step && event.withdrawn.is_none()
+        event.kind == EventKind::Step && event.withdrawn.is_none()
     }
 }

@@ -6,7 +6,7 @@ use crate::change::filter::Filter;
 
 /// Another reading of a step.
 pub(crate) struct CompetingHypothesis {
-    pub(crate) what: EventKind,
+    pub(crate) kind: EventKind,
     /// The step's place in the list of events.
     pub(crate) event: usize,
     /// What bx and by drift by beyond their usual.

@@ -30,11 +30,11 @@ pub(crate) struct Detector<'a> {
     pub(crate) cargo: &'a [CargoPeriod],
     pub(crate) prior: &'a Prior,
     /// Whether the sizes of noise were known before the rows.
-    pub(crate) is_known: bool,
+    pub(crate) is_noise_known: bool,
     pub(crate) levels: NoiseLevels,
     pub(crate) noise: NoiseVariances,
     /// What rows are linearised at until the filter itself knows.
-    pub(crate) start: Unknowns,
+    pub(crate) start_unknowns: Unknowns,
     pub(crate) start_until: usize,
     /// Where the present stretch of learning began, and which comes next.
     pub(crate) learn_from: usize,
@@ -51,7 +51,7 @@ pub(crate) struct Detector<'a> {
     /// events, and the filter before.
     pub(crate) reference_fault: Option<(usize, Filter)>,
     /// The same of a compass's zero that moved, if nothing else has changed since.
-    pub(crate) apply_alignment_step: Option<(usize, Filter)>,
+    pub(crate) alignment_change: Option<(usize, Filter)>,
     pub(crate) extra_drift: ExtraDrift,
     /// What else the last step may have been.
     pub(crate) competing: Vec<CompetingHypothesis>,
@@ -79,11 +79,11 @@ impl<'a> Detector<'a> {
             reported: given.reported,
             cargo: given.cargo,
             prior: given.prior,
-            is_known: given.levels.is_some(),
+            is_noise_known: given.levels.is_some(),
             null: Filter::new(given.prior, &learnt.noise),
             levels: learnt.levels,
             noise: learnt.noise,
-            start: learnt.unknowns,
+            start_unknowns: learnt.unknowns,
             start_until: learnt.until,
             learn_from: 0,
             next_learning: LearningSchedule::next(observations, 0, learnt.until, 0.0),
@@ -93,7 +93,7 @@ impl<'a> Detector<'a> {
             returns: PortCallReturns::default(),
             departures: PortDepartures::default(),
             reference_fault: None,
-            apply_alignment_step: None,
+            alignment_change: None,
             extra_drift: ExtraDrift::default(),
             competing: Vec::new(),
             no_step: None,
@@ -104,16 +104,16 @@ impl<'a> Detector<'a> {
         }
     }
 
-    pub(crate) fn first(&self) -> usize {
-        if self.is_known {
+    pub(crate) fn first_change_row(&self) -> usize {
+        if self.is_noise_known {
             FIRST_CHANGE_ROW_KNOWN_NOISE
         } else {
             FIRST_CHANGE_ROW
         }
     }
 
-    pub(crate) fn young(&self) -> usize {
-        if self.is_known {
+    pub(crate) fn warm_up_rows(&self) -> usize {
+        if self.is_noise_known {
             WARM_UP_ROWS_KNOWN_NOISE
         } else {
             WARM_UP_ROWS
@@ -124,24 +124,24 @@ impl<'a> Detector<'a> {
     pub(crate) fn leads(&self) -> Leads {
         [
             self.bank.step(&self.null),
-            self.bank.reference(&self.null),
-            self.bank.passing(&self.null),
+            self.bank.reference_step(&self.null),
+            self.bank.transient_lead(&self.null),
             self.bank.lead(HypothesisKind::Return, &self.null),
         ]
     }
 
     /// Row `k` as the filter is to read it.
-    pub(crate) fn next(&self, k: usize) -> Measurement {
+    pub(crate) fn measure_next(&self, k: usize) -> Measurement {
         if k < self.start_until {
-            return self.measure(k, &self.start);
+            return self.measure(k, &self.start_unknowns);
         }
         relinearise(&self.null, &self.noise, |at| self.measure(k, at))
     }
 
     /// Where row `k` is linearised.
-    pub(crate) fn point(&self, k: usize) -> Unknowns {
+    pub(crate) fn linearisation_point(&self, k: usize) -> Unknowns {
         if k < self.start_until {
-            self.start
+            self.start_unknowns
         } else {
             self.null.unknowns()
         }
@@ -155,23 +155,35 @@ impl<'a> Detector<'a> {
     /// population units.
     pub(crate) fn measure_drifting(&self, k: usize, at: &Unknowns, drift: f64) -> Measurement {
         let extra_drift = self.extra_drift.variance(self.observations, k);
-        let seen = (priors::DRIFT_IN_GAP_MAX_S / self.seconds(k)).min(1.0);
-        self.measured(k, at, extra_drift.max(seen * drift))
+        let seen = (priors::DRIFT_IN_GAP_MAX_S / self.seconds_since_previous(k)).min(1.0);
+        self.measure_with_drift(k, at, extra_drift.max(seen * drift))
     }
 
     /// The same for a ship that drifts as ships do.
     pub(crate) fn measure_settled(&self, k: usize, at: &Unknowns) -> Measurement {
-        self.measured(k, at, 0.0)
+        self.measure_with_drift(k, at, 0.0)
     }
 
-    pub(crate) fn measured(&self, k: usize, at: &Unknowns, extra_drift: f64) -> Measurement {
+    pub(crate) fn measure_with_drift(
+        &self,
+        k: usize,
+        at: &Unknowns,
+        extra_drift: f64,
+    ) -> Measurement {
         let (o, station) = (&self.observations[k], &self.stations[k]);
         let row = row(o, station, &Point::at(at, reference_share(at)));
-        measurement(station, &row, at, self.seconds(k), &self.noise, extra_drift)
+        measurement(
+            station,
+            &row,
+            at,
+            self.seconds_since_previous(k),
+            &self.noise,
+            extra_drift,
+        )
     }
 
     /// Since the row before.
-    pub(crate) fn seconds(&self, k: usize) -> f64 {
+    pub(crate) fn seconds_since_previous(&self, k: usize) -> f64 {
         let earlier_state = k.checked_sub(1).and_then(|j| self.observations[j].time);
         match (earlier_state, self.observations[k].time) {
             (Some(earlier_state), Some(time)) => time.seconds_since(earlier_state).max(0.0),
@@ -184,7 +196,7 @@ impl<'a> Detector<'a> {
     }
 
     /// A filter over some rows, all linearised at one point.
-    pub(crate) fn run(
+    pub(crate) fn run_filter(
         &self,
         mut filter: Filter,
         rows: std::ops::Range<usize>,
@@ -204,7 +216,7 @@ impl<'a> Detector<'a> {
         let passed = self
             .events
             .iter()
-            .filter(|event| event.what == EventKind::Transient);
+            .filter(|event| event.kind == EventKind::Transient);
         let passed = passed.filter_map(|transient| Some(transient.first..=transient.last?));
         let passed: Vec<_> = passed.filter(|p| *p.end() >= rows.start).collect();
         rows.filter(move |row| !passed.iter().any(|passed| passed.contains(row)))
@@ -215,16 +227,16 @@ impl<'a> Detector<'a> {
 /// changed last.
 pub(crate) fn earlier_state<'a>(
     reference_fault: Option<&'a (usize, Filter)>,
-    apply_alignment_step: Option<&'a (usize, Filter)>,
+    alignment_change: Option<&'a (usize, Filter)>,
     calls: &'a PortCallReturns,
 ) -> Option<EarlierState<'a>> {
-    let reference = reference_fault.map(|(_, before)| EarlierState::Reference(before));
-    let zero = || apply_alignment_step.map(|(_, before)| EarlierState::Zero(before));
+    let reference_step = reference_fault.map(|(_, before)| EarlierState::Reference(before));
+    let zero = || alignment_change.map(|(_, before)| EarlierState::Zero(before));
     let ship = || {
         calls
             .baselines
             .last()
             .map(|base| EarlierState::Ship(base.without_cargo()))
     };
-    reference.or_else(zero).or_else(ship)
+    reference_step.or_else(zero).or_else(ship)
 }

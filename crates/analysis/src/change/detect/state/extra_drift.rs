@@ -16,7 +16,7 @@ pub(crate) struct ExtraDrift {
 }
 
 impl ExtraDrift {
-    pub(crate) fn after(since: usize, before: &Filter, after: &Filter) -> ExtraDrift {
+    pub(crate) fn from_step(since: usize, before: &Filter, after: &Filter) -> ExtraDrift {
         let moved = |state: usize| after.mean[state] - before.mean[state];
         let size = moved(0).hypot(moved(2));
         ExtraDrift {
@@ -27,7 +27,7 @@ impl ExtraDrift {
     }
 
     /// A ship that drifts on from row `since`.
-    pub(crate) fn drift_hypothesis(since: usize, variance: f64) -> ExtraDrift {
+    pub(crate) fn from_drift(since: usize, variance: f64) -> ExtraDrift {
         ExtraDrift {
             since,
             variance,

@@ -29,15 +29,15 @@ impl LearntNoise {
         before: Option<&NoiseLevels>,
     ) -> Option<LearntNoise> {
         if let Some(levels) = before {
-            return Some(LearntNoise::beforehand(levels, prior));
+            return Some(LearntNoise::from_known_levels(levels, prior));
         }
         LEARNING_DAYS.iter().find_map(|days| {
             let until = rows_within(observations, 0, *days);
-            LearntNoise::of(observations, 0..until, prior, None)
+            LearntNoise::from_rows(observations, 0..until, prior, None)
         })
     }
 
-    fn beforehand(levels: &NoiseLevels, prior: &Prior) -> LearntNoise {
+    fn from_known_levels(levels: &NoiseLevels, prior: &Prior) -> LearntNoise {
         let noise = noise(levels);
         LearntNoise {
             levels: *levels,
@@ -48,7 +48,7 @@ impl LearntNoise {
     }
 
     /// From `rows`, beginning with the levels learnt before.
-    pub(crate) fn of(
+    pub(crate) fn from_rows(
         observations: &[Observation],
         rows: std::ops::Range<usize>,
         prior: &Prior,
@@ -98,8 +98,8 @@ impl LearningSchedule {
         k: usize,
         days: f64,
     ) -> LearningSchedule {
-        let long = LEARNING_DAYS.iter().filter(|long| **long >= days);
-        let mut schedules = long.map(|&days| LearningSchedule {
+        let lengths = LEARNING_DAYS.iter().filter(|lengths| **lengths >= days);
+        let mut schedules = lengths.map(|&days| LearningSchedule {
             at: rows_within(observations, from, days),
             days,
         });
