@@ -1,61 +1,65 @@
-//! Why: Bayes' rule over what is known of a change's circumstances.
+//! Posterior probabilities of a change's causes, by Bayes' rule.
 //!
-//! Every cause has a rate before any evidence, and every circumstance a
-//! probability under each cause. They are judgements, kept in one table so that
-//! they can be argued with (docs/science.md, §9).
+//! Every cause has a prior rate, and every circumstance a probability under each cause.
+//! They are judgements, kept in one table so that they can be disputed (docs/science.md,
+//! §9).
 
 use super::event::EventKind;
 use super::likelihood_ratio::LIKELIHOOD_TEMPER;
 use binnacle_compass::result::{Cause, CauseProbability};
 
-/// How much likelier a cause is that people reported at the time.
+/// Factor on the weight of a cause that people reported at the time.
 const REPORTED_FACTOR: f64 = 100.0;
-/// Bursts longer than this are hardly a place's, shorter hardly a storm's.
+/// Duration above which a transient is hardly a local anomaly, and below which it is hardly
+/// a storm.
 const LONG_TRANSIENT_S: f64 = 3.0 * 3600.0;
-/// Changes that took longer to be told apart from nothing than this crept in.
+/// Delay of detection above which a change was gradual.
 const SLOW_DETECTION_S: f64 = 20.0 * 86_400.0;
 
-/// What is known of a change beside its size.
+/// Circumstances of a change, beside its size.
 #[allow(
     clippy::struct_excessive_bools,
     reason = "each is a circumstance of its own"
 )]
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Circumstances {
-    /// Leads by kind, nats.
+    /// Log-likelihood ratios against no change, by kind.
     pub(crate) leads: [f64; 4],
-    /// Whether it began at a port call; none where that cannot be told.
+    /// Whether it began at a port call, where that is known.
     pub(crate) at_port: Option<bool>,
-    /// Whether the ship became herself again, and whether at a port call.
+    /// Whether the vessel returned to its earlier state at a port call; none where it has
+    /// not returned.
     pub(crate) ended_at_port: Option<bool>,
-    /// By how much what was first taken for a step is likelier than that, nats.
+    /// Log-likelihood ratio against the step for which it was first taken.
     pub(crate) over_step_log_likelihood_ratio: f64,
-    /// By how much a zero that moved is likelier than a step, nats, where that is open.
+    /// Log-likelihood ratio of an alignment change against a step, where that is open.
     pub(crate) alignment_over_step_log_likelihood_ratio: Option<f64>,
-    /// How long a burst lasted, or has lasted yet.
+    /// Duration of a transient, up to now if it goes on.
     pub(crate) transient_s: Option<f64>,
-    /// Whether a burst, or a reference's fault, is over.
+    /// Whether a transient or a reference's fault is over.
     pub(crate) is_over: bool,
-    /// Whether it came with a berth at which samples were taken, and went with it if it is over.
+    /// Whether it began with a stay at a berth at which samples were taken, and ended with
+    /// the stay if it is over.
     pub(crate) alongside: bool,
-    /// How far a burst led the compass astray, degrees where H is 24 µT.
+    /// Error of the compass during a transient, degrees where H is 24 µT.
     pub(crate) disturbance_deg: Option<f64>,
     /// Whether nothing is certain yet.
     pub(crate) is_open: bool,
     /// Whether there was no second reference.
     pub(crate) one_reference: bool,
-    /// Whether another step at sea, weeks before or after, went the same way.
+    /// Whether another step at sea, weeks before or after, had the same direction.
     pub(crate) is_drifting: bool,
-    /// How many lasting changes there were within a day of it, with it.
+    /// Number of lasting changes within a day of it, itself included.
     pub(crate) changes_within_a_day: usize,
-    /// From the change to the row that told.
+    /// Time from the change to the row that detected it.
     pub(crate) detection_delay_s: f64,
-    /// What people reported at the time.
+    /// Causes that people reported at the time.
     pub(crate) reported: Vec<Cause>,
 }
 
-/// Rate a vessel-year, and the probabilities of: beginning at a port call; ending
-/// again, at a port call or at sea; being told late; another going the same way.
+/// Prior rate of a cause per vessel-year, and the probabilities of: a beginning at a port
+/// call, a return at a port call or at sea, a late detection, and another step in the same
+/// direction.
 struct CausePriors {
     cause: Cause,
     rate_per_year: f64,
@@ -97,31 +101,31 @@ const LASTING_CAUSES: [CausePriors; 5] = [
     cause_priors(Cause::Unknown, [0.02, 0.3, 0.1, 0.1, 0.2, 0.1]),
 ];
 
-/// A vessel-year.
+/// Rates per vessel-year.
 const ALIGNMENT_RATE_PER_YEAR: f64 = 0.05;
 const COMPASS_FAULT_RATE_PER_YEAR: f64 = 0.5;
-/// Of a lone reference that is wild now and then, or swings.
+/// Rate at which a lone reference has wild readings or oscillates.
 const LONE_REFERENCE_FAULT_RATE_PER_YEAR: f64 = 1.0;
 
-/// How far storms, anomalies and a compass that is at fault lead it astray, degrees where H
-/// is 24 µT: the largest storms on record come to some eight, anomalies seldom to that, and
-/// a card that was hit, lost its light or hangs swings by any number.
+/// Errors of the compass in storms, over anomalies and by its own faults, degrees where H
+/// is 24 µT. The largest storms on record come to about eight, anomalies seldom to that; a
+/// damaged or suspended card moves by any number.
 const STORM_DEG: f64 = 5.0;
 const ANOMALY_DEG: f64 = 6.0;
 const COMPASS_FAULT_DEG: f64 = 10.0;
 
-/// How likely a compass's zero that moved is to be put right, beside a reference that is.
+/// Probability that an alignment change is corrected, relative to a reference's fault.
 const ALIGNMENT_REPAIRED: f64 = 0.1;
 
-/// How likely the sun, or a place at sea, begins and ends with a stay alongside.
+/// Probability that a storm or an anomaly at sea begins and ends with a stay alongside.
 const WITH_BERTH_STAY: f64 = 0.02;
 
-/// What contradicts what the search decided weighs so much less; and so much while it has
-/// not decided.
+/// Factor on the weight of a cause that contradicts the detector's decision: after the
+/// decision, and while it is open.
 const CONTRADICTION_FACTOR: f64 = 0.02;
 const OPEN_CONTRADICTION_FACTOR: f64 = 0.5;
 
-/// The causes of an event, the likeliest first.
+/// Returns the probable causes of an event, the likeliest first.
 pub(crate) fn causes(
     event_kind: EventKind,
     circumstances: &Circumstances,
@@ -152,7 +156,8 @@ pub(crate) fn causes(
         .alignment_over_step_log_likelihood_ratio
         .filter(|_| event_kind == EventKind::Step)
     {
-        // The headings sailed do not tell: it is not named for what may be as well.
+        // The headings sailed do not tell them apart: the alignment must not be named
+        // first.
         let steps = weights.iter().map(|(_, weight)| *weight);
         let likeliest = steps.fold(0.0, f64::max);
         let zero = ALIGNMENT_RATE_PER_YEAR * (step + LIKELIHOOD_TEMPER * over - most).exp();
@@ -175,7 +180,8 @@ pub(crate) fn causes(
     let of_reference = 0.5 * (reference_step - most).exp() + by_lone_reference;
     weights.push((Cause::ReferenceFault, of_reference));
     if event_kind == EventKind::ReferenceFault && circumstances.one_reference {
-        // The same on every heading: which of the two was moved, nothing tells but its end.
+        // The error is the same on every heading: only its end shows which instrument was
+        // moved.
         let share = if circumstances.is_over {
             ALIGNMENT_REPAIRED
         } else {
@@ -183,7 +189,7 @@ pub(crate) fn causes(
         };
         weights.push((Cause::Alignment, share * of_reference));
     }
-    // What is not over is no shorter than it has been.
+    // A transient that goes on is no shorter than it has been.
     let long = match circumstances.transient_s {
         Some(seconds) if seconds > LONG_TRANSIENT_S => 1.0,
         Some(_) if circumstances.is_over => 0.0,
@@ -203,7 +209,7 @@ pub(crate) fn causes(
         3.0 * transient_lead * over_anomaly * (0.9 - 0.8 * long) * elsewhere,
     ));
     let at_berth = match circumstances.at_port {
-        // It lasts as long as she lies there.
+        // It lasts as long as the stay.
         _ if circumstances.alongside => 1.0,
         Some(true) => 0.9 - 0.8 * long,
         _ => 0.01 * (0.9 - 0.8 * long),
@@ -241,7 +247,7 @@ pub(crate) fn causes(
     causes
 }
 
-/// Takes from the weight of what contradicts what the search decided.
+/// Reduces the weights of causes that contradict the detector's decision.
 fn discount_contradictions(
     event_kind: EventKind,
     circumstances: &Circumstances,
@@ -262,14 +268,15 @@ fn discount_contradictions(
     for (cause, weight) in against {
         *weight *= share;
         if cause.is_the_ships() != is_of_the_ship {
-            // Whether an epoch begins has been decided: it is not named for what it is not.
+            // The detector decided whether an epoch begins: no contradicting cause may be
+            // named first.
             *weight = weight.min(most);
         }
     }
 }
 
-/// Whether a cause is of what the search decided, or in port of what it may yet be: there she
-/// may be another since, as long as she has not sailed.
+/// Whether a cause is consistent with the decision. In port, before sailing again, a change
+/// of the vessel itself remains possible.
 fn is_consistent(event_kind: EventKind, cause: Cause, circumstances: &Circumstances) -> bool {
     let may_be_hers = circumstances.alongside && !circumstances.is_over;
     let is_hers = matches!(cause, Cause::MagneticCargo | Cause::AdjustmentOrRepair);
@@ -283,7 +290,7 @@ impl CausePriors {
         if let Some(at_port) = circumstances.at_port {
             weight *= of(at_port, self.at_port);
         }
-        // What has not ended may yet end: silence says little.
+        // A change that has not ended may yet end: its silence says little.
         weight *= match circumstances.ended_at_port {
             Some(true) => self.ends_at_port,
             Some(false) => self.ends_at_sea,
@@ -298,7 +305,7 @@ impl CausePriors {
     }
 }
 
-/// Whether a cause is of what the search decided.
+/// Whether a cause agrees with the detector's decision.
 fn agrees(event_kind: EventKind, cause: Cause, one_reference: bool) -> bool {
     match event_kind {
         EventKind::Step | EventKind::Return(_) => cause.is_the_ships(),

@@ -5,31 +5,31 @@ use crate::estimate::POPULATION_SD;
 use binnacle_compass::model::{Covariance, Parameters};
 use binnacle_compass::ship::PARAMETERS;
 
-/// The ship's seven parameters as a filter had them.
+/// The vessel's parameters as a filter had them.
 #[derive(Clone, Debug)]
 pub(crate) struct Snapshot {
     pub(crate) parameters: Parameters,
     pub(crate) constant_deg: f64,
-    /// Of the parameters and the constant.
+    /// Covariance of the parameters and the constant.
     pub(crate) covariance: Covariance,
 }
 
-/// What an event is.
+/// Kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum EventKind {
     Step,
-    /// The compass's own zero moved.
+    /// A change of the compass's alignment.
     Alignment,
-    /// The ship's magnetism drifts.
+    /// A drift of the vessel's magnetism.
     Drift,
     ReferenceFault,
     Transient,
-    /// The ship is again as she was before the event of this place in the list.
+    /// A return to the state before the event at this place in the list.
     Return(usize),
 }
 
 impl EventKind {
-    /// Whether the deviation is another after it, so that an epoch begins.
+    /// Whether the deviation stays changed after it, so that an epoch begins.
     pub(crate) fn is_lasting(self) -> bool {
         matches!(
             self,
@@ -38,40 +38,40 @@ impl EventKind {
     }
 }
 
-/// Something that happened, found among the rows.
+/// An event found among the rows.
 #[derive(Clone, Debug)]
 pub(crate) struct Event {
     pub(crate) kind: EventKind,
-    /// The first row after it, and the first and last that may be.
+    /// First row after it, and the earliest and latest rows that are possible.
     pub(crate) first: usize,
     pub(crate) between: (usize, usize),
-    /// The row that told.
+    /// Row at which it was detected.
     pub(crate) detected_row: usize,
-    /// Leads over nothing having happened, nats, by kind.
+    /// Log-likelihood ratios against no change, by kind.
     pub(crate) leads: [f64; 4],
-    /// Before and when it was told.
+    /// State before it, and when it was detected.
     pub(crate) before: Snapshot,
     pub(crate) after: Snapshot,
-    /// The last row of a burst, once it is over.
+    /// Last row of a transient, once it is over.
     pub(crate) last: Option<usize>,
     /// Whether it is certain.
     pub(crate) confirmed: bool,
-    /// The row that told that a step was none after all.
+    /// Row at which a step was withdrawn.
     pub(crate) withdrawn: Option<usize>,
-    /// Whether a burst was at first told as a step.
+    /// Whether a transient was first reported as a step.
     pub(crate) was_step: bool,
-    /// By how much it is likelier than the step for which it was first taken, nats.
+    /// Log-likelihood ratio against the step for which it was first taken.
     pub(crate) over_step_log_likelihood_ratio: f64,
-    /// By how much a zero that moved is likelier than the step, nats, where that is open.
+    /// Log-likelihood ratio of an alignment change against the step, where that is open.
     pub(crate) alignment_over_step_log_likelihood_ratio: Option<f64>,
-    /// Whether it is dated at a port call, but was seen days after only: it may have happened
-    /// at sea.
+    /// Whether it is dated at a port call but was seen only days later: it may have
+    /// happened at sea.
     pub(crate) noticed_late: bool,
 }
 
 impl Event {
-    /// What was told as the ship's or her compass's was gone again before row `end`.
-    pub(crate) fn pass(&mut self, end: usize) {
+    /// Turns a change that was over before row `end` into a transient.
+    pub(crate) fn end_as_transient(&mut self, end: usize) {
         let [step, reference_step, transient, back] = self.leads;
         self.kind = EventKind::Transient;
         self.last = Some(end.saturating_sub(1).max(self.first));
@@ -81,8 +81,8 @@ impl Event {
     }
 }
 
-/// Takes those out that are `gone`; the places of the others, which are told of returns
-/// here, move with them. Where the event of a place is then.
+/// Removes the events that are `gone`, and adjusts the places to which returns refer.
+/// Returns the mapping of old places to new ones.
 pub(crate) fn remove_events(
     events: &mut Vec<Event>,
     gone: Vec<bool>,

@@ -1,13 +1,11 @@
-//! What else may have happened, and since when: copies of the filter that began
-//! from it at different times, each with one thing upset.
+//! Alternative hypotheses: filters forked at earlier rows, each with one jump applied.
 //!
-//! Copies with a step run all the time. Those with anything else, its rivals, are
-//! of use only once a step leads, or one row after another surprises: then they are
-//! made of what the steps began from, and of the last measurements, and given up again
-//! when nothing leads.
+//! Hypotheses of a step always run. The other kinds run only while a step leads or
+//! innovations are excessive in one row after another. They start from the filters at the
+//! forks and the recent measurements, and stop when nothing leads.
 //!
-//! What always holds: at most [`CAPACITY`] times are kept, their ages spaced
-//! about geometrically; the time of the likeliest copy of every kind is among them.
+//! At most [`CAPACITY`] forks are kept, at ages spaced about geometrically; the fork of the
+//! likeliest hypothesis of every kind is among them.
 
 use super::filter::{Filter, Measurement, NoiseVariances};
 use super::hypothesis_kind::{
@@ -25,36 +23,35 @@ use crate::change::thresholds::{
 };
 use std::collections::VecDeque;
 
-/// Times that are kept.
+/// Greatest number of forks.
 const CAPACITY: usize = 16;
-/// A copy older than this is given up, rows.
+/// Age at which a fork is dropped, rows.
 const MAX_AGE_ROWS: usize = 4320;
-/// Rivals are awake from when a step leads by this until nothing leads by that, nats;
-/// they know of so many measurements at most.
+/// Number of recent measurements from which the other hypotheses start.
 const REMEMBERED_ROWS: usize = 432;
 
-/// A time at which something may have happened.
+/// Filters that share the row of their jump.
 #[derive(Clone, Debug)]
 pub(crate) struct Fork {
-    /// The first row after it.
+    /// First row after the jump.
     pub(crate) at: usize,
-    /// The filter then; boxed, as spawns move up whenever one is given up.
+    /// The filter before the jump; boxed, because forks move when one is dropped.
     origin: Box<Filter>,
-    /// The first row of the burst that may be over.
+    /// First row of the transient whose end is supposed.
     pub(crate) transient_from: Option<usize>,
-    /// Boxed, as most are none.
+    /// Filters by kind; boxed, because most are none.
     hypotheses: [Option<Box<Filter>>; ALL_KINDS.len()],
     age_s: f64,
-    /// How far the compass was astray since, degrees where H is 24 µT.
+    /// Greatest innovation since, degrees where H is 24 µT.
     disturbance_deg: f64,
-    /// Whether the reference's copy is to be upset by the next reading.
+    /// Whether the next reading gives the size of a reference's step.
     awaits_reading: bool,
-    /// By how much its step is likelier beforehand than one at sea.
+    /// Prior log odds of the step here, against a step at sea.
     prior_log_odds: f64,
 }
 
 impl Fork {
-    /// Makes the copies that rival a step.
+    /// Starts the hypotheses of all kinds but steps.
     fn start_other_hypotheses(&mut self, earlier_state: Option<EarlierState<'_>>) {
         let now = &self.origin;
         for kind in REFERENCE_STEPS {
@@ -67,7 +64,8 @@ impl Fork {
         self.awaits_reading = true;
     }
 
-    /// All but a large step, which reads rows of its own.
+    /// Reads a row with hypotheses of some kinds, except large steps, which read rows
+    /// linearised at their own state.
     fn observe(&mut self, m: &Measurement, noise: &NoiseVariances, kinds: &[HypothesisKind]) {
         let goes_on = self.age_s < TRANSIENT_MAX_S;
         self.age_s += m.seconds;
@@ -92,7 +90,7 @@ impl Fork {
             && std::mem::take(&mut self.awaits_reading)
         {
             if m.difference.is_none() {
-                // Of one reference there is nothing that tells which it is.
+                // A lone reference is not told apart: one hypothesis suffices.
                 self.hypotheses[HypothesisKind::SatelliteStep as usize] = None;
             }
             for kind in REFERENCE_STEPS {
@@ -133,31 +131,31 @@ impl Fork {
     }
 }
 
-/// By how much a copy is likelier than the filter that knows of nothing.
+/// The leading hypothesis of a kind.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lead {
     pub(crate) log_likelihood_ratio: f64,
     pub(crate) kind: HypothesisKind,
-    /// The copy's place in the bank.
+    /// Place of its fork in the bank.
     pub(crate) fork: usize,
 }
 
 #[derive(Default)]
 pub(crate) struct HypothesisBank {
-    /// From the oldest to the latest.
+    /// Forks, from the oldest to the latest.
     pub(crate) forks: Vec<Fork>,
-    /// The last measurements, the latest last, and its row.
+    /// Recent measurements, the latest last, and the latest row.
     recent: VecDeque<Measurement>,
     latest_row: usize,
     other_kinds_run: bool,
-    /// At least until this row.
+    /// Row until which the other hypotheses run at least.
     run_others_until: usize,
-    /// What surprises have added up to since they last woke the rivals, nats.
+    /// Sum of excess losses since the other hypotheses last started.
     excess_loss: f64,
 }
 
 impl HypothesisBank {
-    /// Forgets all that may have happened for good.
+    /// Drops the hypotheses of lasting changes.
     pub(crate) fn drop_lasting(&mut self) {
         let lasting = [
             HypothesisKind::Step,
@@ -172,13 +170,13 @@ impl HypothesisBank {
         }
     }
 
-    /// Forgets all that may have happened.
+    /// Drops all hypotheses.
     pub(crate) fn clear(&mut self) {
         self.forks.clear();
         self.other_kinds_run = false;
     }
 
-    /// New copies of `now`, which are to begin with row `at`.
+    /// Forks the filter `now` before row `at`.
     pub(crate) fn fork(
         &mut self,
         at: usize,
@@ -222,8 +220,7 @@ impl HypothesisBank {
         self.forks.push(fork);
     }
 
-    /// Takes in the measurement of row `at`; `null` has taken it in before, and it
-    /// surprised by so much.
+    /// Reads row `at`, which `null` has read before with this excess loss.
     pub(crate) fn observe(
         &mut self,
         at: usize,
@@ -256,7 +253,7 @@ impl HypothesisBank {
         }
     }
 
-    /// Makes the rivals, as if they had run all along.
+    /// Starts the other hypotheses as if they had run all along.
     fn start_other_hypotheses(
         &mut self,
         noise: &NoiseVariances,
@@ -274,7 +271,7 @@ impl HypothesisBank {
         }
     }
 
-    /// Gives up rivals when nothing leads, and steps that trail for good.
+    /// Stops the other hypotheses when nothing leads, and drops steps that trail.
     fn stop_idle_hypotheses(&mut self, at: usize, null: &Filter) {
         let leads = ALL_KINDS.map(|kind| {
             self.lead(kind, null)
@@ -311,9 +308,9 @@ impl HypothesisBank {
         }
     }
 
-    /// The likeliest copy of a kind.
+    /// Returns the leading hypothesis of a kind.
     pub(crate) fn lead(&self, kind: HypothesisKind, null: &Filter) -> Option<Lead> {
-        // Asleep there are none.
+        // While stopped there are none.
         if kind != HypothesisKind::Step && !self.other_kinds_run {
             return None;
         }
@@ -330,7 +327,7 @@ impl HypothesisBank {
             .max_by(|a, b| a.log_likelihood_ratio.total_cmp(&b.log_likelihood_ratio))
     }
 
-    /// By how much what leads was likelier beforehand than the same at another time.
+    /// Returns the prior log odds of the leading step against one at another time.
     pub(crate) fn prior_log_odds(&self, lead: Lead) -> f64 {
         match lead.kind {
             HypothesisKind::Step => self.forks[lead.fork].prior_log_odds,
@@ -342,12 +339,12 @@ impl HypothesisBank {
         self.other_kinds_run
     }
 
-    /// The likeliest copy of those in which the ship changed for good.
+    /// Returns the leading hypothesis of a lasting change of the vessel.
     pub(crate) fn step(&self, null: &Filter) -> Option<Lead> {
         self.likeliest(&STEPS, null)
     }
 
-    /// The likeliest copy of those in which the field goes or went astray.
+    /// Returns the leading hypothesis of a transient, ended or not.
     pub(crate) fn transient_lead(&self, null: &Filter) -> Option<Lead> {
         self.likeliest(
             &[
@@ -359,7 +356,7 @@ impl HypothesisBank {
         )
     }
 
-    /// The likeliest copy of those in which a reference changed.
+    /// Returns the leading hypothesis of a reference's step.
     pub(crate) fn reference_step(&self, null: &Filter) -> Option<Lead> {
         self.likeliest(&REFERENCE_STEPS, null)
     }
@@ -369,7 +366,7 @@ impl HypothesisBank {
         leads.max_by(|a, b| a.log_likelihood_ratio.total_cmp(&b.log_likelihood_ratio))
     }
 
-    /// Makes room for one more.
+    /// Drops forks that are too old, and the closest one to make room.
     fn thin(&mut self, at: usize, null: &Filter) {
         self.forks.retain(|s| at - s.at <= MAX_AGE_ROWS);
         if self.forks.len() < CAPACITY {

@@ -1,23 +1,23 @@
 //! Kinds of hypotheses.
 
-/// What may have happened.
+/// Kind of a hypothesis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HypothesisKind {
-    /// The ship's magnetism changed.
+    /// A step of the vessel's magnetism.
     Step,
-    /// A reference's error changed: the gyro's, if there are two.
+    /// A step of a reference's error: the gyro's, if there are two.
     ReferenceStep,
-    /// The earth's field went astray for hours.
+    /// A disturbance of the earth's field for hours.
     Transient,
-    /// The ship's magnetism is again what it was before.
+    /// A return of the vessel's magnetism to an earlier state.
     Return,
-    /// The field that had gone astray is itself again.
+    /// The end of a transient.
     TransientEnd,
-    /// The satellite compass's error changed.
+    /// A step of the satellite compass's error.
     SatelliteStep,
-    /// The compass swings by more than any storm makes it.
+    /// A disturbance greater than any storm's.
     SevereTransient,
-    /// The ship's magnetism changed by far more than it does as a rule.
+    /// A step of the vessel's magnetism far larger than usual.
     LargeStep,
 }
 
@@ -32,7 +32,7 @@ pub(crate) const ALL_KINDS: [HypothesisKind; 8] = [
     HypothesisKind::LargeStep,
 ];
 
-/// Those in which the ship changed for good.
+/// Kinds of lasting changes of the vessel.
 pub(crate) const STEPS: [HypothesisKind; 2] = [HypothesisKind::Step, HypothesisKind::LargeStep];
 pub(crate) const OTHER_KINDS: [HypothesisKind; 6] = [
     HypothesisKind::ReferenceStep,
@@ -42,9 +42,9 @@ pub(crate) const OTHER_KINDS: [HypothesisKind; 6] = [
     HypothesisKind::SatelliteStep,
     HypothesisKind::SevereTransient,
 ];
-/// Those in which something is astray for hours.
+/// Kinds of disturbances that last for hours.
 pub(crate) const TRANSIENTS: [HypothesisKind; 2] =
     [HypothesisKind::Transient, HypothesisKind::SevereTransient];
-/// Those that are upset by as much as the next reading is astray.
+/// Kinds whose jump is as large as the innovation of the next reading.
 pub(crate) const REFERENCE_STEPS: [HypothesisKind; 2] =
     [HypothesisKind::ReferenceStep, HypothesisKind::SatelliteStep];

@@ -1,7 +1,6 @@
-//! What may have happened to ship, references or field, done to a filter.
+//! Jump models: changes of vessel, references or field applied to a filter.
 //!
-//! What always holds: what is upset is known less afterwards, never better, but for what
-//! is again as it was known to be before.
+//! A jump never reduces uncertainty, except where an earlier state is restored.
 
 use super::filter::{
     CONSTANT_STATE, Filter, Measurement, NoiseVariances, OFFSET, STATES, TransientNoise, VARIATION,
@@ -13,26 +12,28 @@ use crate::estimate::{OFFSET_SD_DEG, POPULATION_SD};
 use binnacle_compass::model::Parameters;
 use binnacle_compass::ship::PARAMETERS;
 
-/// What something was before it changed, and may become again.
+/// A state before a change that may be restored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum EarlierState<'a> {
-    Ship(&'a Filter),
+    Vessel(&'a Filter),
     Reference(&'a Filter),
-    /// The compass's own zero.
-    Zero(&'a Filter),
+    /// The alignment of the compass.
+    Alignment(&'a Filter),
 }
 
 impl EarlierState<'_> {
-    /// The filter with that as it was.
+    /// Returns the filter with that part restored.
     pub(crate) fn restore(self, now: &Filter) -> Filter {
         match self {
-            EarlierState::Ship(before) => restore_vessel(now, before),
-            EarlierState::Reference(before) => mended(now, before, &[CONSTANT_STATE, OFFSET]),
-            EarlierState::Zero(before) => {
+            EarlierState::Vessel(before) => restore_vessel(now, before),
+            EarlierState::Reference(before) => {
+                restore_instruments(now, before, &[CONSTANT_STATE, OFFSET])
+            }
+            EarlierState::Alignment(before) => {
                 let moved_deg = before.mean[CONSTANT_STATE] - now.mean[CONSTANT_STATE];
                 let mut back = now.clone();
                 back.mean = mean_of_turned_compass(now, moved_deg);
-                mended(&back, before, &[CONSTANT_STATE])
+                restore_instruments(&back, before, &[CONSTANT_STATE])
             }
         }
     }
@@ -43,9 +44,9 @@ pub(crate) const USUAL_TRANSIENT: TransientNoise = TransientNoise {
     memory_s: priors::TRANSIENT_CORRELATION_S,
 };
 
-/// The filter with that having happened just now, by how much not being known.
+/// Returns the filter after a jump of unknown size at this time.
 pub(crate) fn apply_jump(now: &Filter, kind: HypothesisKind) -> Filter {
-    // All else sets in as it goes on: within its memory, not at once.
+    // Other kinds set in within their correlation time, not at once.
     match kind {
         HypothesisKind::Step => apply_step(now, priors::STEP_SD),
         HypothesisKind::LargeStep => {
@@ -57,7 +58,7 @@ pub(crate) fn apply_jump(now: &Filter, kind: HypothesisKind) -> Filter {
     }
 }
 
-/// The filter of a ship that may have been struck by far harder than she is as a rule.
+/// Returns the filter after a large step of unknown size.
 pub(crate) fn apply_large_step(now: &Filter) -> Filter {
     apply_step(now, priors::LARGE_STEP_SD)
 }
@@ -75,12 +76,12 @@ fn apply_step(now: &Filter, permanent_sd: f64) -> Filter {
     jumped
 }
 
-/// The filter with a reference's step having happened just before `next` was read.
+/// Returns the filter after a reference's step just before `next` was read.
 ///
-/// A gyro's step moves both its difference from the satellite compass and, by half,
-/// their mean; the satellite compass's moves them in opposite senses; alone, either is
-/// the constant's. The step may be as large as the reading is astray: what is believed
-/// to be impossible is never learnt.
+/// A gyro's step moves its difference from the satellite compass and, by half, their mean.
+/// The satellite compass's step moves the two in opposite directions. A lone reference's
+/// step moves the constant. The step may be as large as the innovation: a filter never
+/// learns what it holds to be impossible.
 pub(crate) fn apply_reference_step(
     now: &Filter,
     next: &Measurement,
@@ -110,8 +111,8 @@ pub(crate) fn apply_reference_step(
     jumped
 }
 
-/// The filter with the compass's zero having moved so that the constant is about another by
-/// `moved_deg`, where rows are to be linearised; how far, is not known but for its size.
+/// Returns the filter after an alignment change of about `moved_deg`, where rows are
+/// linearised; its size is unknown within `size_deg`.
 pub(crate) fn apply_alignment_step(now: &Filter, moved_deg: f64, size_deg: f64) -> Filter {
     let mut jumped = now.clone();
     jumped.mean = mean_of_turned_compass(now, moved_deg);
@@ -128,8 +129,8 @@ pub(crate) fn apply_alignment_step(now: &Filter, moved_deg: f64, size_deg: f64) 
     jumped
 }
 
-/// What the filter expects with a constant that is more by so much, degrees: the ship's own
-/// iron lies as much nearer to the lubber line.
+/// Returns the filter's mean for a constant that is larger by `moved_deg`: the vessel's own
+/// iron turns by as much relative to the lubber line.
 fn mean_of_turned_compass(now: &Filter, moved_deg: f64) -> [f64; STATES] {
     let own = |j: usize| now.mean[j] * POPULATION_SD[j];
     let mean_of_turned_compass = Parameters::from_array(std::array::from_fn(own))
@@ -143,8 +144,8 @@ fn mean_of_turned_compass(now: &Filter, moved_deg: f64) -> [f64; STATES] {
     mean
 }
 
-/// The filter with some of the instruments' lasting errors as `before` had them.
-fn mended(now: &Filter, before: &Filter, lasting: &[usize]) -> Filter {
+/// Returns the filter with some of the instruments' lasting errors as in `before`.
+fn restore_instruments(now: &Filter, before: &Filter, lasting: &[usize]) -> Filter {
     let mut jumped = now.clone();
     for &i in lasting {
         jumped.mean[i] = before.mean[i];
@@ -160,7 +161,7 @@ fn mended(now: &Filter, before: &Filter, lasting: &[usize]) -> Filter {
     jumped
 }
 
-/// The filter with the ship's own parameters as `base` had them.
+/// Returns the filter with the vessel's parameters as in `base`.
 pub(crate) fn restore_vessel(now: &Filter, base: &Filter) -> Filter {
     let mut jumped = now.clone();
     jumped.mean[..PARAMETERS].copy_from_slice(&base.mean[..PARAMETERS]);
@@ -183,7 +184,8 @@ pub(crate) fn restore_vessel(now: &Filter, base: &Filter) -> Filter {
     jumped
 }
 
-/// A burst in which the furthest reading was so far astray: a wild one is as large.
+/// Returns the noise of a transient with this greatest innovation: a severe one is as
+/// large.
 pub(crate) fn transient_noise(disturbance_deg: f64) -> TransientNoise {
     let deg = if disturbance_deg > SEVERE_TRANSIENT_DEG {
         disturbance_deg
@@ -196,8 +198,8 @@ pub(crate) fn transient_noise(disturbance_deg: f64) -> TransientNoise {
     }
 }
 
-/// The filter with the variation as if it had never been astray: what swung wildly is
-/// itself again at once.
+/// Returns the filter with the variation's error at its usual level: a severe disturbance
+/// ends at once.
 pub(crate) fn reset_variation(now: &Filter, noise: &NoiseVariances) -> Filter {
     let mut jumped = now.clone();
     jumped.mean[VARIATION] = 0.0;

@@ -1,8 +1,8 @@
-//! A step that is far larger than most: lightning can leave many times what cargo does.
+//! Large steps: lightning can change a vessel's magnetism many times more than cargo does.
 //!
-//! What always holds: a ship to whom nothing large happened has none of these copies, so
-//! that small changes are judged as if there were none; each reads every row linearised at
-//! the ship that it supposes, for deviation is not linear in a large step.
+//! A vessel without a large disturbance has none of these hypotheses, so that small changes
+//! are judged without them. Each reads every row linearised at its own state, because
+//! deviation is not linear in a large step.
 
 use super::filter::{Filter, Measurement, NoiseVariances};
 use super::hypotheses::{Fork, HypothesisBank};
@@ -11,18 +11,18 @@ use super::jump_models::apply_jump;
 use crate::change::thresholds::{LARGE_STEP_DEG, LARGE_STEP_MAX_ROWS};
 use crate::estimate::{USUAL_FUSION, Unknowns};
 
-/// A row is linearised again where it moves what is expected of it by more than this,
-/// degrees, and so often at most.
+/// Change of the expected deviation from which a row is linearised again, degrees, and the
+/// greatest number of rounds.
 const RELINEARISE_BEYOND_DEG: f64 = 2.0;
 const LINEARISATION_ROUNDS: usize = 6;
-/// A ship whose bx and by are beyond this is a strong magnet, population units (1500 nT).
+/// Size of bx and by from which a vessel is a strong magnet, population units (1500 nT).
 const STRONG_MAGNET: f64 = 4.0;
-/// One that is off by more than this is a wild reading, squared standard deviations.
+/// Innovation from which a reading is an outlier, squared standard deviations.
 const OUTLIER_Z_SQUARED: f64 = 9.0;
 
-/// The share that the reference has in the heading at which rows are taken: all of it for a
-/// ship so strong a magnet that her compass may turn several times as fast as she does,
-/// for there what the compass has in it would explain whatever it shows.
+/// Returns the reference's share in the heading at which rows are linearised. On a strong
+/// magnet the compass may turn several times as fast as the vessel, so that its own reading
+/// would explain whatever it shows: the share is 1.
 pub(crate) fn reference_share(ship: &Unknowns) -> f64 {
     if ship[0].hypot(ship[2]) > STRONG_MAGNET {
         1.0
@@ -31,8 +31,8 @@ pub(crate) fn reference_share(ship: &Unknowns) -> f64 {
     }
 }
 
-/// The row linearised at the ship that `filter` takes her for once it has read it, where
-/// that is far from the ship before.
+/// Returns the row linearised at the state of `filter` after reading it, where that is far
+/// from the state before.
 pub(crate) fn relinearise(
     filter: &Filter,
     noise: &NoiseVariances,
@@ -53,8 +53,8 @@ pub(crate) fn relinearise(
 }
 
 impl HypothesisBank {
-    /// Takes row `at` in, which the other copies have taken in before, where a large step
-    /// is supposed; `measure` is of any row at any ship.
+    /// Reads row `at` with the hypotheses of large steps, after all others have read it;
+    /// `measure` gives any row at any state.
     pub(crate) fn observe_large_steps(
         &mut self,
         at: usize,
@@ -87,7 +87,7 @@ impl HypothesisBank {
     }
 }
 
-/// Whether a large step is to be supposed of that time from now on.
+/// Whether a hypothesis of a large step begins at this fork now.
 fn begins_large_step(fork: &Fork, at: usize) -> bool {
     fork.disturbance_deg() > LARGE_STEP_DEG && at <= fork.at + LARGE_STEP_MAX_ROWS
 }

@@ -1,8 +1,8 @@
-//! Log-likelihood ratios and the odds that they stand for.
+//! Odds by log-likelihood ratios.
 
-/// Leads are of models that are only nearly right: they count for this much.
+/// Factor on log-likelihood ratios: the models are only nearly right.
 pub(crate) const LIKELIHOOD_TEMPER: f64 = 0.5;
-/// The odds that a lead stands for.
+/// Returns the odds that a log-likelihood ratio stands for.
 pub(crate) fn tempered_odds(log_likelihood_ratio: f64) -> f64 {
     (LIKELIHOOD_TEMPER * log_likelihood_ratio).exp()
 }

@@ -1,15 +1,17 @@
-//! Changes of a ship's magnetism, and what only looks like one.
+//! Detection of changes of a vessel's magnetism.
 //!
-//! A filter like the estimator's runs forward over the rows. Beside it runs a bank
-//! of copies, each of which supposes that something happened at a time: that the
-//! ship's magnetism changed, that a reference did, that the earth's field went
-//! astray for hours, or that the ship is again as she was. A copy that explains the
-//! rows far better than the filter, and than a passing disturbance would, is
-//! believed; the time it began from dates the change (docs/science.md, §9).
+//! A filter like the estimator's runs forward over the rows: the null hypothesis. Beside it
+//! runs a bank of filters, each with a jump at an earlier row: of the vessel's magnetism,
+//! of a reference's error, or of the earth's field, or with a return to an earlier state. A
+//! hypothesis far likelier than the null hypothesis and than a transient is accepted; the
+//! row of its jump dates the change (docs/science.md, §9).
 //!
-//! What always holds: the rows' order of arrival changes nothing; a difference
-//! between two references is never put down to the ship; every change says by what
-//! evidence, and the probabilities of its causes add up to one.
+//! The decision is taken in `detect/decision.rs`, by the constants of [`thresholds`] and
+//! [`priors`].
+//!
+//! The order of arrival of the rows changes nothing. A difference between two references is
+//! never attributed to the vessel. Every change has its evidence, and the probabilities of
+//! its causes add up to one.
 
 mod cause;
 mod detect;
@@ -31,5 +33,5 @@ pub(crate) use detect::detect;
 pub(crate) use detection::{CargoPeriod, DetectionInput, PossibleReturn, UndetectedStep};
 pub(crate) use event::{Event, EventKind, Snapshot};
 pub(crate) use likelihood_ratio::tempered_odds;
-pub(crate) use port_calls::{at_port, rows_since};
+pub(crate) use port_calls::{follows_port_call, rows_since};
 pub(crate) use thresholds::SAILED_SINCE_ROWS;

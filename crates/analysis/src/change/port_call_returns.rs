@@ -1,8 +1,8 @@
-//! Port calls at which a ship may have become what she was before a step: cargo
-//! is discharged where it was loaded, in port.
+//! Returns to an earlier state at port calls: cargo is discharged in port, where it was
+//! loaded.
 //!
-//! What always holds: at most [`MAX_PORT_CALLS`] calls and [`MAX_BASELINES`] earlier states are kept,
-//! and what has become unlikely is given up, so that the work a row is bounded.
+//! At most [`MAX_PORT_CALLS`] calls and [`MAX_BASELINES`] earlier states are kept, and
+//! unlikely returns are dropped, so that the work per row is bounded.
 
 use super::filter::{Filter, Measurement, NoiseVariances};
 use super::jump_models::restore_vessel;
@@ -12,55 +12,55 @@ use crate::change::thresholds::RETURN_DROPPED_LOG_LIKELIHOOD_RATIO;
 use crate::estimate::Unknowns;
 use binnacle_compass::time::Timestamp;
 
-/// Calls and earlier states that are kept, the latest of each.
+/// Greatest numbers of port calls and of earlier states; the latest are kept.
 const MAX_PORT_CALLS: usize = 4;
 const MAX_BASELINES: usize = 3;
 
-/// What the logbook tells of cargo at a port call.
+/// Logbook entries of cargo at a port call.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum LoggedCargo {
     Nothing,
-    /// Cargo that had been loaded not before a time was discharged, and none stayed.
+    /// Cargo that was loaded at `loaded` or later was discharged, and none stayed.
     Discharged {
         loaded: Timestamp,
-        /// Whether she lay somewhere then, as far as the rows tell.
+        /// Whether the vessel lay in port then, by the rows.
         at_port: bool,
     },
-    /// Some stayed on board.
+    /// Some cargo stayed on board.
     OnBoard,
 }
 
-/// Where a step happened, as far as the rows tell.
+/// Origin of a step, by rows and logbook.
 pub(crate) enum StepOrigin {
     AtPort,
-    /// At sea, so soon after cargo came on board by the logbook that it may be that.
-    SaidLoaded,
+    /// At sea, soon after the logbook has cargo loaded.
+    LoggedLoading,
     /// At a port call, or at sea in the days after it.
     NoticedLate,
-    /// At sea, soon after a port call, from which she had sailed so: if it was cargo, it was
-    /// on board by then.
+    /// At sea, soon after a port call; the filter is that of the departure, with any cargo
+    /// on board.
     SoonAfter(Box<Filter>),
     AtSea,
 }
 
-/// The ship as she was before a step.
+/// State of the vessel before a step.
 pub(crate) struct Baseline {
-    /// The step's place in the list of events.
+    /// Place of the step in the list of events.
     pub(crate) event: usize,
     pub(crate) filter: Filter,
     pub(crate) origin: StepOrigin,
-    /// When the step happened at the latest.
+    /// Latest possible time of the step.
     pub(crate) latest: Option<Timestamp>,
-    /// Port calls since.
+    /// Number of port calls since.
     pub(crate) port_calls: i32,
 }
 
 impl Baseline {
-    /// How likely the ship is herself again at the next port call: what has stayed
-    /// through many was no cargo.
+    /// Returns the probability of a return at the next port call: a change that lasted
+    /// through many calls is no cargo.
     fn return_probability(&self) -> f64 {
         let is_cargo = match self.origin {
-            StepOrigin::AtPort | StepOrigin::SaidLoaded => priors::CARGO,
+            StepOrigin::AtPort | StepOrigin::LoggedLoading => priors::CARGO,
             StepOrigin::NoticedLate => priors::CARGO_NOTICED_LATE,
             StepOrigin::SoonAfter(_) => priors::CARGO_SOON_AFTER_CALL,
             StepOrigin::AtSea => return priors::RETURN_AFTER_CHANGE_AT_SEA,
@@ -69,17 +69,17 @@ impl Baseline {
         priors::DISCHARGE * still / (still + 1.0 - is_cargo)
     }
 
-    /// What began at sea may end there.
+    /// Whether the step happened at a port call: only a change at sea may end at sea.
     pub(crate) fn began_at_port_call(&self) -> bool {
         matches!(self.origin, StepOrigin::AtPort)
     }
 
-    /// Whether it came on board with cargo, as far as logbook and rows tell.
+    /// Whether the step is cargo, by logbook and rows.
     pub(crate) fn is_cargo(&self) -> bool {
-        matches!(self.origin, StepOrigin::AtPort | StepOrigin::SaidLoaded)
+        matches!(self.origin, StepOrigin::AtPort | StepOrigin::LoggedLoading)
     }
 
-    /// The ship without what changed her.
+    /// Returns the state of the vessel without the change.
     pub(crate) fn without_cargo(&self) -> &Filter {
         match &self.origin {
             StepOrigin::SoonAfter(departure_before) => departure_before,
@@ -89,30 +89,30 @@ impl Baseline {
 }
 
 /// A port call after a step.
-struct Call {
-    /// The first row after it.
+struct PortCall {
+    /// First row after it.
     at: usize,
-    returns: Vec<Return>,
+    returns: Vec<ReturnHypothesis>,
 }
 
-/// What the filter would be, were the ship herself again since a call.
-struct Return {
+/// Filter of a vessel that returned at a port call.
+struct ReturnHypothesis {
     event: usize,
     prior_odds: f64,
     filter: Filter,
 }
 
-/// A return that may have been.
+/// A possible return.
 #[derive(Clone, Debug)]
 pub(crate) struct ReturnCandidate {
-    /// The step that it would be the end of.
+    /// Place of the step that it would end.
     pub(crate) event: usize,
-    /// The first row after it.
+    /// First row after the return.
     pub(crate) at: usize,
-    /// By how much it is likelier than none by the rows alone.
+    /// Log-likelihood ratio against no return.
     pub(crate) log_likelihood_ratio: f64,
-    /// How likely the ship is again what she was before that step, at whatever call, and how
-    /// likely any return is.
+    /// Posterior probability of a return to the state before that step, at any call, and
+    /// that of any return.
     pub(crate) probability: f64,
     pub(crate) any: f64,
     pub(crate) filter: Filter,
@@ -120,22 +120,22 @@ pub(crate) struct ReturnCandidate {
 
 #[derive(Default)]
 pub(crate) struct PortCallReturns {
-    /// From the earliest step to the latest.
+    /// Earlier states, from the earliest step to the latest.
     pub(crate) baselines: Vec<Baseline>,
-    calls: Vec<Call>,
+    calls: Vec<PortCall>,
 }
 
 impl PortCallReturns {
     pub(crate) fn add_baseline(&mut self, base: Baseline) {
         if self.baselines.len() == MAX_BASELINES {
-            // The first is the ship without any cargo, and stays.
+            // The first is the vessel without any cargo, and stays.
             self.baselines.remove(1);
         }
         self.baselines.push(base);
     }
 
-    /// The ship lay in port before row `at`; `now` is the filter there, and the
-    /// baselines are those of steps before `until`, a place in the list of events.
+    /// Adds a port call before row `at`, with the filter `now` and the baselines of steps
+    /// before `until`, a place in the list of events.
     pub(crate) fn add_port_call(
         &mut self,
         at: usize,
@@ -148,7 +148,7 @@ impl PortCallReturns {
             _ => None,
         };
         let before = self.baselines.iter_mut().filter(|base| base.event < until);
-        let returns: Vec<Return> = before
+        let returns: Vec<ReturnHypothesis> = before
             .map(|base| {
                 let return_probability = match (logged, without_cargo) {
                     (_, Some((event, return_probability))) if event == base.event => {
@@ -160,7 +160,7 @@ impl PortCallReturns {
                     _ => base.return_probability(),
                 };
                 base.port_calls += 1;
-                Return {
+                ReturnHypothesis {
                     event: base.event,
                     prior_odds: return_probability / (1.0 - return_probability),
                     filter: restore_vessel(now, base.without_cargo()),
@@ -174,13 +174,12 @@ impl PortCallReturns {
         if self.calls.len() == MAX_PORT_CALLS {
             self.calls.remove(0);
         }
-        self.calls.push(Call { at, returns });
+        self.calls.push(PortCall { at, returns });
     }
 
-    /// The ship as she was before the first step since her cargo came on board: the step's
-    /// place in the list of events, and how likely she is that again. What struck her at sea
-    /// does not leave with the cargo, but cargo that moves the compass by little may be
-    /// noticed at sea only.
+    /// Returns the first step since the cargo was loaded, and the probability of a return
+    /// to the state before it. A change at sea does not leave with the cargo, but little
+    /// cargo may be noticed only at sea.
     fn before_loading(&self, loaded: Timestamp, at_port: bool) -> Option<(usize, f64)> {
         let since = |base: &&Baseline| base.latest.is_some_and(|latest| latest >= loaded);
         let mut since = self.baselines.iter().filter(since);
@@ -196,7 +195,7 @@ impl PortCallReturns {
         Some((first.event, return_probability))
     }
 
-    /// Takes in a row, linearised at what each return has of the ship.
+    /// Reads a row, linearised at the state of each return.
     pub(crate) fn observe(
         &mut self,
         measure: impl Fn(&Unknowns) -> Measurement,
@@ -216,7 +215,7 @@ impl PortCallReturns {
         self.calls.retain(|call| !call.returns.is_empty());
     }
 
-    /// The same for calls at row `first` and later, which are being retraced.
+    /// Reads a row for the calls at row `first` and later, which are being replayed.
     pub(crate) fn observe_since(
         &mut self,
         first: usize,
@@ -231,16 +230,16 @@ impl PortCallReturns {
         }
     }
 
-    /// The likeliest return. `transient` is by how much the likeliest passing disturbance leads;
-    /// while one goes on that was told, `is_disturbed`, the rows speak for no return, but not
-    /// against one either, for both may be.
+    /// Returns the likeliest return. `transient` is the log-likelihood ratio of the
+    /// likeliest transient. While an accepted transient goes on (`is_disturbed`), the rows
+    /// speak neither for a return nor against it, because both are possible.
     pub(crate) fn likeliest(
         &self,
         null: &Filter,
         transient: f64,
         is_disturbed: bool,
     ) -> Option<ReturnCandidate> {
-        let tempered_odds = |candidate: &Return| {
+        let tempered_odds = |candidate: &ReturnHypothesis| {
             let ratio = candidate.filter.log_likelihood - null.log_likelihood;
             let beside = if is_disturbed {
                 ratio.min(0.0)
@@ -268,7 +267,7 @@ impl PortCallReturns {
         let sum: f64 = each()
             .map(|(_, candidate)| tempered_odds(candidate).1)
             .sum();
-        // Which call it was matters less than whether she is the ship she was.
+        // The call matters less than the state to which the vessel returned.
         let event = self
             .baselines
             .iter()
@@ -287,8 +286,8 @@ impl PortCallReturns {
         })
     }
 
-    /// A reference's error changed, or is again what it was: `now` does that to each return,
-    /// and each is likelier by what the filter gained by it.
+    /// Applies `now`, a change or repair of a reference, to every return, each of which
+    /// becomes likelier by `gained` as the null filter did.
     pub(crate) fn apply_reference_change(&mut self, gained: f64, now: impl Fn(&Filter) -> Filter) {
         let returns = self.calls.iter_mut().flat_map(|call| &mut call.returns);
         for candidate in returns {
@@ -297,9 +296,8 @@ impl PortCallReturns {
         }
     }
 
-    /// The filter, `null`, is likelier by `gained` now that it knows of a disturbance that
-    /// passed. So would a return be, but by no more than that it leads no longer: what it led
-    /// by may be what the disturbance explains.
+    /// Credits the returns with `gained`, by which an accepted transient made the null
+    /// filter likelier, but without a lead: the transient may explain what a return led by.
     pub(crate) fn credit_transient(&mut self, null: &Filter, gained: f64) {
         let returns = self.calls.iter_mut().flat_map(|call| &mut call.returns);
         for candidate in returns {
@@ -309,8 +307,8 @@ impl PortCallReturns {
         }
     }
 
-    /// The ship is as she was before `event`, or it was no step of hers: later ones are of the
-    /// past.
+    /// Drops `event` and later steps: the vessel returned to the state before it, or it was
+    /// no step of the vessel.
     pub(crate) fn forget(&mut self, event: usize) {
         self.baselines.retain(|base| base.event < event);
         self.calls.clear();
@@ -328,8 +326,8 @@ mod tests {
         Filter::new(&Prior::population(0.5), &noise)
     }
 
-    /// A ship that was laden at a call, and has lain at two since; by how much her being
-    /// herself again leads from each.
+    /// Returns of a vessel that loaded cargo at a call and has made two calls since, with
+    /// these log-likelihood ratios.
     fn after_two_calls(leads: [f64; 2]) -> PortCallReturns {
         let mut calls = PortCallReturns::default();
         calls.add_baseline(Baseline {

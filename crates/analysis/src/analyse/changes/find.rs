@@ -110,7 +110,7 @@ pub(crate) fn find(
         .undetected_step
         .and_then(|undetected_step| teller.begun(&undetected_step));
     found.possible_return = told.possible_return.and_then(|possible_return| {
-        let change = place_of.get(possible_return.of).copied().flatten()?;
+        let change = place_of.get(possible_return.event).copied().flatten()?;
         let evidence = &mut found.changes[change].evidence;
         teller.tell_end(&possible_return, change, evidence)
     });

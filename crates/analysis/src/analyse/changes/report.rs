@@ -6,7 +6,7 @@ use super::findings::{Begun, Ended, Misled};
 use crate::analyse::logbook_rules::cause_of;
 use crate::change::{
     Circumstances, Event, EventKind, PossibleReturn, SAILED_SINCE_ROWS, Snapshot, UndetectedStep,
-    at_port, causes, rows_since,
+    causes, follows_port_call, rows_since,
 };
 use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
@@ -69,7 +69,7 @@ impl Teller<'_> {
     /// Whether any of the rows from which the event may date followed a port call.
     fn began_at_port(&self, event: &Event) -> Option<bool> {
         let (earliest, latest) = event.between;
-        let calls = (earliest..=latest).map(|row| at_port(self.observations, row));
+        let calls = (earliest..=latest).map(|row| follows_port_call(self.observations, row));
         calls.reduce(|a, b| Some(a? || b?)).flatten()
     }
 

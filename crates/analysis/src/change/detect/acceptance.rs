@@ -114,7 +114,7 @@ impl Detector<'_> {
         } else if self.began_at_port_call(dated) {
             StepOrigin::AtPort
         } else if is_loading_logged {
-            StepOrigin::SaidLoaded
+            StepOrigin::LoggedLoading
         } else {
             let departure_before = self.departure_before(dated.first, &self.events[..event]);
             departure_before.map_or(StepOrigin::AtSea, |(_, departure_before)| {
@@ -194,7 +194,7 @@ impl Detector<'_> {
         let before = self.bank.forks[lead.fork].origin().clone();
         self.close_transient(dated.first);
         if self.was_brief(&self.events[event], &dated) {
-            self.events[event].pass(dated.first);
+            self.events[event].end_as_transient(dated.first);
         } else {
             self.push(
                 k,
@@ -229,13 +229,13 @@ impl Detector<'_> {
         let dated = self.date_change(lead.fork, HypothesisKind::Return, k);
         let before = self.bank.forks[lead.fork].origin().clone();
         self.close_transient(dated.first);
-        let Some((event, mended)) = self.reference_fault.take() else {
+        let Some((event, restore_instruments)) = self.reference_fault.take() else {
             return;
         };
         let gained = dated.filter.log_likelihood - self.null.log_likelihood;
-        let mended = EarlierState::Reference(&mended);
+        let restore_instruments = EarlierState::Reference(&restore_instruments);
         self.returns
-            .apply_reference_change(gained, |back| mended.restore(back));
+            .apply_reference_change(gained, |back| restore_instruments.restore(back));
         self.push(
             k,
             EventKind::Return(event),

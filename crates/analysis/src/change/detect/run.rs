@@ -138,7 +138,7 @@ impl Detector<'_> {
         let possible_return =
             self.return_candidate(&leads)
                 .map(|return_candidate| PossibleReturn {
-                    of: return_candidate.event,
+                    event: return_candidate.event,
                     first: return_candidate.at,
                     probability: return_candidate.any,
                 });

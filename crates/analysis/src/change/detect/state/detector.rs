@@ -13,7 +13,7 @@ use crate::change::hypothesis_kind::HypothesisKind;
 use crate::change::jump_models::EarlierState;
 use crate::change::large_step::{reference_share, relinearise};
 use crate::change::port_call_returns::PortCallReturns;
-use crate::change::port_calls::at_port;
+use crate::change::port_calls::follows_port_call;
 use crate::change::priors;
 use crate::change::thresholds::{
     FIRST_CHANGE_ROW, FIRST_CHANGE_ROW_KNOWN_NOISE, WARM_UP_ROWS, WARM_UP_ROWS_KNOWN_NOISE,
@@ -192,7 +192,7 @@ impl<'a> Detector<'a> {
     }
 
     pub(crate) fn is_port_call(&self, k: usize) -> bool {
-        at_port(self.observations, k) == Some(true)
+        follows_port_call(self.observations, k) == Some(true)
     }
 
     /// A filter over some rows, all linearised at one point.
@@ -231,12 +231,12 @@ pub(crate) fn earlier_state<'a>(
     calls: &'a PortCallReturns,
 ) -> Option<EarlierState<'a>> {
     let reference_step = reference_fault.map(|(_, before)| EarlierState::Reference(before));
-    let zero = || alignment_change.map(|(_, before)| EarlierState::Zero(before));
+    let zero = || alignment_change.map(|(_, before)| EarlierState::Alignment(before));
     let ship = || {
         calls
             .baselines
             .last()
-            .map(|base| EarlierState::Ship(base.without_cargo()))
+            .map(|base| EarlierState::Vessel(base.without_cargo()))
     };
     reference_step.or_else(zero).or_else(ship)
 }
