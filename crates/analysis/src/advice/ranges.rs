@@ -7,7 +7,7 @@ const WORTH_A_LINE: f64 = 0.5;
 /// So many ranges at most.
 const MOST: usize = 3;
 
-/// Whether the last and the first are neighbours.
+/// True if the last and the first are neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ends {
     Joined,

@@ -18,9 +18,9 @@ const DAY_S: f64 = 86_400.0;
 /// A change so long before an entry began is of its cargo, seconds.
 const LOADED_BEFORE_S: f64 = 2.0 * DAY_S;
 
-/// Whether an epoch is one of the ship with her cargo on board: it began with the cargo, or
-/// with something else while she was laden and has been so for the most of it. Without
-/// these readings nothing would be known of her as she sails.
+/// Returns true if an epoch is one of the ship with her cargo on board: it began with the
+/// cargo, or with something else while she was laden and has been so for the most of it.
+/// Without these readings nothing would be known of her as she sails.
 pub(super) fn is_laden(epoch: &Epoch, own: &[Reading]) -> bool {
     if epoch.resumes.is_some() {
         return false;
@@ -45,7 +45,7 @@ pub(super) struct Idle {
     since: Timestamp,
     /// Until when nothing has set them apart.
     until: Timestamp,
-    /// Whether she was another with that cargo, and is herself again.
+    /// True if she was another with that cargo, and is herself again.
     is_back: bool,
 }
 

@@ -146,11 +146,11 @@ pub(super) struct Stretch<'a> {
     pub(super) earlier: Vec<Range<usize>>,
     pub(super) own: Range<usize>,
     pub(super) prior: Prior,
-    /// Whether the prior is of this very ship.
+    /// True if the prior is of this very ship.
     pub(super) is_known: bool,
-    /// Whether she was struck since: by what size, only the courses that show it tell.
+    /// True if she was struck since: by what size, only the courses that show it tell.
     pub(super) is_struck: bool,
-    /// Whether her compass's zero moved.
+    /// True if her compass's zero moved.
     pub(super) is_turned: bool,
     pub(super) reference: &'a Reference,
 }

@@ -182,8 +182,8 @@ fn courses(readings: &[Reading]) -> Vec<usize> {
     begun
 }
 
-/// Whether every reference that was read all the time says that the ship turned between some
-/// readings and others, and to the same side, and one was.
+/// Returns true if every reference that was read all the time says that the ship turned
+/// between some readings and others, and to the same side, and one was.
 fn has_turned(from: &[Reading], to: &[Reading]) -> bool {
     let mut turned = turned_deg(from, to);
     let first = turned.next();
@@ -193,7 +193,7 @@ fn has_turned(from: &[Reading], to: &[Reading]) -> bool {
     })
 }
 
-/// Whether the compass went with her, as any of them says.
+/// Returns true if the compass went with her, as any of them says.
 fn has_followed(from: &[Reading], to: &[Reading]) -> bool {
     let compass_deg = apart(from, to, |a, b| {
         Some(b.sample().compass.degrees() - a.sample().compass.degrees())
@@ -241,7 +241,7 @@ fn varied_deg(a: &Reading, b: &Reading) -> f64 {
     both.map_or(0.0, |(a, b)| degrees(b) - degrees(a))
 }
 
-/// Whether the compass has left its reference by more in between.
+/// Returns true if the compass has left its reference by more in between.
 fn has_parted(degrees: f64, a: &Reading, b: &Reading) -> bool {
     let off = |reading: &Reading| {
         let sample = reading.sample();

@@ -25,9 +25,9 @@ const SLOW_DETECTION_S: f64 = 20.0 * 86_400.0;
 pub(crate) struct Circumstances {
     /// Log-likelihood ratios against no change, by kind.
     pub(crate) leads: [f64; 4],
-    /// Whether it began at a port call, where that is known.
+    /// True if it began at a port call, where that is known.
     pub(crate) at_port: Option<bool>,
-    /// Whether the vessel returned to its earlier state at a port call; none where it has
+    /// True if the vessel returned to its earlier state at a port call; none where it has
     /// not returned.
     pub(crate) ended_at_port: Option<bool>,
     /// Log-likelihood ratio against the step for which it was first taken.
@@ -36,18 +36,18 @@ pub(crate) struct Circumstances {
     pub(crate) alignment_over_step_log_likelihood_ratio: Option<f64>,
     /// Duration of a transient, up to now if it goes on.
     pub(crate) transient_s: Option<f64>,
-    /// Whether a transient or a reference's fault is over.
+    /// True if a transient or a reference's fault is over.
     pub(crate) is_over: bool,
-    /// Whether it began with a stay at a berth at which samples were taken, and ended with
+    /// True if it began with a stay at a berth at which samples were taken, and ended with
     /// the stay if it is over.
     pub(crate) alongside: bool,
     /// Error of the compass during a transient, degrees where H is 24 µT.
     pub(crate) disturbance_deg: Option<f64>,
-    /// Whether nothing is certain yet.
+    /// True if nothing is certain yet.
     pub(crate) is_open: bool,
-    /// Whether there was no second reference.
+    /// True if there was no second reference.
     pub(crate) one_reference: bool,
-    /// Whether another step at sea, weeks before or after, had the same direction.
+    /// True if another step at sea, weeks before or after, had the same direction.
     pub(crate) is_drifting: bool,
     /// Number of lasting changes within a day of it, itself included.
     pub(crate) changes_within_a_day: usize,
@@ -275,8 +275,8 @@ fn discount_contradictions(
     }
 }
 
-/// Whether a cause is consistent with the decision. In port, before sailing again, a change
-/// of the vessel itself remains possible.
+/// Returns true if a cause is consistent with the decision. In port, before sailing again,
+/// a change of the vessel itself remains possible.
 fn is_consistent(event_kind: EventKind, cause: Cause, circumstances: &Circumstances) -> bool {
     let may_be_hers = circumstances.alongside && !circumstances.is_over;
     let is_hers = matches!(cause, Cause::MagneticCargo | Cause::AdjustmentOrRepair);
@@ -305,7 +305,7 @@ impl CausePriors {
     }
 }
 
-/// Whether a cause agrees with the detector's decision.
+/// Returns true if a cause agrees with the detector's decision.
 fn agrees(event_kind: EventKind, cause: Cause, one_reference: bool) -> bool {
     match event_kind {
         EventKind::Step | EventKind::Return(_) => cause.is_the_ships(),

@@ -34,7 +34,7 @@ pub(crate) struct Detection {
     pub(crate) undetected_step: Option<UndetectedStep>,
     /// Variance that an undecided large step adds to bx and to by, nT².
     pub(crate) undecided_step_nt2: Option<f64>,
-    /// Whether changes are detected: not while too little is known of the vessel.
+    /// True if changes are detected: not while too little is known of the vessel.
     pub(crate) is_watched: bool,
 }
 

@@ -29,7 +29,7 @@ pub(crate) enum EventKind {
 }
 
 impl EventKind {
-    /// Whether the deviation stays changed after it, so that an epoch begins.
+    /// Returns true if the deviation stays changed after it, so that an epoch begins.
     pub(crate) fn is_lasting(self) -> bool {
         matches!(
             self,
@@ -54,17 +54,17 @@ pub(crate) struct Event {
     pub(crate) after: Snapshot,
     /// Last row of a transient, once it is over.
     pub(crate) last: Option<usize>,
-    /// Whether it is certain.
+    /// True if it is certain.
     pub(crate) confirmed: bool,
     /// Row at which a step was withdrawn.
     pub(crate) withdrawn: Option<usize>,
-    /// Whether a transient was first reported as a step.
+    /// True if a transient was first reported as a step.
     pub(crate) was_step: bool,
     /// Log-likelihood ratio against the step for which it was first taken.
     pub(crate) over_step_log_likelihood_ratio: f64,
     /// Log-likelihood ratio of an alignment change against the step, where that is open.
     pub(crate) alignment_over_step_log_likelihood_ratio: Option<f64>,
-    /// Whether it is dated at a port call but was seen only days later: it may have
+    /// True if it is dated at a port call but was seen only days later: it may have
     /// happened at sea.
     pub(crate) noticed_late: bool,
 }
@@ -150,13 +150,13 @@ mod tests {
 
     #[test]
     fn a_fault_that_goes_on_is_found_where_it_is_when_earlier_events_are_taken_out() {
-        let told = [
+        let kinds = [
             EventKind::Step,
             EventKind::Step,
             EventKind::ReferenceFault,
             EventKind::Return(2),
         ];
-        let mut events: Vec<Event> = told.into_iter().map(event).collect();
+        let mut events: Vec<Event> = kinds.into_iter().map(event).collect();
         let moved = remove_events(&mut events, vec![false, true, false, false]);
         assert_eq!(events.len(), 3);
         assert_eq!(events[moved(2)].kind, EventKind::ReferenceFault);

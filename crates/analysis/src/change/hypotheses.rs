@@ -44,7 +44,7 @@ pub(crate) struct Fork {
     age_s: f64,
     /// Greatest innovation since, degrees where H is 24 µT.
     disturbance_deg: f64,
-    /// Whether the next reading gives the size of a reference's step.
+    /// True if the next reading gives the size of a reference's step.
     awaits_reading: bool,
     /// Prior log odds of the step here, against a step at sea.
     prior_log_odds: f64,
@@ -90,7 +90,7 @@ impl Fork {
             && std::mem::take(&mut self.awaits_reading)
         {
             if m.difference.is_none() {
-                // A lone reference is not told apart: one hypothesis suffices.
+                // The kind of a lone reference does not matter: one hypothesis suffices.
                 self.hypotheses[HypothesisKind::SatelliteStep as usize] = None;
             }
             for kind in REFERENCE_STEPS {

@@ -87,7 +87,7 @@ impl HypothesisBank {
     }
 }
 
-/// Whether a hypothesis of a large step begins at this fork now.
+/// Returns true if a hypothesis of a large step begins at this fork now.
 fn begins_large_step(fork: &Fork, at: usize) -> bool {
     fork.disturbance_deg() > LARGE_STEP_DEG && at <= fork.at + LARGE_STEP_MAX_ROWS
 }

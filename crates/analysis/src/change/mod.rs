@@ -9,7 +9,7 @@
 //! The decision is taken in `detect/decision.rs`, by the constants of [`thresholds`] and
 //! [`priors`].
 //!
-//! The order of arrival of the rows changes nothing. A difference between two references is
+//! The order in which rows arrive changes nothing. A difference between two references is
 //! never attributed to the vessel. Every change has its evidence, and the probabilities of
 //! its causes add up to one.
 

@@ -23,7 +23,7 @@ pub(crate) enum LoggedCargo {
     /// Cargo that was loaded at `loaded` or later was discharged, and none stayed.
     Discharged {
         loaded: Timestamp,
-        /// Whether the vessel lay in port then, by the rows.
+        /// True if the vessel lay in port then, by the rows.
         at_port: bool,
     },
     /// Some cargo stayed on board.
@@ -69,12 +69,13 @@ impl Baseline {
         priors::DISCHARGE * still / (still + 1.0 - is_cargo)
     }
 
-    /// Whether the step happened at a port call: only a change at sea may end at sea.
+    /// Returns true if the step happened at a port call: only a change at sea may end at
+    /// sea.
     pub(crate) fn began_at_port_call(&self) -> bool {
         matches!(self.origin, StepOrigin::AtPort)
     }
 
-    /// Whether the step is cargo, by logbook and rows.
+    /// Returns true if the step is cargo, by logbook and rows.
     pub(crate) fn is_cargo(&self) -> bool {
         matches!(self.origin, StepOrigin::AtPort | StepOrigin::LoggedLoading)
     }

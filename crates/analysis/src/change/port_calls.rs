@@ -8,7 +8,7 @@ use binnacle_compass::time::Timestamp;
 const PORT_CALL_MIN_S: f64 = 3.0 * 3600.0;
 const PORT_CALL_MAX_NM: f64 = 40.0;
 
-/// Whether a port call precedes the row; none where that is unknown.
+/// Returns true if a port call precedes the row; none where that is unknown.
 pub(crate) fn follows_port_call(observations: &[Observation], row: usize) -> Option<bool> {
     let (a, b) = (&observations[row.checked_sub(1)?], &observations[row]);
     let gap_s = b.time?.seconds_since(a.time?);

@@ -24,10 +24,10 @@ pub(crate) const TRANSIENT: f64 = 0.03;
 
 /// Probability that a step which began at a port call is cargo.
 pub(crate) const CARGO: f64 = 0.84;
-/// The same where the step may have begun at the call or in the days after it: little cargo
-/// is noticed late.
+/// Probability of cargo where the step began at the call or in the days after it: little
+/// cargo is noticed late.
 pub(crate) const CARGO_NOTICED_LATE: f64 = 0.6;
-/// The same where the step is dated at sea, soon after a call.
+/// Probability of cargo where the step is dated at sea, soon after a call.
 pub(crate) const CARGO_SOON_AFTER_CALL: f64 = 0.25;
 /// Probability that cargo is discharged at any one port call.
 pub(crate) const DISCHARGE: f64 = 0.6;
@@ -35,9 +35,9 @@ pub(crate) const DISCHARGE: f64 = 0.6;
 pub(crate) const RETURN_AFTER_CHANGE_AT_SEA: f64 = 0.01;
 /// Probability of a return at a call at which the logbook has the discharge.
 pub(crate) const LOGGED_DISCHARGE: f64 = 0.95;
-/// The same where the vessel was under way at that time.
+/// Probability of a return where the vessel was under way at the logged discharge.
 pub(crate) const LOGGED_DISCHARGE_UNDER_WAY: f64 = 0.5;
-/// The same where the change was dated after the vessel had sailed with the cargo.
+/// Probability of a return where the change was dated after sailing with the cargo.
 pub(crate) const LOGGED_DISCHARGE_NOTICED_AT_SEA: f64 = 0.7;
 /// Factor on the probability of a return where the logbook says that cargo stayed on board.
 pub(crate) const LOGGED_ON_BOARD_FACTOR: f64 = 0.05;

@@ -9,7 +9,7 @@
 
 /// Log-likelihood ratio of a step against a transient from which the step is accepted.
 pub(crate) const STEP_LOG_LIKELIHOOD_RATIO: f64 = 10.5;
-/// The same where the step is clear against no change at all.
+/// Log-likelihood ratio against a transient where the step is clear against no change.
 pub(crate) const CLEAR_STEP_LOG_LIKELIHOOD_RATIO: f64 = 3.0;
 /// Log-likelihood ratio of a step against no change from which it counts as clear.
 pub(crate) const CLEAR_AGAINST_NULL_LOG_LIKELIHOOD_RATIO: f64 = 40.0;
@@ -68,7 +68,7 @@ pub(crate) const REFERENCE_REPAIR_DEFICIT_LOG_LIKELIHOOD_RATIO: f64 = 3.0;
 
 /// Log-likelihood ratio of a return at sea against a transient from which it is accepted.
 pub(crate) const RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO: f64 = 14.0;
-/// The same after a step in port: cargo is not discharged at sea.
+/// Log-likelihood ratio that a step in port needs instead: cargo is not discharged at sea.
 pub(crate) const CARGO_RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO: f64 = 30.0;
 /// Posterior probability from which a return at a port call is accepted.
 pub(crate) const RETURN_POSTERIOR: f64 = 0.9;
@@ -91,7 +91,8 @@ pub(crate) const RETURN_DROPPED_LOG_LIKELIHOOD_RATIO: f64 = 16.0;
 pub(crate) const TRANSIENT_LOG_LIKELIHOOD_RATIO: f64 = 14.0;
 /// Log-likelihood ratio of a transient against a lasting change from which it is accepted.
 pub(crate) const TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO: f64 = 3.0;
-/// The same for the filter of the transient to become the null filter at its end.
+/// Log-likelihood ratio against other hypotheses from which an ended transient's filter
+/// becomes the null filter.
 pub(crate) const ENDED_TRANSIENT_OVER_CHANGE_LOG_LIKELIHOOD_RATIO: f64 = 6.0;
 /// Time since the end of a transient after which its filter may become the null filter.
 pub(crate) const TRANSIENT_OVER_FOR_S: f64 = 6.0 * 3600.0;
@@ -110,7 +111,7 @@ pub(crate) const WEAK_TRANSIENT_OVER_ROWS: usize = 36;
 
 /// Log-likelihood ratio of a competing hypothesis against the step from which it replaces it.
 pub(crate) const COMPETING_LOG_LIKELIHOOD_RATIO: f64 = 8.0;
-/// The same where it replaces several steps: one change is likelier than more.
+/// Log-likelihood ratio where it replaces several steps: one change is likelier than more.
 pub(crate) const COMPETING_WITH_SEVERAL_LOG_LIKELIHOOD_RATIO: f64 = 3.0;
 /// Deficit of a competing hypothesis against a further step up to which it is accepted.
 pub(crate) const COMPETING_DEFICIT_LOG_LIKELIHOOD_RATIO: f64 = 3.0;

@@ -16,13 +16,13 @@ const SECTOR_DEG: f64 = 15.0;
 /// Ten-minute rows in half a day.
 const OF_HALF_A_DAY: f64 = 72.0;
 
-/// Whether every row says when it was taken.
+/// Returns true if every row says when it was taken.
 pub(super) fn all_timed(observations: &[Observation]) -> bool {
     observations.iter().all(|o| o.time.is_some())
 }
 
-/// Whether the rows' times can be what they are said to be: all have one, and most have
-/// it to themselves. A clock that stood still for a while spoils no more than that.
+/// Returns true if the rows' times can be what they are said to be: all have one, and most
+/// have it to themselves. A clock that stood still for a while spoils no more than that.
 pub(crate) fn are_times_believed(observations: &[Observation]) -> bool {
     let times: Option<Vec<Timestamp>> = observations.iter().map(|o| o.time).collect();
     let Some(mut times) = times else {

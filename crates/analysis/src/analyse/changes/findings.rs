@@ -21,7 +21,7 @@ pub(crate) struct Found {
     pub(crate) misled: Option<Misled>,
     /// What a step that is not certain may have done to bx and by, variance in nT².
     pub(crate) undecided_step_nt2: Option<f64>,
-    /// Whether a change would have been noticed.
+    /// True if a change would have been noticed.
     pub(crate) is_watched: bool,
 }
 
@@ -74,7 +74,7 @@ pub(crate) struct Boundary {
     pub(crate) at: Timestamp,
     /// The change's place in the list.
     pub(crate) change: usize,
-    /// Whether the change ended here, and the ship is as she was before it.
+    /// True if the change ended here, and the ship is as she was before it.
     pub(crate) resumes: bool,
 }
 

@@ -18,7 +18,7 @@ const JAMS_AGAIN_S: f64 = 3.0 * DAY_S;
 /// What a reading tells of its references.
 pub(super) struct Seen {
     time: Timestamp,
-    /// Whether both were read.
+    /// True if both were read.
     both: bool,
     /// The gyro's share in what was believed; none where nothing was.
     gyro_share: Option<f64>,
@@ -115,7 +115,7 @@ fn merge(changes: &mut Vec<Change>, epochs: &[Epoch], cause: Cause) {
     *changes = kept;
 }
 
-/// Whether a fault began before an earlier one was over for long.
+/// Returns true if a fault began before an earlier one was over for long.
 fn is_soon_after(later: &Change, earlier: &Change) -> bool {
     let long_s = match earlier.cause {
         Cause::CompassFault => JAMS_AGAIN_S,
@@ -149,7 +149,7 @@ fn take_in(earlier: &mut Change, later: Change) {
     }
 }
 
-/// Whether two lines say the same but for figures.
+/// Returns true if two lines say the same but for figures.
 fn is_of_a_kind(a: &str, b: &str) -> bool {
     let words = |line: &str| line.replace(|c: char| c.is_ascii_digit(), "");
     words(a) == words(b)

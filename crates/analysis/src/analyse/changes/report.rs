@@ -66,7 +66,7 @@ impl Teller<'_> {
             .unwrap_or_else(half_way)
     }
 
-    /// Whether any of the rows from which the event may date followed a port call.
+    /// Returns true if any of the rows from which the event may date followed a port call.
     fn began_at_port(&self, event: &Event) -> Option<bool> {
         let (earliest, latest) = event.between;
         let calls = (earliest..=latest).map(|row| follows_port_call(self.observations, row));
@@ -266,8 +266,8 @@ impl Teller<'_> {
         })
     }
 
-    /// Whether a step is one of several that go the same way for days: of something that
-    /// creeps.
+    /// Returns true if a step is one of several that go the same way for days: of something
+    /// that creeps.
     fn is_drifting(&self, index: usize) -> bool {
         let event = &self.events[index];
         let time = |event: &Event| self.time(event.first);
@@ -348,7 +348,7 @@ impl Teller<'_> {
             .reduce(f64::min)
     }
 
-    /// Whether the logbook has the end of cargo's time on board at an event, and no
+    /// Returns true if the logbook has the end of cargo's time on board at an event, and no
     /// beginning.
     fn is_said_discharge(&self, event: &Event) -> bool {
         let (earliest, latest) = event.between;

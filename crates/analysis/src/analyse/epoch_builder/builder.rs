@@ -28,7 +28,7 @@ pub(crate) struct Course {
     pub(crate) changes: Vec<Change>,
     /// Entries of cargo that the samples no longer bear out.
     pub(crate) idle: Vec<Idle>,
-    /// Whether a change in the last of them would not have been noticed.
+    /// True if a change in the last of them would not have been noticed.
     pub(crate) is_unwatched: bool,
 }
 

@@ -1,4 +1,5 @@
-//! What is believed takes over from the filter, and becomes an event.
+//! Acceptance of a hypothesis: its filter becomes the null filter, and an event is
+//! recorded.
 
 use super::dating::DatedChange;
 use super::state::{Detector, ExtraDrift, Leads, LearningSchedule};
@@ -13,7 +14,7 @@ use crate::change::thresholds::{
 };
 
 impl Detector<'_> {
-    /// The ship's magnetism or a reference changed: the copy that knew takes over.
+    /// Accepts a change of the vessel's magnetism or of a reference.
     pub(crate) fn accept_change(&mut self, k: usize, kind: HypothesisKind, leads: Leads) {
         let Some(lead) = leads[kind as usize] else {
             return;
@@ -30,7 +31,7 @@ impl Detector<'_> {
         let at_sea = self.alignment_change.is_some()
             || earlier_state.is_some_and(|base| !base.began_at_port_call());
         if kind == HypothesisKind::Step && self.reference_fault.is_none() && at_sea {
-            // Linearised each at its own end, either may be the likelier.
+            // Each was linearised at its own end: either may be the likelier.
             let back = leads[HypothesisKind::Return as usize];
             let back =
                 back.map(|lead| (lead, self.date_change(lead.fork, HypothesisKind::Return, k)));
@@ -71,7 +72,7 @@ impl Detector<'_> {
             self.alignment_change = None;
             no_step = Some(self.no_step_hypotheses(k, &dated, &leads));
             competing = self.competing_hypotheses(k, &dated);
-            // It may be that several steps were the same.
+            // Several steps may have been the same one.
             competing.append(&mut self.competing);
             if !self.began_at_port_call(&dated) {
                 self.extra_drift = ExtraDrift::from_step(dated.first, &dated.before, &dated.filter);
@@ -93,7 +94,7 @@ impl Detector<'_> {
         self.competing = competing;
         self.no_step = no_step;
         if event_kind == EventKind::ReferenceFault {
-            // Its noise may be another, too.
+            // The noise of the reference may have changed, too.
             self.next_learning =
                 LearningSchedule::next(self.observations, dated.first, dated.first, 0.0);
         }
@@ -104,8 +105,8 @@ impl Detector<'_> {
         (earliest..=latest).any(|row| self.is_port_call(row))
     }
 
-    /// The port calls since a step, and the one at which it happened, as the filter
-    /// that knows of the step would have met them.
+    /// Replays the port calls since a step, and the one at which it happened, with a filter
+    /// that knows the step.
     pub(crate) fn replay_port_calls(&mut self, k: usize, dated: &DatedChange) {
         let event = self.events.len() - 1;
         let is_loading_logged = self.is_loading_logged(dated.between.0, dated.between.1);
@@ -155,9 +156,8 @@ impl Detector<'_> {
         }
     }
 
-    /// A burst that went on until now ended where a change is dated; if it began
-    /// there too, or nothing before the change told of it, it was the change's first sign
-    /// and nothing else.
+    /// Ends a current transient where a change is dated. A transient that began there too,
+    /// or was detected only afterwards, was the change's first sign: its event is removed.
     pub(crate) fn close_transient(&mut self, first: usize) {
         let Some(event) = self.transient.take() else {
             return;
@@ -176,15 +176,15 @@ impl Detector<'_> {
         };
         let mut dated = self.date_change(lead.fork, HypothesisKind::Return, k);
         if let Some(call) = self.discharge_near(dated.first, k) {
-            // It may as well have been at the call.
+            // The call is as possible a date.
             let (earliest, latest) = dated.between;
             dated.between = (earliest.min(call), latest.max(call));
         }
         self.accept_dated_return(k, lead, dated, leads);
     }
 
-    /// The ship is herself again, or her compass's zero is where it was. What came and went
-    /// within hours at sea was beside her, and no change of her own.
+    /// Accepts a return of the vessel, or of the compass's alignment. A change that lasted
+    /// hours at sea came from beside the vessel: it becomes a transient.
     fn accept_dated_return(&mut self, k: usize, lead: Lead, dated: DatedChange, leads: Leads) {
         let zero = self.alignment_change.take().map(|(event, _)| event);
         let ship = || self.returns.baselines.last().map(|base| base.event);
@@ -221,7 +221,7 @@ impl Detector<'_> {
             && !rows.any(|row| self.is_port_call(row))
     }
 
-    /// The reference is itself again.
+    /// Accepts a repair of the reference.
     pub(crate) fn accept_reference_repair(&mut self, k: usize, leads: Leads) {
         let Some(lead) = leads[HypothesisKind::Return as usize] else {
             return;
@@ -247,19 +247,19 @@ impl Detector<'_> {
         self.replace_null(k, dated.filter, dated.first);
     }
 
-    /// The ship has been herself again since a port call.
+    /// Accepts a return of the vessel at a port call.
     pub(crate) fn accept_port_call_return(
         &mut self,
         k: usize,
         back: ReturnCandidate,
         leads: Leads,
     ) {
-        // Before places in the list move.
+        // Before places in the list change.
         self.record_alignment_ratios();
         self.competing.clear();
         self.close_transient(back.at);
         self.alignment_change = None;
-        // What was taken for a step to something else was this.
+        // Steps since the call were this return.
         let is_reference = |event: &Event| match event.kind {
             EventKind::Return(of) => self.events[of].kind == EventKind::ReferenceFault,
             event_kind => event_kind == EventKind::ReferenceFault,
@@ -297,7 +297,7 @@ impl Detector<'_> {
         self.no_step = None;
         self.last_fork = k;
         self.learn_from = first;
-        // Neither seas nor instruments changed: of fewer days there is less to learn.
+        // Seas and instruments are the same: fewer days teach nothing new.
         self.next_learning =
             LearningSchedule::next(self.observations, first, first, self.learnt_days);
     }

@@ -1,9 +1,7 @@
-//! What else the last change may have been: the zero of the compass that moved, or a
-//! drift that goes on.
+//! Competing explanations of the last step: an alignment change of the compass, or a drift.
 //!
-//! What always holds: on one heading either looks like a step, so that a step is told
-//! first; what explains the rows since far better takes its place, once, and it stays
-//! one change.
+//! On one heading either looks like a step, so that a step is reported first. An
+//! explanation that later rows make far likelier replaces it, once; it remains one change.
 
 use super::dating::DatedChange;
 use super::state::CompetingHypothesis;
@@ -23,12 +21,11 @@ use crate::change::thresholds::{
     DRIFT_WITH_CARGO_EXTRA_LOG_LIKELIHOOD_RATIO, STEP_KEPT_LOG_LIKELIHOOD_RATIO,
 };
 
-/// Standard deviation of the zero's step, degrees, unless the first reading after it is
-/// further off.
+/// Rounds in which the rows are linearised at the state of the last round.
 const LINEARISATION_ROUNDS: usize = 3;
 
 impl Detector<'_> {
-    /// The rivals of a step that was dated just now.
+    /// Returns the hypotheses that compete with a step just dated.
     pub(crate) fn competing_hypotheses(
         &self,
         k: usize,
@@ -43,7 +40,7 @@ impl Detector<'_> {
         drift_hypothesis.chain(alignment).collect()
     }
 
-    /// The zero moved when the step is dated.
+    /// Returns the hypothesis of an alignment change at the date of the step.
     fn alignment_hypothesis(&self, k: usize, dated: &DatedChange) -> CompetingHypothesis {
         CompetingHypothesis {
             kind: EventKind::Alignment,
@@ -56,10 +53,11 @@ impl Detector<'_> {
         }
     }
 
-    /// The filter with the zero having moved before row `first`, having read all rows until `k`.
+    /// Returns the filter with an alignment change before row `first`, after all rows up to
+    /// `k`.
     fn filter_with_alignment_change(&self, k: usize, before: &Filter, first: usize) -> Filter {
         let mut filter = before.clone();
-        // So often, for the rows are to be linearised at where it ends.
+        // Rows are to be linearised at the final state.
         for _ in 0..LINEARISATION_ROUNDS {
             let at = filter.unknowns();
             let moved_deg = filter.mean[CONSTANT_STATE] - before.mean[CONSTANT_STATE];
@@ -73,7 +71,7 @@ impl Detector<'_> {
         filter
     }
 
-    /// The ship has drifted since the likeliest of the times that the bank keeps.
+    /// Returns the hypothesis of a drift since the likeliest fork.
     fn drift_hypothesis(
         &self,
         k: usize,
@@ -113,7 +111,7 @@ impl Detector<'_> {
         })
     }
 
-    /// They read the row that the filter has read.
+    /// Reads row `k` with the competing hypotheses.
     pub(crate) fn observe_competing(&mut self, k: usize) {
         let mut competing = std::mem::take(&mut self.competing);
         for competitor in &mut competing {
@@ -127,8 +125,8 @@ impl Detector<'_> {
         self.competing = competing;
     }
 
-    /// Puts the likeliest rival in the place of the last step, if it explains the rows
-    /// far better and no less well than another step would.
+    /// Replaces the last step by the likeliest competing hypothesis, if that explains the
+    /// rows far better, and no less well than another step would.
     pub(crate) fn decide_competing(&mut self, k: usize, leads: &Leads) -> bool {
         let of_kind = |kind: HypothesisKind| {
             leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
@@ -137,7 +135,7 @@ impl Detector<'_> {
             of_kind(HypothesisKind::Step),
             of_kind(HypothesisKind::Transient),
         );
-        // What drifts may well have come back: that she did is simpler.
+        // A drifting vessel may well have returned: a return is simpler.
         let back = self
             .return_candidate(leads)
             .map_or(0.0, |back| back.log_likelihood_ratio);
@@ -167,7 +165,7 @@ impl Detector<'_> {
             COMPETING_LOG_LIKELIHOOD_RATIO
         };
         if in_port {
-            // Cargo comes on board at once: nothing went before it.
+            // Cargo comes on board at once: no drift precedes it.
             if self.competing[place].first + DRIFT_BEFORE_CARGO_ROWS > self.events[of].between.0 {
                 return false;
             }
@@ -180,7 +178,7 @@ impl Detector<'_> {
         {
             return false;
         }
-        // Another step upon the first is the rarer by far.
+        // A second step on the first is far rarer.
         let is_needless = step > COMPETING_LOG_LIKELIHOOD_RATIO;
         if self.competing[place].kind == EventKind::Alignment
             && !is_needless
@@ -194,7 +192,7 @@ impl Detector<'_> {
             let zero = self.filter_with_alignment_change(k, &competitor.before, competitor.first);
             let trails = zero.log_likelihood - step.log_likelihood;
             if trails < STEP_KEPT_LOG_LIKELIHOOD_RATIO {
-                // What was gained meanwhile by being told of a burst, it has gained, too.
+                // Credited transients count for the step, too.
                 step.log_likelihood = competitor.filter.log_likelihood - trails;
                 self.replace_step(k, of, step);
                 return true;
@@ -228,7 +226,7 @@ impl Detector<'_> {
             _ => ExtraDrift::default(),
         };
         self.alignment_change = None;
-        // Two courses may tell of either what the next one does not.
+        // Two courses may fit either, and the next one only one.
         let mut competing = Vec::new();
         match competitor.kind {
             EventKind::Alignment => {
@@ -243,7 +241,7 @@ impl Detector<'_> {
         true
     }
 
-    /// What had been taken for a zero that moved was a step.
+    /// Restores a step that had been replaced by an alignment change.
     fn revert_to_step(&mut self, step: &CompetingHypothesis) {
         let at_port = self.began_in_port(step.event);
         if !at_port {
@@ -262,8 +260,8 @@ impl Detector<'_> {
         });
     }
 
-    /// By how much it is likelier that the zero moved than that the ship did, for each step of
-    /// which that is open.
+    /// Records the log-likelihood ratio of an alignment change against each step where it
+    /// is open.
     pub(crate) fn record_alignment_ratios(&mut self) {
         for competitor in self
             .competing
@@ -277,8 +275,8 @@ impl Detector<'_> {
         }
     }
 
-    /// Whether she has sailed on headings since that tell a zero that moved from a step: on
-    /// one, and on two that lie close, a step does the same.
+    /// Returns true if the headings sailed since tell an alignment change from a step: on
+    /// one heading, and on two that lie close, a step does the same.
     fn headings_tell_alignment(&self, place: usize, k: usize) -> bool {
         let mut rows = [0; ALIGNMENT_SECTORS];
         for o in &self.observations[self.competing[place].first..=k] {
@@ -293,7 +291,7 @@ impl Detector<'_> {
         })
     }
 
-    /// What had been taken for further steps was the same.
+    /// Removes later steps, which were the same change.
     pub(crate) fn remove_later_steps(&mut self, of: usize) {
         let is_gone = |place: usize, event: &Event| match event.kind {
             EventKind::Step => place > of,
@@ -322,7 +320,8 @@ impl Detector<'_> {
         (earliest..=latest).any(|row| self.is_port_call(row))
     }
 
-    /// What the filter gained by being told of a burst, its rivals would have gained, too.
+    /// Credits the alternatives with the likelihood that the null filter gains by a
+    /// transient.
     pub(crate) fn credit_alternatives(&mut self, kind: HypothesisKind) {
         let gained = self
             .bank

@@ -1,4 +1,4 @@
-//! When a change happened, to the row.
+//! Dating of a change to the row.
 
 use super::state::{Detector, earlier_state};
 use crate::change::event::{Event, EventKind};
@@ -11,30 +11,29 @@ use crate::change::thresholds::{
 };
 use crate::estimate::Unknowns;
 
-/// Times tried for the date of a change, in each of two rounds.
+/// Dates tried in each of two rounds.
 const DATES_PER_ROUND: usize = 40;
-/// Usual time from row to row, seconds.
+/// Usual time between rows, seconds.
 const ROW_S: f64 = 600.0;
 
-/// A step is dated at one of the port calls within so many rows of its own, if that is less
-/// likely than the likeliest row by no more, nats.
+/// Number of port calls tried as dates.
 const PORT_CALLS_TRIED: usize = 3;
 
-/// A change with its date.
+/// A dated change.
 pub(crate) struct DatedChange {
     pub(crate) first: usize,
     pub(crate) between: (usize, usize),
     pub(crate) kind: HypothesisKind,
-    /// The filter just before it, and the one that knew of it, now.
+    /// Filters just before the change, and with it, at the present row.
     pub(crate) before: Filter,
     pub(crate) filter: Filter,
-    /// Whether it is dated at a call though the likeliest row is of days after it, or comes
-    /// after something that passed since.
+    /// True if it is dated at a port call though the likeliest row is days later, or
+    /// follows a transient.
     pub(crate) noticed_late: bool,
 }
 
-/// Where rows before a change are linearised that led to `after`: before a large step at the
-/// ship that she was, who is another altogether.
+/// Returns the state at which rows before a change are linearised. Before a large step that
+/// is the vessel's earlier state, which is quite another.
 fn linearisation_before(kind: HypothesisKind, origin: &Filter, after: &Unknowns) -> Unknowns {
     match kind {
         HypothesisKind::LargeStep => origin.unknowns(),
@@ -43,7 +42,7 @@ fn linearisation_before(kind: HypothesisKind, origin: &Filter, after: &Unknowns)
 }
 
 impl Detector<'_> {
-    /// When it happened, to the row.
+    /// Dates a change to the row.
     pub(crate) fn date_change(
         &self,
         leading_fork: usize,
@@ -65,7 +64,7 @@ impl Detector<'_> {
             }
             _ => apply_jump(filter, kind),
         };
-        // Twice, for the rows are to be linearised at where the ship is now.
+        // Two rounds, because rows are to be linearised at the present state.
         let mut at = match kind {
             HypothesisKind::LargeStep => forks[leading_fork]
                 .hypothesis(kind)
@@ -145,8 +144,8 @@ impl Detector<'_> {
         }
     }
 
-    /// By how much likelier beforehand it is that something happened in the gap before a row
-    /// than between two rows: the gap is as many times as long, nats.
+    /// Returns the prior log odds of a change in the gap before a row, against one between
+    /// two rows: proportional to the length of the gap.
     fn gap_log_odds(&self, row: usize) -> f64 {
         let seconds = self.seconds_since_previous(row);
         if seconds > FORK_AFTER_GAP_S {
@@ -156,7 +155,7 @@ impl Detector<'_> {
         }
     }
 
-    /// The filter after some measurements.
+    /// Returns the filter after some measurements.
     fn observe_all(&self, mut filter: Filter, measured: &[Measurement]) -> Filter {
         for m in measured {
             filter.observe(m, &self.noise, None);
@@ -164,8 +163,8 @@ impl Detector<'_> {
         filter
     }
 
-    /// Whether it rather happened at a port call: many more steps do than at any one
-    /// time at sea. `filter` is of the likeliest row.
+    /// Returns the change dated at a port call, if that is about as likely as the likeliest
+    /// row, of which `filter` is: many more steps happen there than at sea.
     fn date_at_port_call(
         &self,
         leading_fork: usize,
@@ -198,7 +197,8 @@ impl Detector<'_> {
         let departure_before = self.departure_before(row, &self.events);
         let departure_before = departure_before.filter(|(call, _)| *call < origin.at);
         let tried = before.chain(departure_before.map(|(call, before)| {
-            // As likely as the filter that may have been told of what passed since.
+            // As likely as a null filter that may have been credited with a transient
+            // since.
             let nothing = self.run_filter(before.clone(), call..k + 1, &self.null.unknowns());
             let mut before = before.clone();
             before.log_likelihood += self.null.log_likelihood - nothing.log_likelihood;

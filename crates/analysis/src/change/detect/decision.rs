@@ -1,4 +1,9 @@
-//! Whether what leads leads by enough to be believed.
+//! Decision of the detector: whether the leading hypothesis is accepted.
+//!
+//! The thresholds are in [`crate::change::thresholds`], the prior odds in
+//! [`crate::change::priors`]. Hypotheses are considered in this order: a return at a port
+//! call, a competing explanation or the withdrawal of the last step, the repair of a
+//! reference, a return at sea, a step or a reference's fault, a transient.
 
 use super::state::{Detector, Leads};
 use crate::change::event::{Event, EventKind};
@@ -79,8 +84,8 @@ impl Detector<'_> {
                 )
             };
         let over_burst = lasting - transient;
-        // One reference on one heading cannot tell a fault of its own from a change
-        // of the ship.
+        // On one heading one reference cannot tell its own fault from a change of the
+        // vessel.
         let clear = lasting - self.prior_log_odds(kind, &leads) - other.max(0.0);
         let is_clear =
             clear > VESSEL_OR_REFERENCE_LOG_LIKELIHOOD_RATIO || self.has_both_references(k);
@@ -111,7 +116,7 @@ impl Detector<'_> {
         self.decide_transient(k, leads);
     }
 
-    /// Whether the field is astray, for what lasts has not been told.
+    /// Decides whether a transient is accepted, where no lasting change was.
     fn decide_transient(&mut self, k: usize, leads: Leads) {
         let ratio = |kind: HypothesisKind| {
             leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
@@ -129,7 +134,7 @@ impl Detector<'_> {
             };
             let first = self.transient_start(lead);
             match self.same_transient(first) {
-                // One that has had its time keeps its lead, but is told once.
+                // A past transient keeps its lead, but is reported once.
                 Some(event) if event.confirmed => return,
                 Some(_) => _ = self.events.pop(),
                 None => {}
@@ -143,13 +148,13 @@ impl Detector<'_> {
         }
     }
 
-    /// A few wild readings swing no compass.
+    /// Returns true if a severe transient has lasted beyond a few wild readings.
     fn has_enough_rows(&self, k: usize, lead: Lead) -> bool {
         lead.kind != HypothesisKind::SevereTransient
             || k + 1 >= self.bank.forks[lead.fork].at + STEP_MIN_ROWS
     }
 
-    /// And while she drifts, for a drift goes on.
+    /// Returns the extra threshold while the vessel drifts, because a drift goes on.
     fn drifting_extra(&self, k: usize) -> f64 {
         if self.extra_drift.is_drifting(self.observations, k) {
             DRIFTING_EXTRA_LOG_LIKELIHOOD_RATIO
@@ -158,7 +163,7 @@ impl Detector<'_> {
         }
     }
 
-    /// What is asked beyond the usual while little is known of this ship's noise.
+    /// Returns the extra threshold while little is known of the vessel's noise.
     fn new_vessel_extra(&self, k: usize) -> f64 {
         let since = self.observations[0].time.zip(self.observations[k].time);
         let is_new = since.is_some_and(|(first, now)| now.seconds_since(first) < NEW_VESSEL_S);
@@ -169,14 +174,14 @@ impl Detector<'_> {
         }
     }
 
-    /// The filter before a row, or soon before it, and the row that it is of.
+    /// Returns the last fork up to a row, and its filter before the jump.
     fn before(&self, row: usize) -> Option<(usize, Filter)> {
         let mut forks = self.bank.forks.iter();
         let fork = forks.rfind(|fork| fork.at <= row)?;
         Some((fork.at, fork.origin().clone()))
     }
 
-    /// The last event, if it is this passing disturbance.
+    /// Returns the last event, if it is this transient.
     pub(crate) fn same_transient(&self, first: usize) -> Option<&Event> {
         let last = self.events.last();
         last.filter(|event| {
@@ -184,7 +189,7 @@ impl Detector<'_> {
         })
     }
 
-    /// The first row of a passing disturbance.
+    /// Returns the first row of a transient.
     pub(crate) fn transient_start(&self, lead: Lead) -> usize {
         let fork = &self.bank.forks[lead.fork];
         let over = fork.transient_from.filter(|_| self.is_over(lead));
@@ -195,7 +200,7 @@ impl Detector<'_> {
         leads[kind as usize].is_some_and(|lead| k + 1 >= self.bank.forks[lead.fork].at + rows)
     }
 
-    /// By how much what leads was likelier beforehand than at another time.
+    /// Returns the prior log odds of the leading hypothesis against one at another time.
     fn prior_log_odds(&self, kind: HypothesisKind, leads: &Leads) -> f64 {
         leads[kind as usize].map_or(0.0, |lead| self.bank.prior_log_odds(lead))
     }
@@ -204,7 +209,7 @@ impl Detector<'_> {
         let step = leads[HypothesisKind::Step as usize];
         // A large step would explain the first hour of a storm, too.
         let is_usual = step.is_some_and(|lead| lead.kind == HypothesisKind::Step);
-        // What is likelier beforehand must be as clear from the rows.
+        // A step that is likelier beforehand must be as clear from the rows.
         let beforehand = self.prior_log_odds(HypothesisKind::Step, leads);
         if over_burst - beforehand <= CLEAR_STEP_LOG_LIKELIHOOD_RATIO
             || (over_burst
@@ -223,8 +228,8 @@ impl Detector<'_> {
         over_burst > ONE_REFERENCE_LOG_LIKELIHOOD_RATIO || !is_half_blind
     }
 
-    /// The likeliest return at a port call, if a step to something else is not
-    /// likelier by far.
+    /// Returns the likeliest return at a port call, unless a step to another state is far
+    /// likelier.
     pub(crate) fn return_candidate(&self, leads: &Leads) -> Option<ReturnCandidate> {
         self.return_candidate_within(leads, RETURN_DEFICIT_LOG_LIKELIHOOD_RATIO)
     }
@@ -244,9 +249,10 @@ impl Detector<'_> {
             .then_some(likeliest)
     }
 
-    /// Whether a step that is certain is rather the end of what began in port: that explains
-    /// the rows better, though it leaves nothing free, and at about that time she lay in port.
-    /// A few readings astray just before may speak against a return at the call itself.
+    /// Returns true if a certain step is rather the discharge of cargo: a return explains
+    /// the rows better, with nothing left free, and the vessel was in port at about that
+    /// time. A few disturbed readings just before may speak against a return at the call
+    /// itself.
     fn is_discharge(&self, k: usize, leads: &Leads) -> bool {
         let [step, _, _, back] = *leads;
         step.zip(back).is_some_and(|(step, back)| {
@@ -256,8 +262,8 @@ impl Detector<'_> {
         })
     }
 
-    /// The port call at about row `at`, until row `k`, at which what began in port may have
-    /// ended.
+    /// Returns the port call near row `at`, up to row `k`, at which cargo may have been
+    /// discharged.
     pub(crate) fn discharge_near(&self, at: usize, k: usize) -> Option<usize> {
         let laden = self
             .returns
@@ -274,7 +280,7 @@ impl Detector<'_> {
         calls.min_by_key(|row| row.abs_diff(at))
     }
 
-    /// Whether a step that is certain may as well be a return at this call.
+    /// Returns true if a return at this call may replace a certain step.
     fn replaces_step(&self, leads: &Leads, back: &ReturnCandidate) -> bool {
         let step = leads[HypothesisKind::Step as usize].map(|lead| self.bank.forks[lead.fork].at);
         let near = back.at.saturating_sub(RETURN_FOR_STEP_ROWS_BEFORE)
@@ -282,13 +288,13 @@ impl Detector<'_> {
         back.probability > RETURN_FOR_STEP_POSTERIOR && step.is_some_and(|at| near.contains(&at))
     }
 
-    /// Whether both references were read lately.
+    /// Returns true if both references were read lately.
     pub(crate) fn has_both_references(&self, k: usize) -> bool {
         let lately = &self.observations[k.saturating_sub(BOTH_REFERENCES_ROWS)..=k];
         lately.iter().any(|o| o.gyro_less_satellite_deg.is_some())
     }
 
-    /// Whether a passing disturbance's lead is that of one that is over.
+    /// Returns true if the leading transient is over.
     pub(crate) fn is_over(&self, lead: Lead) -> bool {
         let over = self.bank.lead(HypothesisKind::TransientEnd, &self.null);
         over.is_some_and(|over| {

@@ -1,4 +1,4 @@
-//! What the logbook tells of cargo where the ship lay, or may have.
+//! Logbook entries of cargo, by row.
 
 use super::state::Detector;
 use crate::change::detection::CargoPeriod;
@@ -8,8 +8,7 @@ use crate::change::thresholds::{LOGBOOK_TOLERANCE_S, OPEN_CARGO_ENTRY_S, SAILED_
 use binnacle_compass::time::Timestamp;
 
 impl Detector<'_> {
-    /// What the logbook tells of the cargo on board after the time between a row and the
-    /// one before.
+    /// Returns the logbook's cargo after the interval before a row.
     pub(crate) fn logged_cargo_at(&self, k: usize) -> LoggedCargo {
         let Some((before, after)) = self.interval_before(k) else {
             return LoggedCargo::Nothing;
@@ -37,7 +36,7 @@ impl Detector<'_> {
         })
     }
 
-    /// Whether the logbook has it that cargo came on board when a step happened.
+    /// Returns true if the logbook has cargo loaded at the time of a step.
     pub(crate) fn is_loading_logged(&self, earliest: usize, latest: usize) -> bool {
         let departure_before = &self.observations[..earliest];
         let earliest = self
@@ -53,7 +52,7 @@ impl Detector<'_> {
         })
     }
 
-    /// Whether the logbook has it that cargo was on board when a row was read.
+    /// Returns true if the logbook has cargo on board at a row.
     pub(crate) fn is_cargo_logged(&self, k: usize) -> bool {
         let Some(time) = self.observations[k].time else {
             return false;
@@ -67,8 +66,8 @@ impl Detector<'_> {
         self.cargo.iter().any(on_board)
     }
 
-    /// Whether the logbook has it that cargo was discharged between a row and the one
-    /// before, whether or not she seems to have lain there.
+    /// Returns true if the logbook has cargo discharged in the interval before a row, in
+    /// port or not.
     pub(crate) fn is_discharge_logged(&self, k: usize) -> bool {
         let Some((before, after)) = self.interval_before(k) else {
             return false;
@@ -77,7 +76,7 @@ impl Detector<'_> {
         ends.into_iter().any(|to| before < to && to <= after)
     }
 
-    /// The time between a row and the one before.
+    /// Returns the times of the previous row and of this one.
     fn interval_before(&self, k: usize) -> Option<(Timestamp, Timestamp)> {
         let before = self.observations[k.checked_sub(1)?].time?;
         Some((before, self.observations[k].time?))

@@ -1,4 +1,4 @@
-//! The detector of changes.
+//! Detector of changes: `decision.rs` decides, `acceptance.rs` carries out.
 
 mod acceptance;
 mod competing_hypothesis;

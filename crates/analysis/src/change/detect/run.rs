@@ -1,8 +1,7 @@
-//! The search: one filter runs forward over the rows, a bank of what else may have
-//! happened beside it, and what proves likelier by far takes its place.
+//! Detection row by row.
 //!
-//! What always holds: a row is read once in order of time and nothing later than it
-//! decides what it tells; every event lies between two rows; the search ends.
+//! Every row is read once, in order of time, and no later row affects what it shows. Every
+//! event lies between two rows. The search ends.
 
 use super::state::{Detector, LearningSchedule, LearntNoise, earlier_state};
 use crate::change::priors;
@@ -19,8 +18,8 @@ use crate::change::hypothesis_kind::HypothesisKind;
 use crate::estimate::are_times_believed;
 use crate::observation::Observation;
 
-/// Searches rows, which are in order of time and all have one; where most share theirs
-/// nothing can be dated.
+/// Searches rows in order of time for changes. Rows without a time, or most of which share
+/// theirs, cannot be dated.
 pub(crate) fn detect(observations: &[Observation], given: &DetectionInput<'_>) -> Detection {
     if !are_times_believed(observations) {
         return Detection::default();
@@ -113,13 +112,13 @@ impl Detector<'_> {
             || reported()
     }
 
-    /// Whether something may have happened just before this row.
+    /// Returns true if the row is an outlier from which a jump may date.
     fn is_outlying(&self, k: usize, m: &Measurement) -> bool {
         k >= self.last_fork + FORK_INNOVATION_MIN_ROWS
             && self.null.z_squared(m) > FORK_INNOVATION_SD * FORK_INNOVATION_SD
     }
 
-    /// The sizes of noise again, from the longer stretch there is now.
+    /// Learns the noise levels again, from the longer stretch of rows.
     fn relearn(&mut self, k: usize) {
         let rows = self.learn_from..k;
         if let Some(learnt) =
@@ -132,7 +131,7 @@ impl Detector<'_> {
         self.next_learning = LearningSchedule::next(self.observations, self.learn_from, k, 0.0);
     }
 
-    /// What is suspected when the rows end.
+    /// Reports what is open when the rows end.
     fn finish(mut self) -> Detection {
         let leads = self.leads();
         let possible_return =
@@ -178,13 +177,13 @@ impl Detector<'_> {
         .into_iter()
         .max_by(|a, b| ratio(*a).total_cmp(&ratio(*b)))
         .filter(|kind| ratio(*kind) > SUSPICION_LOG_LIKELIHOOD_RATIO);
-        // A burst that has had its time keeps its lead.
-        let is_news = |lead: Lead| self.may_continue(self.bank.forks[lead.fork].at, k);
+        // A past transient keeps its lead.
+        let may_continue = |lead: Lead| self.may_continue(self.bank.forks[lead.fork].at, k);
         let Some((kind, lead)) = likeliest.and_then(|kind| Some((kind, leads[kind as usize]?)))
         else {
             return;
         };
-        if k < self.warm_up_rows() || (kind == HypothesisKind::Transient && !is_news(lead)) {
+        if k < self.warm_up_rows() || (kind == HypothesisKind::Transient && !may_continue(lead)) {
             return;
         }
         let event_kind = match kind {

@@ -1,11 +1,11 @@
-//! A step that has been told, read anew when what follows does not fit it.
+//! Refit of a reported step when later rows do not fit it.
 //!
-//! What always holds: it stays one change of the same date; what is read anew is no less
-//! likely than what would take its place, but for little.
+//! The step remains one change of the same date. The refit is at most a little less likely
+//! than the alternative.
 //!
-//! On one course rows show what a step did across the needle, and hardly what it did along it.
-//! A filter that took the little it saw of the latter for more than it was cannot follow when
-//! she turns: that speaks against the filter and not against the step.
+//! On one course rows show the step across the needle, and hardly the step along it. A
+//! filter that relied on the latter cannot follow a turn: that speaks against the filter
+//! and not against the step.
 
 use super::dating::DatedChange;
 use super::state::Detector;
@@ -16,12 +16,12 @@ use crate::change::jump_models::apply_jump;
 use crate::change::large_step::relinearise;
 use crate::change::thresholds::{SAME_STEP_ROWS, STEP_KEPT_LOG_LIKELIHOOD_RATIO};
 
-/// So often are all rows linearised at where the last round ended.
+/// Rounds in which all rows are linearised at the state of the last round.
 const LINEARISATION_ROUNDS: usize = 3;
 
 impl Detector<'_> {
-    /// The filter with a step before row `first`, or in it, having read all rows until `k`.
-    /// The reading in which it happened is of neither ship.
+    /// Returns the filter with a step before row `first` or within it, after all rows up to
+    /// `k`. The reading during the step fits neither state.
     pub(crate) fn refit_step(&self, k: usize, before: &Filter, first: usize) -> Filter {
         let mut likeliest = self.filter_with_step(k, before, first, HypothesisKind::Step);
         let after = (first + 1).min(k);
@@ -58,7 +58,8 @@ impl Detector<'_> {
         filter
     }
 
-    /// The step before this one, and its filter, where that one alone explains the rows.
+    /// Returns the previous step with its refitted filter, if that step alone explains the
+    /// rows.
     pub(crate) fn same_step(&self, k: usize, dated: &DatedChange) -> Option<(usize, Filter)> {
         let base = self.returns.baselines.last()?;
         let event = self.events.get(base.event)?;
@@ -72,7 +73,7 @@ impl Detector<'_> {
         (filter.log_likelihood > enough).then_some((base.event, filter))
     }
 
-    /// The step is what `filter` says, and what was told after it was the same.
+    /// Replaces the state after the step by `filter`, and removes later steps.
     pub(crate) fn replace_step(&mut self, k: usize, of: usize, filter: Filter) {
         self.remove_later_steps(of);
         let event = &mut self.events[of];

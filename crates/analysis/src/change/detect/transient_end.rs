@@ -1,4 +1,4 @@
-//! When a passing disturbance is over.
+//! End of a transient.
 
 use super::state::Detector;
 use crate::change::filter::VARIATION;
@@ -10,8 +10,8 @@ use crate::change::thresholds::{
 };
 
 impl Detector<'_> {
-    /// Once a burst has had its time, the filter that knew of it takes over if it is
-    /// still the likelier, so that the burst does not pass for the ship's.
+    /// Ends a transient after its greatest duration. Its filter becomes the null filter if
+    /// it is the likeliest, so that the transient is not attributed to the vessel.
     pub(crate) fn end_transient(&mut self, k: usize) {
         let age_s = |row: usize| match (self.observations[row].time, self.observations[k].time) {
             (Some(then), Some(now)) => now.seconds_since(then),
@@ -64,16 +64,16 @@ impl Detector<'_> {
         }
     }
 
-    /// The last row from `first` to `k` at which a filter that expects a burst found
-    /// the variation astray.
+    /// Returns the last row from `first` to `k` with a disturbed variation, by a filter
+    /// that expects a transient.
     pub(crate) fn last_disturbed_row(&self, first: usize, k: usize) -> usize {
         let Some(fork) = self.bank.forks.iter().rfind(|s| s.at <= first) else {
             return first;
         };
         let at = self.null.unknowns();
         let measured: Vec<_> = (fork.at..k).map(|row| self.measure(row, &at)).collect();
-        let astray_deg = |m| fork.origin().variation_innovation_deg(m);
-        let most_deg = measured.iter().map(astray_deg).fold(0.0, f64::max);
+        let innovation_deg = |m| fork.origin().variation_innovation_deg(m);
+        let most_deg = measured.iter().map(innovation_deg).fold(0.0, f64::max);
         let transient = transient_noise(most_deg);
         let mut filter = apply_jump(fork.origin(), HypothesisKind::Transient);
         let mut last = first;

@@ -1,7 +1,7 @@
-//! A large step that is neither certain nor out of question when the rows end.
+//! Large steps that are neither certain nor excluded when the rows end.
 //!
-//! What always holds: it is no event; until the rows tell, the band is to hold both the ship
-//! that she was and the one that she may be.
+//! Such a step is no event. The band covers both states of the vessel until later rows
+//! decide.
 
 use super::state::{Detector, Leads};
 use crate::change::filter::Filter;
@@ -14,16 +14,16 @@ use crate::change::thresholds::{
 use crate::estimate::{POPULATION_SD, unseen_sd_nt};
 use std::ops::Range;
 
-/// The rows are linearised so often, each time at the ship that the last supposed: deviation
-/// is not linear in a large step.
+/// Rounds in which the rows are linearised at the state of the last round: deviation is not
+/// linear in a large step.
 const LINEARISATION_ROUNDS: usize = 4;
-/// Of so many rows the middle one is astray while a compass is.
+/// Number of rows whose median innovation counts.
 const MEDIAN_ROWS: usize = 3;
-/// Where H is this, an error of the variation has its nominal size.
+/// Horizontal field at which the variation's error has its nominal size.
 const NOMINAL_H_NT: f64 = 24_000.0;
 
 impl Detector<'_> {
-    /// What the step that may have been adds to the variance of bx and by, nT².
+    /// Returns the variance that a possible step adds to bx and to by, nT².
     pub(crate) fn undecided_step_nt2(&self, leads: &Leads) -> Option<f64> {
         let last = self.observations.len().checked_sub(1)?;
         let others = leads.iter().flatten().map(|lead| lead.log_likelihood_ratio);
@@ -43,7 +43,7 @@ impl Detector<'_> {
         let forks = forks.map(|fork| (fork.at, fork.origin()));
         let open = forks
             .chain(passed.map(|(at, before)| (*at, before)))
-            // The reading in which it happened is of neither ship.
+            // The reading during the step fits neither state.
             .flat_map(|(at, before)| [at, at + 1].map(|first| (at, first, before)))
             .filter_map(|(at, first, before)| {
                 let after = self.filter_after_large_step(at..first, before);
@@ -62,8 +62,8 @@ impl Detector<'_> {
         Some(unseen_sd_nt(seen_nt).powi(2))
     }
 
-    /// How far the compass is astray now, as a field in nT, while it swings by more than any
-    /// storm makes it: whatever that is, the base model does not say what she shows.
+    /// Returns the present innovation as a field in nT, during a severe transient: the
+    /// model does not describe what the compass shows then.
     fn severe_transient_nt(&self, leads: &Leads, last: usize) -> Option<f64> {
         let lead = leads[HypothesisKind::Transient as usize]
             .filter(|lead| lead.kind == HypothesisKind::SevereTransient)?;
@@ -71,20 +71,21 @@ impl Detector<'_> {
         let origin = fork.origin();
         let at = origin.unknowns();
         let rows = fork.at.max((last + 1).saturating_sub(MEDIAN_ROWS))..=last;
-        let astray = rows.map(|row| origin.variation_innovation_deg(&self.measure(row, &at)));
-        let mut astray: Vec<f64> = astray.collect();
-        if astray.len() < MEDIAN_ROWS {
+        let innovations_deg =
+            rows.map(|row| origin.variation_innovation_deg(&self.measure(row, &at)));
+        let mut innovations_deg: Vec<f64> = innovations_deg.collect();
+        if innovations_deg.len() < MEDIAN_ROWS {
             return None;
         }
-        astray.sort_by(f64::total_cmp);
-        let median = astray
-            .get(astray.len() / 2)
+        innovations_deg.sort_by(f64::total_cmp);
+        let median = innovations_deg
+            .get(innovations_deg.len() / 2)
             .filter(|deg| **deg > SEVERE_TRANSIENT_DEG)?;
         Some(median.to_radians().min(1.0) * NOMINAL_H_NT)
     }
 
-    /// The filter of a ship that was as `before` until the end of the rows `undisturbed_rows`, and struck
-    /// then, at the last row.
+    /// Returns the filter of a vessel in the state `before` during some rows, with a large
+    /// step at their end, after all rows.
     fn filter_after_large_step(&self, undisturbed_rows: Range<usize>, before: &Filter) -> Filter {
         let first = undisturbed_rows.end;
         let before = self.run_filter(before.clone(), undisturbed_rows, &before.unknowns());

@@ -1,4 +1,4 @@
-//! Disturbances that the ship alone cannot be sure of: other ships may speak for them.
+//! Transients that one vessel alone cannot confirm: other vessels may.
 
 use super::state::WeakTransient;
 use super::state::{Detector, Leads};
@@ -11,12 +11,12 @@ use crate::change::thresholds::{
 };
 
 impl Detector<'_> {
-    /// Keeps in mind what leads by too little to be told.
+    /// Notes a transient whose lead is below the threshold.
     pub(crate) fn note_weak_transient(&mut self, k: usize, leads: Leads, over_lasting: f64) {
-        // What is wild and faint is a few wild readings.
-        let is_news =
+        // A weak and severe transient is a few wild readings.
+        let may_be_noted =
             |lead: &Lead| self.transient.is_none() && lead.kind != HypothesisKind::SevereTransient;
-        let Some(lead) = leads[HypothesisKind::Transient as usize].filter(is_news) else {
+        let Some(lead) = leads[HypothesisKind::Transient as usize].filter(may_be_noted) else {
             return;
         };
         let most = self
@@ -36,7 +36,7 @@ impl Detector<'_> {
         }
     }
 
-    /// Whether a burst of row `first` may go on still.
+    /// Returns true if a transient since row `first` may still go on.
     pub(crate) fn may_continue(&self, first: usize, k: usize) -> bool {
         let time = |row: usize| self.observations[row].time;
         let age_s = time(k)
@@ -45,7 +45,7 @@ impl Detector<'_> {
         age_s.is_some_and(|age_s| age_s < TRANSIENT_MAX_S)
     }
 
-    /// Puts it among the events, unconfirmed, once it is over or the rows are.
+    /// Records the noted transient as an unconfirmed event, once it or the rows have ended.
     pub(crate) fn close_weak_transient(&mut self, k: usize, is_last: bool) {
         let is_over = |weak_transient: &mut WeakTransient| {
             is_last || k > weak_transient.last + WEAK_TRANSIENT_OVER_ROWS

@@ -1,8 +1,7 @@
-//! Whether what came after a step bears it out.
+//! Withdrawal of a step that later rows do not support.
 //!
-//! What always holds: a ship to whom nothing happened, or by whom something passed, is
-//! followed beside the filter that knows of the step, over the same rows; what is
-//! withdrawn stays so, whatever comes later, and its place in the list of events is kept.
+//! Filters without the step, with and without a transient, read the same rows as the filter
+//! with it. A withdrawn step stays withdrawn, and keeps its place in the list of events.
 
 use super::dating::DatedChange;
 use super::state::{Detector, Leads};
@@ -17,7 +16,7 @@ use crate::change::thresholds::{
 };
 
 impl Detector<'_> {
-    /// The doubt of a step that was dated just now, and is the last event.
+    /// Returns the hypotheses without a step that was just dated and is the last event.
     pub(crate) fn no_step_hypotheses(
         &self,
         k: usize,
@@ -41,13 +40,13 @@ impl Detector<'_> {
         }
     }
 
-    /// It reads the row that the filter has read.
+    /// Reads row `k` with the hypotheses without the step.
     pub(crate) fn observe_no_step(&mut self, k: usize) {
         let Some(mut no_step) = self.no_step.take() else {
             return;
         };
         for filter in &mut no_step.without {
-            // A ship that was not struck has nothing that fades.
+            // Without a step nothing decays.
             let m = self.measure_settled(k, &filter.unknowns());
             filter.observe(&m, &self.noise, None);
         }
@@ -95,7 +94,7 @@ impl Detector<'_> {
         true
     }
 
-    /// Whether an event is a step that still stands.
+    /// Returns true if an event is a step that was not withdrawn.
     pub(crate) fn is_step_in_force(&self, event: usize) -> bool {
         let event = &self.events[event];
         event.kind == EventKind::Step && event.withdrawn.is_none()

@@ -1,16 +1,15 @@
-//! A filter's covariance: a symmetric matrix, of which the right upper quarter is not
-//! worked out.
+//! The filter's covariance: a symmetric matrix without its upper right quarter.
 
 use super::states::STATES;
 
 /// Columns of a panel.
 pub(crate) const PANEL_COLUMNS: usize = STATES / 2;
 
-/// In two panels of columns, one after the other, each from the diagonal down: sixteen
-/// rows, and eight. The squares about the diagonal are whole.
+/// Two panels of columns, each from the diagonal down: sixteen rows, and eight. The squares
+/// about the diagonal are complete.
 ///
-/// Loops run along rows and leave out those that a zero makes idle: so compilers work on
-/// several numbers of a row at a time, and not on several rows.
+/// Loops run along rows and skip rows with a zero factor, so that compilers vectorise
+/// within a row.
 #[derive(Clone, Debug)]
 pub(crate) struct SymmetricMatrix([[f64; PANEL_COLUMNS]; STATES + PANEL_COLUMNS]);
 
@@ -19,13 +18,13 @@ impl SymmetricMatrix {
         SymmetricMatrix([[0.0; PANEL_COLUMNS]; STATES + PANEL_COLUMNS])
     }
 
-    /// The rows of either panel; the second's begin with row [`PANEL_COLUMNS`].
+    /// Returns the rows of both panels; the second's begin with row [`PANEL_COLUMNS`].
     fn panels(&self) -> [&[[f64; PANEL_COLUMNS]]; 2] {
         let (left, right) = self.0.split_at(STATES);
         [left, right]
     }
 
-    /// The same, to be changed.
+    /// Returns the rows of both panels for writing.
     pub(crate) fn panels_mut(&mut self) -> [&mut [[f64; PANEL_COLUMNS]]; 2] {
         let (left, right) = self.0.split_at_mut(STATES);
         [left, right]
@@ -37,7 +36,7 @@ impl SymmetricMatrix {
         self.panels()[panel][i - panel * PANEL_COLUMNS][j % PANEL_COLUMNS]
     }
 
-    /// Makes this one's element, and the one mirrored, a value.
+    /// Sets an element and its mirror image.
     pub(crate) fn set(&mut self, i: usize, j: usize, value: f64) {
         let (i, j) = (i.max(j), i.min(j));
         let panel = j / PANEL_COLUMNS;
@@ -53,8 +52,8 @@ impl SymmetricMatrix {
         self.set(i, j, self.at(i, j) + value);
     }
 
-    /// The product with a vector.
-    pub(crate) fn times(&self, vector: &[f64; STATES]) -> [f64; STATES] {
+    /// Returns the product with a vector.
+    pub(crate) fn multiply(&self, vector: &[f64; STATES]) -> [f64; STATES] {
         let mut product = [0.0; STATES];
         for (panel, rows) in self.panels().into_iter().enumerate() {
             let vector = &vector[panel * PANEL_COLUMNS..];
@@ -71,7 +70,7 @@ impl SymmetricMatrix {
             for (part, sum) in product.iter_mut().zip(sums) {
                 *part += sum;
             }
-            // What stands below the square stands mirrored beside it.
+            // Elements below the square stand mirrored beside it.
             for (row, part) in rows.iter().zip(product).skip(PANEL_COLUMNS) {
                 *part += dot(row, vector);
             }
@@ -79,7 +78,7 @@ impl SymmetricMatrix {
         product
     }
 
-    /// Takes off a vector's products with itself, times a factor.
+    /// Subtracts a vector's outer product with itself, times a factor.
     pub(crate) fn subtract_outer_product(&mut self, vector: &[f64; STATES], factor: f64) {
         for (panel, rows) in self.panels_mut().into_iter().enumerate() {
             let vector = &vector[panel * PANEL_COLUMNS..];
@@ -97,8 +96,7 @@ impl SymmetricMatrix {
     }
 }
 
-/// The product of two vectors as long as the shorter: in four sums side by side, which
-/// need not wait for one another.
+/// Returns the product of two vectors over the shorter length, in four independent sums.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     for (a, b) in a.as_chunks::<4>().0.iter().zip(b.as_chunks::<4>().0) {
@@ -114,7 +112,7 @@ mod tests {
     use super::*;
     use nalgebra::{SMatrix, SVector};
 
-    /// About one in three is zero.
+    /// Test vector with about one zero in three.
     fn vector(seed: usize) -> [f64; STATES] {
         std::array::from_fn(|i| ((i * i + seed * (i + 3)) % 7) as f64 - 3.0)
             .map(|x: f64| if x.abs() < 1.5 { 0.0 } else { x })
@@ -141,7 +139,7 @@ mod tests {
         whole[(9, 14)] -= 1.5;
         for seed in 0..STATES {
             let product = whole * SVector::from(vector(seed));
-            let off = SVector::from(symmetric.times(&vector(seed))) - product;
+            let off = SVector::from(symmetric.multiply(&vector(seed))) - product;
             assert!(off.amax() < 1e-12, "{seed}: {off}");
         }
         for i in 0..STATES {

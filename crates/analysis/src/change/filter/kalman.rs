@@ -1,8 +1,6 @@
-//! One Kalman filter over everything at once: the ship, her instruments' lasting
-//! errors and their passing ones.
+//! Kalman filter over the vessel, its instruments' lasting errors and their transient ones.
 //!
-//! What always holds: two filters that have taken in the same measurements can be
-//! compared by their log likelihoods.
+//! Filters that have read the same measurements can be compared by their log likelihoods.
 
 use super::covariance::{PANEL_COLUMNS, SymmetricMatrix, dot};
 use super::measurement::{Measurement, Scalar};
@@ -22,7 +20,7 @@ pub(crate) struct Filter {
 }
 
 impl Filter {
-    /// Before the first measurement; none when the prior is no prior.
+    /// Makes a filter before the first measurement.
     pub(crate) fn new(prior: &Prior, noise: &NoiseVariances) -> Filter {
         let mut scale = [1.0; PARAMETERS + 1];
         scale[..PARAMETERS].copy_from_slice(&POPULATION_SD);
@@ -47,7 +45,7 @@ impl Filter {
         }
     }
 
-    /// The lasting states as the estimator's unknowns.
+    /// Returns the lasting states as the estimator's unknowns.
     pub(crate) fn unknowns(&self) -> Unknowns {
         let mut unknowns = [0.0; UNKNOWNS];
         unknowns[..=SPEED].copy_from_slice(&self.mean[..=SPEED]);
@@ -55,7 +53,8 @@ impl Filter {
         unknowns
     }
 
-    /// Whether the constant is what it was in another, as far as either knows.
+    /// Returns true if the constant is the same as another filter's, within both
+    /// uncertainties.
     pub(crate) fn agrees_in_constant(&self, other: &Filter) -> bool {
         let k = CONSTANT_STATE;
         let apart = (self.mean[k] - other.mean[k]).abs();
@@ -63,8 +62,7 @@ impl Filter {
         apart < 2.58 * variance.max(0.0).sqrt()
     }
 
-    /// By how much the deviation, or the references' difference, is not as expected,
-    /// degrees.
+    /// Returns the larger innovation of deviation and references' difference, degrees.
     pub(crate) fn innovation_deg(&self, m: &Measurement) -> f64 {
         let off = |scalar: &Scalar| {
             let expected: f64 = scalar.load.iter().zip(&self.mean).map(|(l, x)| l * x).sum();
@@ -73,19 +71,20 @@ impl Filter {
         off(&m.deviation).max(m.difference.as_ref().map_or(0.0, off))
     }
 
-    /// How far bx and by are from those of another, population units.
+    /// Returns the distance between both filters' bx and by, population units.
     pub(crate) fn permanent_distance(&self, other: &Filter) -> f64 {
         let [x, y] = DRIFTING.map(|s| self.mean[s] - other.mean[s]);
         x.hypot(y)
     }
 
-    /// The same of the deviation alone, as an error of the variation where H is 24 µT.
+    /// Returns the innovation of the deviation as an error of the variation where H is 24
+    /// µT.
     pub(crate) fn variation_innovation_deg(&self, m: &Measurement) -> f64 {
         let Scalar { value, load, .. } = &m.deviation;
         ((value - dot(load, &self.mean)) / load[VARIATION]).abs()
     }
 
-    /// How far the deviation is from what is expected, squared standard deviations.
+    /// Returns the innovation of the deviation in standard deviations, squared.
     pub(crate) fn z_squared(&self, m: &Measurement) -> f64 {
         let Scalar {
             value,
@@ -93,11 +92,11 @@ impl Filter {
             variance,
         } = &m.deviation;
         let innovation = value - dot(load, &self.mean);
-        innovation * innovation / (variance + dot(load, &self.covariance.times(load)))
+        innovation * innovation / (variance + dot(load, &self.covariance.multiply(load)))
     }
 
-    /// Takes in what was measured; `transient` is what the variation does meanwhile, if
-    /// not the usual. By how much that surprised, nats: 0 on the average.
+    /// Reads a measurement; `transient` replaces the usual noise of the variation. Returns
+    /// the excess loss: the log-likelihood loss beyond its mean.
     pub(crate) fn observe(
         &mut self,
         m: &Measurement,
@@ -140,7 +139,7 @@ impl Filter {
                 *row = row.map(|value| value * keep);
             }
         }
-        // The same to the columns, which are all in the right panel.
+        // Columns likewise; all are in the right panel.
         let [_, right] = p.panels_mut();
         for [_, _, swing, rate, slow @ ..] in right {
             (*swing, *rate) = turned(*swing, *rate);
@@ -148,7 +147,7 @@ impl Filter {
                 *value *= keep;
             }
         }
-        // What the stationary processes lost in the step comes in as new noise.
+        // The variance that the stationary processes lost returns as new noise.
         let swing = stationary[0];
         p.add(SWING, SWING, swing * (1.0 - a * a - b * b));
         p.add(RATE, RATE, swing * (1.0 - c * c - d * d));
@@ -168,7 +167,7 @@ impl Filter {
 
     fn update(&mut self, scalar: &Scalar) -> f64 {
         let load = &scalar.load;
-        let gain = self.covariance.times(load);
+        let gain = self.covariance.multiply(load);
         let innovation = scalar.value - dot(load, &self.mean);
         let variance = scalar.variance + dot(load, &gain);
         let z_squared = innovation * innovation / variance;

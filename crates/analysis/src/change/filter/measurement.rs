@@ -1,30 +1,29 @@
-//! Measurements as the filter reads them.
+//! Measurements in the filter's states.
 
 use super::noise::NoiseVariances;
 use super::states::{LASTING, OFFSET, OFFSET_UNKNOWN, SPEED, STATES};
 use crate::estimate::{Row, Station, Transition, UNKNOWNS, Unknowns};
 
-/// What the filter takes in at one time: the deviation and, where both references
-/// were read, their difference.
+/// One measurement: the deviation and, with both references, their difference.
 pub(crate) struct Measurement {
     pub(crate) transition: Transition,
     pub(crate) seconds: f64,
-    /// What bx and by each drifted by since the last, variance in population units.
+    /// Variance of the drift of bx and by since the last measurement, population units.
     pub(crate) drift: f64,
     pub(crate) deviation: Scalar,
     pub(crate) difference: Option<Scalar>,
 }
 
-/// One number measured, degrees.
+/// A scalar measurement, degrees.
 pub(crate) struct Scalar {
-    /// What was measured, were all states zero.
+    /// Measured value for zero states.
     pub(crate) value: f64,
     pub(crate) load: [f64; STATES],
     pub(crate) variance: f64,
 }
 
-/// What `station` and `row` measure, as a filter takes it in; `extra_drift` is what bx and
-/// by drift beyond their usual, variance in thirty days.
+/// Returns the measurement of `row` at `station`; `extra_drift` is the variance of bx and
+/// by beyond their usual drift in thirty days.
 pub(crate) fn measurement(
     station: &Station,
     row: &Row,

@@ -1,4 +1,4 @@
-//! The Kalman filter that the detector runs over the rows.
+//! Kalman filter of the detector.
 
 mod covariance;
 mod kalman;

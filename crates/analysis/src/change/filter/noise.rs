@@ -4,7 +4,7 @@ use super::states::{LASTING, STATES, VARIATION};
 use crate::estimate::POPULATION_SD;
 use binnacle_compass::result::NoiseLevels;
 
-/// The sizes of noise as the filter uses them.
+/// Noise levels as variances of the filter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NoiseVariances {
     pub(crate) white: f64,
@@ -33,13 +33,13 @@ impl NoiseVariances {
         }
     }
 
-    /// Of the variation, as a rule.
+    /// Returns the usual variance of the variation's error.
     pub(crate) fn variation(&self) -> f64 {
         self.stationary[VARIATION - LASTING]
     }
 }
 
-/// Variation that is off by much more than usual, and otherwise every hour.
+/// Noise of the variation during a transient: large, and correlated for an hour.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TransientNoise {
     /// Variance, degrees squared.

@@ -130,7 +130,7 @@ fn transition(step: &mut Step, earlier: &Observation, later: &Observation) -> Tr
     step.sailing(miles, has_turned(earlier, later))
 }
 
-/// Whether both compass and reference say so: a wild reading of either is no turn.
+/// Returns true if both compass and reference say so: a wild reading of either is no turn.
 fn has_turned(earlier: &Observation, later: &Observation) -> bool {
     let by_compass = near(later.compass.degrees() - earlier.compass.degrees());
     let correction = |o: &Observation| o.deviation.degrees_east() + o.variation.degrees_east();
@@ -321,17 +321,17 @@ pub(crate) fn plain_residual(o: &Observation, unknowns: &Unknowns) -> f64 {
 }
 
 impl Station {
-    /// Whether a gyro's errors stand in the row.
+    /// Returns true if a gyro's errors stand in the row.
     pub(crate) fn reads_gyro(&self) -> bool {
         self.gyro_load != 0.0 || self.reads_both()
     }
 
-    /// Whether a satellite compass's errors stand in the row.
+    /// Returns true if a satellite compass's errors stand in the row.
     pub(crate) fn reads_satellite(&self) -> bool {
         self.satellite_load != 0.0 || self.reads_both()
     }
 
-    /// Whether their difference was read beside the row.
+    /// Returns true if their difference was read beside the row.
     pub(crate) fn reads_both(&self) -> bool {
         self.difference.is_some()
     }

@@ -64,8 +64,8 @@ impl Steps {
         }
     }
 
-    /// Whether the step after this one would be small enough, if steps go on to shrink
-    /// as they do.
+    /// Returns true if the step after this one would be small enough, if steps go on to
+    /// shrink as they do.
     fn end_with(&mut self, step: &Vector) -> bool {
         let size = step.amax();
         let shrunk = (size / self.last).min(1.0);

@@ -77,7 +77,8 @@ fn stuck(
         .collect()
 }
 
-/// Whether the ship kept her course by headings that were read at most of `of` times.
+/// Returns true if the ship kept her course by headings that were read at most of `of`
+/// times.
 fn is_steady(headings: impl Iterator<Item = f64>, of: usize) -> bool {
     let mut first = None;
     let mut off: Vec<f64> = headings

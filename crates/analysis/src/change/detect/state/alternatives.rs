@@ -1,39 +1,39 @@
-//! Alternatives to what has been accepted, and transients too weak to be accepted.
+//! Alternatives to accepted events, and transients too weak to be accepted.
 
 use super::leads::Leads;
 use crate::change::event::EventKind;
 use crate::change::filter::Filter;
 
-/// Another reading of a step.
+/// A competing explanation of a step.
 pub(crate) struct CompetingHypothesis {
     pub(crate) kind: EventKind,
-    /// The step's place in the list of events.
+    /// Place of the step in the list of events.
     pub(crate) event: usize,
-    /// What bx and by drift by beyond their usual.
+    /// Variance of the drift of bx and by beyond the usual.
     pub(crate) drift: f64,
     pub(crate) first: usize,
     pub(crate) between: (usize, usize),
     pub(crate) filter: Filter,
-    /// The filter before it.
+    /// Filter before the change.
     pub(crate) before: Filter,
 }
 
-/// That the last step may be none.
+/// Hypotheses without the last step.
 pub(crate) struct NoStepHypotheses {
-    /// The step's place in the list of events.
+    /// Place of the step in the list of events.
     pub(crate) event: usize,
-    /// The row that told.
+    /// Row at which the step was detected.
     pub(crate) detected_row: usize,
-    /// Where the stretch of learning began before it was told.
+    /// First row of the noise learning before the step was detected.
     pub(crate) learn_from: usize,
-    /// Of a ship to whom nothing happened, and by whom something passed.
+    /// Filters without any change, and with a transient.
     pub(crate) without: Vec<Filter>,
 }
 
-/// One that has not been told.
+/// A transient that has not been reported.
 pub(crate) struct WeakTransient {
     pub(crate) first: usize,
-    /// The row at which it led most.
+    /// Row of the largest lead.
     pub(crate) last: usize,
     pub(crate) leads: Leads,
 }

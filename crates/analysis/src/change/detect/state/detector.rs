@@ -1,4 +1,4 @@
-//! The detector's state, and rows as it reads them.
+//! State of the detector, and measurement of rows.
 
 use super::alternatives::{CompetingHypothesis, NoStepHypotheses, WeakTransient};
 use super::extra_drift::ExtraDrift;
@@ -29,40 +29,40 @@ pub(crate) struct Detector<'a> {
     pub(crate) reported: &'a [Timestamp],
     pub(crate) cargo: &'a [CargoPeriod],
     pub(crate) prior: &'a Prior,
-    /// Whether the sizes of noise were known before the rows.
+    /// True if the noise levels were known before the rows.
     pub(crate) is_noise_known: bool,
     pub(crate) levels: NoiseLevels,
     pub(crate) noise: NoiseVariances,
-    /// What rows are linearised at until the filter itself knows.
+    /// State at which rows are linearised until the filter has learnt.
     pub(crate) start_unknowns: Unknowns,
     pub(crate) start_until: usize,
-    /// Where the present stretch of learning began, and which comes next.
+    /// First row of the present noise learning, and the next time of learning.
     pub(crate) learn_from: usize,
     pub(crate) next_learning: LearningSchedule,
-    /// Days that the levels were learnt from.
+    /// Days from which the levels were learnt.
     pub(crate) learnt_days: f64,
     pub(crate) null: Filter,
     pub(crate) bank: HypothesisBank,
     pub(crate) last_fork: usize,
-    /// What the ship was before steps, and where she may have become it again.
+    /// Earlier states of the vessel, and possible returns at port calls.
     pub(crate) returns: PortCallReturns,
     pub(crate) departures: PortDepartures,
-    /// A reference's fault that goes on, if one does: its place in the list of
-    /// events, and the filter before.
+    /// Current fault of a reference: place of its event, and the filter before.
     pub(crate) reference_fault: Option<(usize, Filter)>,
-    /// The same of a compass's zero that moved, if nothing else has changed since.
+    /// Last alignment change, if nothing else changed since: place of its event, and the
+    /// filter before.
     pub(crate) alignment_change: Option<(usize, Filter)>,
     pub(crate) extra_drift: ExtraDrift,
-    /// What else the last step may have been.
+    /// Competing explanations of the last step.
     pub(crate) competing: Vec<CompetingHypothesis>,
-    /// That it may be none.
+    /// Hypotheses without the last step.
     pub(crate) no_step: Option<NoStepHypotheses>,
-    /// The burst that goes on, if one does.
+    /// Place of the current transient's event.
     pub(crate) transient: Option<usize>,
-    /// The filter before the last burst that was told, and its first row, as long as nothing
-    /// that lasts was.
+    /// First row of the last reported transient, and the filter before, until a lasting
+    /// change is reported.
     pub(crate) before_transient: Option<(usize, Filter)>,
-    /// A disturbance that leads by too little to be told.
+    /// A transient below the threshold.
     pub(crate) weak_transient: Option<WeakTransient>,
     pub(crate) events: Vec<Event>,
 }
@@ -120,7 +120,7 @@ impl<'a> Detector<'a> {
         }
     }
 
-    /// Steps', references', bursts' (those that are over, too) and returns' best.
+    /// Returns the leading step, reference's step, transient (ended or not) and return.
     pub(crate) fn leads(&self) -> Leads {
         [
             self.bank.step(&self.null),
@@ -130,7 +130,7 @@ impl<'a> Detector<'a> {
         ]
     }
 
-    /// Row `k` as the filter is to read it.
+    /// Returns the linearised measurement of row `k` for the null filter.
     pub(crate) fn measure_next(&self, k: usize) -> Measurement {
         if k < self.start_until {
             return self.measure(k, &self.start_unknowns);
@@ -138,7 +138,7 @@ impl<'a> Detector<'a> {
         relinearise(&self.null, &self.noise, |at| self.measure(k, at))
     }
 
-    /// Where row `k` is linearised.
+    /// Returns the state at which row `k` is linearised.
     pub(crate) fn linearisation_point(&self, k: usize) -> Unknowns {
         if k < self.start_until {
             self.start_unknowns
@@ -151,7 +151,7 @@ impl<'a> Detector<'a> {
         self.measure_drifting(k, at, 0.0)
     }
 
-    /// The same for a ship that drifts by so much more in thirty days, variance in
+    /// Returns the measurement of row `k` with an extra drift in thirty days, variance in
     /// population units.
     pub(crate) fn measure_drifting(&self, k: usize, at: &Unknowns, drift: f64) -> Measurement {
         let extra_drift = self.extra_drift.variance(self.observations, k);
@@ -159,7 +159,7 @@ impl<'a> Detector<'a> {
         self.measure_with_drift(k, at, extra_drift.max(seen * drift))
     }
 
-    /// The same for a ship that drifts as ships do.
+    /// Returns the measurement of row `k` with the usual drift.
     pub(crate) fn measure_settled(&self, k: usize, at: &Unknowns) -> Measurement {
         self.measure_with_drift(k, at, 0.0)
     }
@@ -182,11 +182,11 @@ impl<'a> Detector<'a> {
         )
     }
 
-    /// Since the row before.
+    /// Returns the time since the previous row.
     pub(crate) fn seconds_since_previous(&self, k: usize) -> f64 {
-        let earlier_state = k.checked_sub(1).and_then(|j| self.observations[j].time);
-        match (earlier_state, self.observations[k].time) {
-            (Some(earlier_state), Some(time)) => time.seconds_since(earlier_state).max(0.0),
+        let previous = k.checked_sub(1).and_then(|j| self.observations[j].time);
+        match (previous, self.observations[k].time) {
+            (Some(previous), Some(time)) => time.seconds_since(previous).max(0.0),
             _ => 0.0,
         }
     }
@@ -195,7 +195,7 @@ impl<'a> Detector<'a> {
         follows_port_call(self.observations, k) == Some(true)
     }
 
-    /// A filter over some rows, all linearised at one point.
+    /// Runs a filter over some rows, all linearised at one state.
     pub(crate) fn run_filter(
         &self,
         mut filter: Filter,
@@ -208,7 +208,7 @@ impl<'a> Detector<'a> {
         filter
     }
 
-    /// Those rows in which nothing was astray that passed.
+    /// Returns the rows without past transients.
     pub(crate) fn undisturbed_rows(
         &self,
         rows: std::ops::Range<usize>,
@@ -223,8 +223,8 @@ impl<'a> Detector<'a> {
     }
 }
 
-/// What may be again what it was: a reference first, which is soon mended; then what
-/// changed last.
+/// Returns the state that may be restored: that of a reference first, which is soon
+/// repaired, otherwise that before the last change.
 pub(crate) fn earlier_state<'a>(
     reference_fault: Option<&'a (usize, Filter)>,
     alignment_change: Option<&'a (usize, Filter)>,
@@ -232,11 +232,11 @@ pub(crate) fn earlier_state<'a>(
 ) -> Option<EarlierState<'a>> {
     let reference_step = reference_fault.map(|(_, before)| EarlierState::Reference(before));
     let zero = || alignment_change.map(|(_, before)| EarlierState::Alignment(before));
-    let ship = || {
+    let vessel = || {
         calls
             .baselines
             .last()
             .map(|base| EarlierState::Vessel(base.without_cargo()))
     };
-    reference_step.or_else(zero).or_else(ship)
+    reference_step.or_else(zero).or_else(vessel)
 }

@@ -1,17 +1,17 @@
-//! What lightning leaves in a ship fades for weeks.
+//! Extra drift of bx and by: the decay of a step, which lasts for weeks, or a drift.
 
 use crate::change::filter::Filter;
 use crate::change::priors;
 use crate::observation::Observation;
 
-/// A step that fades.
+/// Extra drift after a change.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ExtraDrift {
-    /// The first row after it.
+    /// First row after the change.
     since: usize,
-    /// Variance of bx's and by's drift in thirty days, population units.
+    /// Variance of the drift of bx and by in thirty days, population units.
     variance: f64,
-    /// Whether it is a drift rather than what fades.
+    /// True if it is a drift rather than a decay.
     is_drift: bool,
 }
 
@@ -26,7 +26,7 @@ impl ExtraDrift {
         }
     }
 
-    /// A ship that drifts on from row `since`.
+    /// Makes the extra drift of a vessel that drifts since row `since`.
     pub(crate) fn from_drift(since: usize, variance: f64) -> ExtraDrift {
         ExtraDrift {
             since,
@@ -35,12 +35,12 @@ impl ExtraDrift {
         }
     }
 
-    /// Whether the ship drifts when row `k` is read.
+    /// Returns true if the vessel drifts at row `k`.
     pub(crate) fn is_drifting(&self, observations: &[Observation], k: usize) -> bool {
         self.is_drift && self.variance(observations, k) > 0.0
     }
 
-    /// Beside the usual drift, when row `k` is read.
+    /// Returns the variance beyond the usual drift at row `k`.
     pub(crate) fn variance(&self, observations: &[Observation], k: usize) -> f64 {
         if self.variance == 0.0 || k < self.since {
             return 0.0;

@@ -1,6 +1,7 @@
-//! The likeliest hypothesis of each kind.
+//! Leading hypotheses.
 
 use crate::change::hypotheses::Lead;
 
-/// The likeliest copies by kind, in the order of [`HypothesisKind`].
+/// Leading step, reference's step, transient and return, in the order of
+/// [`HypothesisKind`].
 pub(crate) type Leads = [Option<Lead>; 4];

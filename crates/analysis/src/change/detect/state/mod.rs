@@ -1,4 +1,4 @@
-//! The detector's state between rows.
+//! State of the detector between rows.
 
 mod alternatives;
 mod detector;

@@ -1,4 +1,4 @@
-//! The sizes of noise, learnt from the rows so far.
+//! Noise levels learnt from the rows so far.
 
 use crate::change::filter::{Filter, NoiseVariances};
 use crate::estimate::{Prior, Unknowns};
@@ -7,22 +7,22 @@ use crate::observation::Observation;
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::ship::PARAMETERS;
 
-/// Days of data from which the sizes of noise are learnt, again and again.
+/// Days of data from which the noise levels are learnt again.
 const LEARNING_DAYS: [f64; 3] = [10.0, 30.0, 90.0];
 
-/// What a stretch of rows told.
+/// Noise learnt from some rows.
 #[derive(Clone, Copy)]
 pub(crate) struct LearntNoise {
     pub(crate) levels: NoiseLevels,
     pub(crate) noise: NoiseVariances,
     pub(crate) unknowns: Unknowns,
-    /// Rows that it was of.
+    /// Row after the last of them.
     pub(crate) until: usize,
 }
 
 impl LearntNoise {
-    /// What was known `before`, or else from the first days that suffice: what happened in
-    /// them would be learnt with them.
+    /// Returns the noise known `before`, or else that of the first days that suffice: a
+    /// change within them would be learnt as noise.
     pub(crate) fn first(
         observations: &[Observation],
         prior: &Prior,
@@ -47,7 +47,7 @@ impl LearntNoise {
         }
     }
 
-    /// From `rows`, beginning with the levels learnt before.
+    /// Learns from `rows`, beginning with the levels learnt before.
     pub(crate) fn from_rows(
         observations: &[Observation],
         rows: std::ops::Range<usize>,
@@ -72,7 +72,7 @@ impl LearntNoise {
     }
 }
 
-/// A ship may drift more than she has yet.
+/// A vessel may drift more than it has yet.
 fn noise(levels: &NoiseLevels) -> NoiseVariances {
     NoiseVariances::new(&NoiseLevels {
         drift_nt: levels.drift_nt.max(NoiseLevels::TYPICAL.drift_nt),
@@ -80,18 +80,18 @@ fn noise(levels: &NoiseLevels) -> NoiseVariances {
     })
 }
 
-/// When levels are learnt again.
+/// Next time at which the noise levels are learnt.
 #[derive(Clone, Copy)]
 pub(crate) struct LearningSchedule {
-    /// At this row.
+    /// Row of the learning.
     pub(crate) at: usize,
-    /// From so many days.
+    /// Days of data used.
     pub(crate) days: f64,
 }
 
 impl LearningSchedule {
-    /// The next after row `k`, of at least so many days since row `from`; one that
-    /// never comes when there is none.
+    /// Returns the next learning after row `k`, from at least so many days since row
+    /// `from`; at `usize::MAX` when there is none.
     pub(crate) fn next(
         observations: &[Observation],
         from: usize,
@@ -112,7 +112,7 @@ impl LearningSchedule {
     }
 }
 
-/// The row after the last within `days` of row `from`.
+/// Returns the row after the last within `days` of row `from`.
 fn rows_within(observations: &[Observation], from: usize, days: f64) -> usize {
     let start = observations.get(from).and_then(|o| o.time);
     from + observations[from..].partition_point(|o| match (o.time, start) {

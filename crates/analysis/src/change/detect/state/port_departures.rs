@@ -1,11 +1,11 @@
-//! The filter at the last port calls.
+//! Filters at the last port calls.
 
 use crate::change::filter::Filter;
 
-/// Calls that are asked about: the last few.
+/// Greatest number of port calls.
 const MAX_DEPARTURES: usize = 3;
 
-/// The last port calls, each with its first row after it and the filter there.
+/// Last port calls: the first row after each, and the filter there.
 #[derive(Default)]
 pub(crate) struct PortDepartures(pub(crate) Vec<(usize, Filter)>);
 
