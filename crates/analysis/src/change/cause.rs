@@ -164,10 +164,10 @@ pub(crate) fn causes(
         weights.push((Cause::Alignment, zero.min(likeliest)));
     }
     let transient_lead = (transient - most).exp();
-    let astray_deg = circumstances.disturbance_deg.unwrap_or(0.0);
-    let in_storm = (-(astray_deg / STORM_DEG).powi(2)).exp();
-    let over_anomaly = 1.0 / (1.0 + (astray_deg / ANOMALY_DEG).powi(2));
-    let by_fault = astray_deg.powi(2) / (astray_deg.powi(2) + COMPASS_FAULT_DEG.powi(2));
+    let disturbance_deg = circumstances.disturbance_deg.unwrap_or(0.0);
+    let in_storm = (-(disturbance_deg / STORM_DEG).powi(2)).exp();
+    let over_anomaly = 1.0 / (1.0 + (disturbance_deg / ANOMALY_DEG).powi(2));
+    let by_fault = disturbance_deg.powi(2) / (disturbance_deg.powi(2) + COMPASS_FAULT_DEG.powi(2));
     weights.push((
         Cause::CompassFault,
         COMPASS_FAULT_RATE_PER_YEAR * transient_lead * by_fault,

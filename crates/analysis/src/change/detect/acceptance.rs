@@ -13,6 +13,13 @@ use crate::change::thresholds::{
     BRIEF_CHANGE_S, FORK_INTERVAL_ROWS, LARGE_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO,
 };
 
+/// Filters before and after a change.
+#[derive(Clone, Copy)]
+pub(crate) struct FilterChange<'a> {
+    pub(crate) before: &'a Filter,
+    pub(crate) after: &'a Filter,
+}
+
 impl Detector<'_> {
     /// Accepts a change of the vessel's magnetism or of a reference.
     pub(crate) fn accept_change(&mut self, k: usize, kind: HypothesisKind, leads: Leads) {
@@ -27,9 +34,9 @@ impl Detector<'_> {
         });
         let lead = large.unwrap_or(lead);
         let dated = self.date_change(lead.fork, lead.kind, k);
-        let earlier_state = self.returns.baselines.last();
+        let baseline = self.returns.baselines.last();
         let at_sea = self.alignment_change.is_some()
-            || earlier_state.is_some_and(|base| !base.began_at_port_call());
+            || baseline.is_some_and(|base| !base.began_at_port_call());
         if kind == HypothesisKind::Step && self.reference_fault.is_none() && at_sea {
             // Each was linearised at its own end: either may be the likelier.
             let back = leads[HypothesisKind::Return as usize];
@@ -55,13 +62,16 @@ impl Detector<'_> {
                     EventKind::Return(event)
                 }),
         };
-        self.push(
+        self.record_event(
             k,
             event_kind,
             dated.first,
             dated.between,
             leads,
-            Some((&dated.before, &dated.filter)),
+            Some(FilterChange {
+                before: &dated.before,
+                after: &dated.filter,
+            }),
         );
         if let Some(event) = self.events.last_mut() {
             event.noticed_late = dated.noticed_late;
@@ -117,9 +127,9 @@ impl Detector<'_> {
         } else if is_loading_logged {
             StepOrigin::LoggedLoading
         } else {
-            let departure_before = self.departure_before(dated.first, &self.events[..event]);
-            departure_before.map_or(StepOrigin::AtSea, |(_, departure_before)| {
-                StepOrigin::SoonAfter(Box::new(departure_before.clone()))
+            let departure = self.departure_before(dated.first, &self.events[..event]);
+            departure.map_or(StepOrigin::AtSea, |(_, departure)| {
+                StepOrigin::SoonAfter(Box::new(departure.clone()))
             })
         };
         let base = Baseline {
@@ -134,16 +144,16 @@ impl Detector<'_> {
         let is_port_call = |row: usize| self.is_port_call(row) || self.is_discharge_logged(row);
         let calls: Vec<usize> = (dated.first..=k).filter(|row| is_port_call(*row)).collect();
         if calls.first() == Some(&dated.first) {
-            let said = self.logged_cargo_at(dated.first);
+            let logged = self.logged_cargo_at(dated.first);
             self.returns
-                .add_port_call(dated.first, &dated.before, event, said);
+                .add_port_call(dated.first, &dated.before, event, logged);
         }
         let undisturbed_rows: Vec<usize> = self.undisturbed_rows(dated.first..k + 1).collect();
         let mut since = apply_jump(&dated.before, dated.kind);
         for row in dated.first..=k {
             if row > dated.first && calls.contains(&row) {
-                let said = self.logged_cargo_at(row);
-                self.returns.add_port_call(row, &since, usize::MAX, said);
+                let logged = self.logged_cargo_at(row);
+                self.returns.add_port_call(row, &since, usize::MAX, logged);
             }
             if undisturbed_rows.binary_search(&row).is_err() {
                 continue;
@@ -196,13 +206,16 @@ impl Detector<'_> {
         if self.was_brief(&self.events[event], &dated) {
             self.events[event].end_as_transient(dated.first);
         } else {
-            self.push(
+            self.record_event(
                 k,
                 EventKind::Return(event),
                 dated.first,
                 dated.between,
                 leads,
-                Some((&before, &dated.filter)),
+                Some(FilterChange {
+                    before: &before,
+                    after: &dated.filter,
+                }),
             );
         }
         self.returns.forget(event);
@@ -229,20 +242,23 @@ impl Detector<'_> {
         let dated = self.date_change(lead.fork, HypothesisKind::Return, k);
         let before = self.bank.forks[lead.fork].origin().clone();
         self.close_transient(dated.first);
-        let Some((event, restore_instruments)) = self.reference_fault.take() else {
+        let Some((event, repaired)) = self.reference_fault.take() else {
             return;
         };
         let gained = dated.filter.log_likelihood - self.null.log_likelihood;
-        let restore_instruments = EarlierState::Reference(&restore_instruments);
+        let repaired = EarlierState::Reference(&repaired);
         self.returns
-            .apply_reference_change(gained, |back| restore_instruments.restore(back));
-        self.push(
+            .apply_reference_change(gained, |back| repaired.restore(back));
+        self.record_event(
             k,
             EventKind::Return(event),
             dated.first,
             dated.between,
             leads,
-            Some((&before, &dated.filter)),
+            Some(FilterChange {
+                before: &before,
+                after: &dated.filter,
+            }),
         );
         self.replace_null(k, dated.filter, dated.first);
     }
@@ -264,23 +280,26 @@ impl Detector<'_> {
             EventKind::Return(of) => self.events[of].kind == EventKind::ReferenceFault,
             event_kind => event_kind == EventKind::ReferenceFault,
         };
-        let is_gone = |(place, event): (usize, &Event)| {
+        let is_removed = |(place, event): (usize, &Event)| {
             let is_past = event.kind == EventKind::Transient || is_reference(event);
             place > back.event && !is_past && event.between.1 >= back.at
         };
-        let gone = self.events.iter().enumerate().map(is_gone).collect();
-        let moved = remove_events(&mut self.events, gone);
+        let removed = self.events.iter().enumerate().map(is_removed).collect();
+        let moved = remove_events(&mut self.events, removed);
         if let Some((place, _)) = &mut self.reference_fault {
             *place = moved(*place);
         }
         let before = self.null.clone();
-        self.push(
+        self.record_event(
             k,
             EventKind::Return(back.event),
             back.at,
             (back.at, back.at),
             leads,
-            Some((&before, &back.filter)),
+            Some(FilterChange {
+                before: &before,
+                after: &back.filter,
+            }),
         );
         self.returns.forget(back.event);
         self.extra_drift = ExtraDrift::default();
@@ -302,16 +321,19 @@ impl Detector<'_> {
             LearningSchedule::next(self.observations, first, first, self.learnt_days);
     }
 
-    pub(crate) fn push(
+    pub(crate) fn record_event(
         &mut self,
         k: usize,
         event_kind: EventKind,
         first: usize,
         between: (usize, usize),
         leads: Leads,
-        change: Option<(&Filter, &Filter)>,
+        change: Option<FilterChange<'_>>,
     ) {
-        let (before, after) = change.unwrap_or((&self.null, &self.null));
+        let FilterChange { before, after } = change.unwrap_or(FilterChange {
+            before: &self.null,
+            after: &self.null,
+        });
         let event = Event {
             kind: event_kind,
             first,

@@ -31,13 +31,13 @@ impl Detector<'_> {
         k: usize,
         dated: &DatedChange,
     ) -> Vec<CompetingHypothesis> {
-        let drift_hypothesis = priors::DRIFT_VARIANCES
+        let drifts = priors::DRIFT_VARIANCES
             .iter()
             .filter_map(|drift| self.drift_hypothesis(k, dated, *drift));
         let alignment = self
             .has_both_references(k)
             .then(|| self.alignment_hypothesis(k, dated));
-        drift_hypothesis.chain(alignment).collect()
+        drifts.chain(alignment).collect()
     }
 
     /// Returns the hypothesis of an alignment change at the date of the step.
@@ -128,18 +128,18 @@ impl Detector<'_> {
     /// Replaces the last step by the likeliest competing hypothesis, if that explains the
     /// rows far better, and no less well than another step would.
     pub(crate) fn decide_competing(&mut self, k: usize, leads: &Leads) -> bool {
-        let of_kind = |kind: HypothesisKind| {
+        let ratio_of = |kind: HypothesisKind| {
             leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
         };
         let (step, transient) = (
-            of_kind(HypothesisKind::Step),
-            of_kind(HypothesisKind::Transient),
+            ratio_of(HypothesisKind::Step),
+            ratio_of(HypothesisKind::Transient),
         );
         // A drifting vessel may well have returned: a return is simpler.
         let back = self
             .return_candidate(leads)
             .map_or(0.0, |back| back.log_likelihood_ratio);
-        let back = back.max(of_kind(HypothesisKind::Return));
+        let back = back.max(ratio_of(HypothesisKind::Return));
         let lead = |competitor: &CompetingHypothesis| {
             competitor.filter.log_likelihood - self.null.log_likelihood
         };
@@ -147,31 +147,31 @@ impl Detector<'_> {
             let later = competitor.event + 1..self.events.len();
             later.filter(|event| self.is_step_in_force(*event)).count()
         };
-        let worth = |place: usize| {
+        let score = |place: usize| {
             let competitor = &self.competing[place];
             lead(competitor) + priors::SPARED_STEP_LOG_ODDS * later(competitor) as f64
         };
-        let likeliest = (0..self.competing.len()).max_by(|&a, &b| worth(a).total_cmp(&worth(b)));
+        let likeliest = (0..self.competing.len()).max_by(|&a, &b| score(a).total_cmp(&score(b)));
         let Some(place) = likeliest else {
             return false;
         };
         let (ratio, of) = (lead(&self.competing[place]), self.competing[place].event);
         let mut steps = (of..self.events.len()).filter(|&e| self.is_step_in_force(e));
         let is_drift = self.competing[place].kind == EventKind::Drift;
-        let in_port = is_drift && steps.all(|event| self.is_cargo_likely(event));
-        let mut enough = if later(&self.competing[place]) > 0 {
+        let with_cargo = is_drift && steps.all(|event| self.is_cargo_likely(event));
+        let mut threshold = if later(&self.competing[place]) > 0 {
             COMPETING_WITH_SEVERAL_LOG_LIKELIHOOD_RATIO
         } else {
             COMPETING_LOG_LIKELIHOOD_RATIO
         };
-        if in_port {
+        if with_cargo {
             // Cargo comes on board at once: no drift precedes it.
             if self.competing[place].first + DRIFT_BEFORE_CARGO_ROWS > self.events[of].between.0 {
                 return false;
             }
-            enough += DRIFT_WITH_CARGO_EXTRA_LOG_LIKELIHOOD_RATIO;
+            threshold += DRIFT_WITH_CARGO_EXTRA_LOG_LIKELIHOOD_RATIO;
         }
-        if ratio < enough
+        if ratio < threshold
             || ratio < step - COMPETING_DEFICIT_LOG_LIKELIHOOD_RATIO
             || ratio < transient
             || ratio < back
@@ -203,7 +203,7 @@ impl Detector<'_> {
         self.returns.forget(of);
         self.remove_later_steps(of);
         let event = &mut self.events[of];
-        let was = CompetingHypothesis {
+        let replaced = CompetingHypothesis {
             kind: event.kind,
             event: of,
             drift: 0.0,
@@ -230,7 +230,7 @@ impl Detector<'_> {
         let mut competing = Vec::new();
         match competitor.kind {
             EventKind::Alignment => {
-                competing.push(was);
+                competing.push(replaced);
                 self.alignment_change = Some((of, competitor.before));
             }
             EventKind::Step => self.revert_to_step(&competitor),
@@ -243,7 +243,7 @@ impl Detector<'_> {
 
     /// Restores a step that had been replaced by an alignment change.
     fn revert_to_step(&mut self, step: &CompetingHypothesis) {
-        let at_port = self.began_in_port(step.event);
+        let at_port = self.began_at_port(step.event);
         if !at_port {
             self.extra_drift = ExtraDrift::from_step(step.first, &step.before, &step.filter);
         }
@@ -283,28 +283,26 @@ impl Detector<'_> {
             rows[(o.compass.degrees() / 360.0 * ALIGNMENT_SECTORS as f64) as usize
                 % ALIGNMENT_SECTORS] += 1;
         }
-        let departure_before =
-            |sector: usize| rows[sector % ALIGNMENT_SECTORS] >= ALIGNMENT_SECTOR_ROWS;
+        let is_sailed = |sector: usize| rows[sector % ALIGNMENT_SECTORS] >= ALIGNMENT_SECTOR_ROWS;
         let apart = ALIGNMENT_SECTORS_BETWEEN + 1..ALIGNMENT_SECTORS - ALIGNMENT_SECTORS_BETWEEN;
-        (0..ALIGNMENT_SECTORS).any(|one| {
-            departure_before(one) && apart.clone().any(|far| departure_before(one + far))
-        })
+        (0..ALIGNMENT_SECTORS)
+            .any(|one| is_sailed(one) && apart.clone().any(|far| is_sailed(one + far)))
     }
 
     /// Removes later steps, which were the same change.
     pub(crate) fn remove_later_steps(&mut self, of: usize) {
-        let is_gone = |place: usize, event: &Event| match event.kind {
+        let is_removed = |place: usize, event: &Event| match event.kind {
             EventKind::Step => place > of,
             EventKind::Return(step) => step >= of && self.events[step].kind == EventKind::Step,
             _ => false,
         };
-        let gone: Vec<bool> = self
+        let removed: Vec<bool> = self
             .events
             .iter()
             .enumerate()
-            .map(|(p, e)| is_gone(p, e))
+            .map(|(p, e)| is_removed(p, e))
             .collect();
-        let moved = remove_events(&mut self.events, gone);
+        let moved = remove_events(&mut self.events, removed);
         self.transient = self.transient.map(&moved);
         if let Some((place, _)) = &mut self.reference_fault {
             *place = moved(*place);
@@ -312,10 +310,10 @@ impl Detector<'_> {
     }
 
     fn is_cargo_likely(&self, event: usize) -> bool {
-        self.began_in_port(event) || self.is_cargo_logged(self.events[event].first)
+        self.began_at_port(event) || self.is_cargo_logged(self.events[event].first)
     }
 
-    fn began_in_port(&self, event: usize) -> bool {
+    fn began_at_port(&self, event: usize) -> bool {
         let (earliest, latest) = self.events[event].between;
         (earliest..=latest).any(|row| self.is_port_call(row))
     }

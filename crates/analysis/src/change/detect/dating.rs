@@ -194,9 +194,9 @@ impl Detector<'_> {
                 self.run_filter(origin.origin().clone(), rows, &at_before),
             )
         });
-        let departure_before = self.departure_before(row, &self.events);
-        let departure_before = departure_before.filter(|(call, _)| *call < origin.at);
-        let tried = before.chain(departure_before.map(|(call, before)| {
+        let departure = self.departure_before(row, &self.events);
+        let departure = departure.filter(|(call, _)| *call < origin.at);
+        let tried = before.chain(departure.map(|(call, before)| {
             // As likely as a null filter that may have been credited with a transient
             // since.
             let nothing = self.run_filter(before.clone(), call..k + 1, &self.null.unknowns());
@@ -214,19 +214,19 @@ impl Detector<'_> {
                     > filter.log_likelihood - DATE_AT_PORT_CALL_LOG_LIKELIHOOD_RATIO
             })
             .max_by(|a, b| a.2.log_likelihood.total_cmp(&b.2.log_likelihood))?;
-        let has_passed = |event: &Event| {
+        let was_transient_since = |event: &Event| {
             event.kind == EventKind::Transient
                 && event.first > call
                 && event.last.is_some_and(|last| last < row)
         };
-        let is_late = call < origin.at || self.events.iter().any(has_passed);
+        let noticed_late = call < origin.at || self.events.iter().any(was_transient_since);
         Some(DatedChange {
             first: call,
             between: (call.min(row), call.max(row)),
             kind,
             before,
             filter,
-            noticed_late: is_late,
+            noticed_late,
         })
     }
 }

@@ -28,6 +28,7 @@ use crate::change::thresholds::{
 use crate::observation::Observation;
 
 impl Detector<'_> {
+    /// Decides at row `k` whether the leading hypothesis is accepted.
     pub(crate) fn decide(&mut self, k: usize) {
         let leads = self.leads();
         let ratio = |kind: HypothesisKind| {
@@ -37,7 +38,7 @@ impl Detector<'_> {
             return self.decide_transient(k, leads);
         }
         let transient = ratio(HypothesisKind::Transient).max(0.0);
-        let back = ratio(HypothesisKind::Return);
+        let returned = ratio(HypothesisKind::Return);
         if let Some(return_candidate) = self.return_candidate(&leads)
             && return_candidate.probability > RETURN_POSTERIOR
         {
@@ -48,24 +49,24 @@ impl Detector<'_> {
         {
             return;
         }
-        let competitor = ratio(HypothesisKind::Step).max(ratio(HypothesisKind::ReferenceStep));
+        let largest_change = ratio(HypothesisKind::Step).max(ratio(HypothesisKind::ReferenceStep));
         if self.reference_fault.is_some()
-            && back - transient > REFERENCE_REPAIR_LOG_LIKELIHOOD_RATIO
-            && back > competitor - REFERENCE_REPAIR_DEFICIT_LOG_LIKELIHOOD_RATIO
+            && returned - transient > REFERENCE_REPAIR_LOG_LIKELIHOOD_RATIO
+            && returned > largest_change - REFERENCE_REPAIR_DEFICIT_LOG_LIKELIHOOD_RATIO
         {
             return self.accept_reference_repair(k, leads);
         }
-        let earlier_state = self.returns.baselines.last();
-        let enough = if self.alignment_change.is_none()
-            && earlier_state.is_some_and(Baseline::began_at_port_call)
+        let baseline = self.returns.baselines.last();
+        let threshold = if self.alignment_change.is_none()
+            && baseline.is_some_and(Baseline::began_at_port_call)
         {
             CARGO_RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO
         } else {
             RETURN_AT_SEA_LOG_LIKELIHOOD_RATIO
         };
         if self.reference_fault.is_none()
-            && back - transient > enough
-            && back > ratio(HypothesisKind::Step)
+            && returned - transient > threshold
+            && returned > ratio(HypothesisKind::Step)
         {
             return self.accept_return(k, leads);
         }
@@ -83,24 +84,24 @@ impl Detector<'_> {
                     ratio(HypothesisKind::Step),
                 )
             };
-        let over_burst = lasting - transient;
+        let over_transient = lasting - transient;
         // On one heading one reference cannot tell its own fault from a change of the
         // vessel.
         let clear = lasting - self.prior_log_odds(kind, &leads) - other.max(0.0);
         let is_clear =
             clear > VESSEL_OR_REFERENCE_LOG_LIKELIHOOD_RATIO || self.has_both_references(k);
-        let is_told = is_clear
+        let is_accepted = is_clear
             && match kind {
                 HypothesisKind::ReferenceStep => {
                     self.has_lasted(REFERENCE_STEP_MIN_ROWS, kind, k, &leads)
-                        && over_burst > REFERENCE_STEP_LOG_LIKELIHOOD_RATIO
+                        && over_transient > REFERENCE_STEP_LOG_LIKELIHOOD_RATIO
                 }
                 _ => {
                     self.has_lasted(STEP_MIN_ROWS, kind, k, &leads)
-                        && self.is_step(k, lasting, over_burst, &leads)
+                        && self.passes_step_threshold(k, lasting, over_transient, &leads)
                 }
             };
-        if is_told {
+        if is_accepted {
             let back =
                 self.return_candidate_within(&leads, RETURN_FOR_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO);
             if let Some(back) = back.filter(|back| self.replaces_step(&leads, back))
@@ -140,9 +141,9 @@ impl Detector<'_> {
                 None => {}
             }
             self.transient = Some(self.events.len());
-            self.before_transient = self.before(first);
+            self.before_transient = self.last_fork_before(first);
             self.weak_transient = None;
-            self.push(k, EventKind::Transient, first, (first, first), leads, None);
+            self.record_event(k, EventKind::Transient, first, (first, first), leads, None);
         } else {
             self.note_weak_transient(k, leads, transient - lasting);
         }
@@ -175,7 +176,7 @@ impl Detector<'_> {
     }
 
     /// Returns the last fork up to a row, and its filter before the jump.
-    fn before(&self, row: usize) -> Option<(usize, Filter)> {
+    fn last_fork_before(&self, row: usize) -> Option<(usize, Filter)> {
         let mut forks = self.bank.forks.iter();
         let fork = forks.rfind(|fork| fork.at <= row)?;
         Some((fork.at, fork.origin().clone()))
@@ -192,7 +193,7 @@ impl Detector<'_> {
     /// Returns the first row of a transient.
     pub(crate) fn transient_start(&self, lead: Lead) -> usize {
         let fork = &self.bank.forks[lead.fork];
-        let over = fork.transient_from.filter(|_| self.is_over(lead));
+        let over = fork.transient_from.filter(|_| self.is_transient_over(lead));
         over.unwrap_or(fork.at)
     }
 
@@ -205,14 +206,21 @@ impl Detector<'_> {
         leads[kind as usize].map_or(0.0, |lead| self.bank.prior_log_odds(lead))
     }
 
-    pub(crate) fn is_step(&self, k: usize, lead: f64, over_burst: f64, leads: &Leads) -> bool {
+    /// Returns true if a step leads by enough to be accepted.
+    pub(crate) fn passes_step_threshold(
+        &self,
+        k: usize,
+        lead: f64,
+        over_transient: f64,
+        leads: &Leads,
+    ) -> bool {
         let step = leads[HypothesisKind::Step as usize];
         // A large step would explain the first hour of a storm, too.
         let is_usual = step.is_some_and(|lead| lead.kind == HypothesisKind::Step);
         // A step that is likelier beforehand must be as clear from the rows.
         let beforehand = self.prior_log_odds(HypothesisKind::Step, leads);
-        if over_burst - beforehand <= CLEAR_STEP_LOG_LIKELIHOOD_RATIO
-            || (over_burst
+        if over_transient - beforehand <= CLEAR_STEP_LOG_LIKELIHOOD_RATIO
+            || (over_transient
                 <= STEP_LOG_LIKELIHOOD_RATIO + self.new_vessel_extra(k) + self.drifting_extra(k)
                 && !(is_usual && lead - beforehand > CLEAR_AGAINST_NULL_LOG_LIKELIHOOD_RATIO))
         {
@@ -224,8 +232,8 @@ impl Detector<'_> {
             one.count() as f64 > ONE_REFERENCE_SHARE * rows.len() as f64
         };
         let usually = &self.observations[..since.max(1)];
-        let is_half_blind = with_one(&self.observations[since..=k]) && !with_one(usually);
-        over_burst > ONE_REFERENCE_LOG_LIKELIHOOD_RATIO || !is_half_blind
+        let lost_reference = with_one(&self.observations[since..=k]) && !with_one(usually);
+        over_transient > ONE_REFERENCE_LOG_LIKELIHOOD_RATIO || !lost_reference
     }
 
     /// Returns the likeliest return at a port call, unless a step to another state is far
@@ -234,18 +242,18 @@ impl Detector<'_> {
         self.return_candidate_within(leads, RETURN_DEFICIT_LOG_LIKELIHOOD_RATIO)
     }
 
-    fn return_candidate_within(&self, leads: &Leads, below: f64) -> Option<ReturnCandidate> {
+    fn return_candidate_within(&self, leads: &Leads, deficit: f64) -> Option<ReturnCandidate> {
         let ratio = |kind: HypothesisKind| {
             leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
         };
-        let competitor =
+        let transient =
             (ratio(HypothesisKind::Transient) - priors::RETURN_OVER_TRANSIENT_LOG_ODDS).max(0.0);
-        let is_outlying = self.transient.is_some()
+        let is_disturbed = self.transient.is_some()
             && ratio(HypothesisKind::Transient) > ratio(HypothesisKind::Step);
         let likeliest = self
             .returns
-            .likeliest(&self.null, competitor, is_outlying)?;
-        (is_outlying || likeliest.log_likelihood_ratio > ratio(HypothesisKind::Step) - below)
+            .likeliest(&self.null, transient, is_disturbed)?;
+        (is_disturbed || likeliest.log_likelihood_ratio > ratio(HypothesisKind::Step) - deficit)
             .then_some(likeliest)
     }
 
@@ -265,7 +273,7 @@ impl Detector<'_> {
     /// Returns the port call near row `at`, up to row `k`, at which cargo may have been
     /// discharged.
     pub(crate) fn discharge_near(&self, at: usize, k: usize) -> Option<usize> {
-        let laden = self
+        let baseline = self
             .returns
             .baselines
             .last()
@@ -273,7 +281,7 @@ impl Detector<'_> {
         if self.alignment_change.is_some() || self.reference_fault.is_some() {
             return None;
         }
-        let loaded = self.events[laden.event].first;
+        let loaded = self.events[baseline.event].first;
         let rows = at.saturating_sub(RETURN_FOR_STEP_ROWS_AFTER)
             ..=(at + RETURN_FOR_STEP_ROWS_BEFORE).min(k);
         let calls = rows.filter(|row| *row > loaded && self.is_port_call(*row));
@@ -295,7 +303,7 @@ impl Detector<'_> {
     }
 
     /// Returns true if the leading transient is over.
-    pub(crate) fn is_over(&self, lead: Lead) -> bool {
+    pub(crate) fn is_transient_over(&self, lead: Lead) -> bool {
         let over = self.bank.lead(HypothesisKind::TransientEnd, &self.null);
         over.is_some_and(|over| {
             over.fork == lead.fork && over.log_likelihood_ratio >= lead.log_likelihood_ratio

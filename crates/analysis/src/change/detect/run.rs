@@ -3,6 +3,7 @@
 //! Every row is read once, in order of time, and no later row affects what it shows. Every
 //! event lies between two rows. The search ends.
 
+use super::acceptance::FilterChange;
 use super::state::{Detector, LearningSchedule, LearntNoise, earlier_state};
 use crate::change::priors;
 use crate::change::thresholds::{
@@ -20,22 +21,22 @@ use crate::observation::Observation;
 
 /// Searches rows in order of time for changes. Rows without a time, or most of which share
 /// theirs, cannot be dated.
-pub(crate) fn detect(observations: &[Observation], given: &DetectionInput<'_>) -> Detection {
+pub(crate) fn detect(observations: &[Observation], input: &DetectionInput<'_>) -> Detection {
     if !are_times_believed(observations) {
         return Detection::default();
     }
-    let Some(learnt) = LearntNoise::first(observations, given.prior, given.levels) else {
+    let Some(learnt) = LearntNoise::first(observations, input.prior, input.levels) else {
         return Detection::default();
     };
-    let mut search = Detector::new(observations, given, learnt);
+    let mut search = Detector::new(observations, input, learnt);
     for k in 0..observations.len() {
-        search.step(k);
+        search.read_row(k);
     }
     search.finish()
 }
 
 impl Detector<'_> {
-    fn step(&mut self, k: usize) {
+    fn read_row(&mut self, k: usize) {
         if k >= self.next_learning.at {
             self.relearn(k);
         }
@@ -68,8 +69,9 @@ impl Detector<'_> {
             self.last_fork = k;
         }
         if self.is_port_call(k) || self.is_discharge_logged(k) {
-            let said = self.logged_cargo_at(k);
-            self.returns.add_port_call(k, &self.null, usize::MAX, said);
+            let logged = self.logged_cargo_at(k);
+            self.returns
+                .add_port_call(k, &self.null, usize::MAX, logged);
         }
         if self.is_port_call(k) {
             self.departures.add(k, &self.null);
@@ -196,8 +198,10 @@ impl Detector<'_> {
         let filters = fork
             .hypothesis(lead.kind)
             .map(|f| (fork.origin().clone(), f.clone()));
-        let change = filters.as_ref().map(|(before, after)| (before, after));
-        self.push(k, event_kind, first, (first, first), leads, change);
+        let change = filters
+            .as_ref()
+            .map(|(before, after)| FilterChange { before, after });
+        self.record_event(k, event_kind, first, (first, first), leads, change);
         if let Some(event) = self.events.last_mut() {
             event.confirmed = false;
         }

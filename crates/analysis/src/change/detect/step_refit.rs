@@ -31,9 +31,9 @@ impl Detector<'_> {
             (&within, after, HypothesisKind::Step),
             (&within, after, HypothesisKind::LargeStep),
         ] {
-            let read = self.filter_with_step(k, before, first, kind);
-            if read.log_likelihood > likeliest.log_likelihood {
-                likeliest = read;
+            let refitted = self.filter_with_step(k, before, first, kind);
+            if refitted.log_likelihood > likeliest.log_likelihood {
+                likeliest = refitted;
             }
         }
         likeliest
@@ -69,14 +69,14 @@ impl Detector<'_> {
             return None;
         }
         let filter = self.refit_step(k, &base.filter, event.first);
-        let enough = dated.filter.log_likelihood - STEP_KEPT_LOG_LIKELIHOOD_RATIO;
-        (filter.log_likelihood > enough).then_some((base.event, filter))
+        let threshold = dated.filter.log_likelihood - STEP_KEPT_LOG_LIKELIHOOD_RATIO;
+        (filter.log_likelihood > threshold).then_some((base.event, filter))
     }
 
     /// Replaces the state after the step by `filter`, and removes later steps.
-    pub(crate) fn replace_step(&mut self, k: usize, of: usize, filter: Filter) {
-        self.remove_later_steps(of);
-        let event = &mut self.events[of];
+    pub(crate) fn replace_step(&mut self, k: usize, step: usize, filter: Filter) {
+        self.remove_later_steps(step);
+        let event = &mut self.events[step];
         event.after = snapshot(&filter);
         let first = event.first;
         let (competing, no_step) = (std::mem::take(&mut self.competing), self.no_step.take());

@@ -43,10 +43,10 @@ impl Detector<'_> {
                 fork.hypothesis(HypothesisKind::TransientEnd)?.clone(),
             ))
         });
-        let is_over = self
+        let is_overdue = self
             .transient
             .is_some_and(|event| age_s(self.events[event].first) >= 1.2 * TRANSIENT_MAX_S);
-        if ended.is_none() && !is_over {
+        if ended.is_none() && !is_overdue {
             return;
         }
         if let Some(event) = self.transient.take() {

@@ -28,11 +28,11 @@ impl Detector<'_> {
         let last = self.observations.len().checked_sub(1)?;
         let others = leads.iter().flatten().map(|lead| lead.log_likelihood_ratio);
         let likeliest = others.fold(0.0, f64::max);
-        let passed = self
+        let past_transient = self
             .before_transient
             .as_ref()
             .filter(|(at, _)| last < at + UNDECIDED_STEP_ROWS);
-        if likeliest < UNDECIDED_STEP_LOG_LIKELIHOOD_RATIO && passed.is_none() {
+        if likeliest < UNDECIDED_STEP_LOG_LIKELIHOOD_RATIO && past_transient.is_none() {
             return None;
         }
         let forks = self
@@ -42,7 +42,7 @@ impl Detector<'_> {
             .filter(|s| last < s.at + UNDECIDED_STEP_ROWS);
         let forks = forks.map(|fork| (fork.at, fork.origin()));
         let open = forks
-            .chain(passed.map(|(at, before)| (*at, before)))
+            .chain(past_transient.map(|(at, before)| (*at, before)))
             // The reading during the step fits neither state.
             .flat_map(|(at, before)| [at, at + 1].map(|first| (at, first, before)))
             .filter_map(|(at, first, before)| {
@@ -57,8 +57,8 @@ impl Detector<'_> {
             })
             .max_by(|a, b| a.0.total_cmp(&b.0))
             .map(|(_, size)| size * POPULATION_SD[0]);
-        let wild = self.severe_transient_nt(leads, last);
-        let seen_nt = open.into_iter().chain(wild).max_by(f64::total_cmp)?;
+        let severe = self.severe_transient_nt(leads, last);
+        let seen_nt = open.into_iter().chain(severe).max_by(f64::total_cmp)?;
         Some(unseen_sd_nt(seen_nt).powi(2))
     }
 

@@ -28,9 +28,8 @@ impl Detector<'_> {
         let is_later =
             |event: &Event| event.detected_row >= *at && event.kind != EventKind::Transient;
         let times = self.observations[*at].time.zip(self.observations[row].time);
-        let is_soon = times.is_some_and(|(departure_before, now)| {
-            now.seconds_since(departure_before) < CARGO_NOTICED_LATE_S
-        });
+        let is_soon =
+            times.is_some_and(|(departed, now)| now.seconds_since(departed) < CARGO_NOTICED_LATE_S);
         (is_soon && !earlier_events.iter().any(is_later)).then_some((*at, filter))
     }
 
@@ -65,7 +64,7 @@ impl Detector<'_> {
             })
             .collect();
         let (first, _) = likely.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let sum: f64 = likely.iter().map(|(_, tempered_odds)| tempered_odds).sum();
+        let sum: f64 = likely.iter().map(|(_, odds)| odds).sum();
         // Alternatives: no change, a reference's fault, a transient, and a return.
         let fault = leads[HypothesisKind::ReferenceStep as usize]
             .filter(|lead| self.bank.forks[lead.fork].at >= *first)
@@ -107,8 +106,8 @@ impl Detector<'_> {
 
     /// Returns true if a past transient or a reference's fault covers this row.
     fn is_disturbed(&self, row: usize) -> bool {
-        let mut lasting = self.events.iter().enumerate();
-        lasting.any(|(place, event)| {
+        let mut events = self.events.iter().enumerate();
+        events.any(|(place, event)| {
             let last = match event.kind {
                 EventKind::Transient if self.transient == Some(place) => return false,
                 EventKind::Transient => event.last,

@@ -47,14 +47,14 @@ impl Detector<'_> {
 
     /// Records the noted transient as an unconfirmed event, once it or the rows have ended.
     pub(crate) fn close_weak_transient(&mut self, k: usize, is_last: bool) {
-        let is_over = |weak_transient: &mut WeakTransient| {
+        let is_transient_over = |weak_transient: &mut WeakTransient| {
             is_last || k > weak_transient.last + WEAK_TRANSIENT_OVER_ROWS
         };
-        let Some(weak_transient) = self.weak_transient.take_if(is_over) else {
+        let Some(weak_transient) = self.weak_transient.take_if(is_transient_over) else {
             return;
         };
         let WeakTransient { first, last, leads } = weak_transient;
-        self.push(k, EventKind::Transient, first, (first, first), leads, None);
+        self.record_event(k, EventKind::Transient, first, (first, first), leads, None);
         if let Some(event) = self.events.last_mut() {
             event.last = Some(last.max(first));
             event.confirmed = false;

@@ -24,8 +24,8 @@ impl Detector<'_> {
         leads: &Leads,
     ) -> NoStepHypotheses {
         let (before, rows) = (&dated.before, dated.first..k + 1);
-        let nothing = self.run_filter(before.clone(), rows, &before.unknowns());
-        let passed = leads[HypothesisKind::Transient as usize].and_then(|lead| {
+        let without_change = self.run_filter(before.clone(), rows, &before.unknowns());
+        let with_transient = leads[HypothesisKind::Transient as usize].and_then(|lead| {
             let hypothesis = self.bank.forks[lead.fork].hypothesis(lead.kind)?;
             Some(match lead.kind {
                 HypothesisKind::SevereTransient => reset_variation(hypothesis, &self.noise),
@@ -36,7 +36,9 @@ impl Detector<'_> {
             event: self.events.len() - 1,
             detected_row: k,
             learn_from: self.learn_from,
-            without: std::iter::once(nothing).chain(passed).collect(),
+            without: std::iter::once(without_change)
+                .chain(with_transient)
+                .collect(),
         }
     }
 
@@ -50,12 +52,12 @@ impl Detector<'_> {
             let m = self.measure_settled(k, &filter.unknowns());
             filter.observe(&m, &self.noise, None);
         }
-        let trails = if k < no_step.detected_row + WITHDRAWAL_MIN_ROWS {
+        let largest_deficit = if k < no_step.detected_row + WITHDRAWAL_MIN_ROWS {
             NO_STEP_DROPPED_EARLY_LOG_LIKELIHOOD_RATIO
         } else {
             NO_STEP_DROPPED_LOG_LIKELIHOOD_RATIO
         };
-        let lower_bound = self.null.log_likelihood - trails;
+        let lower_bound = self.null.log_likelihood - largest_deficit;
         no_step
             .without
             .retain(|filter| filter.log_likelihood > lower_bound);
@@ -64,11 +66,11 @@ impl Detector<'_> {
 
     /// Withdraws the last step, if the rows since are likelier without it.
     pub(crate) fn decide_withdrawal(&mut self, k: usize, leads: &Leads) -> bool {
-        let of_kind = |kind: HypothesisKind| {
+        let ratio_of = |kind: HypothesisKind| {
             leads[kind as usize].map_or(0.0, |lead| lead.log_likelihood_ratio)
         };
         if self.transient.is_some()
-            || of_kind(HypothesisKind::Transient) > WITHDRAWAL_MAX_TRANSIENT_LOG_LIKELIHOOD_RATIO
+            || ratio_of(HypothesisKind::Transient) > WITHDRAWAL_MAX_TRANSIENT_LOG_LIKELIHOOD_RATIO
         {
             return false;
         }
@@ -76,8 +78,8 @@ impl Detector<'_> {
             let each = no_step.without.iter().enumerate();
             let each = each.map(|(i, filter)| (i, filter.log_likelihood));
             let (place, ratio) = each.max_by(|a, b| a.1.total_cmp(&b.1))?;
-            let enough = self.null.log_likelihood + WITHDRAWAL_LOG_LIKELIHOOD_RATIO;
-            (k >= no_step.detected_row + WITHDRAWAL_MIN_ROWS && ratio > enough).then_some(place)
+            let threshold = self.null.log_likelihood + WITHDRAWAL_LOG_LIKELIHOOD_RATIO;
+            (k >= no_step.detected_row + WITHDRAWAL_MIN_ROWS && ratio > threshold).then_some(place)
         };
         let Some(place) = self.no_step.as_ref().and_then(likelier) else {
             return false;

@@ -70,17 +70,17 @@ pub(crate) struct Detector<'a> {
 impl<'a> Detector<'a> {
     pub(crate) fn new(
         observations: &'a [Observation],
-        given: &DetectionInput<'a>,
+        input: &DetectionInput<'a>,
         learnt: LearntNoise,
     ) -> Detector<'a> {
         Detector {
             observations,
             stations: stations(observations),
-            reported: given.reported,
-            cargo: given.cargo,
-            prior: given.prior,
-            is_noise_known: given.levels.is_some(),
-            null: Filter::new(given.prior, &learnt.noise),
+            reported: input.reported,
+            cargo: input.cargo,
+            prior: input.prior,
+            is_noise_known: input.levels.is_some(),
+            null: Filter::new(input.prior, &learnt.noise),
             levels: learnt.levels,
             noise: learnt.noise,
             start_unknowns: learnt.unknowns,
