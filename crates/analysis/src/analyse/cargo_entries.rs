@@ -1,26 +1,26 @@
-//! Cargo that the logbook has on board: whose readings tell of the ship as she sails, and
-//! what people should know of an entry that nobody ended.
+//! Logbook entries of magnetic cargo: the readings with cargo, and notices of entries
+//! without an end.
 //!
-//! What always holds: readings with cargo stay out of the model of the ship without it,
-//! unless she has sailed so for weeks and nothing set them apart.
+//! Readings with cargo stay out of the model of the vessel without it, unless nothing has
+//! set them apart for weeks.
 
-use super::changes::Found;
-use super::logbook_rules::excludes;
+use super::changes::ChangeFindings;
+use super::logbook_rules::exclusion_by_entry;
 use super::reading::Reading;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::result::{Cause, Epoch, SampleReason};
 use binnacle_compass::time::Timestamp;
 
-/// Cargo that was to show by now, if it moves the compass: days, and readings.
-const IDLE_DAYS: f64 = 21.0;
-const IDLE_READINGS: usize = 500;
+/// Time and readings after which cargo that moves the compass would have shown.
+const CARGO_SHOWS_DAYS: f64 = 21.0;
+const CARGO_SHOWS_READINGS: usize = 500;
 const DAY_S: f64 = 86_400.0;
-/// A change so long before an entry began is of its cargo, seconds.
+/// Time before an entry within which a change belongs to its cargo, seconds.
 const LOADED_BEFORE_S: f64 = 2.0 * DAY_S;
 
-/// Returns true if an epoch is one of the ship with her cargo on board: it began with the
-/// cargo, or with something else while she was laden and has been so for the most of it.
-/// Without these readings nothing would be known of her as she sails.
+/// Returns true if an epoch is one with cargo on board: it began with the cargo, or with
+/// another change while laden, and was laden for most of it. Without these readings nothing
+/// would be known of the vessel as it sails.
 pub(super) fn is_laden(epoch: &Epoch, own: &[Reading]) -> bool {
     if epoch.resumes.is_some() {
         return false;
@@ -36,58 +36,70 @@ pub(super) fn is_laden(epoch: &Epoch, own: &[Reading]) -> bool {
         && with_reason(Some(SampleReason::MagneticCargo)) > with_reason(None)
 }
 
-/// An entry of cargo without an end that the samples no longer bear out.
+/// An open cargo entry that the samples contradict.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Idle {
-    /// When the entry begins, and ends.
+pub(super) struct ContradictedEntry {
+    /// Beginning and end of the entry.
     entry: (Timestamp, Option<Timestamp>),
-    /// Readings since then are taken: from when it began, or from when she was herself again.
+    /// Time since which readings are used: the entry's beginning, or the vessel's return.
     since: Timestamp,
-    /// Until when nothing has set them apart.
+    /// Time until which nothing has set the readings apart.
     until: Timestamp,
-    /// True if she was another with that cargo, and is herself again.
+    /// True if the cargo changed the vessel, which has returned since.
     is_back: bool,
 }
 
-/// Takes in the readings of an epoch of the logbook that an entry without an end so far leaves
-/// out, where nothing tells them from those without cargo.
-pub(super) fn take_idle(
+/// Includes the readings that an open entry leaves out, where nothing tells them from those
+/// without cargo.
+pub(super) fn include_contradicted(
     epoch: &Epoch,
-    found: &Found,
+    found: &ChangeFindings,
     own: &mut [Reading],
     logbook: &[LogbookEntry],
-) -> Vec<Idle> {
+) -> Vec<ContradictedEntry> {
     let Some(until) = own.last().map(|r| r.sample().time) else {
         return Vec::new();
     };
-    let idle = |entry: &LogbookEntry| idle(entry, epoch, found, own);
-    let idle: Vec<Idle> = without_end(logbook, until).filter_map(idle).collect();
-    if idle.is_empty() {
-        return idle;
+    let contradicted = |entry: &LogbookEntry| contradicted(entry, epoch, found, own);
+    let contradicted: Vec<ContradictedEntry> = without_end(logbook, until)
+        .filter_map(contradicted)
+        .collect();
+    if contradicted.is_empty() {
+        return contradicted;
     }
     let cargoes = logbook
         .iter()
         .filter(|e| e.kind == LogbookKind::MagneticCargo);
-    let since = |entry: &LogbookEntry| idle.iter().find(|i| i.entry == (entry.from, entry.to));
+    let since = |entry: &LogbookEntry| {
+        contradicted
+            .iter()
+            .find(|i| i.entry == (entry.from, entry.to))
+    };
     let cargoes: Vec<_> = cargoes
-        .map(|entry| (entry, since(entry).map(|idle| idle.since)))
+        .map(|entry| (entry, since(entry).map(|contradicted| contradicted.since)))
         .collect();
     for reading in own {
         let sample = *reading.sample();
         let bears_out = |(entry, since): &(&LogbookEntry, Option<Timestamp>)| {
-            excludes(entry, &sample).is_some() && since.is_none_or(|since| sample.time < since)
+            exclusion_by_entry(entry, &sample).is_some()
+                && since.is_none_or(|since| sample.time < since)
         };
         let is_laden = cargoes.iter().any(bears_out);
         let reason = &mut reading.diagnostic.reason;
         *reason = reason.filter(|reason| *reason != SampleReason::MagneticCargo || is_laden);
     }
-    idle
+    contradicted
 }
 
-/// Since when an entry without an end is not borne out, in an epoch of the logbook: since it
-/// began, or since she was herself again, if by the time that cargo shows nothing had set the
-/// samples apart.
-fn idle(entry: &LogbookEntry, epoch: &Epoch, found: &Found, own: &[Reading]) -> Option<Idle> {
+/// Returns the contradicted entry and the time since which it is contradicted: its
+/// beginning, or the vessel's return, if nothing had set the samples apart by the time at
+/// which cargo shows.
+fn contradicted(
+    entry: &LogbookEntry,
+    epoch: &Epoch,
+    found: &ChangeFindings,
+    own: &[Reading],
+) -> Option<ContradictedEntry> {
     let first = own.first()?.sample().time;
     let until = own.last()?.sample().time;
     let from = entry.from.max(epoch.from.unwrap_or(first)).max(first);
@@ -100,13 +112,14 @@ fn idle(entry: &LogbookEntry, epoch: &Epoch, found: &Found, own: &[Reading]) -> 
     let mut starts = std::iter::once((from, loaded, false)).chain(returns);
     starts.find_map(|(since, after, is_back)| {
         let laden = own.partition_point(|r| r.sample().time < since);
-        let many = own.get(laden + IDLE_READINGS)?.sample().time;
-        let by = many.max(since.plus_seconds(IDLE_DAYS * DAY_S));
+        let many = own.get(laden + CARGO_SHOWS_READINGS)?.sample().time;
+        let by = many.max(since.plus_seconds(CARGO_SHOWS_DAYS * DAY_S));
         let is_apart = found.boundaries.iter().any(|b| b.at > after && b.at <= by);
         let possible_return = found.possible_return.as_ref();
-        let may_be = possible_return.is_some_and(|ended| found.changes[ended.change].from <= by);
+        let may_have_ended =
+            possible_return.is_some_and(|ended| found.changes[ended.change].from <= by);
         let later = found.boundaries.iter().map(|b| b.at).filter(|at| *at > by);
-        (until > by && !is_apart && !may_be).then_some(Idle {
+        (until > by && !is_apart && !may_have_ended).then_some(ContradictedEntry {
             entry: (entry.from, entry.to),
             since,
             until: later.min().unwrap_or(until),
@@ -115,11 +128,11 @@ fn idle(entry: &LogbookEntry, epoch: &Epoch, found: &Found, own: &[Reading]) -> 
     })
 }
 
-/// What people should know of entries of cargo that have no end so far.
+/// Returns the notices of open cargo entries.
 pub(super) fn notices(
     readings: &[Reading],
     logbook: &[LogbookEntry],
-    idle: &[Idle],
+    contradicted: &[ContradictedEntry],
 ) -> Vec<String> {
     let Some(until) = readings.last().map(|r| r.sample().time) else {
         return Vec::new();
@@ -136,18 +149,21 @@ pub(super) fn notices(
                 r.sample().time >= from && r.diagnostic.reason == Some(SampleReason::MagneticCargo)
             });
             let left_out = left_out.count();
-            if let Some(idle) = idle.iter().find(|idle| idle.entry == (from, entry.to)) {
-                let days = idle.until.seconds_since(idle.since) / DAY_S;
-                let so = if idle.is_back {
+            if let Some(contradicted) = contradicted
+                .iter()
+                .find(|contradicted| contradicted.entry == (from, entry.to))
+            {
+                let days = contradicted.until.seconds_since(contradicted.since) / DAY_S;
+                let reason = if contradicted.is_back {
                     format!(
                         "Since {} the samples are those of the ship without it",
-                        idle.since
+                        contradicted.since
                     )
                 } else {
                     format!("In {days:.0} days nothing has set the samples apart from those before")
                 };
                 return Some(format!(
-                    "the logbook has magnetic cargo on board since {from}, and {end}. {so}, so \
+                    "the logbook has magnetic cargo on board since {from}, and {end}. {reason}, so \
                      that they are taken for the ship as she is. If the cargo was discharged, \
                      give the entry its end"
                 ));
@@ -157,7 +173,7 @@ pub(super) fn notices(
                     "{left_out} samples are left out of the model, for the logbook has magnetic \
                      cargo on board since {from}, and {end}. If it was discharged, give \
                      the entry its end. If it is on board, the model is of the ship without it; \
-                     when nothing sets the samples apart for {IDLE_DAYS:.0} days, they are taken \
+                     when nothing sets the samples apart for {CARGO_SHOWS_DAYS:.0} days, they are taken \
                      again"
                 )
             })
@@ -165,8 +181,8 @@ pub(super) fn notices(
         .collect()
 }
 
-/// Entries of cargo that have no end, or none by `until`: a year mistaken would leave samples
-/// out for as long.
+/// Returns the cargo entries without an end by `until`: a mistaken year would leave out
+/// samples for as long.
 fn without_end(logbook: &[LogbookEntry], until: Timestamp) -> impl Iterator<Item = &LogbookEntry> {
     let entries = logbook.iter();
     entries.filter(move |entry| {

@@ -1,16 +1,16 @@
-//! Which samples the logbook excludes.
+//! Rules of the logbook: excluded samples, and reported causes.
 
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::result::{Cause, SampleReason};
 use binnacle_compass::sample::Sample;
 
-/// An open berth entry says nothing of a sample taken at this speed or more,
-/// knots: she has sailed, and nobody wrote it down.
+/// Speed from which an open berth entry does not apply, knots: the vessel has sailed, and
+/// nobody recorded it.
 const UNDER_WAY_KN: f64 = 2.0;
 
-/// Why a sample tells nothing of the ship alone, by this entry.
-pub(super) fn excludes(entry: &LogbookEntry, sample: &Sample) -> Option<SampleReason> {
-    let reason = exclusion(entry.kind)?;
+/// Returns the reason for which an entry excludes a sample.
+pub(super) fn exclusion_by_entry(entry: &LogbookEntry, sample: &Sample) -> Option<SampleReason> {
+    let reason = exclusion_by_kind(entry.kind)?;
     let within = entry.from <= sample.time && entry.to.is_none_or(|to| sample.time <= to);
     let has_sailed = entry.kind == LogbookKind::Berth
         && entry.to.is_none()
@@ -18,8 +18,9 @@ pub(super) fn excludes(entry: &LogbookEntry, sample: &Sample) -> Option<SampleRe
     (within && !has_sailed).then_some(reason)
 }
 
-/// Why samples taken during such an entry are left out; none when they are not.
-pub(super) fn exclusion(kind: LogbookKind) -> Option<SampleReason> {
+/// Returns the reason for which samples during such an entry are left out; none when they
+/// are not.
+pub(super) fn exclusion_by_kind(kind: LogbookKind) -> Option<SampleReason> {
     match kind {
         LogbookKind::MagneticCargo => Some(SampleReason::MagneticCargo),
         LogbookKind::Berth => Some(SampleReason::Berth),
@@ -27,8 +28,8 @@ pub(super) fn exclusion(kind: LogbookKind) -> Option<SampleReason> {
     }
 }
 
-/// What an entry of the logbook is a report of.
-pub(super) fn cause_of(kind: LogbookKind) -> Option<Cause> {
+/// Returns the cause that an entry reports.
+pub(super) fn reported_cause(kind: LogbookKind) -> Option<Cause> {
     match kind {
         LogbookKind::Lightning | LogbookKind::Shock => Some(Cause::LightningOrShock),
         LogbookKind::MagneticCargo => Some(Cause::MagneticCargo),

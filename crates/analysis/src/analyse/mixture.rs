@@ -1,16 +1,14 @@
-//! One model where it is not known which of two the ship is: laden yet, or herself
-//! again.
+//! Mixture of two models, where the state of the vessel is not known.
 //!
-//! What always holds: the band of what comes out is no narrower than it would have
-//! to be if either may be right, each as likely as it is held to be.
+//! The band is no narrower than the probabilities of the two models require.
 
 use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::ship::PARAMETERS;
 
-/// Mean and covariance of a ship that is `other` with a probability and `one`
-/// otherwise. What else a model says is the likelier one's. None unless both have
-/// a covariance.
-pub(super) fn either(one: &Model, other: &Model, probability: f64) -> Option<Model> {
+/// Returns mean and covariance of a vessel that is `other` with a probability, and
+/// otherwise `one`. All else is taken from the likelier model. None unless both have a
+/// covariance.
+pub(super) fn mixture(one: &Model, other: &Model, probability: f64) -> Option<Model> {
     let weights = [1.0 - probability, probability];
     let means = [one, other].map(as_vector);
     let covariances = [one.covariance?, other.covariance?];
@@ -62,12 +60,12 @@ mod tests {
         let mut other = one.clone();
         other.parameters_over_lambda.bx_nt = -1000.0;
 
-        let open = either(&one, &other, 0.5).unwrap();
+        let open = mixture(&one, &other, 0.5).unwrap();
         assert!(open.parameters_over_lambda.bx_nt.abs() < 1e-9);
         let se = open.covariance.unwrap()[0][0].sqrt();
         assert!((se - 50.0_f64.hypot(1000.0)).abs() < 1e-6, "{se}");
 
-        let certain = either(&one, &other, 1.0).unwrap();
+        let certain = mixture(&one, &other, 1.0).unwrap();
         assert!((certain.parameters_over_lambda.bx_nt + 1000.0).abs() < 1e-9);
         assert!((certain.covariance.unwrap()[0][0] - 2500.0).abs() < 1e-6);
     }

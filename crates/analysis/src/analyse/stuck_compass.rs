@@ -1,11 +1,9 @@
-//! A compass that stands still while the ship turns: its card has jammed, or its
-//! sensor repeats itself.
+//! Stuck compass: a jammed card, or a sensor that repeats itself, while the vessel turns.
 //!
-//! What always holds: a reference that is wild now and then turns no ship, and a compass that
-//! went with her half of the way is free; she turns against magnetic north, for a ship that is
-//! steered by her compass keeps it where it is while the variation changes; readings of a
-//! steady course before the first turn are not held against the compass unless they are
-//! the same to the last.
+//! Wild readings of a reference are no turn, and a compass that follows half of a turn is
+//! free. Turns are measured against magnetic north, because a vessel steered by its compass
+//! keeps the reading constant while the variation changes. Readings on a steady course
+//! before the first turn are not marked unless they are identical.
 
 use super::reading::Reading;
 use binnacle_compass::angle::{TrueHeading, Variation, wrap_180};
@@ -13,53 +11,52 @@ use binnacle_compass::result::{Cause, CauseProbability, Change, SampleReason};
 use binnacle_compass::sample::Sample;
 use std::ops::Range;
 
-/// Readings no further apart than this are the same. A sound compass wanders by more
+/// Difference up to which readings count as identical. A sound compass wanders by more
 /// between two means of ten minutes on a steady course.
 const SAME_DEG: f64 = 0.15;
-/// A jammed card trembles by less than this about where it stands; so does a sound one
-/// on a steady course.
-const TREMBLES_DEG: f64 = 1.0;
-/// A card that has moved by more, or so often in a row, stands there no longer.
+/// Greatest oscillation of a jammed card about its position; a sound one on a steady course
+/// does no more.
+const OSCILLATION_DEG: f64 = 1.0;
+/// Jump, or number of readings elsewhere in a row, by which a card has left its position.
 const JUMPS_DEG: f64 = 2.5;
 const LEFT_READINGS: usize = 3;
-/// What is a turn of the ship by her gyro or satellite compass, and how many show
-/// that a compass that repeats itself does not follow. A reference that steps and comes
-/// back makes two.
+/// Smallest turn by gyro or satellite compass, and the number of turns that show that a
+/// constant reading does not follow. A reference that steps and returns makes two.
 const TURN_DEG: f64 = 5.0;
 const TURNS: usize = 3;
-/// A compass that turns by as much of what she does is free. On the heading where the ship
-/// makes it slowest a sound one turns by 1/(1 + B) of it: two thirds where B is 0.5.
-const FOLLOWS: f64 = 0.5;
-/// By how much more than from heading to heading a card is off that jammed in a turn.
-const ASKEW_DEG: f64 = 15.0;
-/// What a jammed card did not follow before such a turn.
+/// Share of a turn from which the compass follows. A sound compass turns least, by 1/(1 +
+/// B) of it, on one heading: two thirds where B is 0.5.
+const FOLLOWED_SHARE: f64 = 0.5;
+/// Error, beyond the differences between headings, of a card that jammed in a turn.
+const JAMMED_IN_TURN_DEG: f64 = 15.0;
+/// Turn before that, which a jammed card did not follow.
 const SLIGHT_TURN_DEG: f64 = 1.5;
-/// Of a card that trembles, turns count between courses that were kept for so many
-/// readings, by all references: wild ones come singly. No strike comes just at a turn and
-/// undoes it, so that one is enough that two references saw. By one there must be more of
-/// them, for it may be that which errs, also while the other is silent.
+/// Readings that a course must be kept for by all references, where the card oscillates:
+/// wild readings come singly. No strike coincides with a turn and undoes it, so that one
+/// turn by two references suffices. By one reference more turns are needed, because it may
+/// be the one that errs, also while the other is silent.
 const COURSE_READINGS: usize = 3;
 const TURNS_BY_ONE: usize = 4;
 
-/// Marks the readings of a stuck compass; tells each time that it stuck.
+/// Marks the readings of a stuck compass, and returns a change for each fault.
 pub(super) fn mark_stuck(readings: &mut [Reading]) -> Vec<Change> {
     let mut changes = Vec::new();
     let mut from = 0;
-    let mut look_from = 0;
+    let mut next_check = 0;
     while from < readings.len() {
         let mut found = None;
-        if from >= look_from {
-            let stood = standing(&readings[from..]);
-            found = trembling(readings, from..from + stood);
-            // What holds for all of them holds for the later ones, too: so much is
-            // looked at again that the work does not grow as the square.
-            look_from = from + stood.div_ceil(2);
+        if from >= next_check {
+            let stood = readings_about_mean(&readings[from..]);
+            found = oscillating(readings, from..from + stood);
+            // What holds for all holds for the later readings, too: skipping them keeps the
+            // work from growing with the square.
+            next_check = from + stood.div_ceil(2);
         }
-        let same = from..from + same(&readings[from..]);
-        let found = found.or_else(|| repeating(readings, same.clone()));
-        from = same.end;
+        let identical = from..from + identical(&readings[from..]);
+        let found = found.or_else(|| repeating(readings, identical.clone()));
+        from = identical.end;
         if let Some(stuck) = found {
-            changes.push(told(readings, &stuck));
+            changes.push(stuck_change(readings, &stuck));
             from = stuck.all.end.max(from);
             for reading in &mut readings[stuck.all] {
                 let reason = &mut reading.diagnostic.reason;
@@ -70,29 +67,29 @@ pub(super) fn mark_stuck(readings: &mut [Reading]) -> Vec<Change> {
     changes
 }
 
-/// Readings of a compass that did not follow the ship.
+/// Readings of a compass that did not follow the vessel.
 struct Stuck {
     all: Range<usize>,
-    /// The reading that showed it.
-    showed: usize,
+    /// Reading that showed the fault.
+    shown_at: usize,
     turns: usize,
-    trembles: bool,
+    oscillates: bool,
 }
 
-/// Those of a compass that reads the same, if the ship turned often.
-fn repeating(readings: &[Reading], same: Range<usize>) -> Option<Stuck> {
-    let turns = || turns(&readings[same.clone()]);
-    let showed = same.start + turns().nth(TURNS - 1)?;
+/// Returns the fault of a compass with identical readings, if the vessel turned often.
+fn repeating(readings: &[Reading], identical: Range<usize>) -> Option<Stuck> {
+    let turns = || turns(&readings[identical.clone()]);
+    let shown_at = identical.start + turns().nth(TURNS - 1)?;
     Some(Stuck {
-        showed,
+        shown_at,
         turns: turns().count(),
-        trembles: false,
-        all: same,
+        oscillates: false,
+        all: identical,
     })
 }
 
-/// How many readings from the first on are the same.
-fn same(readings: &[Reading]) -> usize {
+/// Returns the number of identical readings from the first on.
+fn identical(readings: &[Reading]) -> usize {
     let off = |reading: &Reading| apart_deg(&readings[0], reading);
     readings
         .iter()
@@ -104,8 +101,9 @@ fn apart_deg(a: &Reading, b: &Reading) -> f64 {
     wrap_180(b.sample().compass.degrees() - a.sample().compass.degrees()).abs()
 }
 
-/// Those of a compass that trembles about one heading, if the ship kept to several.
-fn trembling(readings: &[Reading], stands: Range<usize>) -> Option<Stuck> {
+/// Returns the fault of a compass that oscillates about one heading, if the vessel kept
+/// several courses.
+fn oscillating(readings: &[Reading], stands: Range<usize>) -> Option<Stuck> {
     let stood = &readings[stands.clone()];
     let courses = courses(stood);
     let course = |first: usize| &stood[first..first + COURSE_READINGS];
@@ -113,41 +111,43 @@ fn trembling(readings: &[Reading], stands: Range<usize>) -> Option<Stuck> {
         .windows(2)
         .position(|pair| turned_deg(course(pair[0]), course(pair[1])).count() == 2);
     let enough = by_both.map_or(TURNS_BY_ONE, |turn| TURNS_BY_ONE.min(turn + 1));
-    let showed = stands.start + courses.get(enough)? + COURSE_READINGS - 1;
+    let shown_at = stands.start + courses.get(enough)? + COURSE_READINGS - 1;
     // On the first course it may have been sound.
     let mut first = stands.start + courses[1];
     let (course, turned) = (&stood[courses[0]], first);
     let is_stuck = |k: usize| {
-        has_parted(SLIGHT_TURN_DEG, course, &readings[k])
+        left_reference(SLIGHT_TURN_DEG, course, &readings[k])
             || apart_deg(&readings[turned], &readings[k]) < SAME_DEG
     };
     let before = (stands.start..first).rev().take_while(|&k| is_stuck(k));
     first = before.last().unwrap_or(first);
     let sound = stands.start.checked_sub(1).map(|k| &readings[k]);
-    if sound.is_some_and(|sound| has_parted(ASKEW_DEG, sound, course)) {
+    if sound.is_some_and(|sound| left_reference(JAMMED_IN_TURN_DEG, sound, course)) {
         first = stands.start;
     }
-    // Readings from before it jammed have no part in where it stands.
-    let end = stands.end.max(first + standing(&readings[first..]));
+    // Readings from before the jam do not affect the jammed position.
+    let end = stands
+        .end
+        .max(first + readings_about_mean(&readings[first..]));
     let kept = self::courses(&readings[first..end]).len();
     Some(Stuck {
         all: first..end,
-        showed,
+        shown_at,
         turns: kept.max(courses.len() - 1),
-        trembles: (first..end).any(|k| apart_deg(&readings[first], &readings[k]) > SAME_DEG),
+        oscillates: (first..end).any(|k| apart_deg(&readings[first], &readings[k]) > SAME_DEG),
     })
 }
 
-/// How many readings from the first on stay about their mean.
-fn standing(readings: &[Reading]) -> usize {
+/// Returns the number of readings, from the first on, that stay about their mean.
+fn readings_about_mean(readings: &[Reading]) -> usize {
     let first = readings[0].sample().compass.degrees();
     let mut sum = 0.0;
-    // Where those began that have left it by now.
+    // First of the readings that have left the mean.
     let mut left = None;
     for (count, reading) in readings.iter().enumerate().skip(1) {
         let off = wrap_180(reading.sample().compass.degrees() - first);
         let from_mean = (off - sum / count as f64).abs();
-        if from_mean > TREMBLES_DEG {
+        if from_mean > OSCILLATION_DEG {
             let since = *left.get_or_insert(count);
             if from_mean > JUMPS_DEG || count + 1 - since >= LEFT_READINGS {
                 return since;
@@ -160,8 +160,8 @@ fn standing(readings: &[Reading]) -> usize {
     left.unwrap_or(readings.len())
 }
 
-/// The first readings of the courses that the ship kept to, each another than the last by
-/// which the compass did not turn.
+/// Returns the first readings of the courses kept, each after a turn that the compass did
+/// not follow.
 fn courses(readings: &[Reading]) -> Vec<usize> {
     let mut begun: Vec<usize> = Vec::new();
     let mut since = 0;
@@ -182,8 +182,8 @@ fn courses(readings: &[Reading]) -> Vec<usize> {
     begun
 }
 
-/// Returns true if every reference that was read all the time says that the ship turned
-/// between some readings and others, and to the same side, and one was.
+/// Returns true if every reference read at all times shows a turn to the same side between
+/// some readings and others, and at least one does.
 fn has_turned(from: &[Reading], to: &[Reading]) -> bool {
     let mut turned = turned_deg(from, to);
     let first = turned.next();
@@ -193,19 +193,18 @@ fn has_turned(from: &[Reading], to: &[Reading]) -> bool {
     })
 }
 
-/// Returns true if the compass went with her, as any of them says.
+/// Returns true if the compass followed the turn by any reference.
 fn has_followed(from: &[Reading], to: &[Reading]) -> bool {
     let compass_deg = apart(from, to, |a, b| {
         Some(b.sample().compass.degrees() - a.sample().compass.degrees())
     });
     compass_deg.is_some_and(|compass_deg| {
-        let goes_with = |deg: f64| compass_deg * deg.signum() > FOLLOWS * deg.abs();
+        let goes_with = |deg: f64| compass_deg * deg.signum() > FOLLOWED_SHARE * deg.abs();
         turned_deg(from, to).any(goes_with)
     })
 }
 
-/// By how much she turned against magnetic north, by each reference that was read all the
-/// time, degrees.
+/// Returns the turns against magnetic north by each reference read at all times, degrees.
 fn turned_deg(from: &[Reading], to: &[Reading]) -> impl Iterator<Item = f64> {
     let references: [fn(&Sample) -> Option<TrueHeading>; 2] = [|s| s.gyro, |s| s.satellite];
     let turned = references.map(|of| {
@@ -217,8 +216,8 @@ fn turned_deg(from: &[Reading], to: &[Reading]) -> impl Iterator<Item = f64> {
     turned.into_iter().flatten()
 }
 
-/// How far the middle ones of some readings and of others are apart by an angle between two,
-/// degrees: a wild one is no middle. None unless each has it.
+/// Returns the difference between the medians of an angle in two groups of readings,
+/// degrees; none unless every reading has it.
 fn apart(
     from: &[Reading],
     to: &[Reading],
@@ -234,15 +233,15 @@ fn apart(
     Some(wrap_180(middle(to)? - middle(from)?))
 }
 
-/// By how much the variation is another; nothing where it is not known.
+/// Returns the change of the variation; zero where it is not known.
 fn varied_deg(a: &Reading, b: &Reading) -> f64 {
     let degrees = Variation::degrees_east;
     let both = a.variation.zip(b.variation);
     both.map_or(0.0, |(a, b)| degrees(b) - degrees(a))
 }
 
-/// Returns true if the compass has left its reference by more in between.
-fn has_parted(degrees: f64, a: &Reading, b: &Reading) -> bool {
+/// Returns true if the difference of compass and reference changed by more.
+fn left_reference(degrees: f64, a: &Reading, b: &Reading) -> bool {
     let off = |reading: &Reading| {
         let sample = reading.sample();
         let reference = sample.satellite.or(sample.gyro)?.degrees();
@@ -253,8 +252,8 @@ fn has_parted(degrees: f64, a: &Reading, b: &Reading) -> bool {
     parted.is_some_and(|parted| parted.abs() > degrees)
 }
 
-/// The second reading after each turn of the ship: a reference that is wild for one has turned
-/// back by then.
+/// Returns the second reading after each turn: a reference that is wild for one reading has
+/// recovered by then.
 fn turns(readings: &[Reading]) -> impl Iterator<Item = usize> {
     let turned = |k: usize| has_turned(&readings[k - 1..k], &readings[k..=k]);
     let is_turn = move |k: usize| turned(k) && !turned(k + 1) && (k == 1 || !turned(k - 1));
@@ -263,7 +262,7 @@ fn turns(readings: &[Reading]) -> impl Iterator<Item = usize> {
         .map(|k| k + 1)
 }
 
-fn told(readings: &[Reading], found: &Stuck) -> Change {
+fn stuck_change(readings: &[Reading], found: &Stuck) -> Change {
     let stuck = &found.all;
     let from = readings[stuck.start].sample().time;
     let last = readings[stuck.end - 1].sample().time;
@@ -276,7 +275,7 @@ fn told(readings: &[Reading], found: &Stuck) -> Change {
         from,
         from_earliest: before.unwrap_or(from),
         from_latest: from,
-        detected_at: readings[found.showed].sample().time,
+        detected_at: readings[found.shown_at].sample().time,
         confirmed: true,
         withdrawn: false,
         cause: Cause::CompassFault,
@@ -287,7 +286,7 @@ fn told(readings: &[Reading], found: &Stuck) -> Change {
         evidence: vec![format!(
             "the compass {} {heading:.1} degrees in {} samples in a row while the ship turned {} \
              times by gyro or satellite compass",
-            if found.trembles {
+            if found.oscillates {
                 "trembled about"
             } else {
                 "read"
@@ -308,8 +307,8 @@ mod tests {
     use binnacle_compass::settings::AnalysisSettings;
     use binnacle_compass::time::Timestamp;
 
-    /// Readings ten minutes apart of what compass, gyro and satellite compass show, at 47
-    /// degrees north and the longitude given.
+    /// Readings ten minutes apart at 47 degrees north and the longitude given, by compass,
+    /// gyro and satellite compass.
     fn shown(each: impl Iterator<Item = (f64, [f64; 3])>, has_satellite: bool) -> Vec<Reading> {
         let start = Timestamp::parse("2026-06-01T00:00:00Z").unwrap();
         let sample = |(k, (lon, [compass, gyro, satellite])): (usize, (f64, [f64; 3]))| {
@@ -353,14 +352,14 @@ mod tests {
             41.. => 0.4,
             _ => 0.0,
         };
-        // The compass goes with her, but for the ship's magnetism.
+        // The compass follows, but for the vessel's magnetism.
         let at = |k: usize| {
             let yaw_deg = yaw_deg(k);
             let compass_deg = 44.0 + if yaw_deg > 0.5 { 2.2 } else { 0.8 * yaw_deg };
             (-10.0, [compass_deg, 52.0 + yaw_deg, 52.0 + yaw_deg])
         };
         assert_eq!(mark_stuck(&mut shown((0..60).map(at), true)), []);
-        // And one that has jammed is found by the same turn, if she keeps to it.
+        // A jammed compass is found by the same turn, if the vessel keeps to it.
         let jams = |k: usize| {
             let yaw_deg = if k < 40 { 0.0 } else { 6.0 };
             (-10.0, [44.0, 52.0 + yaw_deg, 52.0 + yaw_deg])
@@ -377,7 +376,7 @@ mod tests {
             };
             let mut steady = shown((0..120).map(at), has_satellite);
             assert_eq!(mark_stuck(&mut steady), [], "{has_satellite}");
-            // But a sensor that repeats itself while she keeps to other courses is one.
+            // A sensor that repeats itself on other courses is stuck.
             let turns = |k: usize| (-10.0, [90.0, 85.0 + [0.0, 30.0][k / 5 % 2], 85.0]);
             let mut turning = shown((0..40).map(turns), false);
             assert_eq!(mark_stuck(&mut turning).len(), 1);

@@ -1,4 +1,4 @@
-//! How large a change is: as a step of magnetism and as one of deviation.
+//! Size of a change, as a step of magnetism and of deviation.
 
 use crate::analyse::reading::Reading;
 use crate::change::{Event, Snapshot};
@@ -10,8 +10,8 @@ use binnacle_compass::ship::EarthField;
 
 const HEADINGS: u32 = 36;
 
-/// The largest change of deviation over headings in a field, degrees.
-pub(super) fn worst_change(before: &Parameters, after: &Parameters, earth: EarthField) -> f64 {
+/// Returns the largest change of deviation over headings in a field, degrees.
+pub(super) fn worst_change_deg(before: &Parameters, after: &Parameters, earth: EarthField) -> f64 {
     (0..HEADINGS)
         .map(|k| {
             let magnetic = f64::from(k * 360 / HEADINGS).to_radians();
@@ -25,21 +25,21 @@ pub(super) fn worst_change(before: &Parameters, after: &Parameters, earth: Earth
         .to_degrees()
 }
 
-/// Where H is so much, what disturbs the field is told in degrees, nT.
+/// Horizontal field for which disturbances are given in degrees, nT.
 const USUAL_H_NT: f64 = 24_000.0;
-/// This share of the readings is less far astray: a wild one is of no account.
-const LESS_ASTRAY: f64 = 0.75;
+/// Share of the readings with a smaller error: the largest are wild readings.
+const SMALLER_SHARE: f64 = 0.75;
 
-/// How far the compass was astray from what the ship had been, degrees.
-pub(super) struct Astray {
-    /// As it was seen.
+/// Error of the compass against the earlier state, degrees.
+pub(super) struct Disturbance {
+    /// Error as it was seen.
     pub(super) seen_deg: f64,
-    /// As the same field would show where H is 24 µT.
-    pub(super) usual_deg: f64,
+    /// Error by the same field where H is 24 µT.
+    pub(super) nominal_deg: f64,
 }
 
-/// How far the compass was astray, a few wild readings left out.
-pub(super) fn astray(before: &Snapshot, readings: &[Observation]) -> Astray {
+/// Returns the error of the compass without a few wild readings.
+pub(super) fn disturbance(before: &Snapshot, readings: &[Observation]) -> Disturbance {
     let off = |o: &Observation| {
         let magnetic = o.compass.degrees() + o.deviation.degrees_east() - before.constant_deg;
         let earth = EarthField {
@@ -56,17 +56,17 @@ pub(super) fn astray(before: &Snapshot, readings: &[Observation]) -> Astray {
     let (seen, usual): (Vec<f64>, Vec<f64>) = readings.iter().map(off).unzip();
     let most = |mut of: Vec<f64>| {
         of.sort_by(f64::total_cmp);
-        let place = (LESS_ASTRAY * of.len() as f64) as usize;
+        let place = (SMALLER_SHARE * of.len() as f64) as usize;
         of.get(place).copied().unwrap_or(0.0)
     };
-    Astray {
+    Disturbance {
         seen_deg: most(seen),
-        usual_deg: most(usual),
+        nominal_deg: most(usual),
     }
 }
 
-/// By how much the compass's zero moved, degrees.
-pub(super) fn zero_change(before: &Snapshot, after: &Snapshot) -> f64 {
+/// Returns the change of the compass's alignment, degrees.
+pub(super) fn alignment_change_deg(before: &Snapshot, after: &Snapshot) -> f64 {
     wrap_180(after.constant_deg - before.constant_deg).abs()
 }
 
@@ -84,7 +84,7 @@ pub(super) fn step(before: &Snapshot, after: &Snapshot) -> Step {
     }
 }
 
-/// The cosine between two steps of (bx, by); 0 where one is none.
+/// Returns the cosine between two steps of (bx, by); 0 where one is zero.
 pub(super) fn cosine(one: &Event, other: &Event) -> f64 {
     let of = |event: &Event| {
         let step = step(&event.before, &event.after);
@@ -99,8 +99,13 @@ pub(super) fn cosine(one: &Event, other: &Event) -> f64 {
     }
 }
 
-/// Says the step anew by the models of the epochs on both sides.
-pub(crate) fn sharpen(change: &mut Change, before: &Epoch, after: &Epoch, readings: &[Reading]) {
+/// Updates the size of a change by the models of the epochs on both sides.
+pub(crate) fn refine_size(
+    change: &mut Change,
+    before: &Epoch,
+    after: &Epoch,
+    readings: &[Reading],
+) {
     let (Some(old), Some(new)) = (&before.model, &after.model) else {
         return;
     };
@@ -114,11 +119,11 @@ pub(crate) fn sharpen(change: &mut Change, before: &Epoch, after: &Epoch, readin
         return;
     };
     if change.cause == Cause::Alignment {
-        change.deviation_change_deg = Some(zero_change(&old, &new));
+        change.deviation_change_deg = Some(alignment_change_deg(&old, &new));
         return;
     }
     change.step = Some(step(&old, &new));
-    change.deviation_change_deg = Some(worst_change(&old.parameters, &new.parameters, earth));
+    change.deviation_change_deg = Some(worst_change_deg(&old.parameters, &new.parameters, earth));
 }
 
 fn of_model(model: &Model) -> Option<Snapshot> {

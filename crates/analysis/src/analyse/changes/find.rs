@@ -1,10 +1,10 @@
-//! Search of one epoch of the logbook for changes.
+//! Search for changes in one epoch of the logbook.
 
-use super::findings::{Boundary, Found, Known};
-use super::reference_faults::{Seen, faults};
-use super::report::Teller;
+use super::findings::{Boundary, ChangeFindings, PriorKnowledge};
+use super::reference_faults::{ReferenceUse, dropped_references};
+use super::report::EventReporter;
 use crate::analyse::epoch::Reference;
-use crate::analyse::logbook_rules::cause_of;
+use crate::analyse::logbook_rules::reported_cause;
 use crate::analyse::reading::Reading;
 use crate::change::{CargoPeriod, DetectionInput, EventKind, detect};
 use crate::observation::Observation;
@@ -12,20 +12,20 @@ use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::result::SampleReason;
 use binnacle_compass::time::Timestamp;
 
-/// Searches the readings of one epoch of the logbook and marks those that a
-/// passing disturbance or a failed reference spoilt.
-pub(crate) fn find(
+/// Searches the readings of one epoch of the logbook, and marks those spoilt by a transient
+/// or a failed reference.
+pub(crate) fn find_changes(
     readings: &mut [Reading],
     reference: &Reference,
     logbook: &[LogbookEntry],
-    known: &Known,
-) -> Found {
-    let mut found = Found {
+    known: &PriorKnowledge,
+) -> ChangeFindings {
+    let mut found = ChangeFindings {
         changes: Vec::new(),
         boundaries: Vec::new(),
         possible_return: None,
         undetected_step: None,
-        misled: None,
+        possible_alignment: None,
         undecided_step_nt2: None,
         is_watched: true,
     };
@@ -38,16 +38,16 @@ pub(crate) fn find(
     let usable: Vec<usize> = (0..readings.len())
         .filter(|&index| usable(&readings[index]))
         .collect();
-    let seen = usable
-        .iter()
-        .filter_map(|&index| Seen::of(&readings[index], reference.observations[index].as_ref()));
-    faults(&seen.collect::<Vec<_>>(), &mut found.changes);
-    // The observations, and the places of the readings that they are of.
+    let seen = usable.iter().filter_map(|&index| {
+        ReferenceUse::from_reading(&readings[index], reference.observations[index].as_ref())
+    });
+    dropped_references(&seen.collect::<Vec<_>>(), &mut found.changes);
+    // Observations, and the places of their readings.
     let (places, observations): (Vec<usize>, Vec<Observation>) = usable
         .into_iter()
         .filter_map(|index| Some((index, reference.observations[index]?)))
         .unzip();
-    let told = detect(
+    let detection = detect(
         &observations,
         &DetectionInput {
             prior: &known.prior,
@@ -56,9 +56,9 @@ pub(crate) fn find(
             cargo: &cargo(logbook),
         },
     );
-    found.is_watched = told.is_watched;
-    let events = told.events;
-    let teller = Teller {
+    found.is_watched = detection.is_watched;
+    let events = detection.events;
+    let reporter = EventReporter {
         observations: &observations,
         logbook,
         events: &events,
@@ -68,7 +68,7 @@ pub(crate) fn find(
         if let EventKind::Return(of) = event.kind {
             let place: Option<usize> = place_of.get(of).copied().flatten();
             if let Some(place) = place {
-                let at = teller.date(event.first);
+                let at = reporter.date(event.first);
                 found.changes[place].ended = Some(at);
                 if events[of].kind.is_lasting() {
                     found.boundaries.push(Boundary {
@@ -81,7 +81,7 @@ pub(crate) fn find(
             continue;
         }
         place_of[index] = Some(found.changes.len());
-        let change = teller.tell(index);
+        let change = reporter.report_change(index);
         if event.kind.is_lasting() && event.confirmed {
             found.boundaries.push(Boundary {
                 at: change.from,
@@ -97,38 +97,40 @@ pub(crate) fn find(
             _ => None,
         };
         if let Some(reason) = spoilt {
-            for row in teller.spoilt(index) {
+            for row in reporter.spoilt(index) {
                 let of = &mut readings[places[row]].diagnostic.reason;
                 *of = of.or(Some(reason));
             }
         }
         found.changes.push(change);
     }
-    found.misled = teller.misled(&found.changes, &place_of);
-    found.undecided_step_nt2 = told.undecided_step_nt2;
-    found.undetected_step = told
+    found.possible_alignment = reporter.possible_alignment(&found.changes, &place_of);
+    found.undecided_step_nt2 = detection.undecided_step_nt2;
+    found.undetected_step = detection
         .undetected_step
-        .and_then(|undetected_step| teller.begun(&undetected_step));
-    found.possible_return = told.possible_return.and_then(|possible_return| {
+        .and_then(|undetected_step| reporter.undetected_change(&undetected_step));
+    found.possible_return = detection.possible_return.and_then(|possible_return| {
         let change = place_of.get(possible_return.event).copied().flatten()?;
         let evidence = &mut found.changes[change].evidence;
-        teller.tell_end(&possible_return, change, evidence)
+        reporter.report_possible_end(&possible_return, change, evidence)
     });
     found
 }
 
-/// Times at which people say that something happened.
+/// Returns the times at which people reported an event.
 fn reported(logbook: &[LogbookEntry]) -> Vec<Timestamp> {
-    let told = logbook.iter().filter(|e| cause_of(e.kind).is_some());
-    told.flat_map(|entry| [Some(entry.from), entry.to])
+    let detection = logbook.iter().filter(|e| reported_cause(e.kind).is_some());
+    detection
+        .flat_map(|entry| [Some(entry.from), entry.to])
         .flatten()
         .collect()
 }
 
-/// Cargo that moves the compass.
+/// Returns the entries of magnetic cargo.
 fn cargo(logbook: &[LogbookEntry]) -> Vec<CargoPeriod> {
-    let told = logbook.iter();
-    told.filter(|e| e.kind == LogbookKind::MagneticCargo)
+    let detection = logbook.iter();
+    detection
+        .filter(|e| e.kind == LogbookKind::MagneticCargo)
         .map(|entry| CargoPeriod {
             from: entry.from,
             to: entry.to,

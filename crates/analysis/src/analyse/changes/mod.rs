@@ -1,5 +1,5 @@
-//! Changes found among the readings of one epoch of the logbook: the epochs that
-//! they make of it, and what they say of its samples.
+//! Changes found among the readings of one epoch of the logbook, the epochs that they
+//! begin, and the samples that they spoil.
 
 mod change_size;
 mod evidence;
@@ -8,7 +8,9 @@ mod findings;
 mod reference_faults;
 mod report;
 
-pub(super) use change_size::sharpen;
-pub(super) use find::find;
-pub(super) use findings::{Begun, Ended, Found, Known, MISTIMED_S, Misled};
+pub(super) use change_size::refine_size;
+pub(super) use find::find_changes;
+pub(super) use findings::{
+    ChangeFindings, MISTIMED_S, PossibleAlignment, PossibleEnd, PossibleStart, PriorKnowledge,
+};
 pub(super) use reference_faults::merge_faults;

@@ -1,11 +1,15 @@
-//! The way through the epochs of the logbook, one after the other.
+//! Builder of epochs, one epoch of the logbook after the other.
 //!
-//! What always holds: every reading is of one epoch; an epoch is fitted once all that
-//! happened in it is known, and after those before it.
+//! Every reading belongs to one epoch. An epoch is fitted once all its events are known,
+//! and after those before it.
 
-use crate::analyse::cargo_entries::{Idle, is_laden, take_idle};
-use crate::analyse::changes::{Found, Known, MISTIMED_S, find, sharpen};
-use crate::analyse::epoch::{Reference, Stretch, empty_epoch, fit_epoch, prior, reference, refuse};
+use crate::analyse::cargo_entries::{ContradictedEntry, include_contradicted, is_laden};
+use crate::analyse::changes::{
+    ChangeFindings, MISTIMED_S, PriorKnowledge, find_changes, refine_size,
+};
+use crate::analyse::epoch::{
+    FitInput, Reference, empty_epoch, fit_epoch, prior, reference, refuse_epoch,
+};
 use crate::analyse::reading::Reading;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{Cause, CauseProbability, Change, Epoch, SampleReason};
@@ -13,86 +17,88 @@ use binnacle_compass::settings::AnalysisSettings;
 use binnacle_compass::time::Timestamp;
 use std::ops::Range;
 
-/// So long after the time that the logbook has for work the samples are asked whether it
-/// was done later: a day, and two for a change to show.
-const ASKED_S: f64 = MISTIMED_S + 2.0 * 86_400.0;
-/// Less than this is not worth a word, seconds.
+/// Time after work in the logbook up to which samples may date it later: a day, and two for
+/// a change to show.
+const LATER_WORK_S: f64 = MISTIMED_S + 2.0 * 86_400.0;
+/// Smallest time difference that is reported, seconds.
 const SAME_TIME_S: f64 = 3600.0;
 
-/// The epochs so far, with the readings of each.
+/// Epochs so far, with the readings of each.
 #[derive(Default)]
-pub(crate) struct Course {
+pub(crate) struct EpochBuilder {
     pub(crate) epochs: Vec<Epoch>,
-    /// Places among those of the epoch of the logbook.
+    /// Places of the readings within the epoch of the logbook.
     pub(crate) ranges: Vec<Range<usize>>,
     pub(crate) changes: Vec<Change>,
-    /// Entries of cargo that the samples no longer bear out.
-    pub(crate) idle: Vec<Idle>,
-    /// True if a change in the last of them would not have been noticed.
+    /// Open cargo entries that the samples contradict.
+    pub(crate) contradicted: Vec<ContradictedEntry>,
+    /// True if a change in the last epoch would not be detected.
     pub(crate) is_unwatched: bool,
 }
 
-impl Course {
-    /// Before the first epoch, with what the compass alone has shown.
-    pub(crate) fn after(changes: Vec<Change>) -> Course {
-        Course {
+impl EpochBuilder {
+    /// Makes a builder before the first epoch, with the changes of the compass alone.
+    pub(crate) fn after(changes: Vec<Change>) -> EpochBuilder {
+        EpochBuilder {
             changes,
-            ..Course::default()
+            ..EpochBuilder::default()
         }
     }
 
-    /// One epoch of the logbook, with the changes that its samples show. Where the samples
-    /// show that it ended at another time than the logbook says, that time.
-    pub(crate) fn follow(
+    /// Adds one epoch of the logbook with the changes that its samples show. Returns its
+    /// end, if the samples date that otherwise than the logbook.
+    pub(crate) fn add_logbook_epoch(
         &mut self,
         epoch: Epoch,
         readings: &mut [Reading],
         logbook: &[LogbookEntry],
         settings: &AnalysisSettings,
     ) -> Option<Timestamp> {
-        let done = self.done_later(&epoch, readings, logbook, settings);
-        let to = done.or(epoch.to);
-        let earlier = self.follow_until(Epoch { to, ..epoch }, readings, logbook, settings);
-        earlier.or(done)
+        let later = self.later_work_time(&epoch, readings, logbook, settings);
+        let to = later.or(epoch.to);
+        let earlier = self.add_epoch_until(Epoch { to, ..epoch }, readings, logbook, settings);
+        earlier.or(later)
     }
 
-    /// When the work that ended an epoch was done, if that was after the time in the
-    /// logbook.
-    fn done_later(
+    /// Returns the time of the work that ended an epoch, if it was later than the logbook
+    /// says.
+    fn later_work_time(
         &self,
         epoch: &Epoch,
         readings: &[Reading],
         logbook: &[LogbookEntry],
         settings: &AnalysisSettings,
     ) -> Option<Timestamp> {
-        let said = epoch.to?;
+        let logged = epoch.to?;
         let place = |time: Timestamp| readings.partition_point(|r| r.sample().time < time);
         let begin = epoch.from.map_or(0, place);
         let entries = logbook.iter().filter(|entry| entry.kind.ends_an_epoch());
-        let next = entries.map(|entry| entry.from).filter(|from| *from > said);
-        let asked = said.plus_seconds(ASKED_S);
-        let end = place(next.min().map_or(asked, |next| next.min(asked)));
-        if end <= place(said).max(begin) {
+        let next = entries
+            .map(|entry| entry.from)
+            .filter(|from| *from > logged);
+        let latest = logged.plus_seconds(LATER_WORK_S);
+        let end = place(next.min().map_or(latest, |next| next.min(latest)));
+        if end <= place(logged).max(begin) {
             return None;
         }
         let mut own = readings[begin..end].to_vec();
-        let one_sd_deg = settings.reference_constant_sd_deg;
-        let reference = reference(&own, one_sd_deg).ok()?;
-        let known = self.known(epoch, one_sd_deg);
-        find(&mut own, &reference, logbook, &known).reported_early(said)
+        let reference_sd_deg = settings.reference_constant_sd_deg;
+        let reference = reference(&own, reference_sd_deg).ok()?;
+        let known = self.known(epoch, reference_sd_deg);
+        find_changes(&mut own, &reference, logbook, &known).reported_early(logged)
     }
 
-    /// What is known before an epoch that follows the last.
-    fn known(&self, epoch: &Epoch, one_sd_deg: f64) -> Known {
+    /// Returns the prior knowledge for the next epoch.
+    fn known(&self, epoch: &Epoch, reference_sd_deg: f64) -> PriorKnowledge {
         let before = self.epochs.last();
-        Known {
-            prior: prior(epoch, before, one_sd_deg),
+        PriorKnowledge {
+            prior: prior(epoch, before, reference_sd_deg),
             levels: before.and_then(|before| before.noise),
         }
     }
 
-    /// One epoch that ends when the logbook says, or before.
-    fn follow_until(
+    /// Adds one epoch that ends at the logbook's time or earlier.
+    fn add_epoch_until(
         &mut self,
         epoch: Epoch,
         readings: &mut [Reading],
@@ -102,34 +108,34 @@ impl Course {
         let place = |time: Timestamp| readings.partition_point(|r| r.sample().time < time);
         let begin = epoch.from.map_or(0, place);
         let end = epoch.to.map_or(readings.len(), place);
-        let one_sd_deg = settings.reference_constant_sd_deg;
-        let expected = self.expect(&epoch, begin, end, logbook);
+        let reference_sd_deg = settings.reference_constant_sd_deg;
+        let logged_change = self.logged_change(&epoch, begin, end, logbook);
         let first = self.epochs.len();
         let own = &mut readings[begin..end];
-        match reference(own, one_sd_deg) {
+        match reference(own, reference_sd_deg) {
             Ok(reference) => {
-                let known = self.known(&epoch, one_sd_deg);
-                let found = find(own, &reference, logbook, &known);
-                let late = epoch.to.and_then(|said| found.reported_late(said));
+                let known = self.known(&epoch, reference_sd_deg);
+                let found = find_changes(own, &reference, logbook, &known);
+                let late = epoch.to.and_then(|logged| found.reported_late(logged));
                 if let Some(at) = late.filter(|at| epoch.from.is_none_or(|from| from < *at)) {
                     let to = Some(at);
                     let epoch = Epoch { to, ..epoch };
-                    let earlier = self.follow_until(epoch, readings, logbook, settings);
+                    let earlier = self.add_epoch_until(epoch, readings, logbook, settings);
                     return earlier.or(late);
                 }
                 self.is_unwatched = !own.is_empty() && !found.is_watched;
-                self.split(epoch, found, own, &reference, logbook);
+                self.fit_parts(epoch, found, own, &reference, logbook);
             }
             Err(refusal) => {
                 let mut epoch = epoch;
-                refuse(&mut epoch, own, refusal);
+                refuse_epoch(&mut epoch, own, refusal);
                 self.push(epoch, 0..own.len());
             }
         }
-        if let Some(mut change) = expected {
+        if let Some(mut change) = logged_change {
             let sides = first.checked_sub(1).map(|i| &self.epochs[i]);
             if let Some((old, new)) = sides.zip(self.epochs.get(first)) {
-                sharpen(&mut change, old, new, readings);
+                refine_size(&mut change, old, new, readings);
             }
             self.changes.push(change);
         }
@@ -137,26 +143,29 @@ impl Course {
     }
 
     /// Fits the parts into which changes divide an epoch of the logbook.
-    fn split(
+    fn fit_parts(
         &mut self,
         mut epoch: Epoch,
-        mut found: Found,
+        mut found: ChangeFindings,
         readings: &mut [Reading],
         reference: &Reference,
         logbook: &[LogbookEntry],
     ) {
         let until = epoch.to;
-        self.idle
-            .extend(take_idle(&epoch, &found, readings, logbook));
+        self.contradicted
+            .extend(include_contradicted(&epoch, &found, readings, logbook));
         let boundaries = std::mem::take(&mut found.boundaries);
         let last = boundaries.last().filter(|last| !last.resumes);
-        let zero_moved = last.and_then(|last| zero_besides(&found.changes[last.change]));
-        // The epoch in which each change happened.
+        let zero_moved =
+            last.and_then(|last| other_alignment_probability(&found.changes[last.change]));
+        // Epoch that each change ended.
         let mut happened_in = vec![None; found.changes.len()];
         let mut from = 0;
         for boundary in boundaries {
             let at = boundary.at;
-            let is_later = epoch.from.is_none_or(|begun| begun < at);
+            let is_later = epoch
+                .from
+                .is_none_or(|corrected_start| corrected_start < at);
             if !is_later || until.is_some_and(|until| until <= at) {
                 continue;
             }
@@ -164,7 +173,7 @@ impl Course {
             let mut next = empty_epoch(Some(at), None);
             next.begun_by_change = Some(found.changes[boundary.change].cause);
             epoch.to = Some(at);
-            self.add(epoch, from..to, readings, reference);
+            self.fit_and_push(epoch, from..to, readings, reference);
             if boundary.resumes {
                 next.resumes = happened_in[boundary.change];
             } else {
@@ -173,34 +182,38 @@ impl Course {
             (epoch, from) = (next, to);
         }
         epoch.to = until;
-        self.add(epoch, from..readings.len(), readings, reference);
+        self.fit_and_push(epoch, from..readings.len(), readings, reference);
         if let Some(ended) = &found.possible_return {
             let base = happened_in[ended.change];
-            self.allow_for_end(ended, base, readings, reference);
+            self.widen_for_end(ended, base, readings, reference);
         }
         for (change, happened_in) in found.changes.iter_mut().zip(happened_in) {
             let sides = happened_in.and_then(|i| self.epochs.get(i).zip(self.epochs.get(i + 1)));
             if let Some((old, new)) = sides {
-                sharpen(change, old, new, readings);
+                refine_size(change, old, new, readings);
             }
         }
-        if let Some(begun) = found.undetected_step.as_ref().filter(|_| until.is_none()) {
-            self.allow_for_change(begun, readings, reference);
+        if let Some(corrected_start) = found.undetected_step.as_ref().filter(|_| until.is_none()) {
+            self.widen_for_undetected_change(corrected_start, readings, reference);
         }
         if let Some(probability) = zero_moved.filter(|_| until.is_none()) {
-            self.allow_for_zero(probability, readings, reference);
+            self.widen_for_alignment(probability, readings, reference);
         }
-        if let Some(misled) = found.misled.as_ref().filter(|_| until.is_none()) {
-            self.allow_for_misled(misled);
+        if let Some(possible_alignment) = found
+            .possible_alignment
+            .as_ref()
+            .filter(|_| until.is_none())
+        {
+            self.widen_for_alignment_or_reference(possible_alignment);
         }
         if let Some(variance_nt2) = found.undecided_step_nt2.filter(|_| until.is_none()) {
-            self.allow_for_step(variance_nt2);
+            self.widen_for_large_step(variance_nt2);
         }
         self.changes.append(&mut found.changes);
     }
 
     /// Fits one more epoch, together with the one that it resumes.
-    fn add(
+    fn fit_and_push(
         &mut self,
         mut epoch: Epoch,
         own: Range<usize>,
@@ -208,24 +221,24 @@ impl Course {
         reference: &Reference,
     ) {
         if is_laden(&epoch, &readings[own.clone()]) {
-            // They tell of nothing but the ship with her cargo: of this epoch.
+            // These readings show the vessel with its cargo, and belong to this epoch.
             for reading in &mut readings[own.clone()] {
                 let reason = &mut reading.diagnostic.reason;
                 *reason = reason.filter(|reason| *reason != SampleReason::MagneticCargo);
             }
         }
-        let stretch = self.stretch(&epoch, own.clone(), reference);
-        fit_epoch(&mut epoch, readings, &stretch);
+        let fit_input = self.fit_input(&epoch, own.clone(), reference);
+        fit_epoch(&mut epoch, readings, &fit_input);
         self.push(epoch, own);
     }
 
-    /// What an epoch that follows the last is to be fitted to.
-    pub(crate) fn stretch<'a>(
+    /// Returns the input of the next epoch's fit.
+    pub(crate) fn fit_input<'a>(
         &self,
         epoch: &Epoch,
         own: Range<usize>,
         reference: &'a Reference,
-    ) -> Stretch<'a> {
+    ) -> FitInput<'a> {
         let mut earlier = Vec::new();
         let mut root = None;
         let mut same = epoch.resumes;
@@ -234,22 +247,22 @@ impl Course {
             root = Some(place);
             same = self.epochs[place].resumes;
         }
-        // What was known before the first of the epochs in which she was the same.
+        // Prior knowledge before the first epoch with the same state.
         let (first, before) = match root {
             Some(root) => (&self.epochs[root], root.checked_sub(1)),
             None => (epoch, self.epochs.len().checked_sub(1)),
         };
-        // One that was too short for a model tells nothing; the one before it does.
+        // An epoch too short for a model says nothing; the one before it does.
         let before = before.and_then(|last| {
             let mut back = self.epochs[..=last].iter().rev();
             back.find(|epoch| epoch.model.is_some() || epoch.begun_by_change.is_none())
         });
-        Stretch {
+        FitInput {
             earlier,
             own,
             prior: prior(first, before, reference.check.constant_sd_deg),
-            is_turned: first.begun_by_change == Some(Cause::Alignment),
-            is_struck: first.begun_by_change == Some(Cause::LightningOrShock),
+            is_alignment_changed: first.begun_by_change == Some(Cause::Alignment),
+            has_strike: first.begun_by_change == Some(Cause::LightningOrShock),
             is_known: first.begun_by_change.is_some() && before.is_some_and(|b| b.model.is_some()),
             reference,
         }
@@ -260,9 +273,9 @@ impl Course {
         self.ranges.push(own);
     }
 
-    /// The change that the logbook tells of where an epoch begins, if there are
-    /// samples on both sides.
-    fn expect(
+    /// Returns the logged change at the beginning of an epoch, if there are samples on both
+    /// sides.
+    fn logged_change(
         &self,
         epoch: &Epoch,
         begin: usize,
@@ -271,8 +284,8 @@ impl Course {
     ) -> Option<Change> {
         let (at, kind) = (epoch.from?, epoch.begun_by?);
         let mut evidence = vec![format!("the logbook says so: {}", kind.in_words())];
-        let said = logbook.iter().filter(|entry| entry.kind == kind);
-        let later_s = said.map(|entry| at.seconds_since(entry.from));
+        let logged = logbook.iter().filter(|entry| entry.kind == kind);
+        let later_s = logged.map(|entry| at.seconds_since(entry.from));
         let later_s = later_s.min_by(|a, b| a.abs().total_cmp(&b.abs()));
         if let Some(later_s) = later_s.filter(|later_s| later_s.abs() > SAME_TIME_S) {
             let side = if later_s > 0.0 { "later" } else { "earlier" };
@@ -302,9 +315,8 @@ impl Course {
     }
 }
 
-/// How likely it is that a change was the compass's zero, where it is not told as that and
-/// the odds are worth a wider band.
-fn zero_besides(change: &Change) -> Option<f64> {
+/// Returns the probability of an alignment change behind a change with another cause.
+fn other_alignment_probability(change: &Change) -> Option<f64> {
     let causes = change.causes.iter().filter(|c| c.cause != change.cause);
     let mut zero = causes.filter(|c| c.cause == Cause::Alignment);
     zero.next().map(|zero| zero.probability)

@@ -1,6 +1,6 @@
-//! Epochs built one after the other from the logbook and the changes found.
+//! Epochs by logbook and changes.
 
 mod builder;
 mod open_uncertainty;
 
-pub(super) use builder::Course;
+pub(super) use builder::EpochBuilder;

@@ -1,21 +1,21 @@
-//! What may have happened and is not certain: the model in force allows for it.
+//! Possible changes that are not certain: the model in force allows for them.
 //!
-//! What always holds: only the last epoch's model is made wider, and nothing is told by it.
+//! Only the last epoch's model is widened, and nothing is reported.
 
-use super::builder::Course;
-use crate::analyse::changes::{Begun, Ended, Misled};
+use super::builder::EpochBuilder;
+use crate::analyse::changes::{PossibleAlignment, PossibleEnd, PossibleStart};
 use crate::analyse::epoch::{Reference, empty_epoch};
-use crate::analyse::mixture::either;
+use crate::analyse::mixture::mixture;
 use crate::analyse::reading::Reading;
 use binnacle_compass::result::{Cause, Epoch};
 use binnacle_compass::ship::PARAMETERS;
 
-impl Course {
-    /// Widens the last epoch's model where the ship may be again as she was in the
+impl EpochBuilder {
+    /// Widens the last epoch's model where the vessel may have returned to its state in the
     /// epoch `base`.
-    pub(crate) fn allow_for_end(
+    pub(crate) fn widen_for_end(
         &mut self,
-        ended: &Ended,
+        ended: &PossibleEnd,
         base: Option<usize>,
         readings: &[Reading],
         reference: &Reference,
@@ -25,23 +25,23 @@ impl Course {
             ..empty_epoch(Some(ended.at), None)
         };
         let from = readings.partition_point(|r| r.sample().time < ended.at);
-        let mut stretch = self.stretch(&resumed, 0..0, reference);
-        // As earlier ones: what does not fit the ship with cargo may fit her without.
-        stretch.earlier.push(from..readings.len());
-        let base = base.and_then(|_| stretch.model(readings));
+        let mut fit_input = self.fit_input(&resumed, 0..0, reference);
+        // As in earlier epochs: an outlier with the cargo may fit the vessel without.
+        fit_input.earlier.push(from..readings.len());
+        let base = base.and_then(|_| fit_input.model(readings));
         let laden = self.epochs.last().and_then(|epoch| epoch.model.as_ref());
         let open = base
             .zip(laden)
-            .and_then(|(base, laden)| either(laden, &base, ended.probability));
+            .and_then(|(base, laden)| mixture(laden, &base, ended.probability));
         if let Some(last) = self.epochs.last_mut().filter(|_| open.is_some()) {
             last.model = open;
         }
     }
 
-    /// Widens the last epoch's model where the ship may be another since a port call.
-    pub(crate) fn allow_for_change(
+    /// Widens the last epoch's model where the vessel may have changed at a port call.
+    pub(crate) fn widen_for_undetected_change(
         &mut self,
-        begun: &Begun,
+        begun: &PossibleStart,
         readings: &[Reading],
         reference: &Reference,
     ) {
@@ -50,20 +50,20 @@ impl Course {
             ..empty_epoch(Some(begun.at), None)
         };
         let from = readings.partition_point(|r| r.sample().time < begun.at);
-        let stretch = self.stretch(&changed, from..readings.len(), reference);
+        let fit_input = self.fit_input(&changed, from..readings.len(), reference);
         let now = self.epochs.last().and_then(|epoch| epoch.model.as_ref());
-        let open = stretch
+        let open = fit_input
             .model(readings)
             .zip(now)
-            .and_then(|(changed, now)| either(now, &changed, begun.probability));
+            .and_then(|(changed, now)| mixture(now, &changed, begun.probability));
         if let Some(last) = self.epochs.last_mut().filter(|_| open.is_some()) {
             last.model = open;
         }
     }
 
-    /// Widens the last epoch's model where what began it may have been that the compass's
-    /// zero moved.
-    pub(crate) fn allow_for_zero(
+    /// Widens the last epoch's model where its first change may have been an alignment
+    /// change.
+    pub(crate) fn widen_for_alignment(
         &mut self,
         probability: f64,
         readings: &[Reading],
@@ -76,37 +76,42 @@ impl Course {
             begun_by_change: Some(Cause::Alignment),
             ..empty_epoch(last.from, None)
         };
-        let moved = self.stretch(&moved, own.clone(), reference).model(readings);
+        let moved = self
+            .fit_input(&moved, own.clone(), reference)
+            .model(readings);
         let open = last
             .model
             .as_ref()
             .zip(moved)
-            .and_then(|(now, moved)| either(now, &moved, probability));
+            .and_then(|(now, moved)| mixture(now, &moved, probability));
         last.model = open.or(last.model);
         self.push(last, own);
     }
 
-    /// Widens the last epoch's model where it may have been the compass's zero that moved, and
-    /// not the only reference's.
-    pub(crate) fn allow_for_misled(&mut self, misled: &Misled) {
+    /// Widens the last epoch's model where the fault of the only reference may be an
+    /// alignment change.
+    pub(crate) fn widen_for_alignment_or_reference(
+        &mut self,
+        possible_alignment: &PossibleAlignment,
+    ) {
         let Some(model) = self.epochs.last_mut().and_then(|last| last.model.as_mut()) else {
             return;
         };
         let mut moved = model.clone();
         moved.parameters_over_lambda = moved
             .parameters_over_lambda
-            .by_turned_compass(-misled.moved_deg.to_radians());
-        moved.constant_deg += misled.moved_deg;
+            .by_turned_compass(-possible_alignment.moved_deg.to_radians());
+        moved.constant_deg += possible_alignment.moved_deg;
         if let Some(covariance) = &mut moved.covariance {
-            covariance[PARAMETERS][PARAMETERS] += misled.variance;
+            covariance[PARAMETERS][PARAMETERS] += possible_alignment.variance;
         }
-        if let Some(open) = either(model, &moved, misled.probability) {
+        if let Some(open) = mixture(model, &moved, possible_alignment.probability) {
             *model = open;
         }
     }
 
-    /// Widens the last epoch's model where the ship may have been struck hard just now.
-    pub(crate) fn allow_for_step(&mut self, variance_nt2: f64) {
+    /// Widens the last epoch's model where a large step may have happened just now.
+    pub(crate) fn widen_for_large_step(&mut self, variance_nt2: f64) {
         let last = self.epochs.last_mut().and_then(|last| last.model.as_mut());
         if let Some(covariance) = last.and_then(|model| model.covariance.as_mut()) {
             for j in [0, 2] {
