@@ -91,11 +91,11 @@ pub(super) fn add_berth_changes(
     epochs: &[Epoch],
     changes: &mut Vec<Change>,
 ) {
-    let found = stays.iter().filter_map(|stay| {
+    let berth_changes = stays.iter().filter_map(|stay| {
         let error = smallest_error(stay, readings, epochs)?;
         (error.sd > REPORTED_SD).then(|| berth_change(stay, readings, &error))
     });
-    changes.extend(found);
+    changes.extend(berth_changes);
 }
 
 /// Mean error of a stay's samples.
@@ -123,11 +123,11 @@ fn smallest_error(
         model_at(epochs, time)
     });
     let models: Vec<&Model> = models.collect::<Option<_>>()?;
-    let offs = models
+    let errors = models
         .into_iter()
         .map(|model| error(&readings[stay.clone()], model));
-    let offs: Vec<StayError> = offs.collect::<Option<_>>()?;
-    offs.into_iter().min_by(|a, b| a.sd.total_cmp(&b.sd))
+    let errors: Vec<StayError> = errors.collect::<Option<_>>()?;
+    errors.into_iter().min_by(|a, b| a.sd.total_cmp(&b.sd))
 }
 
 fn model_at(epochs: &[Epoch], time: Timestamp) -> Option<&Model> {
@@ -140,9 +140,9 @@ fn error(readings: &[Reading], model: &Model) -> Option<StayError> {
     let errors = readings.iter().filter_map(|reading| {
         let measured_deg = reading.diagnostic.deviation_deg?;
         let earth = reading.earth?;
-        let found = model.deviation(reading.sample().compass, earth).ok()?;
-        let off_deg = wrap_180(measured_deg - found.deviation.degrees_east());
-        Some((off_deg, found.standard_error_deg?, earth.h_nt))
+        let predicted = model.deviation(reading.sample().compass, earth).ok()?;
+        let off_deg = wrap_180(measured_deg - predicted.deviation.degrees_east());
+        Some((off_deg, predicted.standard_error_deg?, earth.h_nt))
     });
     let errors: Vec<(f64, f64, f64)> = errors.collect();
     let samples = errors.len();
@@ -198,14 +198,14 @@ fn berth_change(stay: &Range<usize>, readings: &[Reading], error: &StayError) ->
     let referred = own
         .iter()
         .filter(|reading| heading_reading(reading).is_some());
-    let found = referred
+    let detected_at = referred
         .map(|reading| reading.sample().time)
         .nth(STAY_MIN_SAMPLES - 1);
     Change {
         from,
         from_earliest: time(stay.start.saturating_sub(1)),
         from_latest: from,
-        detected_at: found.unwrap_or(last),
+        detected_at: detected_at.unwrap_or(last),
         confirmed: is_over,
         withdrawn: false,
         cause: causes.first().map_or(Cause::BerthSteel, |c| c.cause),

@@ -80,11 +80,11 @@ pub(super) fn include_contradicted(
         .collect();
     for reading in own {
         let sample = *reading.sample();
-        let bears_out = |(entry, since): &(&LogbookEntry, Option<Timestamp>)| {
+        let excludes = |(entry, since): &(&LogbookEntry, Option<Timestamp>)| {
             exclusion_by_entry(entry, &sample).is_some()
                 && since.is_none_or(|since| sample.time < since)
         };
-        let is_laden = cargoes.iter().any(bears_out);
+        let is_laden = cargoes.iter().any(excludes);
         let reason = &mut reading.diagnostic.reason;
         *reason = reason.filter(|reason| *reason != SampleReason::MagneticCargo || is_laden);
     }

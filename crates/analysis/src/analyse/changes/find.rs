@@ -119,8 +119,8 @@ pub(crate) fn find_changes(
 
 /// Returns the times at which people reported an event.
 fn reported(logbook: &[LogbookEntry]) -> Vec<Timestamp> {
-    let detection = logbook.iter().filter(|e| reported_cause(e.kind).is_some());
-    detection
+    let reports = logbook.iter().filter(|e| reported_cause(e.kind).is_some());
+    reports
         .flat_map(|entry| [Some(entry.from), entry.to])
         .flatten()
         .collect()
@@ -128,8 +128,8 @@ fn reported(logbook: &[LogbookEntry]) -> Vec<Timestamp> {
 
 /// Returns the entries of magnetic cargo.
 fn cargo(logbook: &[LogbookEntry]) -> Vec<CargoPeriod> {
-    let detection = logbook.iter();
-    detection
+    logbook
+        .iter()
         .filter(|e| e.kind == LogbookKind::MagneticCargo)
         .map(|entry| CargoPeriod {
             from: entry.from,

@@ -104,7 +104,7 @@ impl EventReporter<'_> {
         })
     }
 
-    fn rows_of_burst(&self, index: usize) -> &[Observation] {
+    fn rows_of_transient(&self, index: usize) -> &[Observation] {
         &self.observations[self.events[index].first..=self.last_spoilt(index)]
     }
 
@@ -135,7 +135,7 @@ impl EventReporter<'_> {
             _ => self.began_at_port(event),
         };
         let disturbance = (event.kind == EventKind::Transient)
-            .then(|| size::disturbance(&event.before, self.rows_of_burst(index)));
+            .then(|| size::disturbance(&event.before, self.rows_of_transient(index)));
         let known = Circumstances {
             leads: event.leads,
             at_port,

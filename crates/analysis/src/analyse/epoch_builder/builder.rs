@@ -156,16 +156,14 @@ impl EpochBuilder {
             .extend(include_contradicted(&epoch, &found, readings, logbook));
         let boundaries = std::mem::take(&mut found.boundaries);
         let last = boundaries.last().filter(|last| !last.resumes);
-        let zero_moved =
+        let alignment_probability =
             last.and_then(|last| other_alignment_probability(&found.changes[last.change]));
         // Epoch that each change ended.
         let mut happened_in = vec![None; found.changes.len()];
         let mut from = 0;
         for boundary in boundaries {
             let at = boundary.at;
-            let is_later = epoch
-                .from
-                .is_none_or(|corrected_start| corrected_start < at);
+            let is_later = epoch.from.is_none_or(|begun| begun < at);
             if !is_later || until.is_some_and(|until| until <= at) {
                 continue;
             }
@@ -193,10 +191,10 @@ impl EpochBuilder {
                 refine_size(change, old, new, readings);
             }
         }
-        if let Some(corrected_start) = found.undetected_step.as_ref().filter(|_| until.is_none()) {
-            self.widen_for_undetected_change(corrected_start, readings, reference);
+        if let Some(undetected) = found.undetected_step.as_ref().filter(|_| until.is_none()) {
+            self.widen_for_undetected_change(undetected, readings, reference);
         }
-        if let Some(probability) = zero_moved.filter(|_| until.is_none()) {
+        if let Some(probability) = alignment_probability.filter(|_| until.is_none()) {
             self.widen_for_alignment(probability, readings, reference);
         }
         if let Some(possible_alignment) = found
