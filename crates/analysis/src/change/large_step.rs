@@ -9,7 +9,7 @@ use super::hypotheses::{Fork, HypothesisBank};
 use super::hypothesis_kind::HypothesisKind;
 use super::jump_models::apply_jump;
 use crate::change::thresholds::{LARGE_STEP_DEG, LARGE_STEP_MAX_ROWS};
-use crate::estimate::{USUAL_FUSION, Unknowns};
+use crate::estimate::{USUAL_REFERENCE_SHARE, Unknowns};
 
 /// Change of the expected deviation from which a row is linearised again, degrees, and the
 /// greatest number of rounds.
@@ -27,7 +27,7 @@ pub(crate) fn reference_share(ship: &Unknowns) -> f64 {
     if ship[0].hypot(ship[2]) > STRONG_MAGNET {
         1.0
     } else {
-        USUAL_FUSION
+        USUAL_REFERENCE_SHARE
     }
 }
 

@@ -18,7 +18,7 @@ pub use csv_row::{CsvRow, CsvRowError, check_columns, readings_from_csv};
 pub use ols::fit_ols;
 pub use paper::fit_paper;
 pub use reference::{HeadingReading, Referred, refer};
-pub(crate) use robust::learn;
+pub(crate) use robust::fit_roughly;
 pub use robust::{
     REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, fit_known_ship, fit_robust,
 };

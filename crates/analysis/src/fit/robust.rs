@@ -3,7 +3,7 @@
 
 use super::heading_check::check_headings;
 use super::{residual_check, time_outliers};
-use crate::estimate::{Options, Prior, Rough, estimate, rough};
+use crate::estimate::{Options, Prior, RoughEstimate, estimate, estimate_roughly};
 use crate::observation::Observation;
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::{Model, Parameters};
@@ -98,16 +98,16 @@ pub fn fit_known_ship(
 
 /// The levels of noise, and about what the parameters are, where [`fit_robust`] would
 /// fit a model; `before` are levels from which there is not far to go.
-pub(crate) fn learn(
+pub(crate) fn fit_roughly(
     observations: &[Observation],
     prior: &Prior,
     before: Option<&NoiseLevels>,
-) -> Option<Rough> {
+) -> Option<RoughEstimate> {
     let mut rows = observations.to_vec();
     rows.retain(is_usable);
     check_number(&rows, NEEDED_SAMPLES).ok()?;
     check_headings(&rows).ok()?;
-    let learnt = rough(&rows, prior, before)?;
+    let learnt = estimate_roughly(&rows, prior, before)?;
     check_needle(&learnt.parameters, &rows).ok()?;
     Some(learnt)
 }

@@ -16,13 +16,13 @@ use crate::change::event::EventKind;
 use crate::change::filter::Measurement;
 use crate::change::hypotheses::Lead;
 use crate::change::hypothesis_kind::HypothesisKind;
-use crate::estimate::are_times_believed;
+use crate::estimate::are_times_plausible;
 use crate::observation::Observation;
 
 /// Searches rows in order of time for changes. Rows without a time, or most of which share
 /// theirs, cannot be dated.
 pub(crate) fn detect(observations: &[Observation], input: &DetectionInput<'_>) -> Detection {
-    if !are_times_believed(observations) {
+    if !are_times_plausible(observations) {
         return Detection::default();
     }
     let Some(learnt) = LearntNoise::first(observations, input.prior, input.levels) else {

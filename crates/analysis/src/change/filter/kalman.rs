@@ -9,7 +9,7 @@ use super::states::{
     CONSTANT_STATE, DRIFTING, LASTING, OFFSET, OFFSET_UNKNOWN, RATE, SATELLITE, SLOW, SPEED,
     STATES, SWING, VARIATION,
 };
-use crate::estimate::{POPULATION_SD, Prior, UNKNOWNS, Unknowns, loss_of, weight};
+use crate::estimate::{POPULATION_SD, Prior, UNKNOWNS, Unknowns, robust_loss, weight};
 use binnacle_compass::ship::PARAMETERS;
 
 #[derive(Clone, Debug)]
@@ -171,7 +171,7 @@ impl Filter {
         let innovation = scalar.value - dot(load, &self.mean);
         let variance = scalar.variance + dot(load, &gain);
         let z_squared = innovation * innovation / variance;
-        let loss = loss_of(z_squared);
+        let loss = robust_loss(z_squared);
         self.log_likelihood -= 0.5 * (loss + variance.ln());
         let per_raised = weight(z_squared) / variance;
         for (mean, gain) in self.mean.iter_mut().zip(&gain) {

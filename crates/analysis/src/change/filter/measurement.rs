@@ -2,7 +2,7 @@
 
 use super::noise::NoiseVariances;
 use super::states::{LASTING, OFFSET, OFFSET_UNKNOWN, SPEED, STATES};
-use crate::estimate::{Row, Station, Transition, UNKNOWNS, Unknowns};
+use crate::estimate::{Row, RowFrame, Transition, UNKNOWNS, Unknowns};
 
 /// One measurement: the deviation and, with both references, their difference.
 pub(crate) struct Measurement {
@@ -22,10 +22,10 @@ pub(crate) struct Scalar {
     pub(crate) variance: f64,
 }
 
-/// Returns the measurement of `row` at `station`; `extra_drift` is the variance of bx and
+/// Returns the measurement of `row` at `frame`; `extra_drift` is the variance of bx and
 /// by beyond their usual drift in thirty days.
 pub(crate) fn measurement(
-    station: &Station,
+    frame: &RowFrame,
     row: &Row,
     at: &Unknowns,
     seconds: f64,
@@ -45,22 +45,22 @@ pub(crate) fn measurement(
         }
     };
     Measurement {
-        transition: station.transition,
+        transition: frame.transition,
         seconds,
-        drift: (noise.drift + extra_drift) * station.transition.drift_share,
+        drift: (noise.drift + extra_drift) * frame.transition.drift_share,
         deviation: scalar(
             row.residual,
             &row.columns,
-            &station.loads(row),
-            station.white.variance(noise.white),
+            &frame.loads(row),
+            frame.white.variance(noise.white),
         ),
         difference: row.difference.map(|residual| {
-            let (columns, loads) = station.difference(row);
+            let (columns, loads) = frame.difference(row);
             scalar(
                 residual,
                 &columns,
                 &loads,
-                station.difference_white.variance(noise.difference_white),
+                frame.difference_white.variance(noise.difference_white),
             )
         }),
     }

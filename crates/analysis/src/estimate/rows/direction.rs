@@ -1,4 +1,4 @@
-//! A direction by its sine and cosine, so that turning it needs no trigonometry.
+//! Directions by sine and cosine, which turn without trigonometry.
 
 /// A direction.
 #[derive(Clone, Copy, Debug)]
@@ -8,14 +8,15 @@ pub(crate) struct Direction {
 }
 
 impl Direction {
-    /// Of an angle.
-    pub(crate) fn of(radians: f64) -> Direction {
+    /// Makes the direction of an angle.
+    pub(crate) fn from_radians(radians: f64) -> Direction {
         let (sin, cos) = radians.sin_cos();
         Direction { sin, cos }
     }
 
-    /// Of an angle of no more than a tenth: the series' first terms are as good as all.
-    pub(crate) fn of_small(radians: f64) -> Direction {
+    /// Makes the direction of an angle of at most a tenth, by the first terms of the
+    /// series.
+    pub(crate) fn from_small_radians(radians: f64) -> Direction {
         let x = radians * radians;
         let sin = 1.0 - x / 6.0 * (1.0 - x / 20.0 * (1.0 - x / 42.0 * (1.0 - x / 72.0)));
         let cos = 1.0 - x / 2.0 * (1.0 - x / 12.0 * (1.0 - x / 30.0 * (1.0 - x / 56.0)));
@@ -25,8 +26,8 @@ impl Direction {
         }
     }
 
-    /// Turned clockwise by another.
-    pub(crate) fn turned(self, by: Direction) -> Direction {
+    /// Returns the direction turned clockwise by another.
+    pub(crate) fn rotated_by(self, by: Direction) -> Direction {
         Direction {
             sin: self.sin * by.cos + self.cos * by.sin,
             cos: self.cos * by.cos - self.sin * by.sin,
@@ -42,10 +43,17 @@ mod tests {
     fn turning_adds_angles() {
         for small in [-0.1, -0.03, 0.0, 1e-9, 0.0523, 0.1] {
             for large in [-3.0, 0.4, 2.0, 5.9] {
-                let turned = Direction::of(large).turned(Direction::of_small(small));
-                let expected = Direction::of(large + small);
-                assert!((turned.sin - expected.sin).abs() < 1e-15, "{large} {small}");
-                assert!((turned.cos - expected.cos).abs() < 1e-15, "{large} {small}");
+                let rotated_by =
+                    Direction::from_radians(large).rotated_by(Direction::from_small_radians(small));
+                let expected = Direction::from_radians(large + small);
+                assert!(
+                    (rotated_by.sin - expected.sin).abs() < 1e-15,
+                    "{large} {small}"
+                );
+                assert!(
+                    (rotated_by.cos - expected.cos).abs() < 1e-15,
+                    "{large} {small}"
+                );
             }
         }
     }

@@ -8,7 +8,7 @@ mod scatter;
 pub(crate) use direction::Direction;
 pub(crate) use needle::Needle;
 pub(crate) use row::{
-    CONSTANT, OFFSET_SD_DEG, Point, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, in_own_units,
-    plain_residual, row, stations,
+    CONSTANT, LinearisationPoint, OFFSET_SD_DEG, Row, RowFrame, UNKNOWNS, USUAL_REFERENCE_SHARE,
+    Unknowns, frames, plain_residual, row, to_physical_units,
 };
-pub(crate) use scatter::White;
+pub(crate) use scatter::WhiteNoise;

@@ -1,32 +1,31 @@
-//! Where the needle points on a magnetic heading, and how that depends on the
-//! parameters.
+//! Direction of the needle on a magnetic heading, and its slopes by the parameters.
 
 use super::direction::Direction;
 use binnacle_compass::model::Parameters;
 use binnacle_compass::ship::{EarthField, PARAMETERS};
 
-/// The horizontal field at the compass, over λ, with the ship on one magnetic
-/// heading, in a form that never divides by zero.
+/// Horizontal field at the compass, over λ, on one magnetic heading, in a form that never
+/// divides by zero.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Needle {
     earth: [f64; 3],
     /// Sine and cosine of the compass heading over the strength, per nT.
     direction: [f64; 2],
-    /// The strength along the ship's magnetic heading and to starboard of it, nT.
+    /// Strength along the vessel's magnetic heading and to starboard of it, nT.
     along: f64,
     across: f64,
     compass_per_magnetic: f64,
 }
 
 impl Needle {
-    /// The needle of a ship on a magnetic heading.
+    /// Returns the needle on a magnetic heading.
     pub(crate) fn at(p: &Parameters, heading: Direction, field: EarthField) -> Needle {
         let Direction { sin, cos } = heading;
         let (hx, hy) = (field.h_nt * cos, -field.h_nt * sin);
         let earth = [hx, hy, field.z_nt];
         let [ux, uy] = p.of_ship_axes(earth);
-        // A needle with no force at all has no direction, and any small number
-        // keeps the arithmetic finite.
+        // Without any force a needle has no direction: any small number keeps the
+        // arithmetic finite.
         let squared = (ux * ux + uy * uy).max(1.0);
         let half = p.chi11_minus_chi22 / 2.0;
         let (dux, duy) = (
@@ -42,19 +41,19 @@ impl Needle {
         }
     }
 
-    /// Magnetic heading less compass heading (docs/science.md, eq. 5), radians in
+    /// Returns magnetic heading less compass heading (docs/science.md, eq. 5), radians in
     /// (−π, π].
     pub(crate) fn deviation_rad(&self) -> f64 {
         self.across.atan2(self.along)
     }
 
-    /// How fast compass heading changes with magnetic heading: 1 without deviation.
+    /// Returns the slope of compass heading by magnetic heading: 1 without deviation.
     pub(crate) fn compass_per_magnetic(&self) -> f64 {
         self.compass_per_magnetic
     }
 
-    /// Derivative of deviation, in radians, by each of the parameters at fixed
-    /// magnetic heading (docs/science.md, eq. 9): from dζ = −(sin ζ dux + cos ζ duy)/|u|.
+    /// Returns the derivative of deviation, in radians, by each parameter at fixed magnetic
+    /// heading (docs/science.md, eq. 9): from dζ = −(sin ζ dux + cos ζ duy)/|u|.
     pub(crate) fn gradient(&self) -> [f64; PARAMETERS] {
         let [hx, hy, z] = self.earth;
         let [s, c] = self.direction;
@@ -79,7 +78,11 @@ mod tests {
         for degrees in 0..24 {
             let magnetic = f64::from(degrees * 15).to_radians();
             let needle = |a: &[f64; 7]| {
-                Needle::at(&Parameters::from_array(*a), Direction::of(magnetic), EARTH)
+                Needle::at(
+                    &Parameters::from_array(*a),
+                    Direction::from_radians(magnetic),
+                    EARTH,
+                )
             };
             let deviation = |a: &[f64; 7]| needle(a).deviation_rad();
             let gradient = needle(&start).gradient();
@@ -103,7 +106,8 @@ mod tests {
             let magnetic = f64::from(degrees * 15 - 179).to_radians();
             let [forward, starboard] = p.field_over_lambda(magnetic, EARTH);
             let compass = compass_rad(forward, starboard);
-            let deviation = Needle::at(&p, Direction::of(magnetic), EARTH).deviation_rad();
+            let deviation =
+                Needle::at(&p, Direction::from_radians(magnetic), EARTH).deviation_rad();
             assert!(binnacle_compass::ship::wrap_pi(magnetic - deviation - compass).abs() < 1e-12);
         }
     }
@@ -113,7 +117,7 @@ mod tests {
         let p = Parameters::from_array([2000.0, -0.02, -2900.0, 0.01, 0.035, 0.004, -0.003]);
         for degrees in 0..24 {
             let magnetic = f64::from(degrees * 15 + 3).to_radians();
-            let needle = |m: f64| Needle::at(&p, Direction::of(m), EARTH);
+            let needle = |m: f64| Needle::at(&p, Direction::from_radians(m), EARTH);
             let compass = |m: f64| m - needle(m).deviation_rad();
             let slope = (compass(magnetic + 1e-6) - compass(magnetic - 1e-6)) / 2e-6;
             let rate = needle(magnetic).compass_per_magnetic();

@@ -1,57 +1,57 @@
-//! How much white noise a row has: by the windows that it is of, and by how far they
-//! scattered.
+//! White noise of a row, by its number of windows and their scatter.
 //!
-//! In a sea the card swings about the mean, and the scatter of compass less reference
-//! says by how much. What scatters in the windows stands in their mean, the less the
-//! more of them there are: as a multiple of the ship's own white noise, and by so much
-//! at the least whatever that is taken for, as where it hides in slower noise.
+//! In a sea the card swings about the mean, and the scatter of compass less reference shows
+//! by how much. The scatter of the windows is in their mean, the less the more windows
+//! there are. It counts as a multiple of the vessel's own white noise, and with at least
+//! its own size, in case that noise is taken for slower noise.
 
 use crate::observation::Observation;
 
 /// Windows of ten seconds in ten minutes.
 const FULL_WINDOWS: f64 = 60.0;
-/// A row with fewer was interrupted, and what interrupted it upset it beside: its
-/// variance is so many times what its windows alone would make it.
+/// Number of windows below which a row was interrupted, and the factor on its variance:
+/// what interrupted it disturbed it, too.
 const WHOLE_WINDOWS: f64 = 57.0;
-const INTERRUPTED: f64 = 1.5;
-/// The scatter in a full mean whose factor is 1, degrees.
+const INTERRUPTED_FACTOR: f64 = 1.5;
+/// Scatter of a full mean whose factor is 1, degrees.
 const NOMINAL_DEG: f64 = 0.5;
-/// As much as so many windows, a row's scatter is taken for the ship's usual one.
+/// Weight of the vessel's usual scatter beside a row's own, in windows.
 const SHRINKING_WINDOWS: f64 = 8.0;
-/// And at the start the ship's usual one for the nominal.
+/// Weight of the nominal scatter beside the vessel's at the start, in windows.
 const STARTING_WINDOWS: f64 = 600.0;
-/// White noise that is none of the sea's: roundings, sensors.
-const CALM: f64 = 0.1;
-/// What scatters keeps its sign for so many windows at the least.
-const OF_ONE_SIGN: f64 = 2.0;
-/// No more is believed, degrees.
+/// Share of white noise that the sea does not cause: rounding, sensors.
+const SEALESS_SHARE: f64 = 0.1;
+/// Least number of windows for which a scatter keeps its sign.
+const WINDOWS_OF_ONE_SIGN: f64 = 2.0;
+/// Largest scatter that counts, degrees.
 const LARGEST_DEG: f64 = 3.0;
 
-/// White variance, degrees squared, by the ship's level.
+/// White variance of a row, by the vessel's level.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct White {
-    /// In units of a full, unit-weight row's at nominal scatter.
+pub(crate) struct WhiteNoise {
+    /// Factor on the level's square: 1 for a full row of unit weight at nominal scatter.
     pub(crate) factor: f64,
-    /// What the scatter alone explains.
+    /// Variance that the scatter alone explains, degrees squared.
     pub(crate) scatter: f64,
 }
 
-impl White {
-    /// At a level squared.
+impl WhiteNoise {
+    /// Returns the variance at a squared level.
     pub(crate) fn variance(self, level_squared: f64) -> f64 {
         level_squared * self.factor + self.scatter
     }
 
-    /// Of the difference of both references, in which the card has no part.
-    pub(crate) fn of_difference(o: &Observation) -> White {
-        White {
+    /// Returns the white noise of the references' difference, in which the card has no
+    /// part.
+    pub(crate) fn of_difference(o: &Observation) -> WhiteNoise {
+        WhiteNoise {
             factor: (1.0 + FULL_WINDOWS / windows(o)) / (2.0 * o.weight),
             scatter: 0.0,
         }
     }
 }
 
-/// The scatter of a ship's windows so far.
+/// Scatter of a vessel's windows so far.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scatter {
     /// Sum of squares over windows, degrees squared.
@@ -67,11 +67,11 @@ impl Scatter {
         }
     }
 
-    /// Of the row's deviation; takes the row in.
-    pub(crate) fn white(&mut self, o: &Observation) -> White {
+    /// Returns the white noise of a row's deviation, and adds the row.
+    pub(crate) fn white(&mut self, o: &Observation) -> WhiteNoise {
         let windows = windows(o);
         let usual = self.squares / self.windows;
-        let (square, told) = match o.spread_deg {
+        let (square, shown) = match o.spread_deg {
             Some(spread_deg) => {
                 let own = spread_deg.clamp(0.0, LARGEST_DEG).powi(2);
                 self.squares += windows * own;
@@ -83,9 +83,10 @@ impl Scatter {
             None => (usual, 0.0),
         };
         let sea = square / (NOMINAL_DEG * NOMINAL_DEG);
-        White {
-            factor: (CALM + (1.0 - CALM) * sea * of_windows(windows)) / o.weight,
-            scatter: OF_ONE_SIGN * told / windows / o.weight,
+        WhiteNoise {
+            factor: (SEALESS_SHARE + (1.0 - SEALESS_SHARE) * sea * mean_variance_factor(windows))
+                / o.weight,
+            scatter: WINDOWS_OF_ONE_SIGN * shown / windows / o.weight,
         }
     }
 }
@@ -94,14 +95,14 @@ fn windows(o: &Observation) -> f64 {
     f64::from(o.windows).clamp(1.0, FULL_WINDOWS)
 }
 
-/// Variance of a mean of so many windows in units of a full one's.
-fn of_windows(windows: f64) -> f64 {
-    let upset = if windows < WHOLE_WINDOWS {
-        INTERRUPTED
+/// Returns the variance of a mean of some windows, relative to a full mean's.
+fn mean_variance_factor(windows: f64) -> f64 {
+    let interruption = if windows < WHOLE_WINDOWS {
+        INTERRUPTED_FACTOR
     } else {
         1.0
     };
-    upset * FULL_WINDOWS / windows
+    interruption * FULL_WINDOWS / windows
 }
 
 #[cfg(test)]

@@ -1,57 +1,58 @@
-//! The estimate as a problem of least squares: Gauss and Newton's steps on whitened
-//! rows, with a prior whose tails give way.
+//! Least-squares problem: Gauss–Newton steps on whitened rows, with a heavy-tailed prior.
 //!
-//! What always holds: when a solution has settled, the next step would be smaller than
-//! was asked for; what is judged is the pass that told so.
+//! Once a solution has settled, the next step would be smaller than the limit. The pass
+//! that showed it is the one evaluated.
 
-use super::quality::widely;
-use crate::estimate::prior::{Prior, scales, tail};
+use super::quality::with_wide_population;
+use crate::estimate::prior::{Prior, scales, tail_factors};
 use crate::estimate::products::Products;
-use crate::estimate::rows::{CONSTANT, Point, Row, Station, UNKNOWNS, Unknowns, row, stations};
-use crate::estimate::undated_rows::{all_timed, cell_of, design_effect};
+use crate::estimate::rows::{
+    CONSTANT, LinearisationPoint, Row, RowFrame, UNKNOWNS, Unknowns, frames, row,
+};
+use crate::estimate::undated_rows::{all_dated, design_effect, heading_cell};
 use crate::estimate::whitening::{Drift, Part, Pass, Whitening, whiten};
-use crate::estimate::whitening::{Pull, Sought, fit_levels};
+use crate::estimate::whitening::{PriorTerms, SearchEffort, fit_levels};
 use crate::observation::Observation;
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::time::Timestamp;
 use nalgebra::{SMatrix, SVector};
 
-/// Gauss–Newton steps at most; three suffice near the solution, thirty where the
+/// Greatest number of Gauss–Newton steps; three suffice near the solution, thirty where the
 /// weights and the prior's tail move with it.
 const ITERATIONS: u32 = 40;
-/// The compass's part of the noise that is new in every row.
-const OF_WHITE_BY_GYRO: f64 = 0.85;
-const OF_WHITE_BY_SATELLITE: f64 = 0.5;
-const OF_WHITE_UNTIMED: f64 = 0.6;
-/// Where bx and by stand among the unknowns.
+/// Compass's share of the noise that is new in every row, with a gyro, with a satellite
+/// compass, and without times.
+const WHITE_SHARE_WITH_GYRO: f64 = 0.85;
+const WHITE_SHARE_WITH_SATELLITE: f64 = 0.5;
+const WHITE_SHARE_UNDATED: f64 = 0.6;
+/// Indices of bx and by among the unknowns.
 const DRIFTING: [usize; 2] = [0, 2];
-/// Days whose scores are held against what the noise model says of them.
+/// Length of the blocks whose scores are compared with the noise model.
 const BLOCK_S: f64 = 4.0 * 86_400.0;
 
 pub(crate) type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 pub(crate) type Vector = SVector<f64, UNKNOWNS>;
 
-/// Observations from the earliest to the latest, with what stays the same
-/// through the iteration.
+/// Observations in order of time, with the terms that the iteration does not change.
 pub(crate) struct Problem<'a> {
     pub(crate) observations: &'a [Observation],
-    pub(crate) stations: Vec<Station>,
+    pub(crate) frames: Vec<RowFrame>,
     pub(crate) prior_mean: Vector,
     pub(crate) prior_information: Matrix,
 }
 
-/// Where the iteration is.
+/// Solution at one point of the iteration.
 pub(crate) struct Solution {
     pub(crate) unknowns: Unknowns,
-    /// The reference's share in the heading at which rows are taken.
-    pub(crate) fusion: f64,
-    /// The prior's information there.
+    /// Share of the reference in the heading at which rows are linearised.
+    pub(crate) reference_share: f64,
+    /// Information of the prior at that solution.
     pub(crate) prior_information: Matrix,
 }
 
-/// How large the steps were.
+/// Sizes of the steps.
 struct Steps {
-    /// The next is to be smaller than this.
+    /// Limit below which the next step must be.
     settled: f64,
     last: f64,
 }
@@ -64,8 +65,8 @@ impl Steps {
         }
     }
 
-    /// Returns true if the step after this one would be small enough, if steps go on to
-    /// shrink as they do.
+    /// Returns true if the step after this one would be small enough, if steps go on
+    /// shrinking.
     fn end_with(&mut self, step: &Vector) -> bool {
         let size = step.amax();
         let shrunk = (size / self.last).min(1.0);
@@ -74,15 +75,15 @@ impl Steps {
     }
 }
 
-/// What the last pass says of a solution.
-pub(crate) struct Judged {
-    /// Parameters as they were at the last observation, in population units.
-    pub(crate) at_last: Unknowns,
+/// Evaluated solution of the last pass.
+pub(crate) struct EvaluatedSolution {
+    /// Parameters at the last observation, in population units.
+    pub(crate) at_last_row: Unknowns,
     pub(crate) information: Matrix,
     pub(crate) covariance: Matrix,
-    /// The same by the data alone.
+    /// Covariance by the data alone.
     pub(crate) by_data: Option<Matrix>,
-    /// What the rows would tell were their errors independent and of one degree.
+    /// Information of the rows for independent errors of one degree.
     pub(crate) independent: Matrix,
     pub(crate) weights: Vec<f64>,
 }
@@ -92,46 +93,46 @@ impl<'a> Problem<'a> {
         let (mean, information) = prior.in_population_units()?;
         let mut prior_mean = Vector::zeros();
         prior_mean.as_mut_slice()[..=CONSTANT].copy_from_slice(&mean);
-        // What is neither parameter nor constant is in units of its own prior.
+        // Nuisances are in units of their own prior.
         let mut prior_information = Matrix::identity();
         prior_information
             .fixed_view_mut::<8, 8>(0, 0)
             .copy_from(&information);
         Some(Problem {
             observations,
-            stations: stations(observations),
+            frames: frames(observations),
             prior_mean,
             prior_information,
         })
     }
 
-    /// The same ship's problem by other observations.
+    /// Returns the same vessel's problem with other observations.
     pub(crate) fn by<'b>(&self, observations: &'b [Observation]) -> Problem<'b> {
         Problem {
             observations,
-            stations: stations(observations),
+            frames: frames(observations),
             prior_mean: self.prior_mean,
             prior_information: self.prior_information,
         }
     }
 
-    /// The levels at a solution, sought from `levels`, and the share that the
-    /// reference has by them in the heading at which rows are taken.
+    /// Returns the levels at a solution, searched from `levels`, and the reference's share
+    /// that follows from them.
     pub(crate) fn levels_at(
         &self,
         solution: &Solution,
         typical: &NoiseLevels,
         levels: &NoiseLevels,
-        sought: Sought,
+        effort: SearchEffort,
     ) -> (NoiseLevels, f64) {
         let rows = self.rows(solution);
-        let pull = self.pull(solution);
-        let found = fit_levels(&self.stations, &rows, &pull, typical, levels, sought);
-        let of_white = compass_part_of_white(self.observations);
-        (found.levels, found.compass_share(&self.stations, of_white))
+        let prior_terms = self.prior_terms(solution);
+        let found = fit_levels(&self.frames, &rows, &prior_terms, typical, levels, effort);
+        let white_share = compass_part_of_white(self.observations);
+        (found.levels, found.compass_share(&self.frames, white_share))
     }
 
-    /// Gauss–Newton from a solution until it settles, and the parameters' drift then.
+    /// Returns the settled solution of Gauss–Newton, and the drift of the parameters.
     pub(crate) fn descend(
         &self,
         mut solution: Solution,
@@ -141,7 +142,7 @@ impl<'a> Problem<'a> {
         let mut steps = Steps::new(settled);
         for _ in 0..ITERATIONS {
             let rows = self.rows(&solution);
-            let pass = whiten(&self.stations, &rows, levels);
+            let pass = whiten(&self.frames, &rows, levels);
             let step = self.step(&mut solution, &pass)?;
             if steps.end_with(&step) {
                 return Some((solution, pass.drift.after(&step)));
@@ -150,15 +151,15 @@ impl<'a> Problem<'a> {
         None
     }
 
-    /// The same, judged.
+    /// Returns the settled solution of Gauss–Newton with its evaluation.
     pub(crate) fn settle(
         &self,
         mut solution: Solution,
         levels: &NoiseLevels,
         settled: f64,
-    ) -> Option<(Solution, Judged)> {
-        let timed = all_timed(self.observations);
-        let block_of = if timed { days_of } else { cell_of };
+    ) -> Option<(Solution, EvaluatedSolution)> {
+        let dated = all_dated(self.observations);
+        let block_of = if dated { days_of } else { heading_cell };
         let mut steps = Steps::new(settled);
         let mut blocks = Vec::new();
         let mut sizes = Vec::new();
@@ -170,55 +171,57 @@ impl<'a> Problem<'a> {
             let mut whitening: Whitening = Whitening::new(levels);
             let mut independent = Products::new();
             let mut block = None;
-            let point = Point::at(&solution.unknowns, solution.fusion);
-            for (o, station) in self.observations.iter().zip(&self.stations) {
+            let point = LinearisationPoint::at(&solution.unknowns, solution.reference_share);
+            for (o, frame) in self.observations.iter().zip(&self.frames) {
                 let number = block_of(o);
                 if block != Some(number) {
-                    let told = whitening.cut();
-                    blocks.extend(block.map(|_| told));
+                    let shown = whitening.cut();
+                    blocks.extend(block.map(|_| shown));
                     sizes.push(0.0);
                     block = Some(number);
                 }
                 if let Some(size) = sizes.last_mut() {
                     *size += 1.0;
                 }
-                let row = row(o, station, &point);
-                let weight = whitening.take(station, &row);
+                let row = row(o, frame, &point);
+                let weight = whitening.observe(frame, &row);
                 independent.add(&row.columns, weight);
                 weights.push(weight);
             }
-            let told = whitening.cut();
-            blocks.extend(block.map(|_| told));
+            let shown = whitening.cut();
+            blocks.extend(block.map(|_| shown));
             let mut pass = whitening.pass();
             let step = self.step(&mut solution, &pass)?;
             if steps.end_with(&step) {
-                if !timed {
+                if !dated {
                     let covariance = covariance(&solution, &pass)?;
                     let seen = inflation(&blocks, &covariance);
                     pass.information /= seen.max(design_effect(sizes.into_iter()));
                     blocks.clear();
                 }
-                let judged = judge(&solution, &pass, &step, &blocks, &independent, weights)?;
-                return Some((solution, judged));
+                let evaluated = evaluate(&solution, &pass, &step, &blocks, &independent, weights)?;
+                return Some((solution, evaluated));
             }
         }
         None
     }
 
     fn rows(&self, solution: &Solution) -> Vec<Row> {
-        let point = Point::at(&solution.unknowns, solution.fusion);
+        let point = LinearisationPoint::at(&solution.unknowns, solution.reference_share);
         self.observations
             .iter()
-            .zip(&self.stations)
+            .zip(&self.frames)
             .map(|(o, s)| row(o, s, &point))
             .collect()
     }
 
-    /// One step of Gauss and Newton's; none where it leads nowhere.
+    /// Takes one Gauss–Newton step; none where it fails.
     fn step(&self, solution: &mut Solution, pass: &Pass) -> Option<Vector> {
-        let pull = self.pull(solution);
-        let covariance = (pass.information + pull.information).cholesky()?.inverse();
-        let step = covariance * (pass.score + pull.score);
+        let prior_terms = self.prior_terms(solution);
+        let covariance = (pass.information + prior_terms.information)
+            .cholesky()?
+            .inverse();
+        let step = covariance * (pass.score + prior_terms.score);
         for (u, d) in solution.unknowns.iter_mut().zip(step.iter()) {
             *u += d;
         }
@@ -229,18 +232,18 @@ impl<'a> Problem<'a> {
         Some(step)
     }
 
-    fn pull(&self, solution: &Solution) -> Pull {
+    fn prior_terms(&self, solution: &Solution) -> PriorTerms {
         let off = self.prior_mean - Vector::from(solution.unknowns);
-        Pull {
+        PriorTerms {
             information: solution.prior_information,
             score: solution.prior_information * off,
         }
     }
 
-    /// The prior's information, less where a solution lies out in its tail.
+    /// Returns the prior's information, less in its tail.
     fn prior_at(&self, unknowns: &Unknowns, covariance: &Matrix) -> Matrix {
         let off = Vector::from(*unknowns) - self.prior_mean;
-        let factors = tail(
+        let factors = tail_factors(
             &off.fixed_rows::<8>(0).into_owned(),
             &covariance.fixed_view::<8, 8>(0, 0).into_owned(),
             &self.prior_information.fixed_view::<8, 8>(0, 0).into_owned(),
@@ -256,42 +259,42 @@ impl<'a> Problem<'a> {
 }
 
 impl Solution {
-    /// What was known of parameters and constant before the data.
+    /// Returns the prior covariance of parameters and constant.
     pub(crate) fn prior_covariance(&self) -> Option<SMatrix<f64, 8, 8>> {
         let information = self.prior_information.fixed_view::<8, 8>(0, 0);
         Some(information.into_owned().cholesky()?.inverse())
     }
 
-    /// From the first observation, where drift begins, to the last.
-    pub(crate) fn at_last(&self, drift: &Drift) -> Unknowns {
+    /// Returns the unknowns at the last observation: drift begins at the first.
+    pub(crate) fn at_last_row(&self, drift: &Drift) -> Unknowns {
         let scale = scales();
-        let mut at_last = self.unknowns;
+        let mut at_last_row = self.unknowns;
         for (a, i) in DRIFTING.into_iter().enumerate() {
-            at_last[i] += drift.nt[a] / scale[i];
+            at_last_row[i] += drift.nt[a] / scale[i];
         }
-        at_last
+        at_last_row
     }
 }
 
-/// The stretch of days that an observation with a time is of.
+/// Returns the block of days of an observation with a time.
 fn days_of(o: &Observation) -> i64 {
     let micros = o.time.map_or(0, Timestamp::micros);
     (micros as f64 / 1e6 / BLOCK_S).floor() as i64
 }
 
-/// What a pass says of the solution that `step` led to.
-fn judge(
+/// Evaluates a pass for the solution that `step` led to.
+fn evaluate(
     solution: &Solution,
     pass: &Pass,
     step: &Vector,
     blocks: &[Part],
     independent: &Products<UNKNOWNS>,
     weights: Vec<f64>,
-) -> Option<Judged> {
+) -> Option<EvaluatedSolution> {
     let drift = pass.drift.after(step);
     let covariance = covariance(solution, pass)?;
     let covariance = covariance * inflation(blocks, &covariance);
-    // From where the filter began to where the ship is now.
+    // From the first observation to the last.
     let scale = scales();
     let mut follows = Matrix::identity();
     let mut drifted = Matrix::zeros();
@@ -304,11 +307,11 @@ fn judge(
         }
     }
     let now = |then: Matrix| follows * then * follows.transpose() + drifted;
-    Some(Judged {
-        at_last: solution.at_last(&drift),
+    Some(EvaluatedSolution {
+        at_last_row: solution.at_last_row(&drift),
         information: pass.information,
         covariance: now(covariance),
-        by_data: widely(&pass.information)
+        by_data: with_wide_population(&pass.information)
             .cholesky()
             .map(|factor| now(factor.inverse())),
         independent: independent.to_matrix(),
@@ -316,15 +319,15 @@ fn judge(
     })
 }
 
-/// What rows and prior leave open where the filter began.
+/// Returns the covariance by rows and prior at the first observation.
 fn covariance(solution: &Solution, pass: &Pass) -> Option<Matrix> {
     let information = pass.information + solution.prior_information;
     Some(information.cholesky()?.inverse())
 }
 
-/// How many times larger the squares of the stretches' scores are than the noise
-/// model says, at least 1, the fit's own part taken off: were the model right, each
-/// stretch's score would vary as its information says.
+/// Returns the ratio, at least 1, of the squares of the blocks' scores to the noise model,
+/// without the fit's own part: in a correct model each score varies as its information
+/// says.
 fn inflation(blocks: &[Part], covariance: &Matrix) -> f64 {
     let (mut seen, mut expected) = (0.0, 0.0);
     for Part { information, score } in blocks {
@@ -332,7 +335,7 @@ fn inflation(blocks: &[Part], covariance: &Matrix) -> f64 {
         seen += score.dot(&(covariance * score));
         expected += share.trace() - (share * share).trace();
     }
-    // Too few stretches say nothing.
+    // Too few blocks say nothing.
     if expected > 1.0 {
         (seen / expected).max(1.0)
     } else {
@@ -340,14 +343,14 @@ fn inflation(blocks: &[Part], covariance: &Matrix) -> f64 {
     }
 }
 
-/// What part of the noise that is new in every row is the compass's: a gyro is
-/// steadier than a compass, a satellite compass is not. Without times all noise
-/// passes for new, the reference's wander too.
+/// Returns the compass's share of the noise that is new in every row: a gyro is steadier
+/// than a compass, a satellite compass is not. Without times all noise counts as new, the
+/// reference's wander, too.
 fn compass_part_of_white(observations: &[Observation]) -> f64 {
-    if !all_timed(observations) {
-        return OF_WHITE_UNTIMED;
+    if !all_dated(observations) {
+        return WHITE_SHARE_UNDATED;
     }
     let by_gyro: f64 = observations.iter().map(|o| o.gyro_share).sum();
     let gyro_share = by_gyro / observations.len() as f64;
-    OF_WHITE_BY_SATELLITE + gyro_share * (OF_WHITE_BY_GYRO - OF_WHITE_BY_SATELLITE)
+    WHITE_SHARE_WITH_SATELLITE + gyro_share * (WHITE_SHARE_WITH_GYRO - WHITE_SHARE_WITH_SATELLITE)
 }

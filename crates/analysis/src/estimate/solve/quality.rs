@@ -1,5 +1,5 @@
-//! What an estimate rests on: the data or the prior, and how many independent
-//! samples the data are worth.
+//! Quality of an estimate: the shares of data and prior, and the number of independent
+//! samples.
 
 use crate::estimate::prior::scales;
 use crate::estimate::rows::Direction;
@@ -9,48 +9,46 @@ use binnacle_compass::model::{Caution, FromData, Identifiable, Parameters, Quali
 use binnacle_compass::ship::{CAUTION_H_NT, EarthField, PARAMETERS};
 use nalgebra::{SMatrix, SVector};
 
-/// For judging what the data alone say, the population is taken this much wider.
-const WIDER: f64 = 10.0;
-/// A parameter is the data's when they alone leave at most this part of the
-/// population's standard deviation.
+/// Factor on the population's standard deviations for the data's own knowledge.
+const WIDE_POPULATION_FACTOR: f64 = 10.0;
+/// Largest part of the population's standard deviation that leaves a parameter to the data.
 const DATA_DRIVEN: f64 = 0.5;
-/// Where so many times the samples would tell a parameter, samples are what lacks.
-const MORE: f64 = 10.0;
-/// What is neither parameter nor told apart from A by headings.
+/// Factor on the samples by which more of them would suffice.
+const MORE_SAMPLES_FACTOR: f64 = 10.0;
+/// Number of unknowns beside the parameters.
 const OTHERS: usize = UNKNOWNS - PARAMETERS;
-/// Information of what is known.
-const KNOWN: f64 = 1e9;
-/// Headings on which the curve is looked at.
+/// Information of a known quantity.
+const KNOWN_INFORMATION: f64 = 1e9;
+/// Number of headings at which the curve is evaluated.
 const HEADINGS: u32 = 24;
-/// Data whose best and worst known combinations are further apart than this
-/// leave the worst open.
-const OPEN: f64 = 1e12;
+/// Ratio of the best to the worst known combination from which the worst is open.
+const OPEN_RATIO: f64 = 1e12;
 
 type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
-/// What there is to judge by.
+/// Basis of the evaluation.
 pub(crate) struct Evidence<'a> {
     /// Information of the whitened rows alone.
     pub(crate) information: &'a Matrix,
-    /// Covariance that the data alone leave at the last row, the population taken
-    /// [`widely`]; none when they contradict all arithmetic.
+    /// Covariance by the data alone at the last row, with a wide population; none when it
+    /// is not positive definite.
     pub(crate) by_data: Option<Matrix>,
-    /// What the rows would tell were their errors independent and of one degree,
-    /// each with the weight it had in the fit; and the sum of the weights.
+    /// Information of the rows for independent errors of one degree, with their weights in
+    /// the fit, and the sum of the weights.
     pub(crate) independent: &'a Matrix,
     pub(crate) weighed: f64,
-    /// Variance of what is left of a row, degrees squared.
+    /// Residual variance of a row, degrees squared.
     pub(crate) row_variance: f64,
-    /// Covariance after the fit and before it, in population units.
+    /// Covariance after and before the fit, in population units.
     pub(crate) after: &'a Matrix,
     pub(crate) before: &'a SMatrix<f64, 8, 8>,
     pub(crate) parameters: &'a Parameters,
-    /// The field at the last row, and the weakest of all.
+    /// Field at the last row, and the weakest of all.
     pub(crate) earth: EarthField,
     pub(crate) weakest_h_nt: f64,
 }
 
-/// Judges an estimate.
+/// Evaluates an estimate.
 pub(crate) fn quality(evidence: &Evidence<'_>) -> (Quality, Identifiable) {
     let identifiable = identifiable(evidence.by_data.as_ref());
     let share = |j: usize| {
@@ -59,7 +57,7 @@ pub(crate) fn quality(evidence: &Evidence<'_>) -> (Quality, Identifiable) {
     };
     let mut cautions = Vec::new();
     if !(identifiable.bx_nt && identifiable.by_nt) {
-        cautions.push(what_lacks(evidence.information));
+        cautions.push(missing_data(evidence.information));
     }
     if evidence.weakest_h_nt < CAUTION_H_NT {
         cautions.push(Caution::WeakField {
@@ -84,28 +82,30 @@ pub(crate) fn quality(evidence: &Evidence<'_>) -> (Quality, Identifiable) {
     (quality, identifiable)
 }
 
-/// Why bx and χ13, by and χ23 are not told apart: more samples like these would do
-/// it, or nothing will but other magnetic latitudes.
-fn what_lacks(information: &Matrix) -> Caution {
-    let more = widely(&(information * MORE)).cholesky();
+/// Returns the reason for which bx and χ13, by and χ23 are not separated: too few samples,
+/// or one magnetic latitude.
+fn missing_data(information: &Matrix) -> Caution {
+    let more = with_wide_population(&(information * MORE_SAMPLES_FACTOR)).cholesky();
     let more = more.map(|factor| factor.inverse());
-    let told = self::identifiable(more.as_ref());
-    if told.bx_nt && told.by_nt {
+    let shown = self::identifiable(more.as_ref());
+    if shown.bx_nt && shown.by_nt {
         Caution::FewSamples
     } else {
         Caution::OneMagneticLatitude
     }
 }
 
-/// How many rows with independent errors of the same size would tell the curve
-/// at the last place as well as all rows do together.
+/// Returns the number of rows with independent errors of the same size that would give the
+/// curve at the last place as well as all rows do.
 fn effective_samples(evidence: &Evidence<'_>) -> f64 {
     let mut independent = evidence.independent / evidence.row_variance;
     // Independent errors have no nuisances.
     for j in CONSTANT + 1..UNKNOWNS {
-        independent[(j, j)] += KNOWN;
+        independent[(j, j)] += KNOWN_INFORMATION;
     }
-    let independent = widely(&independent).cholesky().map(|f| f.inverse());
+    let independent = with_wide_population(&independent)
+        .cholesky()
+        .map(|f| f.inverse());
     let Some((correlated, independent)) = evidence.by_data.zip(independent) else {
         return 0.0;
     };
@@ -113,13 +113,17 @@ fn effective_samples(evidence: &Evidence<'_>) -> f64 {
     (evidence.weighed * part).min(evidence.weighed)
 }
 
-/// Variance of the curve at the last place, averaged over headings.
+/// Returns the variance of the curve at the last place, averaged over headings.
 fn curve_variance(covariance: &Matrix, evidence: &Evidence<'_>) -> f64 {
     let scale = scales();
     let sum: f64 = (0..HEADINGS)
         .map(|k| {
             let magnetic = f64::from(k * 360 / HEADINGS).to_radians();
-            let needle = Needle::at(evidence.parameters, Direction::of(magnetic), evidence.earth);
+            let needle = Needle::at(
+                evidence.parameters,
+                Direction::from_radians(magnetic),
+                evidence.earth,
+            );
             let mut slopes = SVector::<f64, UNKNOWNS>::zeros();
             for (j, slope) in needle.gradient().iter().enumerate() {
                 slopes[j] = slope.to_degrees() * scale[j];
@@ -131,12 +135,12 @@ fn curve_variance(covariance: &Matrix, evidence: &Evidence<'_>) -> f64 {
     sum / f64::from(HEADINGS)
 }
 
-/// Information with a population much wider than it is.
-pub(crate) fn widely(information: &Matrix) -> Matrix {
+/// Returns the information with a wide population.
+pub(crate) fn with_wide_population(information: &Matrix) -> Matrix {
     let mut wide = *information;
     for j in 0..UNKNOWNS {
         let own = if j < PARAMETERS {
-            1.0 / (WIDER * WIDER)
+            1.0 / (WIDE_POPULATION_FACTOR * WIDE_POPULATION_FACTOR)
         } else {
             1.0
         };
@@ -145,36 +149,37 @@ pub(crate) fn widely(information: &Matrix) -> Matrix {
     wide
 }
 
-/// Standard error of the worst known combination of the parameters over that of
-/// the best, by the data alone, in population units, the constant known to a
-/// degree; none where the data leave one quite open.
+/// Returns the ratio of the standard errors of the worst and the best known combination of
+/// the parameters, by the data alone, in population units, with the constant known to a
+/// degree; none where the data leave one open.
 fn condition(information: &Matrix) -> Option<f64> {
     let own = information.fixed_view::<PARAMETERS, PARAMETERS>(0, 0);
     let mixed = information.fixed_view::<PARAMETERS, OTHERS>(0, PARAMETERS);
     let others = information.fixed_view::<OTHERS, OTHERS>(PARAMETERS, PARAMETERS);
-    // They are known beforehand to their own units.
+    // Their priors are one in their own units.
     let others = others + SMatrix::identity();
-    let told = own - mixed * others.cholesky()?.solve(&mixed.transpose());
-    let values = told.symmetric_eigenvalues();
+    let shown = own - mixed * others.cholesky()?.solve(&mixed.transpose());
+    let values = shown.symmetric_eigenvalues();
     let (least, most) = (values.min(), values.max());
-    (least > 0.0 && most / least < OPEN).then(|| (most / least).sqrt())
+    (least > 0.0 && most / least < OPEN_RATIO).then(|| (most / least).sqrt())
 }
 
-/// Which parameters the data alone tell, the population taken much wider than
-/// it is. A is (χ21 − χ12)/2 and cannot be told from the constant, so that of
-/// χ12 and χ21 headings tell the sum, E, and neither by itself.
+/// Returns the parameters that the data alone determine, with a wide population. A is (χ21
+/// − χ12)/2 and cannot be separated from the constant, so that headings show the sum of χ12
+/// and χ21, E, and neither by itself.
 fn identifiable(by_data: Option<&Matrix>) -> Identifiable {
-    let told = |j: usize| by_data.is_some_and(|covariance| covariance[(j, j)].sqrt() < DATA_DRIVEN);
-    // What is permanent is known only when what the dip induces is.
-    let (fore_and_aft, athwart) = (told(0) && told(1), told(2) && told(3));
+    let shown =
+        |j: usize| by_data.is_some_and(|covariance| covariance[(j, j)].sqrt() < DATA_DRIVEN);
+    // The permanent part is known only with the part that the vertical field induces.
+    let (fore_and_aft, athwart) = (shown(0) && shown(1), shown(2) && shown(3));
     Identifiable {
         bx_nt: fore_and_aft,
         chi13: fore_and_aft,
         by_nt: athwart,
         chi23: athwart,
-        chi11_minus_chi22: told(4),
-        chi12: told(5),
-        chi21: told(6),
+        chi11_minus_chi22: shown(4),
+        chi12: shown(5),
+        chi21: shown(6),
         constant_deg: false,
     }
 }

@@ -1,50 +1,50 @@
-//! The filter: takes the memory out of the residuals and, alike, out of the
-//! columns, and adds what is left up to normal equations.
+//! Whitening filter: removes the correlation from the residuals and, alike, from the
+//! columns, and adds them up to normal equations.
 //!
-//! The filter's gain depends on the noise alone, so that one covariance serves
-//! the residual and every column.
+//! The filter's gain depends on the noise alone, so that one covariance serves the residual
+//! and every column.
 
 use crate::estimate::noise_process::{DRIFT, STATES, Transition, initial_variances};
 use crate::estimate::products::Products;
-use crate::estimate::robust_loss::{loss_of, weight_among_many};
-use crate::estimate::rows::{Row, Station, UNKNOWNS};
+use crate::estimate::robust_loss::{batch_weight, robust_loss};
+use crate::estimate::rows::{Row, RowFrame, UNKNOWNS};
 use binnacle_compass::result::NoiseLevels;
 use nalgebra::{SMatrix, SVector};
 
-/// The residual (first), the columns, and a zero that makes their number even.
+/// Number of series: the residual (first), the columns, and a zero that makes the number
+/// even.
 const SERIES: usize = (1 + UNKNOWNS).next_multiple_of(2);
-/// The same but for the last column, that of what is left of the references' usual
-/// difference: without pairs of references it is zero.
+/// Number of series without the last column, that of the references' residual difference:
+/// without pairs of references it is zero.
 const OF_ONE_REFERENCE: usize = UNKNOWNS;
 
-/// What one pass over the rows adds up to.
+/// Sums of one pass over the rows.
 #[derive(Clone, Debug)]
 pub(crate) struct Pass {
     /// XᵀV⁻¹X.
     pub(crate) information: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
     /// XᵀV⁻¹r.
     pub(crate) score: SVector<f64, UNKNOWNS>,
-    /// Sum of loss and log variance over the innovations: −2 log
-    /// likelihood but for a constant.
+    /// Sum of loss and log variance over the innovations: −2 log likelihood but for a
+    /// constant.
     pub(crate) loss: f64,
-    /// How bx and by have drifted when the last row was taken.
+    /// Drift of bx and by at the last row.
     pub(crate) drift: Drift,
 }
 
-/// The drift of bx and by, nT, from the first row to the last, as far as the
-/// rows tell.
+/// Drift of bx and by from the first row to the last, nT.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drift {
-    /// As estimated at the unknowns that the rows were taken at.
+    /// Estimate at the linearised unknowns.
     pub(crate) nt: [f64; 2],
-    /// How the estimate falls with each unknown.
+    /// Negative slope of the estimate by each unknown.
     pub(crate) per_unknown: [[f64; UNKNOWNS]; 2],
-    /// Covariance that is left, were the unknowns known.
+    /// Covariance for known unknowns.
     pub(crate) covariance: [[f64; 2]; 2],
 }
 
 impl Drift {
-    /// When the unknowns have moved by a step.
+    /// Returns the drift after a step of the unknowns.
     pub(crate) fn after(&self, step: &SVector<f64, UNKNOWNS>) -> Drift {
         let mut drift = *self;
         for (nt, per_unknown) in drift.nt.iter_mut().zip(&self.per_unknown) {
@@ -58,32 +58,32 @@ impl Drift {
     }
 }
 
-/// The state of the filter between rows.
+/// State of the filter between rows.
 struct Filter<const N: usize> {
     covariance: [[f64; STATES]; STATES],
-    /// For each state its estimate in the residual and in every column.
+    /// Estimate of each state in the residual and in every column.
     series: [[f64; N]; STATES],
     stationary: [f64; STATES],
     drift_variance: f64,
     turn_variance: f64,
 }
 
-/// One scalar that the filter takes in.
+/// A scalar for the filter.
 struct Scalar<const N: usize> {
-    /// The residual and its columns.
+    /// Residual and columns.
     series: [f64; N],
     load: [f64; STATES],
     white: f64,
 }
 
-/// What a scalar came to.
+/// Result of a scalar.
 struct Whitened<const N: usize> {
     /// Innovations, the residual's first.
     innovations: [f64; N],
     variance: f64,
-    /// The residual's innovation over its standard deviation, squared.
+    /// Squared innovation of the residual over its variance.
     z_squared: f64,
-    /// The scalar's weight, 0 to 1.
+    /// Weight of the scalar, 0 to 1.
     weight: f64,
     /// Weight over variance.
     weight_per_variance: f64,
@@ -109,7 +109,7 @@ impl<const N: usize> Filter<N> {
         advance_rows(&mut self.series, t);
         advance_rows(&mut self.covariance, t);
         advance_columns(&mut self.covariance, t);
-        // What the stationary process lost in the step comes in as new noise.
+        // The variance that the stationary process lost returns as new noise.
         let [[a, b], [c, d]] = t.schuler;
         let swing = self.stationary[0];
         let cross = -swing * (a * c + b * d);
@@ -132,7 +132,7 @@ impl<const N: usize> Filter<N> {
         }
     }
 
-    /// Takes a scalar in.
+    /// Updates the state with a scalar.
     fn update(&mut self, scalar: &Scalar<N>) -> Whitened<N> {
         let mut innovations = scalar.series;
         for (s, load) in loaded(&scalar.load) {
@@ -146,11 +146,11 @@ impl<const N: usize> Filter<N> {
                 *sum += load * covariance;
             }
         }
-        let told: f64 = gain.iter().zip(&scalar.load).map(|(g, l)| g * l).sum();
-        let variance = scalar.white + told;
+        let shown: f64 = gain.iter().zip(&scalar.load).map(|(g, l)| g * l).sum();
+        let variance = scalar.white + shown;
         let per_variance = 1.0 / variance;
         let z_squared = innovations[0] * innovations[0] * per_variance;
-        let weight = weight_among_many(z_squared);
+        let weight = batch_weight(z_squared);
         let weight_per_variance = weight * per_variance;
         for (s, gain_of_s) in loaded(&gain) {
             let step = gain_of_s * weight_per_variance;
@@ -193,7 +193,7 @@ fn advance_rows<const N: usize>(rows: &mut [[f64; N]; STATES], t: &Transition) {
     }
 }
 
-/// What [`advance_rows`] does, to the columns.
+/// Applies [`advance_rows`] to the columns.
 fn advance_columns(covariance: &mut [[f64; STATES]; STATES], t: &Transition) {
     let [[a, b], [c, d]] = t.schuler;
     for [swing, rate, slow @ .., _, _] in covariance {
@@ -204,47 +204,47 @@ fn advance_columns(covariance: &mut [[f64; STATES]; STATES], t: &Transition) {
     }
 }
 
-/// The states that have a part in something, with their parts.
+/// Returns the states with a part other than zero, and their parts.
 fn loaded(parts: &[f64; STATES]) -> impl Iterator<Item = (usize, f64)> {
     let parts = parts.iter().copied().enumerate();
     parts.filter(|(_, part)| *part != 0.0)
 }
 
 /// Runs the filter over all rows.
-pub(crate) fn whiten(stations: &[Station], rows: &[Row], levels: &NoiseLevels) -> Pass {
-    if stations.iter().any(Station::reads_both) {
-        whiten_series::<SERIES>(stations, rows, levels)
+pub(crate) fn whiten(frames: &[RowFrame], rows: &[Row], levels: &NoiseLevels) -> Pass {
+    if frames.iter().any(RowFrame::reads_both) {
+        whiten_series::<SERIES>(frames, rows, levels)
     } else {
-        whiten_series::<OF_ONE_REFERENCE>(stations, rows, levels)
+        whiten_series::<OF_ONE_REFERENCE>(frames, rows, levels)
     }
 }
 
-fn whiten_series<const N: usize>(stations: &[Station], rows: &[Row], levels: &NoiseLevels) -> Pass {
+fn whiten_series<const N: usize>(frames: &[RowFrame], rows: &[Row], levels: &NoiseLevels) -> Pass {
     let mut whitening = Whitening::<N>::new(levels);
-    for (station, row) in stations.iter().zip(rows) {
-        whitening.take(station, row);
+    for (frame, row) in frames.iter().zip(rows) {
+        whitening.observe(frame, row);
     }
     whitening.pass()
 }
 
-/// A pass that goes on, row by row.
+/// A pass in progress, row by row.
 pub(crate) struct Whitening<const N: usize = SERIES> {
     filter: Filter<N>,
     white: f64,
     difference_white: f64,
-    /// What has been added up since the last cut, and before it.
+    /// Sums since the last cut, and before it.
     sums: Sums<N>,
     before: Products<N>,
 }
 
-/// What some of the rows tell: their part of the normal equations.
+/// Part of the normal equations by some of the rows.
 pub(crate) struct Part {
     pub(crate) information: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
     pub(crate) score: SVector<f64, UNKNOWNS>,
 }
 
 impl<const N: usize> Whitening<N> {
-    /// Before the first row.
+    /// Makes a pass before the first row.
     pub(crate) fn new(levels: &NoiseLevels) -> Whitening<N> {
         Whitening {
             filter: Filter::new(levels),
@@ -255,34 +255,34 @@ impl<const N: usize> Whitening<N> {
         }
     }
 
-    /// Takes the next row in; the weight of its residual, 0 to 1.
-    pub(crate) fn take(&mut self, station: &Station, row: &Row) -> f64 {
-        self.filter.advance(&station.transition);
+    /// Reads the next row, and returns the weight of its residual, 0 to 1.
+    pub(crate) fn observe(&mut self, frame: &RowFrame, row: &Row) -> f64 {
+        self.filter.advance(&frame.transition);
         if let Some(residual) = row.difference {
-            let (columns, load) = station.difference(row);
+            let (columns, load) = frame.difference(row);
             let scalar = Scalar {
                 series: series_of(residual, &columns),
                 load,
-                white: station.difference_white.variance(self.difference_white),
+                white: frame.difference_white.variance(self.difference_white),
             };
-            self.sums.take(&mut self.filter, &scalar);
+            self.sums.add(&mut self.filter, &scalar);
         }
         let scalar = Scalar {
             series: series_of(row.residual, &row.columns),
-            load: station.loads(row),
-            white: station.white.variance(self.white),
+            load: frame.loads(row),
+            white: frame.white.variance(self.white),
         };
-        self.sums.take(&mut self.filter, &scalar)
+        self.sums.add(&mut self.filter, &scalar)
     }
 
-    /// What the rows since the last cut tell.
+    /// Returns the part of the rows since the last cut.
     pub(crate) fn cut(&mut self) -> Part {
         let normal = std::mem::replace(&mut self.sums.normal, Products::new());
         self.before.add_all(&normal);
         part_of(&normal)
     }
 
-    /// What all rows tell.
+    /// Returns the sums of all rows.
     pub(crate) fn pass(mut self) -> Pass {
         self.cut();
         let Part { information, score } = part_of(&self.before);
@@ -322,14 +322,14 @@ fn columns_of<const N: usize>(series: &[f64; N]) -> [f64; UNKNOWNS] {
     columns
 }
 
-/// What has been added up so far.
+/// Sums so far.
 struct Sums<const N: usize> {
     /// Products of the whitened series.
     normal: Products<N>,
     loss: f64,
-    /// Sum of log variance, but for what is in `variances`.
+    /// Sum of log variance, without `variances`.
     log_variance: f64,
-    /// A product of variances: one logarithm serves many.
+    /// Product of variances: one logarithm serves many.
     variances: f64,
 }
 
@@ -343,11 +343,11 @@ impl<const N: usize> Sums<N> {
         }
     }
 
-    fn take(&mut self, filter: &mut Filter<N>, scalar: &Scalar<N>) -> f64 {
+    fn add(&mut self, filter: &mut Filter<N>, scalar: &Scalar<N>) -> f64 {
         let whitened = filter.update(scalar);
-        self.loss += loss_of(whitened.z_squared);
+        self.loss += robust_loss(whitened.z_squared);
         self.variances *= whitened.variance;
-        // Far from where the product would leave what a number can hold.
+        // Well within the range of the product.
         if !(1e-100..1e100).contains(&self.variances) {
             self.log_variance += self.variances.ln();
             self.variances = 1.0;

@@ -1,54 +1,51 @@
-//! How the likelihood of residuals falls and rises with each level: filters side by
-//! side over the same rows, each with one level nudged.
+//! Slopes of the likelihood by the noise levels: filters side by side over the same rows,
+//! each with one level nudged.
 //!
-//! What always holds: all filters go over by the same transitions and meet the same
-//! loads, so that one step of arithmetic serves them all; covariances are symmetric,
-//! and only their lower triangle is kept.
+//! All filters share transitions and loads, so that one step of arithmetic serves them all.
+//! Covariances are symmetric, and only their lower triangle is kept.
 
 use crate::estimate::noise_process::{LEVELS, STATES, Transition, initial_variances};
 use crate::estimate::products::Products;
-use crate::estimate::robust_loss::{loss_slope, weight_among_many};
-use crate::estimate::rows::White;
-use crate::estimate::rows::{Row, Station, UNKNOWNS};
+use crate::estimate::robust_loss::{batch_weight, loss_slope};
+use crate::estimate::rows::WhiteNoise;
+use crate::estimate::rows::{Row, RowFrame, UNKNOWNS};
 use binnacle_compass::result::NoiseLevels;
 
-/// By how much a level's logarithm is nudged: far below what matters, far above
-/// what rounding does.
+/// Nudge of a level's logarithm: far below what matters, far above rounding.
 const NUDGE: f64 = 1e-4;
-/// Filters that run side by side: the levels' own and one for each that is moved.
+/// Number of filters side by side: that of the levels and one for each nudged level.
 const FEW: usize = 8;
 const MANY: usize = 10;
 
 /// Slopes by the logarithms of the levels, in the order of [`NoiseLevels`].
 #[derive(Clone, Debug)]
 pub(crate) struct Slopes {
-    /// Of the loss, −2 log likelihood but for a constant.
+    /// Slopes of the loss, −2 log likelihood but for a constant.
     pub(crate) loss: [f64; LEVELS],
-    /// Of the sum of log variance.
+    /// Slopes of the sum of log variance.
     pub(crate) log_variance: [f64; LEVELS],
-    /// What the loss's second slopes are on the average over data (Fisher's
-    /// information, twice).
+    /// Mean second slopes of the loss over data (twice Fisher's information).
     pub(crate) information: [[f64; LEVELS]; LEVELS],
 }
 
-/// The slopes at `levels` by those that are `moved`; the others' are zero. `known`
-/// is taken off the unknowns that the rows were taken at.
+/// Returns the slopes at `levels` by the `moved` ones; the others' are zero. `known` is
+/// subtracted from the unknowns at which the rows were linearised.
 pub(crate) fn slopes(
-    stations: &[Station],
+    frames: &[RowFrame],
     rows: &[Row],
     levels: &NoiseLevels,
     moved: &[usize],
     known: &[f64; UNKNOWNS],
 ) -> Slopes {
     if moved.len() < FEW {
-        side_by_side::<FEW>(stations, rows, levels, moved, known)
+        side_by_side::<FEW>(frames, rows, levels, moved, known)
     } else {
-        side_by_side::<MANY>(stations, rows, levels, moved, known)
+        side_by_side::<MANY>(frames, rows, levels, moved, known)
     }
 }
 
 fn side_by_side<const N: usize>(
-    stations: &[Station],
+    frames: &[RowFrame],
     rows: &[Row],
     levels: &NoiseLevels,
     moved: &[usize],
@@ -64,15 +61,15 @@ fn side_by_side<const N: usize>(
     let difference_white = nudged.map(|levels| levels.difference_deg.powi(2));
     let mut filters = Filters::new(&nudged);
     let mut sums = Sums::new();
-    for (station, row) in stations.iter().zip(rows) {
-        filters.advance(&station.transition);
+    for (frame, row) in frames.iter().zip(rows) {
+        filters.advance(&frame.transition);
         if let Some(residual) = row.difference {
-            let (columns, load) = station.difference(row);
+            let (columns, load) = frame.difference(row);
             let value = residual - dot(&columns, known);
-            sums.add(&filters.update(value, &load, &difference_white, station.difference_white));
+            sums.add(&filters.update(value, &load, &difference_white, frame.difference_white));
         }
         let value = row.residual - dot(&row.columns, known);
-        sums.add(&filters.update(value, &station.loads(row), &white, station.white));
+        sums.add(&filters.update(value, &frame.loads(row), &white, frame.white));
     }
     sums.by_level(moved)
 }
@@ -91,7 +88,7 @@ fn times_add<const N: usize>(sum: &mut Each<N>, factor: f64, of: &Each<N>) {
 }
 
 struct Filters<const N: usize> {
-    /// The lower triangle.
+    /// Covariance; the lower triangle only.
     covariance: [[Each<N>; STATES]; STATES],
     state: [Each<N>; STATES],
     stationary: [Each<N>; STATES],
@@ -99,7 +96,7 @@ struct Filters<const N: usize> {
     turn_variance: Each<N>,
 }
 
-/// Innovation and variance by each filter.
+/// Innovation and variance of each filter.
 struct Innovation<const N: usize> {
     value: Each<N>,
     variance: Each<N>,
@@ -138,7 +135,7 @@ impl<const N: usize> Filters<N> {
         let [swings, rates, others @ ..] = &mut self.covariance;
         for n in 0..N {
             let (p, q, r) = (swings[0][n], rates[0][n], rates[1][n]);
-            // What the stationary process lost in the step comes in as new noise.
+            // The variance that the stationary process lost returns as new noise.
             let lasting = self.stationary[0][n];
             let (p, r) = (p - lasting, r - lasting);
             swings[0][n] = a * a * p + 2.0 * a * b * q + b * b * r + lasting;
@@ -174,7 +171,7 @@ impl<const N: usize> Filters<N> {
         measured: f64,
         load: &[f64; STATES],
         levels_squared: &Each<N>,
-        white: White,
+        white: WhiteNoise,
     ) -> Innovation<N> {
         let mut value = [measured; N];
         for (state, &load) in self.state.iter().zip(load) {
@@ -196,10 +193,10 @@ impl<const N: usize> Filters<N> {
         }
         let mut per_variance = variance.map(f64::recip);
         for (per_variance, value) in per_variance.iter_mut().zip(&value) {
-            *per_variance *= weight_among_many(value * value * *per_variance);
+            *per_variance *= batch_weight(value * value * *per_variance);
         }
         for (s, row) in self.covariance.iter_mut().enumerate() {
-            // Nothing is told of a state that has no part in anything measured.
+            // A state without a part in any measurement stays as it is.
             if gain[s][0] == 0.0 {
                 continue;
             }
@@ -221,7 +218,7 @@ impl<const N: usize> Filters<N> {
     }
 }
 
-/// What the innovations add up to, by filter; the levels' own is the first.
+/// Sums over the innovations by filter; the first is of the levels themselves.
 struct Sums<const N: usize> {
     loss: Each<N>,
     log_variance: Each<N>,
@@ -276,13 +273,13 @@ impl<const N: usize> Sums<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::rows::{Point, row, stations};
+    use crate::estimate::rows::{LinearisationPoint, frames, row};
     use crate::estimate::whitening::whiten;
     use crate::observation::Observation;
     use binnacle_compass::angle::{CompassHeading, Deviation, Variation};
     use binnacle_compass::time::Timestamp;
 
-    /// A ship that turns now and then, with a satellite compass and a wild reading.
+    /// Observations with turns, a satellite compass and a wild reading.
     fn observations() -> Vec<Observation> {
         (0..200_i32)
             .map(|k| {
@@ -312,23 +309,23 @@ mod tests {
     #[test]
     fn the_slopes_are_those_of_the_loss() {
         let observations = observations();
-        let stations = stations(&observations);
-        let at = Point::at(&[0.1; UNKNOWNS], 0.7);
+        let frames = frames(&observations);
+        let at = LinearisationPoint::at(&[0.1; UNKNOWNS], 0.7);
         let rows: Vec<Row> = observations
             .iter()
-            .zip(&stations)
+            .zip(&frames)
             .map(|(o, s)| row(o, s, &at))
             .collect();
         let levels = NoiseLevels::TYPICAL;
         let all: Vec<usize> = (0..LEVELS).collect();
         let none = [0.0; UNKNOWNS];
-        let found = slopes(&stations, &rows, &levels, &all, &none);
-        let few = slopes(&stations, &rows, &levels, &all[..7], &none);
+        let found = slopes(&frames, &rows, &levels, &all, &none);
+        let level_sample = slopes(&frames, &rows, &levels, &all[..7], &none);
         for k in 0..LEVELS {
             let loss = |nudge: f64| {
                 let mut moved = levels.to_array();
                 moved[k] *= nudge.exp();
-                whiten(&stations, &rows, &NoiseLevels::from_array(moved)).loss
+                whiten(&frames, &rows, &NoiseLevels::from_array(moved)).loss
             };
             let slope = (loss(1e-4) - loss(-1e-4)) / 2e-4;
             assert!(
@@ -338,7 +335,7 @@ mod tests {
             assert!(found.information[k][k] > 0.0, "{k}");
             if k < 7 {
                 assert!(
-                    (few.loss[k] - found.loss[k]).abs() < 1e-6 * slope.abs().max(1.0),
+                    (level_sample.loss[k] - found.loss[k]).abs() < 1e-6 * slope.abs().max(1.0),
                     "{k}"
                 );
             }

@@ -1,48 +1,44 @@
-//! How large each kind of noise is, from the data: restricted maximum
-//! likelihood with a prior on every level.
+//! Noise levels from the data: restricted maximum likelihood with a prior on every level.
 //!
-//! Restricted, because the unknowns are fitted to the same residuals; with a
-//! prior, because a few days cannot show what wanders over weeks.
+//! It is restricted, because the unknowns are fitted to the same residuals. It has a prior,
+//! because a few days cannot show what wanders over weeks.
 
 use super::filter::{Pass, whiten};
 use super::likelihood_slopes::{Slopes, slopes};
 use crate::estimate::noise_process::LEVELS;
-use crate::estimate::rows::{Row, Station, UNKNOWNS};
+use crate::estimate::rows::{Row, RowFrame, UNKNOWNS};
 use binnacle_compass::result::NoiseLevels;
 use nalgebra::{SMatrix, SVector};
 
-/// Standard deviations of the levels' logarithms over ships and instruments, in
-/// the order of [`NoiseLevels`].
+/// Standard deviations of the levels' logarithms over ships and instruments, in the order
+/// of [`NoiseLevels`].
 const LOG_SD: [f64; LEVELS] = [0.7, 0.6, 0.6, 0.5, 0.7, 0.5, 0.5, 0.6, 0.7];
-/// Steps of the search at most, and how far one may move a level's logarithm.
+/// Greatest number of steps, and greatest move of a level's logarithm.
 const STEPS: u32 = 20;
 const LARGEST_MOVE: f64 = 0.9;
-/// A step that promises no more than this in −2 log likelihood is the last: while the
-/// parameters are still rough, and in the end.
+/// Gain in −2 log likelihood below which a step is the last: while the parameters are
+/// rough, and in the end.
 const LITTLE_TO_GAIN: f64 = 1.0;
 const NOTHING_TO_GAIN: f64 = 0.2;
-/// Levels of which the rows tell more than this (twice Fisher's information on the
-/// logarithm) are as good as known: what the unknowns' fit takes from the residuals
-/// does not matter to them.
+/// Information on a level's logarithm (twice Fisher's) from which it is well known: the
+/// unknowns' fit to the same residuals does not matter to it.
 const WELL_KNOWN: f64 = 300.0;
-/// A step that makes things worse is halved, until it is this small a part.
-const SMALLEST_PART: f64 = 0.05;
-/// By how much a level's logarithm is moved to see what the unknowns' part in the
-/// likelihood does.
+/// Smallest part to which a bad step is halved.
+const SMALLEST_STEP_SHARE: f64 = 0.05;
+/// Nudge of a level's logarithm for the slope of the unknowns' part in the likelihood.
 const NUDGE: f64 = 0.05;
-/// Rows of one stretch when there are too many for all to be looked at.
-const STRETCH: usize = 1000;
-/// Stretches that are looked at then.
-const STRETCHES: usize = 4;
+/// Rows of one stretch where not all rows are used.
+const STRETCH_ROWS: usize = 1000;
+/// Number of stretches then.
+const STRETCH_COUNT: usize = 4;
 
-/// What is known of the unknowns beside the rows: information, and its pull at
-/// where the rows were taken.
-pub(crate) struct Pull {
+/// Prior information on the unknowns, and its score at the point of linearisation.
+pub(crate) struct PriorTerms {
     pub(crate) information: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
     pub(crate) score: SVector<f64, UNKNOWNS>,
 }
 
-/// Levels, and what they say of the rows.
+/// Fitted levels, with their slopes.
 pub(crate) struct Found {
     pub(crate) levels: NoiseLevels,
     /// Slopes of the sum of log variance by the levels' logarithms.
@@ -51,52 +47,52 @@ pub(crate) struct Found {
 
 type Logs = SVector<f64, LEVELS>;
 
-/// How well levels are sought.
+/// Effort of the search for levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sought {
-    /// As if the unknowns were known where they are likeliest.
-    Roughly,
-    /// With what the unknowns' fit takes from the residuals.
-    Fairly,
-    /// The same, until nothing more is to be gained.
-    Well,
+pub(crate) enum SearchEffort {
+    /// For unknowns known at their likeliest values.
+    Rough,
+    /// With the unknowns' fit to the same residuals.
+    Restricted,
+    /// With the unknowns' fit, until nothing more is gained.
+    Converged,
 }
 
-/// The levels that make the rows likeliest, sought from `levels` by Fisher's scoring.
+/// Returns the likeliest levels, searched from `levels` by Fisher's scoring.
 pub(crate) fn fit_levels(
-    stations: &[Station],
+    frames: &[RowFrame],
     rows: &[Row],
-    pull: &Pull,
+    prior_terms: &PriorTerms,
     typical: &NoiseLevels,
     levels: &NoiseLevels,
-    sought: Sought,
+    effort: SearchEffort,
 ) -> Found {
     let search = Search {
-        sought,
-        stations,
+        effort,
+        frames,
         rows,
-        pull,
+        prior_terms,
         typical: logs_of(typical),
-        moved: moved(stations, levels),
+        moved: moved(frames, levels),
     };
     search.run(logs_of(levels))
 }
 
 struct Search<'a> {
-    stations: &'a [Station],
+    frames: &'a [RowFrame],
     rows: &'a [Row],
-    pull: &'a Pull,
+    prior_terms: &'a PriorTerms,
     typical: Logs,
-    /// The levels that are sought.
+    /// Indices of the levels that are fitted.
     moved: Vec<usize>,
-    sought: Sought,
+    effort: SearchEffort,
 }
 
-/// What the likelihood is at some levels.
-struct Tried {
+/// Likelihood at some levels.
+struct Trial {
     logs: Logs,
     objective: f64,
-    /// By how much the unknowns differ from where the rows were taken.
+    /// Difference of the likeliest unknowns from the point of linearisation.
     known: [f64; UNKNOWNS],
     log_determinant: f64,
 }
@@ -133,55 +129,60 @@ impl Search<'_> {
     }
 
     fn enough(&self) -> f64 {
-        match self.sought {
-            Sought::Roughly | Sought::Fairly => LITTLE_TO_GAIN,
-            Sought::Well => NOTHING_TO_GAIN,
+        match self.effort {
+            SearchEffort::Rough | SearchEffort::Restricted => LITTLE_TO_GAIN,
+            SearchEffort::Converged => NOTHING_TO_GAIN,
         }
     }
 
-    /// None where the information is none.
-    fn at(&self, logs: Logs) -> Option<Tried> {
+    /// Evaluates the likelihood; none where the information is not positive definite.
+    fn at(&self, logs: Logs) -> Option<Trial> {
         let pass = self.whiten(&logs);
-        let factor = (self.pull.information + pass.information).cholesky()?;
-        let score = self.pull.score + pass.score;
+        let factor = (self.prior_terms.information + pass.information).cholesky()?;
+        let score = self.prior_terms.score + pass.score;
         let known = factor.solve(&score);
         let log_determinant = 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
-        let far = self.moved.iter().map(|&k| self.far(&logs, k).powi(2));
-        Some(Tried {
+        let distance_from_typical = self
+            .moved
+            .iter()
+            .map(|&k| self.distance_from_typical(&logs, k).powi(2));
+        Some(Trial {
             logs,
-            objective: pass.loss - score.dot(&known) + log_determinant + far.sum::<f64>(),
+            objective: pass.loss - score.dot(&known)
+                + log_determinant
+                + distance_from_typical.sum::<f64>(),
             known: known.into(),
             log_determinant,
         })
     }
 
-    /// How far from usual a level is, in standard deviations.
-    fn far(&self, logs: &Logs, k: usize) -> f64 {
+    /// Returns the distance of a level from its typical value, in standard deviations.
+    fn distance_from_typical(&self, logs: &Logs, k: usize) -> f64 {
         (logs[k] - self.typical[k]) / LOG_SD[k]
     }
 
     fn whiten(&self, logs: &Logs) -> Pass {
-        whiten(self.stations, self.rows, &levels_of(logs))
+        whiten(self.frames, self.rows, &levels_of(logs))
     }
 
-    /// Slopes at the unknowns that are likeliest there: moving with the levels, they
-    /// add nothing to them.
-    fn slopes(&self, here: &Tried) -> Slopes {
+    /// Returns the slopes at the likeliest unknowns, whose own moves add nothing to them.
+    fn slopes(&self, here: &Trial) -> Slopes {
         let levels = levels_of(&here.logs);
-        slopes(self.stations, self.rows, &levels, &self.moved, &here.known)
+        slopes(self.frames, self.rows, &levels, &self.moved, &here.known)
     }
 
-    /// Slopes of the log determinant of the unknowns' information, where they matter.
-    fn unknowns_part(&self, here: &Tried, slopes: &Slopes) -> Logs {
+    /// Returns the slopes of the log determinant of the unknowns' information, where they
+    /// matter.
+    fn unknowns_part(&self, here: &Trial, slopes: &Slopes) -> Logs {
         let mut part = Logs::zeros();
-        if self.sought == Sought::Roughly {
+        if self.effort == SearchEffort::Rough {
             return part;
         }
         let matters = |k: &&usize| slopes.information[**k][**k] < WELL_KNOWN;
         for &k in self.moved.iter().filter(matters) {
             let mut logs = here.logs;
             logs[k] += NUDGE;
-            let information = self.pull.information + self.whiten(&logs).information;
+            let information = self.prior_terms.information + self.whiten(&logs).information;
             if let Some(factor) = information.cholesky() {
                 let nudged = 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
                 part[k] = (nudged - here.log_determinant) / NUDGE;
@@ -190,13 +191,13 @@ impl Search<'_> {
         part
     }
 
-    /// A step and what it promises to gain.
-    fn step(&self, here: &Tried, slopes: &Slopes, unknowns_part: &Logs) -> Option<(Logs, f64)> {
+    /// Returns a step and its expected gain.
+    fn step(&self, here: &Trial, slopes: &Slopes, unknowns_part: &Logs) -> Option<(Logs, f64)> {
         let mut slope = Logs::from(slopes.loss) + unknowns_part;
         let mut curvature = SMatrix::from(slopes.information);
         for k in 0..LEVELS {
             if self.moved.contains(&k) {
-                slope[k] += 2.0 * self.far(&here.logs, k) / LOG_SD[k];
+                slope[k] += 2.0 * self.distance_from_typical(&here.logs, k) / LOG_SD[k];
                 curvature[(k, k)] += 2.0 / LOG_SD[k].powi(2);
             } else {
                 slope[k] = 0.0;
@@ -209,10 +210,10 @@ impl Search<'_> {
         Some((step * (LARGEST_MOVE / largest), gain))
     }
 
-    /// As much of a step as makes things better.
-    fn descend(&self, here: &Tried, step: &Logs) -> Option<Tried> {
+    /// Returns the largest part of a step that is an improvement.
+    fn descend(&self, here: &Trial, step: &Logs) -> Option<Trial> {
         let mut part = 1.0;
-        while part > SMALLEST_PART {
+        while part > SMALLEST_STEP_SHARE {
             let next = self.at(here.logs + step * part);
             if let Some(next) = next.filter(|next| next.objective < here.objective) {
                 return Some(next);
@@ -223,12 +224,12 @@ impl Search<'_> {
     }
 }
 
-/// A level of zero (its logarithm is not finite) stays zero, and one that no row
-/// shows stays what it usually is.
-fn moved(stations: &[Station], levels: &NoiseLevels) -> Vec<usize> {
-    let gyro = stations.iter().any(Station::reads_gyro);
-    let satellite = stations.iter().any(Station::reads_satellite);
-    let both = stations.iter().any(Station::reads_both);
+/// Returns the fitted levels: a level of zero (its logarithm is not finite) stays zero, and
+/// one that no row shows stays typical.
+fn moved(frames: &[RowFrame], levels: &NoiseLevels) -> Vec<usize> {
+    let gyro = frames.iter().any(RowFrame::reads_gyro);
+    let satellite = frames.iter().any(RowFrame::reads_satellite);
+    let both = frames.iter().any(RowFrame::reads_both);
     let shown = [true, gyro, gyro, gyro, true, true, true, satellite, both];
     let levels = levels.to_array();
     (0..LEVELS)
@@ -245,29 +246,29 @@ fn levels_of(logs: &Logs) -> NoiseLevels {
 }
 
 impl Found {
-    /// What part of the rows' noise is the compass's, of what tells rows apart: the
-    /// trace of V⁻¹ V_compass over that of V⁻¹ V, where V is the noise's covariance.
+    /// Returns the compass's share of the noise that separates rows: the trace of V⁻¹
+    /// V_compass over that of V⁻¹ V, where V is the noise's covariance.
     ///
-    /// A row taken at a heading with so much of the reference in it has a residual
-    /// that its slopes know nothing of; with any other, errors in the heading would
-    /// lean on the fit.
-    pub(crate) fn compass_share(&self, stations: &[Station], of_white: f64) -> f64 {
+    /// With this share of the reference in a row's heading, the residual is uncorrelated
+    /// with its slopes; with any other, errors in the heading would bias the fit.
+    pub(crate) fn compass_share(&self, frames: &[RowFrame], white_share: f64) -> f64 {
         let [white, _, _, _, swing, ..] = self.log_variance;
-        let sum = |of: fn(&Station) -> f64| stations.iter().map(of).sum::<f64>();
+        let sum = |of: fn(&RowFrame) -> f64| frames.iter().map(of).sum::<f64>();
         let by_level = self.levels.white_deg.powi(2) * sum(|s| s.white.factor);
-        // What scatters is white as well, and the card's.
+        // The scatter is white, too, and the card's.
         let scatter = white * sum(|s| s.white.scatter) / by_level.max(f64::MIN_POSITIVE);
         // By the logarithm of the variance, which is twice the level's.
-        let twice = of_white * white + scatter + swing;
-        (twice / (2.0 * stations.len() as f64)).clamp(0.0, 1.0)
+        let twice = white_share * white + scatter + swing;
+        (twice / (2.0 * frames.len() as f64)).clamp(0.0, 1.0)
     }
 }
 
-/// Which of `rows` rows are looked at: evenly spread stretches; none where it is all.
-pub(crate) fn looked_at(rows: usize) -> Option<impl Iterator<Item = usize>> {
-    if rows <= STRETCH * STRETCHES {
+/// Returns the places of the rows that are used, in evenly spaced stretches; none where all
+/// are.
+pub(crate) fn sampled_rows(rows: usize) -> Option<impl Iterator<Item = usize>> {
+    if rows <= STRETCH_ROWS * STRETCH_COUNT {
         return None;
     }
-    let spacing = (rows - STRETCH) / (STRETCHES - 1);
-    Some((0..STRETCHES).flat_map(move |i| i * spacing..i * spacing + STRETCH))
+    let spacing = (rows - STRETCH_ROWS) / (STRETCH_COUNT - 1);
+    Some((0..STRETCH_COUNT).flat_map(move |i| i * spacing..i * spacing + STRETCH_ROWS))
 }

@@ -18,14 +18,14 @@ use crate::change::priors;
 use crate::change::thresholds::{
     FIRST_CHANGE_ROW, FIRST_CHANGE_ROW_KNOWN_NOISE, WARM_UP_ROWS, WARM_UP_ROWS_KNOWN_NOISE,
 };
-use crate::estimate::{Point, Prior, Station, Unknowns, row, stations};
+use crate::estimate::{LinearisationPoint, Prior, RowFrame, Unknowns, frames, row};
 use crate::observation::Observation;
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::time::Timestamp;
 
 pub(crate) struct Detector<'a> {
     pub(crate) observations: &'a [Observation],
-    pub(crate) stations: Vec<Station>,
+    pub(crate) frames: Vec<RowFrame>,
     pub(crate) reported: &'a [Timestamp],
     pub(crate) cargo: &'a [CargoPeriod],
     pub(crate) prior: &'a Prior,
@@ -75,7 +75,7 @@ impl<'a> Detector<'a> {
     ) -> Detector<'a> {
         Detector {
             observations,
-            stations: stations(observations),
+            frames: frames(observations),
             reported: input.reported,
             cargo: input.cargo,
             prior: input.prior,
@@ -170,10 +170,10 @@ impl<'a> Detector<'a> {
         at: &Unknowns,
         extra_drift: f64,
     ) -> Measurement {
-        let (o, station) = (&self.observations[k], &self.stations[k]);
-        let row = row(o, station, &Point::at(at, reference_share(at)));
+        let (o, frame) = (&self.observations[k], &self.frames[k]);
+        let row = row(o, frame, &LinearisationPoint::at(at, reference_share(at)));
         measurement(
-            station,
+            frame,
             &row,
             at,
             self.seconds_since_previous(k),

@@ -2,7 +2,7 @@
 
 use crate::change::filter::{Filter, NoiseVariances};
 use crate::estimate::{Prior, Unknowns};
-use crate::fit::learn;
+use crate::fit::fit_roughly;
 use crate::observation::Observation;
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::ship::PARAMETERS;
@@ -55,7 +55,7 @@ impl LearntNoise {
         before: Option<&NoiseLevels>,
     ) -> Option<LearntNoise> {
         let until = rows.end;
-        let rough = learn(&observations[rows], prior, before)?;
+        let rough = fit_roughly(&observations[rows], prior, before)?;
         let noise = noise(&rough.levels);
         let mut mean = [rough.constant_deg; PARAMETERS + 1];
         mean[..PARAMETERS].copy_from_slice(&rough.parameters.to_array());
