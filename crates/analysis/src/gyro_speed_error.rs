@@ -1,19 +1,19 @@
-//! What a gyro does wrong because the ship moves over a turning earth.
+//! Speed error of a gyro: the vessel moves over a turning earth.
 
 use binnacle_compass::angle::TrueHeading;
 
-/// Radius of the earth's turning, knots (speed error of a gyro: sin ε =
-/// V cos C / 902.5 cos φ).
+/// Speed of the earth's rotation at the equator, knots (speed error of a gyro: sin ε = V
+/// cos C / 902.5 cos φ).
 const EARTH_TURN_KN: f64 = 902.5;
 
-/// A gyro's speed error in degrees, to be taken off its reading: positive on
+/// Returns a gyro's speed error in degrees, to be subtracted from its reading: positive on
 /// northerly headings.
 pub fn gyro_speed_error_deg(gyro: TrueHeading, sog_kn: f64, lat_deg: f64) -> f64 {
     let sine = northerly_sine(sog_kn, lat_deg) * gyro.radians().cos();
     sine.clamp(-1.0, 1.0).asin().to_degrees()
 }
 
-/// The same on a northerly heading.
+/// Returns a gyro's speed error on a northerly heading, degrees.
 pub(crate) fn northerly_speed_error_deg(sog_kn: f64, lat_deg: f64) -> f64 {
     let sine = northerly_sine(sog_kn, lat_deg);
     sine.clamp(-1.0, 1.0).asin().to_degrees()

@@ -1,15 +1,14 @@
-//! What to sail next: on which headings here, and in which magnetic latitude,
-//! a watch would narrow the band most.
+//! Advice on what to sail next: the headings here, and the magnetic latitude, in which a
+//! watch would narrow the band most.
 //!
-//! A watch is four hours on one compass heading; what it tells is the mean
-//! deviation there, with the error that the noise levels give a mean of four
-//! hours. What it would do to the band follows from the covariance alone: where
-//! the deviation measured turns out to lie does not matter (docs/science.md,
-//! §8). Three watches are on three successive days, so that the gyro's slow
-//! wander is nearly the same in all of them.
+//! A watch is four hours on one compass heading. It shows the mean deviation there, with
+//! the error that the noise levels give a mean of four hours. Its effect on the band
+//! follows from the covariance alone: the measured deviation does not matter
+//! (docs/science.md, §8). Three watches are on three successive days, so that the gyro's
+//! slow wander is nearly the same in all of them.
 //!
-//! What always holds: no watch widens a band, and none narrows it below what
-//! the reference's own constant error leaves, which no heading can show.
+//! No watch widens a band. None narrows it below what the reference's own constant error
+//! leaves, which no heading can show.
 
 mod knowledge;
 mod question;
@@ -25,7 +24,7 @@ use binnacle_compass::ship::EarthField;
 use knowledge::{Knowledge, slopes};
 use rank::{heading_advice, latitude_advice, waters_elsewhere};
 
-/// What to sail after an analysis; none while there is no model.
+/// Returns the advice after an analysis; none while there is no model.
 pub fn sail_next(analysis: &Analysis) -> Option<SailNext> {
     let epoch = analysis.current_epoch()?;
     let place = analysis.last_place?;
@@ -50,11 +49,11 @@ pub fn sail_next(analysis: &Analysis) -> Option<SailNext> {
     .ok()
 }
 
-/// What to sail next.
+/// Answers a question for advice.
 ///
 /// # Errors
-/// When the model does not say how sure it is, or headings are ambiguous where
-/// the ship is or in the waters given.
+/// Fails when the model has no known uncertainty, or headings are ambiguous where the
+/// vessel is or in the waters given.
 pub fn advise(question: &Question<'_>) -> Result<SailNext, AdviceError> {
     let known = Knowledge::new(question.model, question.reference_constant_sd_deg)?;
     let own = slopes(question.model, question.here)?;

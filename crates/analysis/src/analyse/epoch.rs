@@ -6,7 +6,7 @@ use super::single_heading::widen_along_needle;
 use crate::estimate::{Prior, unseen_sd_nt};
 use crate::fit::{
     HeadingReading, Observation, REJECTED_BELOW, RobustFit, RobustOptions, fit_known_ship,
-    fit_robust, refer,
+    fit_robust, observe_readings,
 };
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::model::Model;
@@ -76,7 +76,7 @@ pub(super) fn prior(
         .and_then(|before| {
             let reference_sd_deg = before.references.as_ref()?.constant_sd_deg;
             let model = before.model.as_ref()?;
-            let mut widened = Prior::after_upset(model, reference_sd_deg)?;
+            let mut widened = Prior::after_jump(model, reference_sd_deg)?;
             if epoch.begun_by_change == Some(Cause::Alignment) {
                 // The vessel is the same, but for a small step that would pass for part of
                 // it.
@@ -114,7 +114,7 @@ pub(super) fn reference(
     }
     let mut known: Vec<HeadingReading> = Vec::with_capacity(readings.len());
     known.extend(readings.iter().filter_map(heading_reading));
-    let referred = refer(&known, one_constant_sd_deg)?;
+    let referred = observe_readings(&known, one_constant_sd_deg)?;
     let mut observed = referred.observations.into_iter();
     let observations = readings
         .iter()

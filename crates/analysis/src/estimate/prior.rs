@@ -57,7 +57,7 @@ impl Prior {
     /// Returns the prior of a vessel whose permanent magnetism jumped after `model` was
     /// fitted with a reference of the given constant error: bx and by may be anything, and
     /// the induced parameters are much as before. None when the model has no covariance.
-    pub fn after_upset(
+    pub fn after_jump(
         model: &binnacle_compass::model::Model,
         reference_constant_sd_deg: f64,
     ) -> Option<Prior> {

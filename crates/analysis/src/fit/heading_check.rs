@@ -1,4 +1,4 @@
-//! Whether observations lie on enough headings, and on which they do not.
+//! Distribution of observations over headings.
 
 use crate::observation::Observation;
 use binnacle_compass::result::FitError;
@@ -6,14 +6,14 @@ use binnacle_compass::result::FitError;
 /// Sectors of heading, of 15° each.
 const SECTORS: usize = 24;
 const SECTOR_DEG: u32 = 15;
-/// Sectors that must hold samples.
+/// Least number of sectors with samples.
 const NEEDED_SECTORS: u32 = 6;
-/// With a wider gap the deviation beyond it would be the prior's alone.
+/// Widest gap: beyond a wider one the deviation would be the prior's alone.
 const ALLOWED_GAP_DEG: f64 = 240.0;
 
-/// Refuses observations on too few headings, with the sectors that are missing.
+/// Fails for observations on too few headings, with the missing sectors.
 pub(super) fn check_headings(rows: &[Observation]) -> Result<(), FitError> {
-    // The least and the most in each degree: between these lie all gaps that matter.
+    // Least and greatest heading in each degree: all gaps that matter lie between these.
     let mut ends: [Option<(f64, f64)>; 360] = [None; 360];
     for heading in rows.iter().map(|o| o.compass.degrees()) {
         let (least, most) = ends[heading as usize % 360].get_or_insert((heading, heading));
@@ -44,7 +44,7 @@ pub(super) fn check_headings(rows: &[Observation]) -> Result<(), FitError> {
     })
 }
 
-/// Ranges of empty sectors, each by its first degree and the one after its last; a
+/// Returns ranges of empty sectors, each by its first degree and the one after its last; a
 /// range through north ends beyond 360.
 fn missing(filled: &[bool; SECTORS]) -> Vec<(u32, u32)> {
     let Some(first_filled) = filled.iter().position(|&filled| filled) else {

@@ -1,6 +1,6 @@
-//! From observations of deviation to a [`Model`](binnacle_compass::model::Model): as it was
-//! published ([`fit_paper`]), as today's tools do it ([`fit_ols`]), and as the
-//! product does ([`fit_robust`]).
+//! Fits of observations to a [`Model`](binnacle_compass::model::Model): as published
+//! ([`fit_paper`]), as by today's tools ([`fit_ols`]), and the product's own
+//! ([`fit_robust`]).
 
 mod csv_row;
 mod heading_check;
@@ -17,7 +17,7 @@ pub use crate::observation::Observation;
 pub use csv_row::{CsvRow, CsvRowError, check_columns, readings_from_csv};
 pub use ols::fit_ols;
 pub use paper::fit_paper;
-pub use reference::{HeadingReading, Referred, refer};
+pub use reference::{HeadingReading, ObservedReadings, observe_readings};
 pub(crate) use robust::fit_roughly;
 pub use robust::{
     REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, fit_known_ship, fit_robust,

@@ -1,5 +1,5 @@
-//! The normal equations of the two fits by ordinary least squares, and what
-//! follows from them when noise is held to be independent from row to row.
+//! Normal equations of the two fits by ordinary least squares, for noise that is assumed
+//! independent from row to row.
 
 use crate::estimate::POPULATION_SD;
 use binnacle_compass::model::{Covariance, Identifiable};
@@ -7,15 +7,15 @@ use binnacle_compass::result::FitError;
 use binnacle_compass::ship::PARAMETERS;
 use nalgebra::{SMatrix, SVector};
 
-/// One more than there are unknowns, so that a residual is left.
+/// Least number of samples: one more than the unknowns, so that a residual is left.
 const NEEDED_SAMPLES: u64 = PARAMETERS as u64 + 1;
-/// Columns of unit length whose normal matrix has an eigenvalue below this are
-/// the same column twice.
+/// Eigenvalue of the normal matrix, for columns of unit length, below which two columns are
+/// the same.
 const SMALLEST_EIGENVALUE: f64 = 1e-10;
 
-/// One row's slopes, or the normal equations' right side.
+/// Slopes of one row, or the right side of the normal equations.
 pub(super) type Vector = SVector<f64, PARAMETERS>;
-/// The normal matrix, or its inverse.
+/// Normal matrix, or its inverse.
 pub(super) type Matrix = SMatrix<f64, PARAMETERS, PARAMETERS>;
 
 pub(super) fn check_number(found: u64) -> Result<(), FitError> {
@@ -28,8 +28,8 @@ pub(super) fn check_number(found: u64) -> Result<(), FitError> {
     })
 }
 
-/// The inverse of a normal matrix; refused where two columns are one, which
-/// after a check of the headings means that all rows have the same dip.
+/// Inverts a normal matrix; fails where two columns are the same, which after a check of
+/// the headings means that all rows have the same dip.
 pub(super) fn invert(normal: &Matrix) -> Result<Matrix, FitError> {
     // nT and pure numbers differ by five orders of magnitude.
     let scale = Matrix::from_diagonal(&normal.diagonal().map(|square| 1.0 / square.sqrt()));
@@ -43,7 +43,7 @@ pub(super) fn invert(normal: &Matrix) -> Result<Matrix, FitError> {
     Ok(scale * factor.inverse() * scale)
 }
 
-/// s²(XᵀX)⁻¹; the constant is no unknown of these fits and has no variance.
+/// Returns s²(XᵀX)⁻¹; the constant is no unknown of these fits and has no variance.
 pub(super) fn covariance(inverse: &Matrix, variance: f64) -> Covariance {
     let mut covariance = [[0.0; 8]; 8];
     for i in 0..PARAMETERS {
@@ -54,18 +54,18 @@ pub(super) fn covariance(inverse: &Matrix, variance: f64) -> Covariance {
     covariance
 }
 
-/// A parameter is the data's when its standard error is below half of what
-/// ships differ by.
+/// Returns the parameters whose standard error is below half of the population's standard
+/// deviation.
 pub(super) fn identifiable(covariance: &Covariance) -> Identifiable {
-    let told = |j: usize| covariance[j][j].sqrt() < POPULATION_SD[j] / 2.0;
+    let shown = |j: usize| covariance[j][j].sqrt() < POPULATION_SD[j] / 2.0;
     Identifiable {
-        bx_nt: told(0),
-        chi13: told(1),
-        by_nt: told(2),
-        chi23: told(3),
-        chi11_minus_chi22: told(4),
-        chi12: told(5),
-        chi21: told(6),
+        bx_nt: shown(0),
+        chi13: shown(1),
+        by_nt: shown(2),
+        chi23: shown(3),
+        chi11_minus_chi22: shown(4),
+        chi12: shown(5),
+        chi21: shown(6),
         constant_deg: false,
     }
 }

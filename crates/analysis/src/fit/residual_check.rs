@@ -1,26 +1,26 @@
-//! Whether what a fit leaves over can be what instruments do.
+//! Plausibility of a fit's residuals.
 //!
-//! A variation of the wrong sign, columns that changed places or a wandering
-//! reference leave residuals that no ship explains, and a model that believes them
-//! too much: what is wrong swings fast, so that each sample seems to tell something
-//! new. Two figures have to be large before that is said: the middle of the plain
-//! residuals, which outliers do not move, and the noise that the estimator found,
-//! which is small where the ship herself changed with time.
+//! A variation of the wrong sign, interchanged columns or a wandering reference leave
+//! residuals that no vessel explains, and an overconfident model: fast errors make every
+//! sample seem to be new information. Two figures must be large for a refusal: the median
+//! of the plain residuals, which outliers do not move, and the noise found by the
+//! estimator, which is small where the vessel itself changed with time.
 
 use binnacle_compass::model::Caution;
 use binnacle_compass::result::{FitError, NoiseLevels};
 
-/// Usual instruments leave 0.5°, bad ones 1° ([`NoiseLevels`]); residuals are half
-/// as large again in weak fields. Beyond thrice the worst no instrument is believed.
+/// Largest residual and noise of a plausible fit. Usual instruments leave 0.5°, bad ones 1°
+/// ([`NoiseLevels`]); residuals are half as large again in weak fields. The limit is three
+/// times the worst.
 const ALLOWED_DEG: f64 = 3.0;
 const ALLOWED_NOISE_DEG: f64 = 1.25;
-/// Where both are beyond this, nothing on board is as it should be.
+/// Residual and noise from which the result needs a caution.
 const CAUTION_DEG: f64 = 1.0;
-/// The median of |x| of a Gaussian is this part of its standard deviation.
+/// Median of |x| of a Gaussian, as a part of its standard deviation.
 const MEDIAN_TO_SD: f64 = 0.674_489_8;
 
-/// Refuses what no ship explains, and warns of what hardly one does.
-pub(super) fn judge(
+/// Fails for implausible residuals, and returns a caution for large ones.
+pub(super) fn check_residuals(
     residuals_deg: impl Iterator<Item = f64>,
     levels: &NoiseLevels,
 ) -> Result<Option<Caution>, FitError> {
@@ -29,8 +29,8 @@ pub(super) fn judge(
         return Ok(None);
     }
     let noise_deg = levels.of_a_row().sqrt();
-    // A reference that was wrong for days draws the constant away from all the rest,
-    // which still is what a ship does.
+    // A reference that was wrong for days moves the constant away from all the rest, which
+    // is still plausible.
     let spread_deg = robust_sd(&residuals, median(residuals.clone()));
     if spread_deg > ALLOWED_DEG && noise_deg > ALLOWED_NOISE_DEG {
         return Err(FitError::Contradictory {
@@ -48,7 +48,7 @@ fn robust_sd(residuals: &[f64], about: f64) -> f64 {
     median(residuals.iter().map(|r| (r - about).abs()).collect()) / MEDIAN_TO_SD
 }
 
-/// Of at least one number.
+/// Returns the median of at least one number.
 fn median(mut numbers: Vec<f64>) -> f64 {
     let middle = numbers.len() / 2;
     *numbers.select_nth_unstable_by(middle, f64::total_cmp).1

@@ -1,17 +1,17 @@
-//! Rows far from the others in time: a wrong date, or a ship long not looked at.
+//! Rows far from the others in time: a wrong date, or a vessel not sampled for long.
 
 use crate::observation::Observation;
 use binnacle_compass::model::Caution;
 use binnacle_compass::time::Timestamp;
 
-/// Without a sample for so long the ship may be another.
+/// Time without a sample after which the vessel may be another.
 const LONG_S: f64 = 365.0 * 86_400.0;
-/// Fewer rows than this before such a time tell nothing of the ship after it, and
-/// are a clock's mistake where the others are so many times as many.
+/// Number of rows before such a time below which they say nothing of the vessel after it,
+/// and the ratio of the others to them from which a clock was wrong.
 const FEW: usize = 12;
 const OUTNUMBERED: usize = 10;
 
-/// Leaves out the few rows that stand long before all others.
+/// Leaves out the few rows long before all others.
 pub(super) fn leave_out_early(observations: &[Observation], usable: &mut Vec<usize>) {
     let Some(times) = in_order(usable.iter().map(|&i| &observations[i])) else {
         return;
@@ -25,7 +25,7 @@ pub(super) fn leave_out_early(observations: &[Observation], usable: &mut Vec<usi
     usable.retain(|&i| observations[i].time.is_none_or(|time| time >= begin));
 }
 
-/// Warns of the last long time without a row.
+/// Returns a caution for the last long time without a row.
 pub(super) fn long_gap(rows: &[Observation]) -> Option<Caution> {
     let times = in_order(rows.iter())?;
     let gaps = times.windows(2).map(|pair| pair[1].seconds_since(pair[0]));
@@ -36,7 +36,7 @@ pub(super) fn long_gap(rows: &[Observation]) -> Option<Caution> {
     })
 }
 
-/// Their times in order; none where any has none.
+/// Returns the times in order; none where any is missing.
 fn in_order<'a>(rows: impl Iterator<Item = &'a Observation>) -> Option<Vec<Timestamp>> {
     let mut times: Vec<Timestamp> = rows.map(|o| o.time).collect::<Option<_>>()?;
     times.sort_unstable();

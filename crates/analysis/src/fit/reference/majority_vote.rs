@@ -1,6 +1,7 @@
-//! Which of two references has failed: the magnetic compass has the third vote.
+//! Majority vote on which of two references has failed: the magnetic compass has the third
+//! vote.
 
-use super::check::{centred, has_failed, median};
+use super::check::{has_failed, median, without_usual_difference};
 use super::observe::{differences, observe};
 use super::reading::{HeadingReading, Trust};
 use crate::fit::{RobustFit, RobustOptions, fit_robust};
@@ -11,21 +12,21 @@ use binnacle_compass::result::ReferenceCheck;
 use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
 
-/// Failures closer in time than this are one.
-const SPELL_S: f64 = 6.0 * 3600.0;
-/// The failed reference must be so many times further off than the sound one.
-const FURTHER: f64 = 2.0;
-/// The same over days, in which what passes evens out.
-const FURTHER_FOR_LONG: f64 = 1.5;
-/// What went astray for days is judged by the ship of so long before, or after.
+/// Time between failures up to which they are one.
+const FAILURE_GAP_S: f64 = 6.0 * 3600.0;
+/// Least ratio of the failed reference's error to the sound one's.
+const ERROR_RATIO: f64 = 2.0;
+/// Least ratio over days, in which transient errors average out.
+const ERROR_RATIO_OVER_DAYS: f64 = 1.5;
+/// Time before and after a stretch of days from which the vessel's model is taken.
 const NEARBY_S: f64 = 30.0 * 86_400.0;
-/// And by so much of it: the ship herself does not stay as she was.
-const JUDGED_S: f64 = 15.0 * 86_400.0;
-/// More observations than this tell the third vote no better.
+/// Length of the stretch's beginning that counts: the vessel itself does not stay the same.
+const STRETCH_BEGINNING_S: f64 = 15.0 * 86_400.0;
+/// Number of observations beyond which the third vote gets no better.
 const ENOUGH: usize = 2000;
 
-/// Takes trust from the references that failed; `order` is that of time.
-pub(super) fn settle(
+/// Withdraws trust from the references that failed; `order` is that of time.
+pub(super) fn vote_on_failures(
     readings: &[HeadingReading],
     order: &[usize],
     check: &ReferenceCheck,
@@ -35,33 +36,33 @@ pub(super) fn settle(
     for (index, difference) in differences(readings, trust) {
         failed[index] = has_failed(check, difference);
     }
-    let quarrels: Vec<usize> = order.iter().copied().filter(|&i| failed[i]).collect();
-    if quarrels.is_empty() {
+    let failures: Vec<usize> = order.iter().copied().filter(|&i| failed[i]).collect();
+    if failures.is_empty() {
         return;
     }
     let sound = order.iter().copied().filter(|&i| !failed[i]);
-    let every = (readings.len() - quarrels.len()).div_ceil(ENOUGH).max(1);
+    let every = (readings.len() - failures.len()).div_ceil(ENOUGH).max(1);
     let sound: Vec<Observation> = sound
         .step_by(every)
         .filter_map(|i| observe(&readings[i], trust[i], check))
         .collect();
     let third = fit_robust(&sound, &RobustOptions::default()).ok();
-    let spells = quarrels.chunk_by(|&a, &b| match (readings[a].time, readings[b].time) {
-        (Some(a), Some(b)) => b.seconds_since(a) < SPELL_S,
+    let spells = failures.chunk_by(|&a, &b| match (readings[a].time, readings[b].time) {
+        (Some(a), Some(b)) => b.seconds_since(a) < FAILURE_GAP_S,
         _ => false,
     });
     for spell in spells {
-        let verdict = third
+        let decision = third
             .as_ref()
-            .map_or(NEITHER, |third| judge(readings, spell, check, third));
+            .map_or(NEITHER, |third| vote(readings, spell, check, third));
         for &index in spell {
-            trust[index] = verdict;
+            trust[index] = decision;
         }
     }
 }
 
-/// Takes trust from the reference that went astray in each of these stretches of days.
-pub(super) fn settle_stretches(
+/// Withdraws trust from the reference that failed in each of these stretches of days.
+pub(super) fn vote_on_stretches(
     readings: &[HeadingReading],
     order: &[usize],
     check: &ReferenceCheck,
@@ -74,7 +75,7 @@ pub(super) fn settle_stretches(
     }
     let sound: Vec<usize> = order.iter().copied().filter(|&i| !is_apart[i]).collect();
     for stretch in stretches {
-        let verdict = nearby(readings, stretch, &sound)
+        let decision = nearby(readings, stretch, &sound)
             .find_map(|places| {
                 let every = places.len().div_ceil(ENOUGH).max(1);
                 let near = places.iter().step_by(every);
@@ -82,15 +83,15 @@ pub(super) fn settle_stretches(
                 fit_robust(&near.collect::<Vec<_>>(), &RobustOptions::default()).ok()
             })
             .map_or(NEITHER, |third| {
-                judge_stretch(readings, stretch, check, &third)
+                vote_on_stretch(readings, stretch, check, &third)
             });
         for &index in stretch {
-            trust[index] = verdict;
+            trust[index] = decision;
         }
     }
 }
 
-/// Sound readings, in order of time, by whose model a stretch may be judged: those of weeks
+/// Returns the sound readings for the model of a stretch, in order of time: those of weeks
 /// before, of weeks after, and all.
 fn nearby<'a>(
     readings: &[HeadingReading],
@@ -112,8 +113,9 @@ fn nearby<'a>(
     [&sound[before], &sound[after], sound].into_iter()
 }
 
-/// Believes the reference that stayed as it was beside the compass, as the stretch began.
-fn judge_stretch(
+/// Returns trust in the reference that kept its difference from the compass as the stretch
+/// began.
+fn vote_on_stretch(
     readings: &[HeadingReading],
     stretch: &[usize],
     check: &ReferenceCheck,
@@ -121,7 +123,7 @@ fn judge_stretch(
 ) -> Trust {
     let begun = stretch.first().and_then(|&i| readings[i].time);
     let is_early = |reading: &&HeadingReading| match (begun, reading.time) {
-        (Some(begun), Some(time)) => time.seconds_since(begun) < JUDGED_S,
+        (Some(begun), Some(time)) => time.seconds_since(begun) < STRETCH_BEGINNING_S,
         _ => true,
     };
     let mut off = (Vec::new(), Vec::new());
@@ -129,7 +131,9 @@ fn judge_stretch(
         let Some(by_compass) = heading_by_compass(reading, third) else {
             continue;
         };
-        if let (Some(gyro), Some(satellite)) = centred(check, reading.gyro, reading.satellite) {
+        if let (Some(gyro), Some(satellite)) =
+            without_usual_difference(check, reading.gyro, reading.satellite)
+        {
             off.0.push(wrap_180(gyro.degrees() - by_compass));
             off.1.push(wrap_180(satellite.degrees() - by_compass));
         }
@@ -138,8 +142,8 @@ fn judge_stretch(
         return NEITHER;
     };
     Trust {
-        gyro: gyro.abs() * FURTHER_FOR_LONG < satellite.abs(),
-        satellite: satellite.abs() * FURTHER_FOR_LONG < gyro.abs(),
+        gyro: gyro.abs() * ERROR_RATIO_OVER_DAYS < satellite.abs(),
+        satellite: satellite.abs() * ERROR_RATIO_OVER_DAYS < gyro.abs(),
     }
 }
 
@@ -148,8 +152,8 @@ const NEITHER: Trust = Trust {
     satellite: false,
 };
 
-/// Believes the reference that is near to where the compass points.
-fn judge(
+/// Returns trust in the reference that is near the compass's heading.
+fn vote(
     readings: &[HeadingReading],
     spell: &[usize],
     check: &ReferenceCheck,
@@ -160,7 +164,9 @@ fn judge(
         let Some(by_compass) = heading_by_compass(reading, third) else {
             continue;
         };
-        if let (Some(gyro), Some(satellite)) = centred(check, reading.gyro, reading.satellite) {
+        if let (Some(gyro), Some(satellite)) =
+            without_usual_difference(check, reading.gyro, reading.satellite)
+        {
             off.0.push(wrap_180(gyro.degrees() - by_compass).abs());
             off.1.push(wrap_180(satellite.degrees() - by_compass).abs());
         }
@@ -169,12 +175,12 @@ fn judge(
         return NEITHER;
     };
     Trust {
-        gyro: gyro * FURTHER < satellite,
-        satellite: satellite * FURTHER < gyro,
+        gyro: gyro * ERROR_RATIO < satellite,
+        satellite: satellite * ERROR_RATIO < gyro,
     }
 }
 
-/// The true heading, degrees, as compass and model have it.
+/// Returns the true heading by compass and model, degrees.
 fn heading_by_compass(reading: &HeadingReading, third: &RobustFit) -> Option<f64> {
     let earth = EarthField {
         h_nt: reading.h_nt,

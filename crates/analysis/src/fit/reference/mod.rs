@@ -1,24 +1,23 @@
-//! From what was read to observations: one true heading out of a gyro and a
-//! satellite compass, and which of them to believe.
+//! Reference headings: observations by one true heading from gyro and satellite compass,
+//! and the trust in each.
 //!
-//! What always holds: a difference between the two references never depends on
-//! the ship's magnetism, so that it is never put down to the magnetic compass.
-//! The usual one is halved between them, so that the reference does not jump when
-//! one drops out, and stands in the standard deviation of the reference's
-//! constant. Any other is a failure, be it of an hour or for good: the magnetic
-//! compass, by a model of other readings, tells which has failed, and that one is
-//! dropped; where it cannot tell, both are.
+//! A difference between the two references never depends on the vessel's magnetism, so that
+//! it is never attributed to the magnetic compass. The usual difference is halved between
+//! them, so that the heading does not jump when one drops out; it counts in the standard
+//! deviation of the reference's constant. Any other difference is a failure, for an hour or
+//! for good. The magnetic compass, by a model of other readings, shows which one has
+//! failed, and that one is dropped; where it cannot, both are.
 
 mod check;
 mod majority_vote;
 mod observe;
+mod observe_readings;
 mod reading;
-mod refer;
 mod reference_drift;
 mod stuck_reference;
 
+pub use observe_readings::{ObservedReadings, observe_readings};
 pub use reading::HeadingReading;
-pub use refer::{Referred, refer};
 
 #[cfg(test)]
 mod tests;

@@ -1,18 +1,18 @@
-//! Observations from readings whose trust in each reference is settled.
+//! Observations from readings with the trust in each reference.
 
 use super::check;
 use super::reading::{HeadingReading, Trust};
 use crate::observation::Observation;
 use binnacle_compass::result::ReferenceCheck;
 
-/// Index and gyro less satellite compass of every reading with both.
+/// Returns index, and gyro less satellite compass, of every reading with both.
 pub(super) fn differences<'a>(
     readings: &'a [HeadingReading],
     trust: &'a [Trust],
 ) -> impl Iterator<Item = (usize, f64)> + 'a {
     let both = readings.iter().zip(trust).enumerate();
     both.filter_map(|(index, (reading, trust))| {
-        let (gyro, satellite) = reading.believed(*trust);
+        let (gyro, satellite) = reading.trusted(*trust);
         Some((index, check::difference_deg(gyro?, satellite?)))
     })
 }
@@ -22,12 +22,12 @@ pub(super) fn observe(
     trust: Trust,
     check: &ReferenceCheck,
 ) -> Option<Observation> {
-    let (gyro, satellite) = reading.believed(trust);
+    let (gyro, satellite) = reading.trusted(trust);
     let reference = check::merge(check, gyro, satellite).or_else(|| {
         // An unnamed reference may wander as a gyro does.
         let named = reading.gyro.or(reading.satellite);
         let unnamed = reading.unnamed.filter(|_| named.is_none())?;
-        check::Reference::of_gyro(unnamed).into()
+        check::Reference::from_gyro(unnamed).into()
     })?;
     Some(Observation {
         time: reading.time,

@@ -1,25 +1,25 @@
-//! Heading readings with their references, and the references' trust.
+//! Heading readings and the trust in their references.
 
 use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation};
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
 
-/// What was read at one time, with the earth's field around it.
+/// Headings read at one time, with the earth's field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadingReading {
-    /// When; none when the source did not say.
+    /// Time of the reading; none when the source did not give it.
     pub time: Option<Timestamp>,
-    /// Where; none when the source gave the field in place of the position.
+    /// Position; none when the source gave the field instead.
     pub position: Option<Position>,
-    /// The raw compass heading.
+    /// Raw compass heading.
     pub compass: CompassHeading,
-    /// The gyro's, its speed error taken out.
+    /// Gyro heading, corrected for speed error.
     pub gyro: Option<TrueHeading>,
-    /// The satellite compass's.
+    /// Heading of the satellite compass.
     pub satellite: Option<TrueHeading>,
-    /// A true heading of unknown origin, for want of the other two.
+    /// True heading of unknown origin, in the absence of the other two.
     pub unnamed: Option<TrueHeading>,
-    /// The earth's variation there and then.
+    /// Variation of the earth's field there and then.
     pub variation: Variation,
     /// Horizontal field, nT.
     pub h_nt: f64,
@@ -27,11 +27,11 @@ pub struct HeadingReading {
     pub z_nt: f64,
     /// Speed over ground, knots.
     pub sog_kn: Option<f64>,
-    /// Ten-second windows behind the reading, at least 1.
+    /// Number of ten-second windows in the reading, at least 1.
     pub windows: u16,
-    /// Standard deviation of compass less reference among them, degrees.
+    /// Standard deviation of compass less reference among the windows, degrees.
     pub spread_deg: Option<f64>,
-    /// How much it counts beside the others; 1 where nothing is said.
+    /// Weight beside the other readings; 1 where none is given.
     pub weight: f64,
 }
 
@@ -41,12 +41,12 @@ impl HeadingReading {
     }
 
     pub(super) fn may_observe(&self, trust: Trust) -> bool {
-        let (gyro, satellite) = self.believed(trust);
+        let (gyro, satellite) = self.trusted(trust);
         let named = self.gyro.or(self.satellite);
         gyro.or(satellite).is_some() || named.is_none()
     }
 
-    pub(super) fn believed(&self, trust: Trust) -> (Option<TrueHeading>, Option<TrueHeading>) {
+    pub(super) fn trusted(&self, trust: Trust) -> (Option<TrueHeading>, Option<TrueHeading>) {
         (
             self.gyro.filter(|_| trust.gyro),
             self.satellite.filter(|_| trust.satellite),
@@ -54,7 +54,7 @@ impl HeadingReading {
     }
 }
 
-/// Which references of a reading are believed.
+/// Trust in each reference of a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Trust {
     pub(super) gyro: bool,

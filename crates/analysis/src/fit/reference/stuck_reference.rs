@@ -1,35 +1,36 @@
-//! A reference that stands still while the ship turns.
+//! Stuck reference: one that does not move while the vessel turns.
 //!
-//! One that repeats itself is stuck as soon as the compass turns. One that only
-//! trembles about one heading may be that of a ship that keeps her course, so that
-//! the compass must have gone round by then: a steel cargo or lightning moves a
-//! compass from one heading to another, and wild readings are few. Where the other
-//! reference keeps steady, too, it is the compass that swings.
+//! A reference that repeats itself is stuck as soon as the compass turns. One that
+//! oscillates about one heading may be that of a vessel that keeps its course, so that the
+//! compass must have gone round: steel cargo or lightning moves a compass from one heading
+//! to another, and wild readings are few. Where the other reference is steady, too, the
+//! compass is at fault.
 
 use super::reading::{HeadingReading, Trust};
 use binnacle_compass::angle::{TrueHeading, wrap_180};
 
-/// So many readings in a row must be the same.
-const ROW: usize = 6;
-/// Readings closer than this are the same, degrees.
+/// Least number of identical readings in a row.
+const IDENTICAL_MIN_ROWS: usize = 6;
+/// Difference below which readings are identical, degrees.
 const SAME_DEG: f64 = 0.02;
-/// The ship turned when her compass did so by more than this, degrees.
+/// Turn of the compass from which the vessel turned, degrees.
 const TURNED_DEG: f64 = 5.0;
 
-/// Readings closer than this to the first of a row are of a reference that trembles.
-const TREMBLE_DEG: f64 = 1.0;
-/// The same of all readings together: their circular standard deviation.
-const TREMBLE_SD_DEG: f64 = 5.0;
-/// So many readings must tremble for the compass to have gone round meanwhile: so
-/// many sectors of 30°, each holding this part of them.
-const TREMBLING_ROW: usize = 12;
+/// Greatest difference from the first of a row, degrees, of a reference that oscillates.
+const OSCILLATION_DEG: f64 = 1.0;
+/// Greatest circular standard deviation of all readings of such a reference, degrees.
+const OSCILLATION_SD_DEG: f64 = 5.0;
+/// Least number of oscillating readings, least number of 30° sectors of the compass among
+/// them, and the share of the readings in each.
+const OSCILLATION_MIN_ROWS: usize = 12;
 const ROUND_SECTORS: usize = 4;
-const OF_A_SECTOR: f64 = 0.06;
-/// The other reference is steady when this part of its readings is so near to their middle.
+const SECTOR_SHARE: f64 = 0.06;
+/// Greatest difference from the median, degrees, and share of such readings, of a steady
+/// reference.
 const STEADY_DEG: f64 = 2.0;
 const STEADY_PART: f64 = 0.8;
 
-/// Believes every reference but where it was stuck; `order` is that of time.
+/// Returns trust in every reference except where it was stuck; `order` is that of time.
 pub(super) fn trust(readings: &[HeadingReading], order: &[usize]) -> Vec<Trust> {
     let both = Trust {
         gyro: true,
@@ -47,7 +48,7 @@ pub(super) fn trust(readings: &[HeadingReading], order: &[usize]) -> Vec<Trust> 
     trust
 }
 
-/// Readings in rows of the same reference under a turning compass.
+/// Returns the readings in rows of a constant reference under a turning compass.
 fn stuck(
     readings: &[HeadingReading],
     order: &[usize],
@@ -60,24 +61,24 @@ fn stuck(
     let there: Vec<(usize, f64)> = there.collect();
     let repeating = there
         .chunk_by(|a, b| wrap_180(a.1 - b.1).abs() < SAME_DEG)
-        .filter(|row| row.len() >= ROW && turned(readings, row));
+        .filter(|row| row.len() >= IDENTICAL_MIN_ROWS && turned(readings, row));
     let whole = [there.as_slice()].into_iter();
-    let trembling = rows_within(&there, TREMBLE_DEG)
+    let oscillating = rows_within(&there, OSCILLATION_DEG)
         .filter(|row| {
             !is_steady(
                 row.iter().filter_map(|&(i, _)| other(&readings[i])),
                 row.len(),
             )
         })
-        .chain(whole.filter(|all| circular_sd_deg(all) < TREMBLE_SD_DEG))
-        .filter(|row| row.len() >= TREMBLING_ROW && went_round(readings, row));
+        .chain(whole.filter(|all| circular_sd_deg(all) < OSCILLATION_SD_DEG))
+        .filter(|row| row.len() >= OSCILLATION_MIN_ROWS && went_round(readings, row));
     repeating
-        .chain(trembling)
+        .chain(oscillating)
         .flat_map(|row| row.iter().map(|&(index, _)| index))
         .collect()
 }
 
-/// Returns true if the ship kept her course by headings that were read at most of `of`
+/// Returns true if the vessel kept its course by headings that were read at most of `of`
 /// times.
 fn is_steady(headings: impl Iterator<Item = f64>, of: usize) -> bool {
     let mut first = None;
@@ -92,7 +93,7 @@ fn is_steady(headings: impl Iterator<Item = f64>, of: usize) -> bool {
     2 * off.len() > of && near.count() as f64 >= STEADY_PART * off.len() as f64
 }
 
-/// Rows of readings as near as this to the first of their row.
+/// Returns the rows of readings near the first of each row.
 fn rows_within(there: &[(usize, f64)], near_deg: f64) -> impl Iterator<Item = &[(usize, f64)]> {
     let mut rest = there;
     std::iter::from_fn(move || {
@@ -104,7 +105,7 @@ fn rows_within(there: &[(usize, f64)], near_deg: f64) -> impl Iterator<Item = &[
     })
 }
 
-/// Standard deviation of directions about their mean direction \[Mardia\].
+/// Returns the standard deviation of directions about their mean direction \[Mardia\].
 fn circular_sd_deg(row: &[(usize, f64)]) -> f64 {
     let (sin, cos) = row.iter().fold((0.0, 0.0), |(sin, cos), (_, heading)| {
         let (s, c) = heading.to_radians().sin_cos();
@@ -119,7 +120,7 @@ fn went_round(readings: &[HeadingReading], row: &[(usize, f64)]) -> bool {
     for &(index, _) in row {
         sectors[(readings[index].compass.degrees() / 30.0) as usize % 12] += 1;
     }
-    let enough = (OF_A_SECTOR * row.len() as f64).max(1.0);
+    let enough = (SECTOR_SHARE * row.len() as f64).max(1.0);
     let filled = sectors.iter().filter(|&&count| count as f64 >= enough);
     filled.count() >= ROUND_SECTORS
 }

@@ -1,4 +1,4 @@
-//! Observations from heading readings, with failed references left out.
+//! Observations from heading readings, without failed references.
 
 use super::observe::{differences, observe};
 use super::reading::{HeadingReading, Trust};
@@ -7,27 +7,29 @@ use crate::observation::Observation;
 use binnacle_compass::result::{FitError, ReferenceCheck};
 use std::ops::Range;
 
-/// Two references that differ so much throughout are no reference.
+/// Lasting difference of two references from which neither can be used.
 const LASTING_LIMIT_DEG: f64 = 6.0;
 
-/// Readings held against their references.
+/// Observations from readings, with the comparison of their references.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Referred {
-    /// For each reading, in the order given, its observation; none where there
-    /// was no reference or none to be believed.
+pub struct ObservedReadings {
+    /// Observation of each reading, in the order given; none without a trusted reference.
     pub observations: Vec<Option<Observation>>,
-    /// How the references compare.
+    /// Comparison of the references.
     pub check: ReferenceCheck,
 }
 
-/// Makes observations of readings, whatever their order; `one_constant_sd_deg` is
-/// what is known beforehand of the constant error of either reference.
+/// Makes observations of readings in any order; `one_constant_sd_deg` is the prior standard
+/// deviation of either reference's constant error.
 ///
 /// # Errors
-/// [`FitError::ReferencesDisagree`] when the two differ throughout by more than
-/// any alignment explains, [`FitError::ReferenceStuck`] when none ever moves,
+/// [`FitError::ReferencesDisagree`] when the two differ throughout by more than any
+/// alignment explains, [`FitError::ReferenceStuck`] when none ever moves,
 /// [`FitError::NoReference`] when no reading has any.
-pub fn refer(readings: &[HeadingReading], one_constant_sd_deg: f64) -> Result<Referred, FitError> {
+pub fn observe_readings(
+    readings: &[HeadingReading],
+    one_constant_sd_deg: f64,
+) -> Result<ObservedReadings, FitError> {
     if !readings.is_empty() && !readings.iter().any(HeadingReading::has_reference) {
         return Err(FitError::NoReference {
             readings: readings.len() as u64,
@@ -55,22 +57,22 @@ pub fn refer(readings: &[HeadingReading], one_constant_sd_deg: f64) -> Result<Re
             allowed_deg: LASTING_LIMIT_DEG,
         });
     }
-    majority_vote::settle_stretches(readings, &order, &check, &stretches, &mut trust);
-    majority_vote::settle(readings, &order, &check, &mut trust);
+    majority_vote::vote_on_stretches(readings, &order, &check, &stretches, &mut trust);
+    majority_vote::vote_on_failures(readings, &order, &check, &mut trust);
     check::count_dropped(&mut check, readings, &trust);
     let observations = readings
         .iter()
         .zip(&trust)
         .map(|(reading, trust)| observe(reading, *trust, &check))
         .collect();
-    Ok(Referred {
+    Ok(ObservedReadings {
         observations,
         check,
     })
 }
 
-/// How the two compare, and the readings of each stretch of days over which they stand
-/// otherwise.
+/// Returns the comparison, and the readings of each stretch of days with another
+/// difference.
 fn compare(
     readings: &[HeadingReading],
     order: &[usize],
@@ -81,18 +83,21 @@ fn compare(
         gyro: true,
         satellite: true,
     };
-    let believed = order.iter().copied().filter(|&i| trust[i] == both);
-    let pairs = reference_drift::pairs(readings, believed).unwrap_or_default();
-    let Some(parted) = reference_drift::part(&pairs) else {
+    let trusted = order.iter().copied().filter(|&i| trust[i] == both);
+    let pairs = reference_drift::pairs(readings, trusted).unwrap_or_default();
+    let Some(drifts) = reference_drift::find_stretches(&pairs) else {
         let all = differences(readings, trust).map(|(_, difference)| difference);
-        return (check::check_of(all, one_constant_sd_deg), Vec::new());
+        return (
+            check::check_differences(all, one_constant_sd_deg),
+            Vec::new(),
+        );
     };
-    let sound = parted.sound(&pairs).map(|pair| pair.difference_deg);
+    let sound = drifts.sound(&pairs).map(|pair| pair.difference_deg);
     let sound: Vec<f64> = sound.collect();
     let check = ReferenceCheck {
         pairs: pairs.len() as u64,
-        ..check::check_of_sound(&sound, one_constant_sd_deg)
+        ..check::check_sound_differences(&sound, one_constant_sd_deg)
     };
     let places = |stretch: &Range<usize>| pairs[stretch.clone()].iter().map(|p| p.index).collect();
-    (check, parted.stretches.iter().map(places).collect())
+    (check, drifts.stretches.iter().map(places).collect())
 }
