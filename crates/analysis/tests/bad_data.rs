@@ -7,7 +7,7 @@
 mod voyages;
 
 use binnacle_analysis::fit::{
-    HeadingReading, Observation, RobustFit, RobustOptions, fit_robust, refer,
+    HeadingReading, Observation, RobustFit, RobustOptions, fit_robust, observe_readings,
 };
 use binnacle_compass::angle::{CompassHeading, Deviation, TrueHeading, Variation, wrap_180};
 use binnacle_compass::model::Caution;
@@ -158,7 +158,7 @@ fn variations_about_180_degrees_change_nothing() {
         voyage.observations.iter().map(of).collect()
     };
     let model = |turned: f64| {
-        let referred = refer(&readings(turned), 0.5).unwrap();
+        let referred = observe_readings(&readings(turned), 0.5).unwrap();
         let observations: Vec<Observation> = referred.observations.into_iter().flatten().collect();
         fit(&observations).unwrap().model
     };
@@ -196,7 +196,7 @@ fn a_reference_that_never_moves_is_refused_by_name() {
             weight: 1.0,
         })
         .collect();
-    let refused = refer(&readings, 0.5).unwrap_err();
+    let refused = observe_readings(&readings, 0.5).unwrap_err();
     assert!(
         matches!(refused, FitError::ReferenceStuck { .. }),
         "{refused}"

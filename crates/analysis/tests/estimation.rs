@@ -274,7 +274,7 @@ fn what_was_known_before_an_upset_counts_for_no_more_than_it_is_worth() {
             ..fitted(&voyage.observations)
         };
         let options = RobustOptions {
-            prior: Prior::after_upset(&known, 0.5).unwrap(),
+            prior: Prior::after_jump(&known, 0.5).unwrap(),
             reference_constant_sd_deg: 0.5,
         };
         let fit = fit_known_ship(&voyage.observations, &options).unwrap();

@@ -4,7 +4,8 @@ use super::{BadInput, answer, input, json, table};
 use crate::cli::{Fit, Method};
 use binnacle_analysis::advice::{Question, advise};
 use binnacle_analysis::fit::{
-    Observation, RobustFit, RobustOptions, fit_ols, fit_paper, fit_robust, readings_from_csv, refer,
+    Observation, RobustFit, RobustOptions, fit_ols, fit_paper, fit_robust, observe_readings,
+    readings_from_csv,
 };
 use binnacle_compass::coverage::coverage;
 use binnacle_compass::deviation::NAMES;
@@ -41,14 +42,14 @@ fn find(arguments: &Fit) -> Result<Found, BadInput> {
     let readings = readings_from_csv(&table.rows, arguments.gyro_speed_error.into())
         .map_err(|error| table.complaint(&error))?;
     let refused = |error: FitError| BadInput(format!("{}: {error}", arguments.file.display()));
-    let referred = refer(&readings, REFERENCE_CONSTANT_SD_DEG).map_err(refused)?;
+    let referred = observe_readings(&readings, REFERENCE_CONSTANT_SD_DEG).map_err(refused)?;
     let observations: Vec<Observation> = referred.observations.into_iter().flatten().collect();
     let mut sail_next = None;
     let fitted = match arguments.method {
         Method::Paper => fit_paper(&observations),
         Method::Ols => fit_ols(&observations),
         Method::Robust => {
-            let options = RobustOptions::of_any_ship(referred.check.constant_sd_deg);
+            let options = RobustOptions::for_unknown_vessel(referred.check.constant_sd_deg);
             fit_robust(&observations, &options).map(|fit| {
                 sail_next = what_to_sail(&fit, &observations, &referred.check);
                 fit.model

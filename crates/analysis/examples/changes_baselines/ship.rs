@@ -8,7 +8,9 @@ use crate::score::median;
 use crate::voyages::fleet::{Event, Log, Name, Plan, sail_log};
 use crate::voyages::{Variety, lorden, predicted};
 use binnacle_analysis::analyse::analyse;
-use binnacle_analysis::fit::{HeadingReading, Observation, RobustOptions, fit_robust, refer};
+use binnacle_analysis::fit::{
+    HeadingReading, Observation, RobustOptions, fit_robust, observe_readings,
+};
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::field::{FieldAt, FieldModel};
 use binnacle_compass::model::Model;
@@ -197,7 +199,8 @@ fn observations(samples: &[Sample]) -> Vec<Observation> {
             }
         })
         .collect();
-    let referred = refer(&readings, REFERENCE_CONSTANT_SD_DEG).expect("two good references");
+    let referred =
+        observe_readings(&readings, REFERENCE_CONSTANT_SD_DEG).expect("two good references");
     referred.observations.into_iter().flatten().collect()
 }
 

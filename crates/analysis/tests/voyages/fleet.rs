@@ -408,7 +408,7 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         ..*faults
     };
     let shared = shared.unwrap_or_default();
-    let mut truth = Truth::of_any_ship(faults, &mut rng);
+    let mut truth = Truth::for_unknown_vessel(faults, &mut rng);
     let mut passage = Passage::new(plan.variety, &mut rng);
     let mut errors = Errors::new(faults, &mut rng);
     let start = Timestamp::parse(START).unwrap();

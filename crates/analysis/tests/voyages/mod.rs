@@ -214,7 +214,7 @@ pub(crate) fn sail_on(
     let sizes = faults.of_one_ship(&mut rng);
     let faults = &sizes;
     let mut turns = Vec::new();
-    let mut truth = Truth::of_any_ship(faults, &mut rng);
+    let mut truth = Truth::for_unknown_vessel(faults, &mut rng);
     let mut passage = Passage::new(variety, &mut rng);
     let mut errors = Errors::new(faults, &mut rng);
     let start = Timestamp::parse("2026-09-01T00:00:00Z").unwrap();
@@ -290,7 +290,7 @@ pub(crate) fn sail_on(
 }
 
 impl Truth {
-    fn of_any_ship(faults: &Faults, rng: &mut ChaCha8Rng) -> Truth {
+    fn for_unknown_vessel(faults: &Faults, rng: &mut ChaCha8Rng) -> Truth {
         let sd = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008];
         Truth {
             parameters: Parameters::from_array(sd.map(|s| s * faults.ship * gauss(rng))),

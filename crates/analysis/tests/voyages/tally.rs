@@ -119,7 +119,7 @@ impl Tally {
 /// What is known beforehand of the reference's constant.
 pub(crate) fn options(faults: &Faults) -> RobustOptions {
     let one = REFERENCE_CONSTANT_SD_DEG;
-    RobustOptions::of_any_ship(if faults.satellite {
+    RobustOptions::for_unknown_vessel(if faults.satellite {
         one / 2.0_f64.sqrt()
     } else {
         one
