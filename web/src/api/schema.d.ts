@@ -7199,7 +7199,7 @@ export interface components {
              */
             z_nt: number;
         };
-        /** @description An error as it is sent (RFC 9457). */
+        /** @description Error as it is sent (RFC 9457). */
         Problem: {
             card_withdrawn?: components["schemas"]["CardWithdrawn"] | null;
             /** @description What is wrong this time. */

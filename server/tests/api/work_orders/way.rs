@@ -245,7 +245,7 @@ async fn an_adjustment_clears_what_was_open_about_the_ship_before_it(shore: Shor
     for alert in list["items"].as_array().unwrap() {
         let why = alert["clearing_reason"].as_str().unwrap_or_default();
         assert!(
-            why.contains("the card that was foretold then holds"),
+            why.contains("the predicted card holds"),
             "{alert}"
         );
     }
