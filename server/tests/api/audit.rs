@@ -355,8 +355,17 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 fn no_handler_begins_a_transaction_without_its_request() {
     let mut handlers = 0;
     let server = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let crates = ["platform/src", "fleet/src", "orders/src", "planning/src", "src"];
-    for path in crates.iter().flat_map(|folder| sources(&server.join(folder))) {
+    let crates = [
+        "platform/src",
+        "fleet/src",
+        "orders/src",
+        "planning/src",
+        "src",
+    ];
+    for path in crates
+        .iter()
+        .flat_map(|folder| sources(&server.join(folder)))
+    {
         let text = std::fs::read_to_string(&path).unwrap();
         for function in text.split("\n}\n") {
             if let Some((_, handler)) = function.split_once("#[utoipa::path(") {
