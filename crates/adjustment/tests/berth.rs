@@ -94,7 +94,7 @@ fn projection_errs_alike_on_every_heading_where_two_equations_fail_on_cardinal_o
         let (mut projection, mut equation_12) = (Vec::new(), Vec::new());
         for _ in 0..4_000 {
             let actual_deg = f64::from(degrees);
-            let [bx, by, _] = ship.field_aboard(BISCAY.in_ship_axes(actual_deg.to_radians()));
+            let [bx, by, _] = ship.field_at_compass(BISCAY.in_ship_axes(actual_deg.to_radians()));
             let b = [
                 bx + noise_nt * normal(&mut rng),
                 by + noise_nt * normal(&mut rng),
@@ -182,7 +182,7 @@ fn berth(rng: &mut ChaCha8Rng, alignment: Alignment) -> Berth {
     };
     // In the axes of the fit, in which the ship's parameters are meant.
     let magnetic_deg: f64 = rng.random_range(0.0..360.0);
-    let aboard = ship.field_aboard(earth.in_ship_axes(magnetic_deg.to_radians()));
+    let aboard = ship.field_at_compass(earth.in_ship_axes(magnetic_deg.to_radians()));
     let offset_deg = match alignment {
         Alignment::Keel => 0.0,
         Alignment::AsFitted => constant_deg,

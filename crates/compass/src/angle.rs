@@ -5,6 +5,7 @@
 //! are always in [0°, 360°), deviation and variation in (−180°, 180°], east
 //! positive.
 
+use crate::number::CompactNumber;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::{Add, Sub};
@@ -33,7 +34,7 @@ pub enum AngleError {
     #[error("{0} is not a finite angle")]
     NotFinite(f64),
     /// The number lies outside the range that the outside world may send.
-    #[error("{} degrees is outside {low} to {high}", Brief(*value))]
+    #[error("{} degrees is outside {low} to {high}", CompactNumber(*value))]
     OutOfRange {
         /// What was sent.
         value: f64,
@@ -42,21 +43,6 @@ pub enum AngleError {
         /// The most that is accepted.
         high: f64,
     },
-}
-
-/// A number as a complaint quotes it: with an exponent where it would be a long one.
-#[derive(Clone, Copy, Debug)]
-pub struct Brief(pub f64);
-
-impl fmt::Display for Brief {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size = self.0.abs();
-        if size != 0.0 && !(1e-6..1e9).contains(&size) {
-            write!(f, "{:e}", self.0)
-        } else {
-            write!(f, "{}", self.0)
-        }
-    }
 }
 
 macro_rules! heading {

@@ -9,6 +9,8 @@
 //! `magnetic = compass + deviation`, both east-positive; fields are in
 //! nanotesla; ship axes are x forward, y starboard, z down.
 
+pub mod number;
+
 pub mod angle;
 pub mod position;
 pub mod time;
@@ -16,13 +18,13 @@ pub mod time;
 pub mod model;
 pub mod sample;
 
-pub mod field;
+pub mod ship;
 
 pub mod deviation;
-pub mod handbook;
-pub mod ship;
+pub mod field;
 
 pub mod coverage;
 pub mod logbook;
-pub mod result;
 pub mod settings;
+
+pub mod result;

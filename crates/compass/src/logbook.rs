@@ -82,7 +82,7 @@ pub enum LogbookError {
     },
     /// Only magnetic cargo consists of something.
     #[error("cargo: only an entry of kind magnetic_cargo has one")]
-    NotACargo,
+    UnexpectedCargo,
 }
 
 impl LogbookEntry {
@@ -96,7 +96,7 @@ impl LogbookEntry {
             return Err(LogbookError::EndsBeforeItBegins { from, to });
         }
         if self.cargo.is_some() && self.kind != LogbookKind::MagneticCargo {
-            return Err(LogbookError::NotACargo);
+            return Err(LogbookError::UnexpectedCargo);
         }
         Ok(self)
     }
@@ -132,7 +132,7 @@ impl LogbookKind {
 
     /// Whether the iron of ship and binnacle is much what it was, so that what the
     /// epoch before tells of it still counts.
-    pub fn leaves_the_iron(self) -> bool {
+    pub fn preserves_soft_iron(self) -> bool {
         matches!(
             self,
             LogbookKind::Repair
@@ -143,7 +143,7 @@ impl LogbookKind {
     }
 
     /// As a sentence names it.
-    pub fn in_words(self) -> &'static str {
+    pub fn description(self) -> &'static str {
         match self {
             LogbookKind::Adjustment => "the compass was adjusted",
             LogbookKind::CorrectorChange => "a corrector was moved",

@@ -1,6 +1,6 @@
 //! Places on the earth.
 
-use crate::angle::Brief;
+use crate::number::CompactNumber;
 use serde::{Deserialize, Serialize};
 
 /// A geodetic position (WGS 84): latitude in [−90°, 90°], north positive, and
@@ -16,10 +16,10 @@ pub struct Position {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PositionError {
     /// Latitude is NaN, infinite or beyond a pole.
-    #[error("latitude {} is not within -90 to 90 degrees", Brief(*.0))]
+    #[error("latitude {} is not within -90 to 90 degrees", CompactNumber(*.0))]
     Latitude(f64),
     /// Longitude is NaN, infinite or beyond half a turn.
-    #[error("longitude {} is not within -180 to 180 degrees", Brief(*.0))]
+    #[error("longitude {} is not within -180 to 180 degrees", CompactNumber(*.0))]
     Longitude(f64),
 }
 

@@ -81,7 +81,7 @@ impl Report {
             Err(LogbookError::EndsBeforeItBegins { from, to }) => {
                 Err(error("to", format!("{to} is before from, {from}")))
             }
-            Err(LogbookError::NotACargo) => Err(error("cargo", "only magnetic cargo is one")),
+            Err(LogbookError::UnexpectedCargo) => Err(error("cargo", "only magnetic cargo is one")),
         }
     }
 

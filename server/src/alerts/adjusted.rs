@@ -22,7 +22,7 @@ pub(super) const ADJUSTED: &str = "the compass has been adjusted since: the card
 pub(super) fn forget_changes(findings: &mut Findings, adjusted: Time) {
     findings.changes.retain(|found| {
         let change = &found.change;
-        !change.cause.is_the_ships() || Time(change.from) >= adjusted
+        !change.cause.changes_deviation() || Time(change.from) >= adjusted
     });
 }
 
@@ -42,7 +42,7 @@ pub async fn in_force(db: &Db, vessel: VesselId, compass: CompassId) -> Result<V
 
 /// Whether an alert is about the ship as she was before an adjustment.
 pub(super) fn is_about_before(cause: Cause, since: Time, adjusted: Time) -> bool {
-    let is_the_ships = matches!(
+    let changes_deviation = matches!(
         cause,
         Cause::DeviationOverLimit
             | Cause::WideBand
@@ -54,5 +54,5 @@ pub(super) fn is_about_before(cause: Cause, since: Time, adjusted: Time) -> bool
             | Cause::UnknownChange
             | Cause::AdjustmentNotConfirmed
     );
-    is_the_ships && since < adjusted
+    changes_deviation && since < adjusted
 }

@@ -91,7 +91,7 @@ pub(super) fn became(cause: Cause, since: Time, findings: &Findings) -> Option<B
     if own
         .iter()
         .filter(stays)
-        .any(|found| found.change.cause.is_the_ships())
+        .any(|found| found.change.cause.changes_deviation())
     {
         return Some(Became::Learnt);
     }
@@ -118,7 +118,7 @@ fn stage(found: &FoundChange, findings: &Findings, limits: &AlertLimits) -> Stag
     if !found.change.confirmed {
         return Stage::Doubtful;
     }
-    if !found.change.cause.is_the_ships() {
+    if !found.change.cause.changes_deviation() {
         return Stage::NotTheShips;
     }
     let Some(band_deg) = findings.widest_band95_deg else {
@@ -139,7 +139,7 @@ fn holds(found: &FoundChange, stage: Stage, findings: &Findings) -> bool {
     if change.ended.is_some() {
         return false;
     }
-    if !change.cause.is_the_ships() {
+    if !change.cause.changes_deviation() {
         return true;
     }
     let is_news = findings
@@ -154,8 +154,12 @@ fn holds(found: &FoundChange, stage: Stage, findings: &Findings) -> bool {
 /// those of the ship, those of her references, or the others.
 fn dated(found: &FoundChange, findings: &Findings) -> Dated {
     let at = found.change.from;
-    let kind =
-        |cause: result::Cause| (cause.is_the_ships(), cause == result::Cause::ReferenceFault);
+    let kind = |cause: result::Cause| {
+        (
+            cause.changes_deviation(),
+            cause == result::Cause::ReferenceFault,
+        )
+    };
     let others = findings.changes.iter().map(|other| &other.change);
     let others = others.filter(|other| kind(other.cause) == kind(found.change.cause));
     let (before, after): (Vec<Timestamp>, Vec<Timestamp>) = others
@@ -302,7 +306,7 @@ const WHICH_IS_OPEN: &str = "Compass or reference is astray, and the samples do 
 
 /// Whether what looks like a reference's fault may as well be a change of the ship.
 fn may_be_hers(change: &result::Change) -> bool {
-    let hers = change.causes.iter().filter(|c| c.cause.is_the_ships());
+    let hers = change.causes.iter().filter(|c| c.cause.changes_deviation());
     change.cause == result::Cause::ReferenceFault
         && hers.map(|c| c.probability).sum::<f64>() > HERS_SUSPECTED
 }

@@ -10,7 +10,7 @@ use crate::ids::{ModelId, OrderId, VesselId};
 use crate::streams::CardWithdrawnSchema;
 use crate::time::Time;
 use binnacle_adjustment::binnacle::{Setting, Shape};
-use binnacle_compass::handbook::Handbook;
+use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -232,14 +232,14 @@ pub struct CardRow {
 pub struct Coefficients {
     /// The exact ones, × 57.3.
     #[schema(value_type = HandbookSchema)]
-    pub exact: Handbook,
+    pub exact: CoefficientsInDegrees,
     /// What the model adds on every heading: alignment, reference and variation
     /// offsets. The handbook's A includes it.
     #[schema(example = 0.2)]
     pub constant_deg: f64,
     /// What an adjuster would find who swung the ship.
     #[schema(value_type = HandbookSchema)]
-    pub handbook: Handbook,
+    pub handbook: CoefficientsInDegrees,
 }
 
 /// How a binnacle's correctors stand.

@@ -247,7 +247,7 @@ fn version(epoch: &StoredEpoch, versions: &[Version]) -> Option<i64> {
 
 /// What is too faint for the ship alone is told when others speak for it.
 fn is_told(found: &FoundChange) -> bool {
-    !found.change.is_faint()
+    !found.change.is_weak_transient()
 }
 
 fn told(found: FoundChange) -> ChangeFound {

@@ -288,7 +288,7 @@ impl Condition<'_> {
     /// The horizontal field at the card without bowl and needles, nT, with correctors of
     /// this effect in a field of the earth in ship axes.
     pub(super) fn field(&self, effect: &Effect, earth: [f64; 3]) -> [f64; 2] {
-        let [x, y, _] = self.aboard(effect, f64::INFINITY).field_aboard(earth);
+        let [x, y, _] = self.aboard(effect, f64::INFINITY).field_at_compass(earth);
         [x, y]
     }
 }

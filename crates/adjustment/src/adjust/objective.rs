@@ -75,7 +75,7 @@ impl<'a> Objective<'a> {
                 .zip(&compass.read)
                 .map(|(heading, read)| {
                     let earth = [water.h_nt * heading.1, -water.h_nt * heading.0, water.z_nt];
-                    let [x, y, _] = ship.field_aboard(earth);
+                    let [x, y, _] = ship.field_at_compass(earth);
                     east_north(*read, x, y)
                 });
             InWater {

@@ -56,7 +56,8 @@ fn heading(degrees: f64) -> MagneticHeading {
 
 /// What a faultless magnetometer reads aboard.
 fn field_read(ship: &ShipMagnetism, earth: EarthField, magnetic_deg: f64) -> [f64; 2] {
-    let [forward, starboard, _] = ship.field_aboard(earth.in_ship_axes(magnetic_deg.to_radians()));
+    let [forward, starboard, _] =
+        ship.field_at_compass(earth.in_ship_axes(magnetic_deg.to_radians()));
     [forward, starboard]
 }
 

@@ -69,12 +69,12 @@ pub(super) fn prior(
     before: Option<&Epoch>,
     reference_constant_sd_deg: f64,
 ) -> Prior {
-    let leaves_the_iron = match epoch.begun_by {
-        Some(kind) => kind.leaves_the_iron(),
+    let preserves_soft_iron = match epoch.begun_by {
+        Some(kind) => kind.preserves_soft_iron(),
         None => epoch.begun_by_change.is_some(),
     };
     before
-        .filter(|_| leaves_the_iron)
+        .filter(|_| preserves_soft_iron)
         .and_then(|before| {
             let stood_in_it = before.references.as_ref()?.constant_sd_deg;
             let model = before.model.as_ref()?;

@@ -229,7 +229,7 @@ fn hold_to(what: What, known: &Circumstances, weights: &mut [(Cause, f64)]) {
     let against = weights.iter_mut().filter(|(cause, _)| !agrees(*cause));
     for (cause, weight) in against {
         *weight *= share;
-        if cause.is_the_ships() != is_of_the_ship {
+        if cause.changes_deviation() != is_of_the_ship {
             // Whether an epoch begins has been decided: it is not named for what it is not.
             *weight = weight.min(most);
         }
@@ -265,12 +265,14 @@ impl Kind {
 /// Whether a cause is of what the search decided.
 fn agrees(what: What, cause: Cause, one_reference: bool) -> bool {
     match what {
-        What::Step | What::Return(_) => cause.is_the_ships(),
+        What::Step | What::Return(_) => cause.changes_deviation(),
         What::Alignment => cause == Cause::Alignment,
         What::Drift => cause == Cause::Drift,
         What::Reference => {
             cause == Cause::ReferenceFault || (one_reference && cause == Cause::Alignment)
         }
-        What::Burst => !cause.is_the_ships() && (one_reference || cause != Cause::ReferenceFault),
+        What::Burst => {
+            !cause.changes_deviation() && (one_reference || cause != Cause::ReferenceFault)
+        }
     }
 }

@@ -140,7 +140,7 @@ pub(super) fn misaligned(now: &Filter, moved_deg: f64, size_deg: f64) -> Filter 
 fn turned(now: &Filter, moved_deg: f64) -> [f64; STATES] {
     let own = |j: usize| now.mean[j] * POPULATION_SD[j];
     let turned = Parameters::from_array(std::array::from_fn(own))
-        .by_turned_compass(-moved_deg.to_radians())
+        .with_compass_turned(-moved_deg.to_radians())
         .to_array();
     let mut mean = now.mean;
     for j in 0..PARAMETERS {

@@ -89,7 +89,7 @@ impl Prior {
         let mut mean = self.mean;
         let parameters = std::array::from_fn(|j| mean[j]);
         let turned = binnacle_compass::model::Parameters::from_array(parameters)
-            .by_turned_compass(-moved_deg.to_radians());
+            .with_compass_turned(-moved_deg.to_radians());
         mean[..PARAMETERS].copy_from_slice(&turned.to_array());
         mean[PARAMETERS] += moved_deg;
         Prior {

@@ -109,7 +109,7 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
         by_data: judged.by_data,
         independent: &judged.independent,
         weighed,
-        row_variance: (squares / weighed).max(levels.of_a_row()),
+        row_variance: (squares / weighed).max(levels.row_variance()),
         after: &judged.covariance,
         before: &solution.prior_covariance()?,
         parameters: &parameters,

@@ -28,7 +28,7 @@ pub(super) fn judge(
     if residuals.is_empty() {
         return Ok(None);
     }
-    let noise_deg = levels.of_a_row().sqrt();
+    let noise_deg = levels.row_variance().sqrt();
     // A reference that was wrong for days draws the constant away from all the rest,
     // which still is what a ship does.
     let spread_deg = robust_sd(&residuals, median(residuals.clone()));

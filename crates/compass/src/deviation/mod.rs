@@ -6,11 +6,13 @@
 //! name: where this module answers, compass and magnetic headings correspond
 //! one to one.
 
-mod check;
-mod model;
+mod approximate;
+mod model_check;
+mod prediction;
 
-pub use check::{ModelError, NAMES};
-pub use model::{NORMAL_95, Prediction};
+pub use approximate::CoefficientsInDegrees;
+pub use model_check::{ModelError, PARAMETER_NAMES};
+pub use prediction::{NORMAL_95, NORMAL_99, Prediction};
 
 use crate::angle::{CompassHeading, Deviation, MagneticHeading};
 use crate::model::Parameters;
@@ -37,7 +39,7 @@ pub struct Coefficients {
 pub enum DeviationError {
     /// The earth's field given is not one that a compass can point by.
     #[error("horizontal field {h_nt} nT with vertical field {z_nt} nT is no field to steer by")]
-    NoField {
+    InvalidField {
         /// Horizontal field as given, nT.
         h_nt: f64,
         /// Vertical field as given, nT.
@@ -78,7 +80,7 @@ impl Coefficients {
     pub fn new(parameters: &Parameters, earth: EarthField) -> Result<Coefficients, DeviationError> {
         let EarthField { h_nt, z_nt } = earth;
         if !(h_nt > 0.0 && h_nt.is_finite() && z_nt.is_finite()) {
-            return Err(DeviationError::NoField { h_nt, z_nt });
+            return Err(DeviationError::InvalidField { h_nt, z_nt });
         }
         let p = parameters;
         let coefficients = Coefficients {

@@ -169,7 +169,7 @@ fn no_field_and_no_number_are_refused() {
         (20_000.0, f64::INFINITY),
     ] {
         let refused = Coefficients::new(&parameters, EarthField { h_nt, z_nt }).unwrap_err();
-        assert!(matches!(refused, DeviationError::NoField { .. }));
+        assert!(matches!(refused, DeviationError::InvalidField { .. }));
     }
     let mut broken = parameters;
     broken.chi12 = f64::NAN;

@@ -6,28 +6,16 @@
 //! north is taken along the meridian that the longitude names.
 
 mod coefficients;
+mod intensity;
+mod standard_model;
 mod synthesis;
 
-use crate::angle::Variation;
+pub use intensity::Field;
+pub use standard_model::{FieldModel, UnknownFieldModel};
+
 use crate::position::Position;
-use crate::ship::EarthField;
 use crate::time::Timestamp;
 use coefficients::{Between, Terms};
-use serde::{Deserialize, Serialize};
-use std::fmt;
-use std::str::FromStr;
-
-/// A standard model of the earth's field.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum FieldModel {
-    /// IGRF-14: 1900 to 2030, linear between its epochs
-    /// (IAGA 2024, doi 10.5281/zenodo.14012302).
-    #[default]
-    Igrf14,
-    /// World Magnetic Model 2025 of NOAA and BGS: 2025 to 2030.
-    Wmm2025,
-}
 
 /// The lowest altitude the models are evaluated at, metres above the ellipsoid.
 pub const LOWEST_ALTITUDE_M: f64 = -10_000.0;
@@ -56,57 +44,6 @@ pub enum FieldError {
          above the ellipsoid"
     )]
     Altitude(f64),
-}
-
-/// The earth's field at one place and time, in nanotesla.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Field {
-    /// Towards true (geodetic) north.
-    pub x_nt: f64,
-    /// Towards east.
-    pub y_nt: f64,
-    /// Down.
-    pub z_nt: f64,
-}
-
-impl Field {
-    /// Horizontal intensity, nT: what the compass points by.
-    ///
-    /// Below 6000 nT the WMM calls declination a matter of caution, below
-    /// 2000 nT unusable.
-    pub fn h_nt(&self) -> f64 {
-        self.x_nt.hypot(self.y_nt)
-    }
-
-    /// Total intensity, nT.
-    pub fn f_nt(&self) -> f64 {
-        self.h_nt().hypot(self.z_nt)
-    }
-
-    /// Declination, which seamen call variation: east positive.
-    #[allow(clippy::missing_panics_doc, reason = "it cannot: see the message")]
-    pub fn declination(&self) -> Variation {
-        Variation::new(self.y_nt.atan2(self.x_nt).to_degrees())
-            .expect("a field is only made from finite parts")
-    }
-
-    /// Dip: degrees below the horizon, positive north of the magnetic equator.
-    pub fn inclination_deg(&self) -> f64 {
-        self.z_nt.atan2(self.h_nt()).to_degrees()
-    }
-
-    /// Dip latitude: the magnetic latitude whose dipole has this dip, degrees.
-    pub fn magnetic_latitude_deg(&self) -> f64 {
-        self.z_nt.atan2(2.0 * self.h_nt()).to_degrees()
-    }
-
-    /// The parts a ship meets: horizontal and vertical.
-    pub fn for_ship(&self) -> EarthField {
-        EarthField {
-            h_nt: self.h_nt(),
-            z_nt: self.z_nt,
-        }
-    }
 }
 
 /// The field at a place (geodetic, WGS 84), an altitude in metres above the
@@ -138,15 +75,15 @@ impl FieldAt {
     ///
     /// # Errors
     /// When the model does not know the date.
-    pub fn time(model: FieldModel, time: Timestamp) -> Result<FieldAt, FieldError> {
-        FieldAt::year(model, time.decimal_year())
+    pub fn from_time(model: FieldModel, time: Timestamp) -> Result<FieldAt, FieldError> {
+        FieldAt::from_year(model, time.decimal_year())
     }
 
     /// The model at a decimal year, such as 2026.5.
     ///
     /// # Errors
     /// When the model does not know the date, or it is not a number.
-    pub fn year(model: FieldModel, decimal_year: f64) -> Result<FieldAt, FieldError> {
+    pub fn from_year(model: FieldModel, decimal_year: f64) -> Result<FieldAt, FieldError> {
         let instant = around(model, decimal_year)?;
         Ok(FieldAt {
             terms: instant.terms(),
@@ -180,41 +117,10 @@ fn synthesise(terms: &Terms, position: Position, altitude_m: f64) -> Result<Fiel
 }
 
 impl FieldModel {
-    /// The name in commands and JSON: `igrf14` or `wmm2025`.
-    pub fn name(self) -> &'static str {
-        match self {
-            FieldModel::Igrf14 => "igrf14",
-            FieldModel::Wmm2025 => "wmm2025",
-        }
-    }
-
     /// The first and last decimal year the model knows.
     pub fn years(self) -> (f64, f64) {
         let table = coefficients::table(self);
         (table.first_year(), table.last_year())
-    }
-}
-
-impl fmt::Display for FieldModel {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// A name that is no field model.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is no field model: it is igrf14 or wmm2025")]
-pub struct UnknownFieldModel(pub String);
-
-impl FromStr for FieldModel {
-    type Err = UnknownFieldModel;
-
-    fn from_str(name: &str) -> Result<FieldModel, UnknownFieldModel> {
-        match name {
-            "igrf14" => Ok(FieldModel::Igrf14),
-            "wmm2025" => Ok(FieldModel::Wmm2025),
-            _ => Err(UnknownFieldModel(name.to_owned())),
-        }
     }
 }
 

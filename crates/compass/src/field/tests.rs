@@ -2,7 +2,7 @@ use super::*;
 
 fn at(model: FieldModel, lat: f64, lon: f64, altitude_m: f64, year: f64) -> Field {
     let position = Position::new(lat, lon).unwrap();
-    FieldAt::year(model, year)
+    FieldAt::from_year(model, year)
         .unwrap()
         .at(position, altitude_m)
         .unwrap()
@@ -165,7 +165,7 @@ fn a_date_outside_the_model_is_refused_by_name() {
         (FieldModel::Wmm2025, 2024.99),
         (FieldModel::Wmm2025, f64::INFINITY),
     ] {
-        assert!(FieldAt::year(model, year).is_err(), "{model} {year}");
+        assert!(FieldAt::from_year(model, year).is_err(), "{model} {year}");
     }
     for (model, year) in [
         (FieldModel::Igrf14, 1900.0),
@@ -173,13 +173,13 @@ fn a_date_outside_the_model_is_refused_by_name() {
         (FieldModel::Wmm2025, 2025.0),
         (FieldModel::Wmm2025, 2030.0),
     ] {
-        assert!(FieldAt::year(model, year).is_ok(), "{model} {year}");
+        assert!(FieldAt::from_year(model, year).is_ok(), "{model} {year}");
     }
 }
 
 #[test]
 fn an_absurd_altitude_is_refused() {
-    let model = FieldAt::year(FieldModel::Igrf14, 2026.0).unwrap();
+    let model = FieldAt::from_year(FieldModel::Igrf14, 2026.0).unwrap();
     let position = Position::new(10.0, 20.0).unwrap();
     for altitude in [f64::NAN, f64::INFINITY, -6.4e6, 1e7] {
         let refused = model.at(position, altitude).unwrap_err();

@@ -80,7 +80,7 @@ pub enum Cause {
 impl Cause {
     /// Whether the deviation is another after it: the ship is another magnet, or her
     /// compass has another zero.
-    pub fn is_the_ships(self) -> bool {
+    pub fn changes_deviation(self) -> bool {
         matches!(
             self,
             Cause::LightningOrShock
@@ -93,7 +93,7 @@ impl Cause {
     }
 
     /// Whether it comes from outside the ship and is over within hours or miles.
-    pub fn passes_by(self) -> bool {
+    pub fn is_transient(self) -> bool {
         matches!(
             self,
             Cause::LocalAnomaly | Cause::MagneticStorm | Cause::BerthSteel
@@ -104,8 +104,8 @@ impl Cause {
 impl Change {
     /// Whether it passed by and is too faint to be certain by this ship alone: other ships
     /// may speak for it.
-    pub fn is_faint(&self) -> bool {
-        !self.confirmed && self.ended.is_some() && self.cause.passes_by()
+    pub fn is_weak_transient(&self) -> bool {
+        !self.confirmed && self.ended.is_some() && self.cause.is_transient()
     }
 }
 

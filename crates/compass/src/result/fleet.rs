@@ -28,7 +28,7 @@ const FLOOR: f64 = 0.002;
 
 /// A passing disturbance of another ship's compass.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Elsewhere {
+pub struct FleetDisturbance {
     /// Tells ships apart, and says nothing else of them.
     pub ship: usize,
     /// When it began.
@@ -41,18 +41,19 @@ pub struct Elsewhere {
 
 /// The same change in the light of what other ships showed; `position` is about where
 /// this one was, and `until` when it was last seen if it lasts.
-pub fn in_fleet(
+pub fn weigh_with_fleet(
     change: &Change,
     position: Option<Position>,
     until: Timestamp,
-    others: &[Elsewhere],
+    others: &[FleetDisturbance],
 ) -> Change {
     let mut change = change.clone();
-    if change.withdrawn || (change.confirmed && !change.cause.passes_by()) {
+    if change.withdrawn || (change.confirmed && !change.cause.is_transient()) {
         return change;
     }
     let span = (change.from, change.ended.unwrap_or(until).max(change.from));
-    let apart_nm = |other: &Elsewhere| position.map(|here| nautical_miles(here, other.position));
+    let apart_nm =
+        |other: &FleetDisturbance| position.map(|here| nautical_miles(here, other.position));
     let at_once = ships(others, |other| {
         is_of_the_same_hours(span, other) && apart_nm(other).is_none_or(|nm| nm > APART_NM)
     });
@@ -68,8 +69,8 @@ pub fn in_fleet(
         _ => 1.0,
     });
     change.cause = change.causes.first().map_or(change.cause, |c| c.cause);
-    if change.cause.passes_by() {
-        change.confirmed |= change.is_faint();
+    if change.cause.is_transient() {
+        change.confirmed |= change.is_weak_transient();
         change.step = None;
         change.deviation_change_deg = None;
     }
@@ -93,14 +94,14 @@ pub fn in_fleet(
 }
 
 /// How many different ships show such a disturbance.
-fn ships(others: &[Elsewhere], such: impl Fn(&Elsewhere) -> bool) -> i32 {
+fn ships(others: &[FleetDisturbance], such: impl Fn(&FleetDisturbance) -> bool) -> i32 {
     let mut found: Vec<usize> = others.iter().filter(|o| such(o)).map(|o| o.ship).collect();
     found.sort_unstable();
     found.dedup();
     i32::try_from(found.len()).unwrap_or(i32::MAX)
 }
 
-fn is_of_the_same_hours((from, until): (Timestamp, Timestamp), other: &Elsewhere) -> bool {
+fn is_of_the_same_hours((from, until): (Timestamp, Timestamp), other: &FleetDisturbance) -> bool {
     let shared_s = until.min(other.until).seconds_since(from.max(other.from));
     let shorter_s = until
         .seconds_since(from)
@@ -108,7 +109,7 @@ fn is_of_the_same_hours((from, until): (Timestamp, Timestamp), other: &Elsewhere
     shared_s >= 0.0 && shared_s >= SHARED * shorter_s
 }
 
-fn is_of_other_times((from, until): (Timestamp, Timestamp), other: &Elsewhere) -> bool {
+fn is_of_other_times((from, until): (Timestamp, Timestamp), other: &FleetDisturbance) -> bool {
     from.seconds_since(other.until) > OTHER_TIMES_S
         || other.from.seconds_since(until) > OTHER_TIMES_S
 }
@@ -174,8 +175,8 @@ mod tests {
         }
     }
 
-    fn other(ship: usize, hour: f64, position: Position) -> Elsewhere {
-        Elsewhere {
+    fn other(ship: usize, hour: f64, position: Position) -> FleetDisturbance {
+        FleetDisturbance {
             ship,
             from: at(hour),
             until: at(hour + 3.0),
@@ -183,8 +184,8 @@ mod tests {
         }
     }
 
-    fn seen(change: &Change, others: &[Elsewhere]) -> Change {
-        let seen = in_fleet(change, Some(place(43.0, -4.0)), at(24.0), others);
+    fn seen(change: &Change, others: &[FleetDisturbance]) -> Change {
+        let seen = weigh_with_fleet(change, Some(place(43.0, -4.0)), at(24.0), others);
         let sum: f64 = seen.causes.iter().map(|c| c.probability).sum();
         assert!((sum - 1.0).abs() < 1e-9);
         assert_eq!(seen.cause, seen.causes[0].cause);
@@ -212,8 +213,8 @@ mod tests {
             confirmed: false,
             ..astray()
         };
-        assert!(faint.is_faint());
-        assert!(seen(&faint, &[]).is_faint());
+        assert!(faint.is_weak_transient());
+        assert!(seen(&faint, &[]).is_weak_transient());
         let stormy = seen(&faint, &[other(0, 9.0, place(55.0, 10.0))]);
         assert!(stormy.confirmed);
         assert_eq!(stormy.cause, Cause::MagneticStorm);

@@ -90,7 +90,7 @@ impl NoiseLevels {
     }
 
     /// Variance of a single row, degrees squared, all its errors together.
-    pub fn of_a_row(&self) -> f64 {
+    pub fn row_variance(&self) -> f64 {
         let parts = [
             self.white_deg,
             self.schuler_deg,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Two references that usually differ by more or less may depart no further from that
 /// before one of them has failed, degrees.
-pub const FAILED_BEYOND_AT_MOST_DEG: f64 = 5.0;
+pub const MAX_FAILURE_THRESHOLD_DEG: f64 = 5.0;
 
 /// How a ship's two references compare over all her samples.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,5 +28,5 @@ pub struct ReferenceCheck {
 }
 
 fn widest_deg() -> f64 {
-    FAILED_BEYOND_AT_MOST_DEG
+    MAX_FAILURE_THRESHOLD_DEG
 }

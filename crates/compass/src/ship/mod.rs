@@ -81,11 +81,11 @@ impl Parameters {
     /// The horizontal field at the compass over λ, nT: `[forward, starboard]`,
     /// on a magnetic heading.
     pub fn field_over_lambda(&self, magnetic_rad: f64, earth: EarthField) -> [f64; 2] {
-        self.of_ship_axes(earth.in_ship_axes(magnetic_rad))
+        self.field_over_lambda_in_ship_axes(earth.in_ship_axes(magnetic_rad))
     }
 
     /// The same of an earth's field in ship axes.
-    pub fn of_ship_axes(&self, [hx, hy, z]: [f64; 3]) -> [f64; 2] {
+    pub fn field_over_lambda_in_ship_axes(&self, [hx, hy, z]: [f64; 3]) -> [f64; 2] {
         let d = self.chi11_minus_chi22 / 2.0;
         [
             (1.0 + d) * hx + self.chi12 * hy + self.chi13 * z + self.bx_nt,
@@ -95,7 +95,7 @@ impl Parameters {
 
     /// The same ship by a compass whose zero moved so that it reads more by so much, radians:
     /// her iron lies as much further from its lubber line (docs/science.md, §9).
-    pub fn by_turned_compass(&self, rad: f64) -> Parameters {
+    pub fn with_compass_turned(&self, rad: f64) -> Parameters {
         let (sin, cos) = rad.sin_cos();
         let (sin_2, cos_2) = (2.0 * rad).sin_cos();
         let turned = |x: f64, y: f64| (x * cos + y * sin, y * cos - x * sin);
@@ -125,7 +125,7 @@ impl Parameters {
     /// [`Coefficients::check_unambiguous`]: crate::deviation::Coefficients::check_unambiguous
     pub fn linearised_at_magnetic(&self, magnetic_rad: f64, earth: EarthField) -> Linearised {
         let [hx, hy, z] = earth.in_ship_axes(magnetic_rad);
-        let [forward, starboard] = self.of_ship_axes([hx, hy, z]);
+        let [forward, starboard] = self.field_over_lambda_in_ship_axes([hx, hy, z]);
         let squared = forward * forward + starboard * starboard;
         let s = -starboard / squared;
         let c = forward / squared;
@@ -165,7 +165,7 @@ impl ShipMagnetism {
     }
 
     /// The field at the compass, nT in ship axes, for the earth's field in ship axes.
-    pub fn field_aboard(&self, earth: [f64; 3]) -> [f64; 3] {
+    pub fn field_at_compass(&self, earth: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|row| {
             let induced: f64 = (0..3)
                 .map(|column| self.chi[row][column] * earth[column])
@@ -176,7 +176,7 @@ impl ShipMagnetism {
 
     /// The deviation on a magnetic heading, radians, straight from Poisson's equations.
     pub fn deviation_rad(&self, magnetic_rad: f64, earth: EarthField) -> f64 {
-        let [forward, starboard, _] = self.field_aboard(earth.in_ship_axes(magnetic_rad));
+        let [forward, starboard, _] = self.field_at_compass(earth.in_ship_axes(magnetic_rad));
         wrap_pi(magnetic_rad - compass_rad(forward, starboard))
     }
 

@@ -28,7 +28,7 @@ fn a_compass_whose_zero_moved_reads_as_much_more_on_every_heading() {
         let (ship, earth) = (random_ship(&mut rng), random_earth(&mut rng));
         let parameters = ship.parameters_over_lambda().unwrap();
         let moved = rng.random_range(-0.5..0.5);
-        let turned = parameters.by_turned_compass(moved);
+        let turned = parameters.with_compass_turned(moved);
         let compass = |p: &Parameters, magnetic: f64| {
             let [forward, starboard] = p.field_over_lambda(magnetic, earth);
             compass_rad(forward, starboard)

@@ -7,7 +7,7 @@ use crate::card::contents::{Card, CargoAboard};
 use crate::sheet::words::signed;
 use crate::sheet::{A4, Face, MARGIN, Sheet, Style, wrap};
 use crate::time::Time;
-use binnacle_compass::handbook::Handbook;
+use binnacle_compass::deviation::CoefficientsInDegrees;
 
 const SECOND: f32 = 262.0;
 /// Where the signatures begin, from the sheet's upper edge.
@@ -29,7 +29,7 @@ fn coefficients(sheet: &mut Sheet, card: &Card, top: f32) {
     sheet.text((LEFT, top), Style::bold(8.0), "Coefficients");
     sheet.text((LEFT + 112.0, top), small.end(), "exact");
     sheet.text((LEFT + 168.0, top), small.end(), "handbook");
-    let of = |found: &Handbook| {
+    let of = |found: &CoefficientsInDegrees| {
         [
             found.a_deg,
             found.b_deg,

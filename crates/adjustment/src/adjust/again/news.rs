@@ -131,7 +131,7 @@ impl News {
             Alignment::AsFitted => -1_f64.to_radians(),
         };
         let by_unknown = slopes(p, self.earth, heading_by_constant);
-        let over_lambda = p.of_ship_axes(self.earth);
+        let over_lambda = p.field_over_lambda_in_ship_axes(self.earth);
         let lambda = condition.lambda();
         let by_nine = SMatrix::<f64, 3, NINE>::from_fn(|axis, unknown| match axis {
             2 => 0.0,

@@ -16,7 +16,7 @@ fn field(
     magnetic_deg: f64,
 ) -> [f64; 3] {
     let there = effect(binnacle, setting).as_ship(f64::INFINITY);
-    sum(ship, &there).field_aboard(BISCAY.in_ship_axes(magnetic_deg.to_radians()))
+    sum(ship, &there).field_at_compass(BISCAY.in_ship_axes(magnetic_deg.to_radians()))
 }
 
 fn ship() -> ShipMagnetism {

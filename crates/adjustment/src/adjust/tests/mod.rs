@@ -77,7 +77,7 @@ impl Case {
         };
         // The magnetometer meets no needles.
         let there = sum(&bare, &there.as_ship(f64::INFINITY));
-        let [x, y, _] = there.field_aboard(BISCAY.in_ship_axes(magnetic_deg.to_radians()));
+        let [x, y, _] = there.field_at_compass(BISCAY.in_ship_axes(magnetic_deg.to_radians()));
         let errors = ReadingErrors {
             field_sd_nt: 150.0,
             heading_sd_deg: 0.5,

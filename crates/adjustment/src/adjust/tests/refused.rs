@@ -321,7 +321,7 @@ fn a_weak_horizontal_field_is_said() {
         };
         let [x, y, _] = case
             .bare
-            .field_aboard(earth.in_ship_axes(60.0_f64.to_radians()));
+            .field_at_compass(earth.in_ship_axes(60.0_f64.to_radians()));
         let (errors, heading) = (case.reading.errors(), case.reading.magnetic());
         case.reading = BerthReading::new(heading, [x, y], errors, Alignment::Keel).unwrap();
         let mut adjustment = case.adjustment();

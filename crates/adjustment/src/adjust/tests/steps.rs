@@ -90,7 +90,7 @@ fn heeling_magnets_are_left_without_a_vertical_reading_and_nulled_with_one() {
     let ship = sum(&case.bare, &there.as_ship(f64::INFINITY));
     let mut adjustment = case.adjustment();
     adjustment.vertical = Some(VerticalReading {
-        down_nt: ship.field_aboard([0.0, 0.0, BISCAY.z_nt])[2],
+        down_nt: ship.field_at_compass([0.0, 0.0, BISCAY.z_nt])[2],
     });
     let outcome = plan(&adjustment).unwrap();
     let left = |note: &String| note.starts_with("the heeling magnets are left");
@@ -295,7 +295,7 @@ fn heeling_magnets_are_verified_by_the_vertical_field() {
     let case = case(60.0);
     let down_nt = |setting: &Setting| {
         let there = effect(&case.binnacle, setting).as_ship(f64::INFINITY);
-        sum(&case.bare, &there).field_aboard([0.0, 0.0, BISCAY.z_nt])[2]
+        sum(&case.bare, &there).field_at_compass([0.0, 0.0, BISCAY.z_nt])[2]
     };
     let mut moved = 0;
     for more_nt in [-12_000.0, -6_000.0, 6_000.0, 12_000.0] {

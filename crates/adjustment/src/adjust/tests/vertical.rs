@@ -6,7 +6,7 @@ use super::*;
 /// What is read down with the correctors as they stand.
 fn down_nt(case: &Case) -> f64 {
     let there = effect(&case.binnacle, &case.binnacle.setting).as_ship(f64::INFINITY);
-    sum(&case.bare, &there).field_aboard([0.0, 0.0, BISCAY.z_nt])[2]
+    sum(&case.bare, &there).field_at_compass([0.0, 0.0, BISCAY.z_nt])[2]
 }
 
 /// A ship without heeling magnets.
@@ -58,7 +58,7 @@ fn a_reading_that_few_ships_make_and_an_upward_axis_explains_leaves_the_magnets(
     };
     let there = effect(&case.binnacle, &case.binnacle.setting).as_ship(f64::INFINITY);
     let ship = sum(&case.bare, &there);
-    let [x, y, down_nt] = ship.field_aboard(weak.in_ship_axes(60.0_f64.to_radians()));
+    let [x, y, down_nt] = ship.field_at_compass(weak.in_ship_axes(60.0_f64.to_radians()));
     let (errors, heading) = (case.reading.errors(), case.reading.magnetic());
     case.reading = BerthReading::new(heading, [x, y], errors, Alignment::Keel).unwrap();
     let of = |down_nt: f64| {

@@ -95,7 +95,7 @@ impl Course {
         let mut moved = model.clone();
         moved.parameters_over_lambda = moved
             .parameters_over_lambda
-            .by_turned_compass(-misled.moved_deg.to_radians());
+            .with_compass_turned(-misled.moved_deg.to_radians());
         moved.constant_deg += misled.moved_deg;
         if let Some(covariance) = &mut moved.covariance {
             covariance[PARAMETERS][PARAMETERS] += misled.variance;

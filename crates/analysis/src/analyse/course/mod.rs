@@ -272,7 +272,7 @@ impl Course {
         logbook: &[LogbookEntry],
     ) -> Option<Change> {
         let (at, kind) = (epoch.from?, epoch.begun_by?);
-        let mut evidence = vec![format!("the logbook says so: {}", kind.in_words())];
+        let mut evidence = vec![format!("the logbook says so: {}", kind.description())];
         let said = logbook.iter().filter(|entry| entry.kind == kind);
         let later_s = said.map(|entry| at.seconds_since(entry.from));
         let later_s = later_s.min_by(|a, b| a.abs().total_cmp(&b.abs()));

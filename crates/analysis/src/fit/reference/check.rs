@@ -2,7 +2,7 @@
 
 use super::{HeadingReading, Trust};
 use binnacle_compass::angle::{TrueHeading, wrap_180};
-use binnacle_compass::result::{FAILED_BEYOND_AT_MOST_DEG, ReferenceCheck};
+use binnacle_compass::result::{MAX_FAILURE_THRESHOLD_DEG, ReferenceCheck};
 
 /// Fewer readings of both at once do not show how they differ.
 const NEEDED_PAIRS: usize = 12;
@@ -18,7 +18,7 @@ const SOUND_SHARE: f64 = 0.25;
 /// Where the two depart further from their usual difference one has failed: so
 /// many standard deviations, and within these limits.
 const FAILED_SD: f64 = 6.0;
-const FAILED_DEG: (f64, f64) = (2.0, FAILED_BEYOND_AT_MOST_DEG);
+const FAILED_DEG: (f64, f64) = (2.0, MAX_FAILURE_THRESHOLD_DEG);
 /// The median of |x| of a Gaussian is this part of its standard deviation.
 const MEDIAN_TO_SD: f64 = 0.674_489_8;
 

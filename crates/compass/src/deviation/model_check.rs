@@ -8,7 +8,7 @@ use crate::model::{Covariance, Model};
 use nalgebra::SMatrix;
 
 /// The names of the parameters and the constant, in the covariance's order.
-pub const NAMES: [&str; 8] = [
+pub const PARAMETER_NAMES: [&str; 8] = [
     "bx_nt",
     "chi13",
     "by_nt",
@@ -73,7 +73,7 @@ impl Model {
     /// Names the first that cannot.
     pub fn check(&self) -> Result<(), ModelError> {
         let parameters = self.parameters_over_lambda.to_array();
-        for (index, name) in NAMES.into_iter().enumerate() {
+        for (index, name) in PARAMETER_NAMES.into_iter().enumerate() {
             let (value, limit) = match index {
                 0 | 2 => (parameters[index], GREATEST_FIELD_NT),
                 7 => (self.constant_deg, 180.0),
@@ -101,8 +101,8 @@ fn check_covariance(covariance: &Covariance) -> Result<(), ModelError> {
             let here = scaled(covariance[row][column]);
             if (here - scaled(covariance[column][row])).abs() > ROUNDING {
                 return Err(ModelError::NotSymmetric {
-                    row: NAMES[row],
-                    column: NAMES[column],
+                    row: PARAMETER_NAMES[row],
+                    column: PARAMETER_NAMES[column],
                 });
             }
             correlation[(row, column)] = here;
@@ -124,8 +124,8 @@ fn scales(covariance: &Covariance) -> Result<[f64; 8], ModelError> {
             let value = covariance[row][column];
             if !value.is_finite() || (row == column && value < 0.0) {
                 return Err(ModelError::CovarianceValue {
-                    row: NAMES[row],
-                    column: NAMES[column],
+                    row: PARAMETER_NAMES[row],
+                    column: PARAMETER_NAMES[column],
                     value,
                 });
             }

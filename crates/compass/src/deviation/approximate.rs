@@ -4,8 +4,8 @@
 //! ζ is an approximation: with B 12° and D 4° it is wrong by half a degree. It
 //! is printed beside the exact coefficients and never calculated with.
 
+use super::{Coefficients, DeviationError};
 use crate::angle::{CompassHeading, Deviation};
-use crate::deviation::{Coefficients, DeviationError};
 use crate::model::Model;
 use crate::ship::EarthField;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 /// A of a fitted model includes what cannot be told from it: offsets of the
 /// compass's alignment, of the reference and of the variation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Handbook {
+pub struct CoefficientsInDegrees {
     /// The same on every heading.
     #[serde(rename = "A")]
     pub a_deg: f64,
@@ -33,12 +33,12 @@ pub struct Handbook {
     pub e_deg: f64,
 }
 
-impl Handbook {
+impl CoefficientsInDegrees {
     /// The coefficients of deviations observed on compass headings N, NE, E,
     /// SE, S, SW, W and NW (NGA Pub. 226, art. 501).
-    pub fn analyse(deviations: [Deviation; 8]) -> Handbook {
+    pub fn from_deviations(deviations: [Deviation; 8]) -> CoefficientsInDegrees {
         let [n, ne, e, se, s, sw, w, nw] = deviations.map(Deviation::degrees_east);
-        Handbook {
+        CoefficientsInDegrees {
             a_deg: (n + ne + e + se + s + sw + w + nw) / 8.0,
             b_deg: (e - w) / 2.0,
             c_deg: (n - s) / 2.0,
@@ -52,7 +52,9 @@ impl Handbook {
     ///
     /// # Errors
     /// When headings of this ship are ambiguous.
-    pub fn swinging(coefficients: &Coefficients) -> Result<Handbook, DeviationError> {
+    pub fn from_swing(
+        coefficients: &Coefficients,
+    ) -> Result<CoefficientsInDegrees, DeviationError> {
         swing(|compass| coefficients.deviation_at_compass(compass))
     }
 
@@ -66,8 +68,8 @@ impl Handbook {
 
 impl Coefficients {
     /// The exact coefficients in degrees, to stand beside the handbook's.
-    pub fn to_degrees(&self) -> Handbook {
-        Handbook {
+    pub fn to_degrees(&self) -> CoefficientsInDegrees {
+        CoefficientsInDegrees {
             a_deg: self.a.to_degrees(),
             b_deg: self.b.to_degrees(),
             c_deg: self.c.to_degrees(),
@@ -83,27 +85,30 @@ impl Model {
     ///
     /// # Errors
     /// When there is no field to steer by or headings are ambiguous.
-    pub fn handbook(&self, earth: EarthField) -> Result<Handbook, DeviationError> {
+    pub fn approximate_coefficients(
+        &self,
+        earth: EarthField,
+    ) -> Result<CoefficientsInDegrees, DeviationError> {
         swing(|compass| Ok(self.deviation(compass, earth)?.deviation))
     }
 }
 
 fn swing(
     deviation: impl Fn(CompassHeading) -> Result<Deviation, DeviationError>,
-) -> Result<Handbook, DeviationError> {
+) -> Result<CoefficientsInDegrees, DeviationError> {
     let mut deviations = [Deviation::ZERO; 8];
     for (step, slot) in deviations.iter_mut().enumerate() {
         let compass = CompassHeading::new(step as f64 * 45.0).expect("a multiple of 45 is finite");
         *slot = deviation(compass)?;
     }
-    Ok(Handbook::analyse(deviations))
+    Ok(CoefficientsInDegrees::from_deviations(deviations))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn assert_near(found: Handbook, expected: [f64; 5], tolerance: f64) {
+    fn assert_near(found: CoefficientsInDegrees, expected: [f64; 5], tolerance: f64) {
         let values = [
             found.a_deg,
             found.b_deg,
@@ -119,7 +124,9 @@ mod tests {
     #[test]
     fn the_published_swing_has_its_published_coefficients() {
         let observed = [10.5, 20.0, 11.5, -1.2, -5.5, -8.0, -12.5, -6.8];
-        let found = Handbook::analyse(observed.map(|degrees| Deviation::new(degrees).unwrap()));
+        let found = CoefficientsInDegrees::from_deviations(
+            observed.map(|degrees| Deviation::new(degrees).unwrap()),
+        );
         assert_near(found, [1.0, 12.0, 8.0, 5.0, 1.5], 1e-9);
     }
 
@@ -133,7 +140,7 @@ mod tests {
             d: 0.4 * degree,
             e: -0.2 * degree,
         };
-        let found = Handbook::swinging(&exact).unwrap();
+        let found = CoefficientsInDegrees::from_swing(&exact).unwrap();
         assert_near(found, [0.1, 0.5, -0.3, 0.4, -0.2], 0.01);
         assert_near(exact.to_degrees(), [0.1, 0.5, -0.3, 0.4, -0.2], 1e-12);
     }
@@ -147,7 +154,7 @@ mod tests {
             d: 4_f64.to_radians(),
             e: 0.0,
         };
-        let handbook = Handbook::swinging(&exact).unwrap();
+        let handbook = CoefficientsInDegrees::from_swing(&exact).unwrap();
         let worst = (0..360)
             .map(|degrees| {
                 let compass = CompassHeading::new(f64::from(degrees)).unwrap();
@@ -160,7 +167,7 @@ mod tests {
 
     #[test]
     fn json_names_the_coefficients_as_adjusters_do() {
-        let handbook = Handbook::analyse([Deviation::ZERO; 8]);
+        let handbook = CoefficientsInDegrees::from_deviations([Deviation::ZERO; 8]);
         assert_eq!(
             serde_json::to_string(&handbook).unwrap(),
             r#"{"A":0.0,"B":0.0,"C":0.0,"D":0.0,"E":0.0}"#

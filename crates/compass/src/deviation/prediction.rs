@@ -14,6 +14,9 @@ use serde::{Deserialize, Serialize};
 /// Two-sided 95 % of a normal distribution, in standard deviations.
 pub const NORMAL_95: f64 = 1.959_964;
 
+/// Two-sided 99 % of a normal distribution, in standard deviations.
+pub const NORMAL_99: f64 = 2.575_829;
+
 /// A foretold deviation with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
