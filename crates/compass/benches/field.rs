@@ -1,4 +1,4 @@
-//! What an evaluation of the earth's field costs:
+//! Cost of an evaluation of the earth's field:
 //! `cargo bench -p binnacle-compass --bench field`.
 
 use binnacle_compass::field::{FieldAt, FieldModel, field};

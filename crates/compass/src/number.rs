@@ -1,8 +1,8 @@
-//! Numbers as error messages quote them.
+//! Numbers in error messages.
 
 use std::fmt;
 
-/// A number for an error message: with an exponent where it would be long.
+/// A number in an error message, with an exponent where it would be long.
 #[derive(Clone, Copy, Debug)]
 pub struct CompactNumber(pub f64);
 

@@ -1,4 +1,4 @@
-//! Places on the earth.
+//! Positions on the earth.
 
 use crate::number::CompactNumber;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ pub struct Position {
     lon_deg: f64,
 }
 
-/// Why two numbers are not a position.
+/// Error of two numbers that are not a position.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PositionError {
     /// Latitude is NaN, infinite or beyond a pole.
@@ -30,7 +30,8 @@ struct RawPosition {
 }
 
 impl Position {
-    /// A position from degrees north and degrees east (−180 to 180; 180 becomes −180).
+    /// Makes a position from degrees north and degrees east (−180 to 180; 180 becomes
+    /// −180).
     ///
     /// # Errors
     /// When either number is not finite or out of range.

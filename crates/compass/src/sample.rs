@@ -1,4 +1,4 @@
-//! One settled stretch of heading: what the agent keeps and the estimator reads.
+//! Sample of one settled heading: the agent's record and the estimator's input.
 
 use crate::angle::{CompassHeading, TrueHeading};
 use crate::position::Position;
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 pub struct Sample {
     /// The middle of the stretch, UTC.
     pub time: Timestamp,
-    /// Where the ship was in the middle of the stretch.
+    /// Position at the middle of the stretch.
     #[serde(flatten)]
     pub position: Position,
     /// Mean raw compass heading.
@@ -32,6 +32,6 @@ pub struct Sample {
     pub rate_of_turn_deg_min: Option<f64>,
     /// Standard deviation, in degrees, of compass less reference among the windows.
     pub spread_deg: Option<f64>,
-    /// How many settled ten-second windows the means are of; at least 1.
+    /// Number of settled ten-second windows in the means; at least 1.
     pub windows: u16,
 }

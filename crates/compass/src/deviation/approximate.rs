@@ -1,8 +1,8 @@
-//! The adjuster's five coefficients, in degrees, as handbooks have them.
+//! The adjuster's five approximate coefficients A to E, in degrees.
 //!
-//! `deviation ≈ A + B sin ζ + C cos ζ + D sin 2ζ + E cos 2ζ` on compass heading
-//! ζ is an approximation: with B 12° and D 4° it is wrong by half a degree. It
-//! is printed beside the exact coefficients and never calculated with.
+//! `deviation ≈ A + B sin ζ + C cos ζ + D sin 2ζ + E cos 2ζ` on compass heading ζ is an
+//! approximation: with B 12° and D 4° its error is half a degree. It is printed beside the
+//! exact coefficients and never used in calculations.
 
 use super::{Coefficients, DeviationError};
 use crate::angle::{CompassHeading, Deviation};
@@ -10,32 +10,34 @@ use crate::model::Model;
 use crate::ship::EarthField;
 use serde::{Deserialize, Serialize};
 
-/// Approximate coefficients, degrees, east positive.
+/// Coefficients A to E in degrees, east positive.
 ///
-/// A of a fitted model includes what cannot be told from it: offsets of the
-/// compass's alignment, of the reference and of the variation.
+/// A of a fitted model includes the offsets that headings cannot separate from it: compass
+/// alignment, reference and variation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CoefficientsInDegrees {
-    /// The same on every heading.
+    /// Constant part.
     #[serde(rename = "A")]
     pub a_deg: f64,
-    /// With the sine of the heading: greatest on east and west.
+    /// Semicircular part with the sine of the heading: greatest on east and west.
     #[serde(rename = "B")]
     pub b_deg: f64,
-    /// With the cosine: greatest on north and south.
+    /// Semicircular part with the cosine: greatest on north and south.
     #[serde(rename = "C")]
     pub c_deg: f64,
-    /// With the sine of twice the heading: greatest between the cardinal points.
+    /// Quadrantal part with the sine of twice the heading: greatest between the cardinal
+    /// points.
     #[serde(rename = "D")]
     pub d_deg: f64,
-    /// With the cosine of twice the heading: greatest on the cardinal points.
+    /// Quadrantal part with the cosine of twice the heading: greatest on the cardinal
+    /// points.
     #[serde(rename = "E")]
     pub e_deg: f64,
 }
 
 impl CoefficientsInDegrees {
-    /// The coefficients of deviations observed on compass headings N, NE, E,
-    /// SE, S, SW, W and NW (NGA Pub. 226, art. 501).
+    /// Analyses deviations observed on compass headings N, NE, E, SE, S, SW, W and NW (NGA
+    /// Pub. 226, art. 501).
     pub fn from_deviations(deviations: [Deviation; 8]) -> CoefficientsInDegrees {
         let [n, ne, e, se, s, sw, w, nw] = deviations.map(Deviation::degrees_east);
         CoefficientsInDegrees {
@@ -47,18 +49,18 @@ impl CoefficientsInDegrees {
         }
     }
 
-    /// What an adjuster would find who swung this ship: the analysis of her
-    /// exact deviations.
+    /// Analyses the exact deviations of a ship on the eight headings, as an adjuster's
+    /// swing does.
     ///
     /// # Errors
-    /// When headings of this ship are ambiguous.
+    /// When headings of the ship are ambiguous.
     pub fn from_swing(
         coefficients: &Coefficients,
     ) -> Result<CoefficientsInDegrees, DeviationError> {
         swing(|compass| coefficients.deviation_at_compass(compass))
     }
 
-    /// The five-term approximation on a compass heading, degrees.
+    /// Evaluates the five-term approximation on a compass heading, degrees.
     pub fn deviation_deg(&self, compass: CompassHeading) -> f64 {
         let (s1, c1) = compass.radians().sin_cos();
         let (s2, c2) = (2.0 * compass.radians()).sin_cos();
@@ -67,7 +69,7 @@ impl CoefficientsInDegrees {
 }
 
 impl Coefficients {
-    /// The exact coefficients in degrees, to stand beside the handbook's.
+    /// Converts the exact coefficients to degrees, for display beside the approximate ones.
     pub fn to_degrees(&self) -> CoefficientsInDegrees {
         CoefficientsInDegrees {
             a_deg: self.a.to_degrees(),
@@ -80,11 +82,11 @@ impl Coefficients {
 }
 
 impl Model {
-    /// What an adjuster would find who swung this ship in a field: the model's
-    /// constant is in A.
+    /// Analyses the model's deviations on the eight headings in a field; A includes the
+    /// model's constant.
     ///
     /// # Errors
-    /// When there is no field to steer by or headings are ambiguous.
+    /// When the field is invalid or headings are ambiguous.
     pub fn approximate_coefficients(
         &self,
         earth: EarthField,

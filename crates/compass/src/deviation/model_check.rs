@@ -1,13 +1,12 @@
-//! Whether a model that came from outside can be one.
+//! Validation of a model from outside.
 //!
-//! A model read from a file or off the wire is checked once, where it comes in;
-//! after that its numbers are finite, of a ship's size, and its covariance is
-//! one.
+//! A model from a file or the network is checked once, where it is read. After that its
+//! numbers are finite, of a ship's size, and its covariance is positive semidefinite.
 
 use crate::model::{Covariance, Model};
 use nalgebra::SMatrix;
 
-/// The names of the parameters and the constant, in the covariance's order.
+/// Names of the parameters and the constant, in the covariance's order.
 pub const PARAMETER_NAMES: [&str; 8] = [
     "bx_nt",
     "chi13",
@@ -19,58 +18,58 @@ pub const PARAMETER_NAMES: [&str; 8] = [
     "constant_deg",
 ];
 
-/// Ten times the strongest field that any ship meets: beyond it a number is in
-/// the wrong unit.
+/// Ten times the strongest field of any ship, nT; a larger number has the wrong unit.
 const GREATEST_FIELD_NT: f64 = 1e6;
-/// Soft iron beyond this would turn the compass around many times over.
+/// Greatest soft-iron coefficient; a larger one would turn the compass around many times
+/// over.
 const GREATEST_CHI: f64 = 10.0;
-/// How far correlations may be off by rounding of a printed covariance.
+/// Tolerance of correlations, for the rounding of a printed covariance.
 const ROUNDING: f64 = 1e-5;
 
-/// Why something is not a model.
+/// Error of an invalid model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ModelError {
-    /// A parameter or the constant is not finite, or of no ship's size.
+    /// A parameter or the constant is not finite, or larger than any ship's.
     #[error("{name} is {value}, not a number between -{limit} and {limit}")]
     Value {
-        /// Which, as in JSON.
+        /// Name of the parameter, as in JSON.
         name: &'static str,
-        /// What it was.
+        /// Given value.
         value: f64,
-        /// The greatest size accepted.
+        /// Greatest accepted magnitude.
         limit: f64,
     },
-    /// The residual's root mean square is negative or not finite.
+    /// The residuals' root mean square is negative or not finite.
     #[error("rms_deg is {0}, not a positive number")]
     Rms(f64),
     /// A variance or covariance is not finite, or a variance negative.
     #[error("covariance of {row} and {column} is {value}")]
     CovarianceValue {
-        /// The row's parameter.
+        /// Parameter of the row.
         row: &'static str,
-        /// The column's parameter.
+        /// Parameter of the column.
         column: &'static str,
-        /// What it was.
+        /// Given value.
         value: f64,
     },
     /// The covariance differs from its transpose.
     #[error("covariance of {row} and {column} is not that of {column} and {row}")]
     NotSymmetric {
-        /// The row's parameter.
+        /// Parameter of the row.
         row: &'static str,
-        /// The column's parameter.
+        /// Parameter of the column.
         column: &'static str,
     },
-    /// Some combination of parameters would have a negative variance.
+    /// Some combination of parameters has a negative variance.
     #[error("covariance is not positive semidefinite: its least scaled eigenvalue is {0:.3e}")]
     NotPositive(f64),
 }
 
 impl Model {
-    /// Makes sure that the numbers can be a ship's.
+    /// Checks that the numbers are plausible for a ship.
     ///
     /// # Errors
-    /// Names the first that cannot.
+    /// Names the first implausible number.
     pub fn check(&self) -> Result<(), ModelError> {
         let parameters = self.parameters_over_lambda.to_array();
         for (index, name) in PARAMETER_NAMES.into_iter().enumerate() {
@@ -115,8 +114,8 @@ fn check_covariance(covariance: &Covariance) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Each one's standard deviation; 1 where it is exactly known, so that nothing
-/// is divided by nil.
+/// Returns the standard deviations; 1 where the variance is zero, so that nothing is
+/// divided by zero.
 fn scales(covariance: &Covariance) -> Result<[f64; 8], ModelError> {
     let mut scales = [1.0; 8];
     for row in 0..8 {

@@ -1,9 +1,8 @@
-//! What a fitted model foretells, and how sure it is.
+//! Deviations predicted by a fitted model, with their uncertainty.
 //!
-//! The prediction is what the compass's user sees: the exact deviation of the
-//! parameters plus the model's constant. Its standard error comes from the
-//! model's covariance through the gradient at the fixed compass heading
-//! (docs/science.md, eq. 11).
+//! The prediction is the deviation that the compass's user sees: the exact deviation of the
+//! parameters plus the model's constant. Its standard error comes from the model's
+//! covariance through the gradient at the fixed compass heading (docs/science.md, eq. 11).
 
 use super::{Coefficients, DeviationError, linearised_at_compass};
 use crate::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
@@ -17,25 +16,25 @@ pub const NORMAL_95: f64 = 1.959_964;
 /// Two-sided 99 % of a normal distribution, in standard deviations.
 pub const NORMAL_99: f64 = 2.575_829;
 
-/// A foretold deviation with its uncertainty.
+/// A predicted deviation with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
-    /// Deviation as the compass's user sees it.
+    /// Deviation as seen by the compass's user.
     #[serde(rename = "deviation_deg")]
     pub deviation: Deviation,
-    /// Standard error in degrees; `None` when the model came without a covariance.
+    /// Standard error in degrees; `None` for a model without a covariance.
     pub standard_error_deg: Option<f64>,
-    /// Half the width of the 95 % band in degrees, at most 180: the truth lies
-    /// within deviation ± this. `None` as above.
+    /// Half the width of the 95 % band in degrees, at most 180; `None` for a model without
+    /// a covariance.
     pub band95_deg: Option<f64>,
 }
 
 impl Model {
-    /// The deviation on a compass heading in the earth's field.
+    /// Predicts the deviation on a compass heading in the earth's field.
     ///
     /// # Errors
-    /// When there is no field to steer by, the model is not finite, or headings
-    /// of this ship are ambiguous.
+    /// When the field is invalid, the model is not finite, or headings of the ship are
+    /// ambiguous.
     pub fn deviation(
         &self,
         compass: CompassHeading,
@@ -60,7 +59,7 @@ impl Model {
         })
     }
 
-    /// The magnetic heading behind a compass heading.
+    /// Converts a compass heading to magnetic.
     ///
     /// # Errors
     /// As [`Model::deviation`].
@@ -72,8 +71,7 @@ impl Model {
         Ok(compass + self.deviation(compass, earth)?.deviation)
     }
 
-    /// What the compass will read on a magnetic heading: the inverse of
-    /// [`Model::magnetic`].
+    /// Converts a magnetic heading to compass: the inverse of [`Model::magnetic`].
     ///
     /// # Errors
     /// As [`Model::deviation`].
@@ -83,13 +81,13 @@ impl Model {
         earth: EarthField,
     ) -> Result<CompassHeading, DeviationError> {
         let coefficients = Coefficients::new(&self.parameters_over_lambda, earth)?;
-        // The constant stands outside the ship's own magnetism, so that goes first.
+        // The constant is not part of the ship's magnetism and is removed first.
         let by_the_ship = MagneticHeading::new(magnetic.degrees() - self.constant_deg)
             .ok_or(DeviationError::NotFinite)?;
         coefficients.compass(by_the_ship)
     }
 
-    /// What the compass will read on a true heading: the course to steer by it.
+    /// Converts a true heading to compass: the heading to steer.
     ///
     /// # Errors
     /// As [`Model::deviation`].
@@ -103,8 +101,8 @@ impl Model {
     }
 }
 
-/// Standard error of the deviation, degrees, from the parameters' gradient in
-/// radians a unit; the constant's own is 1.
+/// Propagates the covariance to the deviation's standard error, degrees, by the parameters'
+/// gradient in radians a unit; the constant's own is 1.
 fn standard_error_deg(
     covariance: &Covariance,
     gradient: &[f64; PARAMETERS],
@@ -121,7 +119,7 @@ fn standard_error_deg(
     if !variance.is_finite() {
         return Err(DeviationError::NotFinite);
     }
-    // Rounding of a covariance that knows a direction exactly may go below nil.
+    // Rounding may make a variance of zero slightly negative.
     Ok(variance.max(0.0).sqrt())
 }
 
@@ -209,12 +207,12 @@ mod tests {
         }
     }
 
-    /// The covariance's own meaning: scatter of deviations over draws of the model.
+    /// Definition of the covariance: scatter of deviations over draws of the model.
     #[test]
     fn the_standard_error_is_the_scatter_of_drawn_models() {
         let mut rng = ChaCha8Rng::seed_from_u64(9);
         let deviations = [40.0, 1e-3, 30.0, 1e-3, 8e-4, 5e-4, 5e-4, 0.05];
-        // bx and chi13 hang together, as they do after a voyage at one latitude.
+        // bx and chi13 are correlated, as after a voyage at one latitude.
         let correlation = -0.9;
         let mut covariance = [[0.0; 8]; 8];
         for (index, deviation) in deviations.iter().enumerate() {

@@ -15,10 +15,9 @@ pub struct Field {
 }
 
 impl Field {
-    /// Horizontal intensity, nT: what the compass points by.
+    /// Horizontal intensity, nT: the compass's directive field.
     ///
-    /// Below 6000 nT the WMM calls declination a matter of caution, below
-    /// 2000 nT unusable.
+    /// The WMM's caution zone is below 6000 nT, its blackout zone below 2000 nT.
     pub fn h_nt(&self) -> f64 {
         self.x_nt.hypot(self.y_nt)
     }
@@ -28,7 +27,7 @@ impl Field {
         self.h_nt().hypot(self.z_nt)
     }
 
-    /// Declination, which seamen call variation: east positive.
+    /// Declination, the navigator's variation: east positive.
     #[allow(clippy::missing_panics_doc, reason = "it cannot: see the message")]
     pub fn declination(&self) -> Variation {
         Variation::new(self.y_nt.atan2(self.x_nt).to_degrees())
@@ -40,12 +39,12 @@ impl Field {
         self.z_nt.atan2(self.h_nt()).to_degrees()
     }
 
-    /// Dip latitude: the magnetic latitude whose dipole has this dip, degrees.
+    /// Magnetic latitude: the latitude with this dip on a dipole earth, degrees.
     pub fn magnetic_latitude_deg(&self) -> f64 {
         self.z_nt.atan2(2.0 * self.h_nt()).to_degrees()
     }
 
-    /// The parts a ship meets: horizontal and vertical.
+    /// Horizontal and vertical parts, as a ship meets them.
     pub fn for_ship(&self) -> EarthField {
         EarthField {
             h_nt: self.h_nt(),

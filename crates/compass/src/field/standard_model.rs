@@ -17,7 +17,7 @@ pub enum FieldModel {
 }
 
 impl FieldModel {
-    /// The name in commands and JSON: `igrf14` or `wmm2025`.
+    /// Name in commands and JSON: `igrf14` or `wmm2025`.
     pub fn name(self) -> &'static str {
         match self {
             FieldModel::Igrf14 => "igrf14",
@@ -32,7 +32,7 @@ impl fmt::Display for FieldModel {
     }
 }
 
-/// A name that is no field model.
+/// Error of a name that is not a field model.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:?} is no field model: it is igrf14 or wmm2025")]
 pub struct UnknownFieldModel(pub String);

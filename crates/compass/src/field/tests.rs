@@ -79,7 +79,7 @@ fn no_component_leaps_at_a_pole_or_beside_it() {
     }
 }
 
-/// At the pole itself every meridian must describe the same horizontal vector.
+/// At the pole itself, all meridians give the same horizontal vector.
 #[test]
 fn all_meridians_agree_on_the_field_at_the_pole() {
     for (pole, turn) in [(90.0, -1.0), (-90.0, 1.0)] {

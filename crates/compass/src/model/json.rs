@@ -1,11 +1,10 @@
-//! The written form of a model (docs/model.md): what `fit --json` prints, the
-//! server stores and the bridge is sent.
+//! Written form of a model (docs/model.md), as printed by `fit --json`, stored by the
+//! server and sent on board.
 //!
-//! What always holds: the version stands first; a form without one is version 1,
-//! as models were written before they had it; a form of another version is
-//! refused by its number, because its other fields may mean something else.
-//! A change of what a field means takes the next number; a new
-//! field that may be absent does not.
+//! Invariants: the version comes first. A form without one is version 1, as in models
+//! written before it existed. A form of another version is refused by its number, because
+//! its other fields may have another meaning. A changed meaning takes the next number; a
+//! new optional field does not.
 
 use super::{Covariance, Identifiable, Model, Parameters, Quality};
 use serde::de::Error;

@@ -1,4 +1,4 @@
-//! The result of an analysis and its parts.
+//! Result of an analysis and its parts.
 
 mod advice;
 mod analysis;

@@ -41,8 +41,8 @@ fn a_compass_whose_zero_moved_reads_as_much_more_on_every_heading() {
     }
 }
 
-/// The table of the adjuster's handbooks: which way each cause pulls the
-/// compass on each heading (sign of sin, cos, sin 2, cos 2 of the heading).
+/// The table of the adjuster's handbooks: direction of the deviation by cause and heading
+/// (sign of sin, cos, sin 2, cos 2 of the heading).
 #[test]
 fn each_cause_pulls_east_or_west_where_the_handbook_says() {
     let with = |change: fn(&mut ShipMagnetism)| {
