@@ -81,7 +81,7 @@ pub enum LogbookError {
         to: Timestamp,
     },
     /// A cargo is given for an entry of another kind.
-    #[error("cargo: only an entry of kind magnetic_cargo has one")]
+    #[error("cargo: allowed only for kind magnetic_cargo")]
     UnexpectedCargo,
 }
 

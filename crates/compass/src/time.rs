@@ -14,10 +14,10 @@ pub struct Timestamp(i64);
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TimestampError {
     /// The text has no time zone and is valid otherwise.
-    #[error("{0:?} says no time zone; write Z for UTC or an offset as +01:00")]
+    #[error("{0:?} has no time zone; write Z for UTC or an offset such as +01:00")]
     NoZone(String),
     /// The text is not RFC 3339.
-    #[error("{0:?} is not an RFC 3339 time as 2026-12-01T08:00:00Z")]
+    #[error("{0:?} is not an RFC 3339 time such as 2026-12-01T08:00:00Z")]
     NotRfc3339(String),
     /// The instant lies outside the years 1 to 9999.
     #[error("{0} microseconds since 1970 lies outside the years 1 to 9999")]

@@ -37,7 +37,9 @@ pub struct Coefficients {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum DeviationError {
     /// The given earth's field is not finite or has no horizontal part.
-    #[error("horizontal field {h_nt} nT with vertical field {z_nt} nT is no field to steer by")]
+    #[error(
+        "horizontal field {h_nt} nT, vertical field {z_nt} nT: not valid for a magnetic compass"
+    )]
     InvalidField {
         /// Given horizontal field, nT.
         h_nt: f64,

@@ -53,7 +53,7 @@ pub enum ModelError {
         value: f64,
     },
     /// The covariance differs from its transpose.
-    #[error("covariance of {row} and {column} is not that of {column} and {row}")]
+    #[error("covariance of {row} and {column} differs from that of {column} and {row}")]
     NotSymmetric {
         /// Parameter of the row.
         row: &'static str,
@@ -194,7 +194,7 @@ mod tests {
         covariance[0][1] = 0.5 * 40.0 * 1e-3;
         assert_eq!(
             model(Some(&covariance)).check().unwrap_err().to_string(),
-            "covariance of bx_nt and chi13 is not that of chi13 and bx_nt"
+            "covariance of bx_nt and chi13 differs from that of chi13 and bx_nt"
         );
     }
 

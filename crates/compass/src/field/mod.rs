@@ -27,7 +27,7 @@ pub const HIGHEST_ALTITUDE_M: f64 = 850_000.0;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FieldError {
     /// The date lies outside the model's years, or is not a number.
-    #[error("{model} knows the years {first} to {last}, not {year:.4}")]
+    #[error("{model} covers the years {first} to {last}, not {year:.4}")]
     DateOutside {
         /// Model that was evaluated.
         model: FieldModel,

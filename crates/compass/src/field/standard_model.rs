@@ -34,7 +34,7 @@ impl fmt::Display for FieldModel {
 
 /// Error of a name that is not a field model.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is no field model: it is igrf14 or wmm2025")]
+#[error("unknown field model {0:?}: use igrf14 or wmm2025")]
 pub struct UnknownFieldModel(pub String);
 
 impl FromStr for FieldModel {

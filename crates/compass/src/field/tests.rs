@@ -156,7 +156,7 @@ fn a_date_outside_the_model_is_refused_by_name() {
     let refused = field(FieldModel::Igrf14, position, 0.0, time).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "igrf14 knows the years 1900 to 2030, not 1850.4137"
+        "igrf14 covers the years 1900 to 2030, not 1850.4137"
     );
     for (model, year) in [
         (FieldModel::Igrf14, 1899.99),

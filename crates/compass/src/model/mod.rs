@@ -92,27 +92,27 @@ pub enum Caution {
     /// The range of magnetic latitudes is too narrow: only the sums bx + χ13 Z and by + χ23
     /// Z are known, so elsewhere the prior dominates.
     #[error(
-        "the magnetic latitudes sailed tell bx + chi13 Z and by + chi23 Z but not their parts: \
-         far from there the band rests on ships at large"
+        "the magnetic latitudes of the samples determine only the sums bx + chi13 Z and \
+         by + chi23 Z: far from there the band rests on experience with other ships"
     )]
     OneMagneticLatitude,
     /// The range of magnetic latitudes is wide enough to separate bx from χ13 Z and by from
     /// χ23 Z, but the samples are too few.
     #[error(
-        "too few samples yet to tell the parts of bx + chi13 Z and by + chi23 Z: where the ship \
-         has not been the band rests on ships at large"
+        "too few samples to separate bx from chi13 Z and by from chi23 Z: in other waters the \
+         band rests on experience with other ships"
     )]
     FewSamples,
     /// The rows have no times, so samples with a common gyro error are not known.
     #[error(
-        "rows without times of their own: which of them share one error of the reference is not \
-         known; the band takes rows on like headings for half a day's"
+        "the rows have no times, so common errors of the reference are unknown: the band treats \
+         rows on similar headings as those of half a day"
     )]
     NoTimes,
     /// Residuals are larger than those of sound instruments.
     #[error(
-        "residuals of {residual_deg:.1} degrees are more than sound instruments leave: check \
-         compass, reference and columns before the figures are believed"
+        "residuals of {residual_deg:.1} degrees are larger than those of sound instruments: \
+         check compass, reference and columns before using the figures"
     )]
     LargeResiduals {
         /// Robust standard deviation of the residuals, degrees.
@@ -120,8 +120,8 @@ pub enum Caution {
     },
     /// The last samples follow a long gap, in which the ship may have changed.
     #[error(
-        "no samples for {days:.0} days before the last ones: the model is for {last}, and its \
-         band allows for what a ship may change in such a time"
+        "no samples for {days:.0} days before the last ones: the model applies at {last}, and \
+         its band allows for changes of the ship in that time"
     )]
     LongGap {
         /// Length of the gap, days.
@@ -137,7 +137,7 @@ pub enum Caution {
         h_nt: f64,
     },
     /// A caution from a later version of the program.
-    #[error("a caution that this version of the program does not know")]
+    #[error("a caution unknown to this version of the program")]
     #[serde(other)]
     Other,
 }

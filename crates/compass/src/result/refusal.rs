@@ -66,14 +66,14 @@ pub enum FitError {
     /// All observations have the same dip: only the sums bx + χ13 Z and by + χ23 Z are
     /// determined, and the paper's equations have no unique solution.
     #[error(
-        "all samples lie at one magnetic latitude: bx and chi13, by and chi23 cannot be told apart"
+        "all samples lie at one magnetic latitude: bx and chi13, by and chi23 cannot be separated"
     )]
     OneMagneticLatitude,
     /// Gyro and satellite compass differ throughout by more than any misalignment, and
     /// headings cannot show which is wrong.
     #[error(
-        "gyro and satellite compass differ by {offset_deg:.1} degrees throughout, more than the \
-         {allowed_deg:.0} degrees that any alignment explains: one of them is wrong"
+        "gyro and satellite compass differ by {offset_deg:.1} degrees throughout, more than \
+         any misalignment ({allowed_deg:.0} degrees): one of them is wrong"
     )]
     ReferencesDisagree {
         /// Gyro less satellite compass, degrees.
@@ -83,8 +83,8 @@ pub enum FitError {
     },
     /// The only reference was stuck while the ship turned.
     #[error(
-        "the reference stands still in {readings} readings while the compass turns: it is stuck, \
-         or the wrong source was taken for it"
+        "the reference does not move in {readings} readings while the compass turns: it is stuck, \
+         or the wrong source is configured"
     )]
     ReferenceStuck {
         /// Number of readings with a stuck reference.
@@ -92,9 +92,9 @@ pub enum FitError {
     },
     /// The residuals of the best fit exceed any instrument error.
     #[error(
-        "residuals of {residual_deg:.1} degrees, where no instruments leave more than \
-         {allowed_deg:.0}: no ship explains these; check the sign of the variation, which column \
-         is which, and whether the compass or the reference stood still for days"
+        "residuals of {residual_deg:.1} degrees, more than any instruments' {allowed_deg:.0}: no \
+         ship explains these; check the sign of the variation, the order of the columns, and \
+         whether the compass or the reference was stuck for days"
     )]
     Contradictory {
         /// Robust standard deviation of the residuals, degrees.
@@ -104,9 +104,9 @@ pub enum FitError {
     },
     /// The iteration did not converge.
     #[error(
-        "the fit did not settle: the samples contradict each other or any ship; check the sign of \
-         the variation, which column is which, and whether the compass or the reference stood still \
-         for days"
+        "the fit did not converge: the samples contradict each other or any ship; check the sign \
+         of the variation, the order of the columns, and whether the compass or the reference was \
+         stuck for days"
     )]
     NotConverged,
 }
