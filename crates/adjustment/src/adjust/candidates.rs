@@ -41,7 +41,7 @@ pub(super) fn stock(binnacle: &Binnacle) -> Used {
     let kinds = binnacle.design.magnets.iter().take(KINDS).enumerate();
     kinds.fold(Used::default(), |sum, (index, kind)| {
         // Half a byte's range is left for the sum of two axes.
-        let count = binnacle.magnets_aboard(&kind.name).min(100);
+        let count = binnacle.magnet_count(&kind.name).min(100);
         sum.plus(Used::some(index, u64::from(count)))
     })
 }
@@ -146,7 +146,7 @@ impl AxisCandidates {
                 aboard: rack
                     .magnets
                     .iter()
-                    .map(|magnet| f64::from(binnacle.magnets_aboard(magnet)))
+                    .map(|magnet| f64::from(binnacle.magnet_count(magnet)))
                     .collect(),
             },
         };
@@ -359,7 +359,7 @@ fn pairs(binnacle: &Binnacle, standing: &Setting, may_move: bool) -> Vec<Option<
         return vec![standing.quadrantal.clone()];
     };
     let mut all = vec![None];
-    let aboard = |name: &String| binnacle.aboard.quadrantal.contains(name);
+    let aboard = |name: &String| binnacle.inventory.quadrantal.contains(name);
     for size in iron.sizes.iter().filter(|size| aboard(&size.name)) {
         for mark in &iron.marks {
             for slew_deg in &iron.slews_deg {

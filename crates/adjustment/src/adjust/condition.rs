@@ -109,7 +109,7 @@ impl<'a> Condition<'a> {
     }
 
     /// The whole ship with correctors of this effect, where the horizontal field is H.
-    pub(super) fn aboard(&self, effect: &Effect, h_nt: f64) -> ShipMagnetism {
+    pub(super) fn with_effect(&self, effect: &Effect, h_nt: f64) -> ShipMagnetism {
         let chi = effect.chi_at(h_nt);
         ShipMagnetism {
             chi: std::array::from_fn(|row| {
@@ -133,7 +133,7 @@ impl<'a> Condition<'a> {
 
     pub(super) fn lambda_with(&self, setting: &Setting) -> f64 {
         let effect = effect(self.binnacle, setting);
-        self.aboard(&effect, self.reference_h_nt).lambda()
+        self.with_effect(&effect, self.reference_h_nt).lambda()
     }
 
     /// How far the vertical field per earth's vertical field is from what it was.
@@ -150,7 +150,7 @@ impl<'a> Condition<'a> {
     /// old model, of λ, and of every corrector that was moved (docs/science.md, eq. 24).
     pub(super) fn model_with(&self, setting: &Setting) -> Result<Model, DeviationError> {
         let effect = effect(self.binnacle, setting);
-        let ship = self.aboard(&effect, self.reference_h_nt);
+        let ship = self.with_effect(&effect, self.reference_h_nt);
         let after = ship.parameters_over_lambda();
         let after = after.map_err(|_| DeviationError::NotFinite)?;
         let covariance = self
@@ -171,7 +171,7 @@ impl<'a> Condition<'a> {
         setting: &Setting,
         earth: EarthField,
     ) -> Result<Model, DeviationError> {
-        let ship = self.aboard(&effect(self.binnacle, setting), earth.h_nt);
+        let ship = self.with_effect(&effect(self.binnacle, setting), earth.h_nt);
         let parameters = ship.parameters_over_lambda();
         Ok(Model {
             parameters_over_lambda: parameters.map_err(|_| DeviationError::NotFinite)?,
@@ -231,7 +231,7 @@ impl<'a> Condition<'a> {
     /// All that is known of the ship with a setting, for what is read then.
     pub(super) fn known_with(&self, setting: &Setting) -> Result<Known<'_>, DeviationError> {
         let effect = effect(self.binnacle, setting);
-        let ship = self.aboard(&effect, self.reference_h_nt);
+        let ship = self.with_effect(&effect, self.reference_h_nt);
         let model = self.model_with(setting)?;
         let after = model.parameters_over_lambda.to_array();
         let slopes = self.slopes(&after, ship.lambda());
@@ -288,7 +288,9 @@ impl Condition<'_> {
     /// The horizontal field at the card without bowl and needles, nT, with correctors of
     /// this effect in a field of the earth in ship axes.
     pub(super) fn field(&self, effect: &Effect, earth: [f64; 3]) -> [f64; 2] {
-        let [x, y, _] = self.aboard(effect, f64::INFINITY).field_at_compass(earth);
+        let [x, y, _] = self
+            .with_effect(effect, f64::INFINITY)
+            .field_at_compass(earth);
         [x, y]
     }
 }

@@ -97,7 +97,7 @@ fn heeling_error(
     let aboard_nt = down_nt(adjustment, condition, effect)?;
     let z_nt = adjustment.earth.z_nt;
     let h_nt = adjustment.earth.h_nt;
-    let ship = condition.aboard(effect, h_nt);
+    let ship = condition.with_effect(effect, h_nt);
     Some(((1.0 + ship.chi[1][1]) * z_nt - aboard_nt) / (ship.lambda() * h_nt))
 }
 
@@ -122,7 +122,7 @@ pub(super) fn chosen(
     if now <= GOOD_ENOUGH {
         return standing;
     }
-    let aboard = binnacle.magnets_aboard(&bucket.magnet);
+    let aboard = binnacle.magnet_count(&bucket.magnet);
     let mut best = (now, standing);
     let mut all = vec![None];
     for place in &bucket.positions {

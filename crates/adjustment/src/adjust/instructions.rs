@@ -148,7 +148,7 @@ pub(super) fn compass_at_berth(
         Alignment::AsFitted => condition.constant_deg(),
     };
     let magnetic_deg = reading.magnetic().degrees() - aligned_deg;
-    let ship = condition.aboard(effect, adjustment.earth.h_nt);
+    let ship = condition.with_effect(effect, adjustment.earth.h_nt);
     let deviation = ship.deviation_rad(magnetic_deg.to_radians(), adjustment.earth);
     wrap_360(magnetic_deg - deviation.to_degrees())
 }
@@ -369,7 +369,7 @@ fn said(condition: &Condition<'_>, corrector: Corrector, place: &Place) -> Strin
             let pieces = condition.binnacle.bar_lengths();
             let pieces = pieces
                 .iter()
-                .find(|(l, _)| crate::binnacle::same(*l, bar.length_mm));
+                .find(|(l, _)| crate::binnacle::nearly_equal(*l, bar.length_mm));
             let pieces = pieces.map_or_else(Vec::new, |(_, pieces)| pieces.clone());
             let pieces: Vec<String> = pieces.iter().map(f64::to_string).collect();
             let side = match bar.side {

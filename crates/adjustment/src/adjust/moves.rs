@@ -1,6 +1,6 @@
 //! How many movements of hand it takes from one setting to another.
 
-use crate::binnacle::{BarSetting, HeelingSetting, PairSetting, Tray, same};
+use crate::binnacle::{BarSetting, HeelingSetting, PairSetting, Tray, nearly_equal};
 
 /// Magnets of one axis, each tray taken for whichever costs least.
 pub(super) fn trays(from: &[Tray], to: &[Tray]) -> u32 {
@@ -63,11 +63,11 @@ pub(super) fn pair(from: Option<&PairSetting>, to: Option<&PairSetting>) -> u32 
         (None, None) => 0,
         (None, Some(_)) | (Some(_), None) => 1,
         (Some(from), Some(to)) if from.size != to.size => {
-            2 + u32::from(!same(from.slew_deg, to.slew_deg))
+            2 + u32::from(!nearly_equal(from.slew_deg, to.slew_deg))
         }
         (Some(from), Some(to)) => {
-            u32::from(!same(from.mark_mm, to.mark_mm))
-                + u32::from(!same(from.slew_deg, to.slew_deg))
+            u32::from(!nearly_equal(from.mark_mm, to.mark_mm))
+                + u32::from(!nearly_equal(from.slew_deg, to.slew_deg))
         }
     }
 }
@@ -77,9 +77,9 @@ pub(super) fn bar(from: Option<&BarSetting>, to: Option<&BarSetting>) -> u32 {
         (None, None) => 0,
         (None, Some(_)) | (Some(_), None) => 1,
         (Some(from), Some(to)) => {
-            u32::from(!same(from.length_mm, to.length_mm))
+            u32::from(!nearly_equal(from.length_mm, to.length_mm))
                 + u32::from(from.side != to.side)
-                + u32::from(!same(from.slew_deg, to.slew_deg))
+                + u32::from(!nearly_equal(from.slew_deg, to.slew_deg))
         }
     }
 }

@@ -158,7 +158,7 @@ pub(super) fn search(adjustment: &Adjustment<'_>, condition: &Condition<'_>) -> 
 impl Search<'_> {
     fn objective(&self, effect: &Effect) -> Objective<'_> {
         Objective::new(&self.compass, self.adjustment.waters, |h_nt| {
-            self.condition.aboard(effect, h_nt)
+            self.condition.with_effect(effect, h_nt)
         })
     }
 

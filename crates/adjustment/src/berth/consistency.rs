@@ -3,19 +3,11 @@
 //! Strength gives λ; direction is left over, and tests everything that was
 //! taken for granted.
 
-use super::field::{Expected, Vector, dot};
-use super::{BerthReading, ReadingErrors};
-use binnacle_compass::angle::wrap_180;
-use binnacle_compass::model::Covariance;
-use binnacle_compass::ship::{EarthField, compass_rad};
+use super::reading_errors::ReadingErrors;
+use binnacle_compass::deviation::NORMAL_99;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Two-sided 99 % of a normal distribution, in standard deviations: one honest
-/// berth in a hundred is turned away.
-const NORMAL_99: f64 = 2.575_829;
-/// Beyond this a berth is not a good one, whatever its errors explain.
-const GOOD_DEG: f64 = 1.0;
 /// The standard error of a good berth's angle: what one beyond its 99 % would have shown is
 /// not taken for an error because the errors are wider.
 const GOOD_ERROR_DEG: f64 = 1.0;
@@ -86,27 +78,6 @@ pub enum Suspect {
 }
 
 impl Consistency {
-    pub(super) fn new(
-        expected: &Expected,
-        earth: EarthField,
-        reading: &BerthReading,
-        covariance: Option<&Covariance>,
-    ) -> Consistency {
-        let (b, u) = (reading.field_nt(), expected.u);
-        let angle_deg = wrap_180((compass_rad(b[0], b[1]) - compass_rad(u[0], u[1])).to_degrees());
-        let by_u = compass_slope(u).map(|slope| -slope);
-        let standard_error_deg = expected
-            .spread(reading, earth, compass_slope(b), by_u)
-            .standard_error(covariance)
-            .map(f64::to_degrees);
-        Consistency {
-            angle_deg,
-            standard_error_deg,
-            across_nt: b[0].hypot(b[1]) * angle_deg.to_radians().sin().abs(),
-            verdict: verdict(angle_deg.abs(), standard_error_deg),
-        }
-    }
-
     /// What could be wrong, and by how much each would have to be: steel and the ship's
     /// own magnetism only of an angle that they could bring about.
     pub fn suspects(&self) -> Vec<Suspect> {
@@ -167,23 +138,6 @@ impl Consistency {
 /// What there is of a standard deviation beside a good one.
 fn beyond(value: f64, good: f64) -> f64 {
     (value.powi(2) - good.powi(2)).max(0.0).sqrt()
-}
-
-fn verdict(angle_deg: f64, standard_error_deg: Option<f64>) -> Verdict {
-    let explained = standard_error_deg.map_or(GOOD_DEG, |error| NORMAL_99 * error);
-    if angle_deg > explained {
-        Verdict::Inconsistent
-    } else if angle_deg > GOOD_DEG {
-        Verdict::Loose
-    } else {
-        Verdict::Consistent
-    }
-}
-
-/// Slopes of the compass heading that a field gives, radians a nT.
-fn compass_slope(field: Vector) -> Vector {
-    let squared = dot(field, field);
-    [field[1] / squared, -field[0] / squared]
 }
 
 impl fmt::Display for Verdict {

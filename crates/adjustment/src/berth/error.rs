@@ -1,7 +1,7 @@
 //! Why a berth reading gives no λ.
 
-use super::Consistency;
-use super::lambda::{GREATEST_LAMBDA, LEAST_LAMBDA};
+use super::consistency::Consistency;
+use super::lambda_range::{GREATEST_LAMBDA, LEAST_LAMBDA};
 use binnacle_compass::deviation::{DeviationError, ModelError};
 
 /// A refusal; each says what is wrong.

@@ -1,19 +1,15 @@
 //! λ, and with it the whole of the ship's horizontal magnetism.
 
 use super::consistency::{Consistency, Verdict};
-use super::field::{Expected, Spread, UNKNOWNS, covariances, dot};
-use super::{BerthError, BerthReading, Estimated};
+use super::direction_check::check_direction;
+use super::error::BerthError;
+use super::estimated::Estimated;
+use super::expected_field::{ExpectedField, Spread, UNKNOWNS, covariances, dot};
+use super::lambda_range::{GREATEST_LAMBDA, LEAST_LAMBDA};
+use super::reading::BerthReading;
 use binnacle_compass::model::{Covariance, Model, Parameters};
 use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
-
-/// Less of the earth's field than this reaches no compass that was placed with any care.
-pub const LEAST_LAMBDA: f64 = 0.5;
-/// No ship gathers more of it at the compass than this.
-pub const GREATEST_LAMBDA: f64 = 1.25;
-/// Steel around a compass shields it, in a wheelhouse by up to a third, and hardly ever
-/// gathers more of the field than there is. Outside this a reading is looked at again.
-pub const USUAL_LAMBDA: std::ops::RangeInclusive<f64> = 0.65..=1.1;
 
 /// The seven ratios, the constant and λ: where λ stands.
 const LAMBDA: usize = UNKNOWNS;
@@ -67,9 +63,9 @@ pub fn lambda_at_berth(
     earth: EarthField,
     reading: &BerthReading,
 ) -> Result<BerthEstimate, BerthError> {
-    let expected = Expected::new(model, earth, reading)?;
+    let expected = ExpectedField::new(model, earth, reading)?;
     let covariance = model.covariance.as_ref();
-    let consistency = Consistency::new(&expected, earth, reading, covariance);
+    let consistency = check_direction(&expected, earth, reading, covariance);
     if consistency.verdict == Verdict::Inconsistent {
         return Err(BerthError::Inconsistent(consistency));
     }

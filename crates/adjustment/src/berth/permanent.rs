@@ -3,9 +3,11 @@
 //! For a ship whose magnets were moved after λ was found: iron keeps its shape,
 //! so that one reading tells what the magnets now do, without headings at sea.
 
-use super::field::{Expected, Spread};
-use super::lambda::{GREATEST_LAMBDA, LEAST_LAMBDA};
-use super::{BerthError, BerthReading, Estimated};
+use super::error::BerthError;
+use super::estimated::Estimated;
+use super::expected_field::{ExpectedField, Spread};
+use super::lambda_range::{GREATEST_LAMBDA, LEAST_LAMBDA};
+use super::reading::BerthReading;
 use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
@@ -47,7 +49,7 @@ pub fn permanent_at_berth(
             greatest: GREATEST_LAMBDA,
         });
     }
-    let expected = Expected::new(model, earth, reading)?;
+    let expected = ExpectedField::new(model, earth, reading)?;
     let p = &model.parameters_over_lambda;
     let permanent = [p.bx_nt, p.by_nt];
     let solve = |axis: usize| {

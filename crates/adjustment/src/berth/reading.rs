@@ -1,6 +1,7 @@
 //! What was read at the berth, and how well.
 
-use super::BerthError;
+use super::error::BerthError;
+use super::reading_errors::ReadingErrors;
 use binnacle_compass::angle::MagneticHeading;
 
 /// Three times the earth's strongest field: beyond it the unit is wrong.
@@ -11,23 +12,6 @@ const GREATEST_FIELD_SD_NT: f64 = 10_000.0;
 const GREATEST_ANGLE_SD_DEG: f64 = 5.0;
 /// Less than this is a magnetometer that does not work.
 const LEAST_FIELD_NT: f64 = 1.0;
-
-/// Standard deviations of a berth reading. The magnetometer's gain is not among
-/// them: an error of its scale is an error of λ, share for share.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ReadingErrors {
-    /// Of each horizontal part, nT: the magnetometer's noise together with what
-    /// the earth's field at the berth is not known to (crust, quay). More than 0.
-    pub field_sd_nt: f64,
-    /// Of the magnetic heading, degrees: that of the true heading together with
-    /// the variation's.
-    pub heading_sd_deg: f64,
-    /// Of the magnetometer's alignment, degrees.
-    pub alignment_sd_deg: f64,
-    /// Of the magnetometer's tilt in roll and in pitch, degrees, ship's heel
-    /// and trim included: tilt brings vertical field into the horizontal.
-    pub tilt_sd_deg: f64,
-}
 
 /// What heading and magnetometer are held against, which decides about the
 /// model's constant.

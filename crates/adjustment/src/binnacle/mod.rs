@@ -7,36 +7,38 @@
 //! written form (docs/binnacle.md) is the value itself: both read as the form they
 //! were made from, and cannot be changed but by making another.
 
-mod aboard;
-mod calibration;
-mod check;
-mod design;
-mod error;
-mod setting;
-mod shipped;
-mod stock;
+mod axis;
 
-pub use aboard::{Aboard, BinnacleForm, Lot};
+mod design;
+mod shipped;
+
+mod calibration;
+mod inventory;
+mod setting;
+
+mod binnacle_form;
+mod checks;
+
+mod error;
+mod nearly_equal;
+mod value_checks;
+
+pub use axis::{Axis, Red};
+pub use binnacle_form::BinnacleForm;
 pub use calibration::Calibrated;
 pub use design::{
-    Carrier, CompassKind, DesignForm, Flinders, Heeling, Hole, IronSize, MagnetKind, Mark,
+    Carrier, CompassKind, Design, DesignForm, Flinders, Heeling, Hole, IronSize, MagnetKind, Mark,
     Quadrantal, Rack, Shape, Side,
 };
 pub use error::BinnacleError;
-pub(crate) use setting::same;
-pub use setting::{Axis, BarSetting, HeelingSetting, PairSetting, Red, Setting, Soft, Tray};
+pub use inventory::{Inventory, Lot};
+pub(crate) use nearly_equal::nearly_equal;
+pub use setting::{BarSetting, HeelingSetting, PairSetting, Setting, Soft, Tray};
 pub use shipped::SHIPPED;
+pub use value_checks::VERSION;
 
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
-
-/// The version of the written forms of this module.
-pub const VERSION: u32 = 1;
-
-/// A maker's binnacle, as all of its kind are: where correctors may stand.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "DesignForm", into = "DesignForm")]
-pub struct Design(DesignForm);
 
 /// One binnacle on board: its design, serial, the correctors there are, how they
 /// stand, and what was measured of them.
@@ -67,7 +69,11 @@ impl Binnacle {
         sd: f64,
     ) -> Result<Binnacle, BinnacleError> {
         let mut form = self.0.clone();
-        let lot = form.aboard.magnets.iter_mut().find(|l| l.magnet == magnet);
+        let lot = form
+            .inventory
+            .magnets
+            .iter_mut()
+            .find(|l| l.magnet == magnet);
         let Some(lot) = lot else {
             let what = format!("no magnets {magnet:?} are on board");
             return Err(BinnacleError::new("aboard.magnets", what));
@@ -81,15 +87,8 @@ impl Binnacle {
     ///
     /// # Errors
     /// Names the lot whose tested moment it is, A·m².
-    pub fn must_be_credible(&self) -> Result<(), BinnacleError> {
-        stock::credible(&self.0)
-    }
-}
-
-impl Deref for Design {
-    type Target = DesignForm;
-    fn deref(&self) -> &DesignForm {
-        &self.0
+    pub fn check_tested_moments(&self) -> Result<(), BinnacleError> {
+        checks::check_tested_moments(&self.0)
     }
 }
 
@@ -100,27 +99,11 @@ impl Deref for Binnacle {
     }
 }
 
-impl TryFrom<DesignForm> for Design {
-    type Error = BinnacleError;
-    fn try_from(form: DesignForm) -> Result<Design, BinnacleError> {
-        check::design(&form)?;
-        Ok(Design(form))
-    }
-}
-
 impl TryFrom<BinnacleForm> for Binnacle {
     type Error = BinnacleError;
     fn try_from(form: BinnacleForm) -> Result<Binnacle, BinnacleError> {
-        stock::check(&form)?;
-        calibration::check(&form)?;
-        setting::check(&form, &form.setting)?;
+        checks::check_binnacle(&form)?;
         Ok(Binnacle(form))
-    }
-}
-
-impl From<Design> for DesignForm {
-    fn from(design: Design) -> DesignForm {
-        design.0
     }
 }
 

@@ -1,7 +1,8 @@
 //! A Flinders bar: an upright cylinder of soft iron, its top pole at the card's
 //! height.
 
-use super::{BarMagnet, Effect, Vector};
+use super::effect::{Effect, Vector};
+use super::magnet::BarMagnet;
 use std::f64::consts::PI;
 
 /// 1/χ of the bar's iron.

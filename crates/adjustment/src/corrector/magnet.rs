@@ -1,6 +1,6 @@
 //! A bar magnet as two poles.
 
-use super::Vector;
+use super::effect::Vector;
 
 /// µ0/4π in nT·m³/(A·m²): 10⁻⁷ tesla.
 pub const MAGNETIC: f64 = 100.0;

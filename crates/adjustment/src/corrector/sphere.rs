@@ -1,7 +1,7 @@
 //! A pair of spheres of soft iron on either side of the card.
 
-use super::magnet::MAGNETIC;
-use super::{BarMagnet, Effect, Vector};
+use super::effect::{Effect, Vector};
+use super::magnet::{BarMagnet, MAGNETIC};
 
 /// (µ − 1)/(µ + 2) of soft iron with a relative permeability of 200.
 pub const KAPPA: f64 = 0.985;

@@ -1,6 +1,8 @@
 use super::*;
 use crate::binnacle::tests::class_a;
-use crate::binnacle::{BarSetting, Binnacle, PairSetting, Red};
+use crate::binnacle::{
+    Axis, BarSetting, Binnacle, BinnacleForm, HeelingSetting, PairSetting, Red, Side, Soft, Tray,
+};
 use proptest::prelude::*;
 
 fn broadside_ut(distance_m: f64) -> f64 {

@@ -11,7 +11,7 @@ pub(crate) mod random;
 pub(crate) mod scene;
 
 use binnacle_adjustment::binnacle::{
-    Aboard, BarSetting, Binnacle, BinnacleForm, Design, DesignForm, HeelingSetting, Lot,
+    BarSetting, Binnacle, BinnacleForm, Design, DesignForm, HeelingSetting, Inventory, Lot,
     PairSetting, Red, SHIPPED, Setting, Side, Tray, VERSION,
 };
 use iron::Fitted;
@@ -198,7 +198,7 @@ pub(crate) fn binnacle(rng: &mut Random, which: usize) -> Binnacle {
     Binnacle::try_from(BinnacleForm {
         version: VERSION,
         serial: "study".to_owned(),
-        aboard: Aboard {
+        inventory: Inventory {
             magnets: vec![lot(magnet, 12), lot(bucket, 1)],
             quadrantal: sizes.iter().map(|size| size.name.clone()).collect(),
             flinders_pieces_mm: pieces,

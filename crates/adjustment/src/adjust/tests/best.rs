@@ -34,7 +34,7 @@ fn the_search_finds_what_trying_everything_finds() {
             form.setting.fore_and_aft.clear();
             form.setting.athwartship[0].hole = rng.random_range(1..=3);
             form.setting.athwartship[0].count = 1;
-            form.aboard.magnets[0].count = rng.random_range(1..=4);
+            form.inventory.magnets[0].count = rng.random_range(1..=4);
         }
         let binnacle = Binnacle::try_from(form).unwrap();
         trying_everything(&Case::new(ship, binnacle, heading));
@@ -76,7 +76,7 @@ fn worst_of(case: &Case, condition: &Condition<'_>, setting: &Setting) -> f64 {
     let compass = objective::Compass::new(condition.constant_deg());
     let effect = effect(&case.binnacle, setting);
     objective::Objective::new(&compass, &case.waters, |h_nt| {
-        condition.aboard(&effect, h_nt)
+        condition.with_effect(&effect, h_nt)
     })
     .worst_deg([0.0; 2])
 }
@@ -255,9 +255,9 @@ fn an_alternative_keeps_to_the_limits_that_the_recommended_plan_keeps_to() {
 #[test]
 fn no_plan_uses_what_is_not_on_board() {
     let mut form: BinnacleForm = class_a().into();
-    form.aboard.magnets[0].count = 5;
-    form.aboard.quadrantal = vec!["7 inch".to_owned()];
-    form.aboard.flinders_pieces_mm = vec![225.0];
+    form.inventory.magnets[0].count = 5;
+    form.inventory.quadrantal = vec!["7 inch".to_owned()];
+    form.inventory.flinders_pieces_mm = vec![225.0];
     let binnacle = Binnacle::try_from(form).unwrap();
     let mut ship = bare();
     ship.b_nt = [9_000.0, 7_000.0, 0.0];
@@ -308,7 +308,7 @@ fn magnets_against_what_the_vertical_field_induces_are_for_one_dip_and_that_is_s
         ship.chi[0][2] = chi13;
         let mut form: BinnacleForm = class_a().into();
         form.setting.flinders = None;
-        form.aboard.flinders_pieces_mm.clear();
+        form.inventory.flinders_pieces_mm.clear();
         let mut case = Case::new(ship, Binnacle::try_from(form).unwrap(), 60.0);
         case.waters.truncate(waters);
         let mut notes = case.plan().notes.into_iter();
@@ -336,8 +336,8 @@ fn four_trays(magnets: u16, each: u8) -> Binnacle {
     form.design = design.try_into().unwrap();
     form.setting.fore_and_aft.clear();
     form.setting.athwartship.clear();
-    form.aboard.magnets[0].magnet = "100 mm".to_owned();
-    form.aboard.magnets[0].count = magnets;
+    form.inventory.magnets[0].magnet = "100 mm".to_owned();
+    form.inventory.magnets[0].count = magnets;
     Binnacle::try_from(form).unwrap()
 }
 

@@ -152,8 +152,8 @@ pub(super) fn little() -> Binnacle {
     iron.marks
         .retain(|mark| mark.mark_mm <= 280.0 || (mark.mark_mm - 320.0).abs() < 1e-9);
     iron.slews_deg = vec![0.0];
-    form.aboard.flinders_pieces_mm = vec![225.0];
-    form.aboard.quadrantal = vec!["7 inch".to_owned()];
+    form.inventory.flinders_pieces_mm = vec![225.0];
+    form.inventory.quadrantal = vec!["7 inch".to_owned()];
     form.setting.athwartship[0].hole = 3;
     form.design = design.try_into().unwrap();
     Binnacle::try_from(form).unwrap()

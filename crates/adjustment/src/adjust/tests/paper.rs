@@ -25,14 +25,14 @@ fn binnacle() -> Binnacle {
     design.quadrantal = None;
     design.flinders = None;
     form.design = design.try_into().unwrap();
-    form.aboard.magnets.push(crate::binnacle::Lot {
+    form.inventory.magnets.push(crate::binnacle::Lot {
         magnet: "100 mm".to_owned(),
         count: 3,
         tested_moment_am2: Some(0.61),
         tested_sd: None,
     });
-    form.aboard.quadrantal.clear();
-    form.aboard.flinders_pieces_mm.clear();
+    form.inventory.quadrantal.clear();
+    form.inventory.flinders_pieces_mm.clear();
     form.setting = Setting {
         fore_and_aft: vec![held(5, 2, Red::Aft)],
         athwartship: vec![held(7, 1, Red::Port)],

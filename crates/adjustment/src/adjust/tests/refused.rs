@@ -269,7 +269,7 @@ fn what_the_correctors_cannot_reach_no_heading_at_sea_and_no_swing_cures() {
         let mut ship = bare();
         change(&mut ship);
         let mut form: BinnacleForm = class_a().into();
-        form.aboard.magnets[0].count = magnets;
+        form.inventory.magnets[0].count = magnets;
         let case = Case::new(ship, Binnacle::try_from(form).unwrap(), 60.0);
         let mut adjustment = case.adjustment();
         adjustment.limits = Limits::default();

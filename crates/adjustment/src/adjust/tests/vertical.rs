@@ -103,7 +103,7 @@ fn a_heeling_error_that_is_left_is_said() {
     let said = |more_nt: f64, magnets: u16| {
         let mut form: BinnacleForm = class_a().into();
         form.setting.heeling = None;
-        form.aboard.magnets[1].count = magnets;
+        form.inventory.magnets[1].count = magnets;
         let case = Case::new(bare(), Binnacle::try_from(form).unwrap(), 60.0);
         let outcome = planned(&case, down_nt(&case) + more_nt);
         let note = |note: &String| note.contains("degrees of heeling error are left");

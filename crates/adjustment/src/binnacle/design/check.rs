@@ -1,24 +1,21 @@
 //! Whether a design can be one; each complaint names its field.
 
-use super::design::{DesignForm, Flinders, Heeling, Hole, MagnetKind, Quadrantal, Rack};
-use super::error::BinnacleError;
-use super::{VERSION, same};
-
-type Checked = Result<(), BinnacleError>;
+use super::form::{DesignForm, Flinders, Heeling, Hole, MagnetKind, Quadrantal, Rack};
+use crate::binnacle::error::BinnacleError;
+use crate::binnacle::nearly_equal::nearly_equal;
+use crate::binnacle::value_checks::{Checked, count, number, text_given, version};
 
 /// Nothing of a binnacle is farther from its card, mm.
 const FARTHEST_MM: f64 = 2_000.0;
 /// No corrector's error is described by more.
 const GREATEST_TOLERANCE: f64 = 0.5;
-/// So that a search ends: more of a thing than this is a mistake in the file.
-const MOST: usize = 64;
 /// Kinds of magnets.
 const MOST_KINDS: usize = 8;
 /// Trays of one axis, magnets in a tray or a bucket.
 const MOST_TRAYS: u8 = 4;
 const MOST_MAGNETS: u8 = 12;
 
-pub(super) fn design(form: &DesignForm) -> Checked {
+pub(super) fn check(form: &DesignForm) -> Checked {
     version(form.version)?;
     for (name, text) in [
         ("maker", &form.maker),
@@ -38,40 +35,6 @@ pub(super) fn design(form: &DesignForm) -> Checked {
     form.quadrantal.as_ref().map_or(Ok(()), quadrantal)?;
     form.flinders.as_ref().map_or(Ok(()), flinders)?;
     form.heeling.as_ref().map_or(Ok(()), |h| heeling(h, form))
-}
-
-pub(super) fn version(found: u32) -> Checked {
-    if found == VERSION {
-        return Ok(());
-    }
-    let what = format!("a form of version {found}; this program reads version {VERSION}");
-    Err(BinnacleError::new("version", what))
-}
-
-pub(super) fn text_given(field: &str, text: &str) -> Checked {
-    if text.trim().is_empty() {
-        return Err(BinnacleError::new(field, "is empty"));
-    }
-    Ok(())
-}
-
-pub(super) fn number(field: &str, value: f64, least: f64, greatest: f64) -> Checked {
-    if (least..=greatest).contains(&value) {
-        return Ok(());
-    }
-    let what = format!("{value} is not a number between {least} and {greatest}");
-    Err(BinnacleError::new(field, what))
-}
-
-pub(super) fn count(field: &str, length: usize) -> Checked {
-    match length {
-        0 => Err(BinnacleError::new(field, "is empty: name at least one")),
-        _ if length > MOST => {
-            let what = format!("{length} of them; at most {MOST} are taken");
-            Err(BinnacleError::new(field, what))
-        }
-        _ => Ok(()),
-    }
 }
 
 fn magnets(kinds: &[MagnetKind]) -> Checked {
@@ -177,11 +140,17 @@ fn quadrantal(iron: &Quadrantal) -> Checked {
         // Nearer than its diameter a sphere is no dipole any more, nor beside the bowl.
         number(&field("centre_mm"), mark.centre_mm, widest_mm, FARTHEST_MM)?;
         let earlier = &iron.marks[..index];
-        if earlier.iter().any(|m| same(m.mark_mm, mark.mark_mm)) {
+        if earlier
+            .iter()
+            .any(|m| nearly_equal(m.mark_mm, mark.mark_mm))
+        {
             let what = format!("{} stands there twice", mark.mark_mm);
             return Err(BinnacleError::new(field("mark_mm"), what));
         }
-        if earlier.iter().any(|m| same(m.centre_mm, mark.centre_mm)) {
+        if earlier
+            .iter()
+            .any(|m| nearly_equal(m.centre_mm, mark.centre_mm))
+        {
             let what = format!("{} is another mark's position", mark.centre_mm);
             return Err(BinnacleError::new(field("centre_mm"), what));
         }
@@ -194,7 +163,7 @@ fn slews(field: &str, slews_deg: &[f64]) -> Checked {
     for (index, slew) in slews_deg.iter().enumerate() {
         let path = format!("{field}[{index}]");
         number(&path, *slew, -90.0, 90.0)?;
-        if slews_deg[..index].iter().any(|s| same(*s, *slew)) {
+        if slews_deg[..index].iter().any(|s| nearly_equal(*s, *slew)) {
             return Err(BinnacleError::new(
                 path,
                 format!("{slew} stands there twice"),

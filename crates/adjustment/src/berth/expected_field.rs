@@ -1,7 +1,8 @@
 //! The field over λ that the model expects at the berth, and how anything
 //! calculated from it and the reading errs.
 
-use super::{Alignment, BerthError, BerthReading};
+use super::error::BerthError;
+use super::reading::{Alignment, BerthReading};
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::{Covariance, Model, Parameters};
 use binnacle_compass::ship::{EarthField, PARAMETERS};
@@ -17,7 +18,7 @@ const LEAST_DIRECTIVE_FORCE: f64 = 0.1;
 pub(super) type Vector = [f64; 2];
 
 /// u = B/λ by the model, with its slopes.
-pub(super) struct Expected {
+pub(super) struct ExpectedField {
     /// nT.
     pub(super) u: Vector,
     /// By the magnetic heading, nT a radian.
@@ -61,13 +62,13 @@ pub(crate) fn slopes(
     ]
 }
 
-impl Expected {
+impl ExpectedField {
     /// What the model expects for a reading.
     pub(super) fn new(
         model: &Model,
         earth: EarthField,
         reading: &BerthReading,
-    ) -> Result<Expected, BerthError> {
+    ) -> Result<ExpectedField, BerthError> {
         model.check()?;
         let p = &model.parameters_over_lambda;
         let coefficients = Coefficients::new(p, earth)?;
@@ -84,7 +85,7 @@ impl Expected {
             });
         }
         let aboard = earth.in_ship_axes(magnetic_rad);
-        Ok(Expected {
+        Ok(ExpectedField {
             u: p.field_over_lambda(magnetic_rad, earth),
             by_heading: slope_by_heading(p, aboard),
             by_unknown: slopes(p, aboard, heading_by_constant),

@@ -1,6 +1,11 @@
 //! The written form of a binnacle on board (docs/binnacle.md).
 
-use super::{Calibrated, Design, MagnetKind, Setting};
+use super::axis::Axis;
+use super::calibration::Calibrated;
+use super::design::{Design, MagnetKind};
+use super::inventory::{Inventory, Lot};
+use super::nearly_equal::nearly_equal;
+use super::setting::Setting;
 use serde::{Deserialize, Serialize};
 
 /// A binnacle as it is written; [`Binnacle`] is one that was checked.
@@ -17,42 +22,13 @@ pub struct BinnacleForm {
     #[serde(rename = "type")]
     pub design: Design,
     /// All its correctors, in use and spare.
-    pub aboard: Aboard,
+    #[serde(rename = "aboard")]
+    pub inventory: Inventory,
     /// How they stand.
     pub setting: Setting,
     /// What was measured of them; it wins over the formulas.
     #[serde(default)]
     pub calibration: Vec<Calibrated>,
-}
-
-/// The correctors on board, those in use included.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Aboard {
-    /// Magnets by their kind.
-    pub magnets: Vec<Lot>,
-    /// Names of the sizes of which there is a pair.
-    #[serde(default)]
-    pub quadrantal: Vec<String>,
-    /// Lengths of the Flinders bar's pieces, mm, each as often as there is one.
-    #[serde(default)]
-    pub flinders_pieces_mm: Vec<f64>,
-}
-
-/// Magnets of one kind on board.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Lot {
-    /// Their kind.
-    pub magnet: String,
-    /// How many there are.
-    pub count: u16,
-    /// Their moment as it was tested, A·m²; the nominal one counts otherwise.
-    #[serde(default)]
-    pub tested_moment_am2: Option<f64>,
-    /// Relative standard deviation of the tested moment; 0.02 where it is not said.
-    #[serde(default)]
-    pub tested_sd: Option<f64>,
 }
 
 /// Of a tested moment, relative.
@@ -72,11 +48,14 @@ pub(crate) struct Moment {
 impl BinnacleForm {
     /// The lot of a kind.
     pub fn lot(&self, magnet: &str) -> Option<&Lot> {
-        self.aboard.magnets.iter().find(|lot| lot.magnet == magnet)
+        self.inventory
+            .magnets
+            .iter()
+            .find(|lot| lot.magnet == magnet)
     }
 
     /// How many magnets of a kind there are on board.
-    pub fn magnets_aboard(&self, magnet: &str) -> u16 {
+    pub fn magnet_count(&self, magnet: &str) -> u16 {
         self.lot(magnet).map_or(0, |lot| lot.count)
     }
 
@@ -102,7 +81,7 @@ impl BinnacleForm {
             .flinders
             .as_ref()
             .map_or(0.0, |bar| bar.longest_mm);
-        let pieces = &self.aboard.flinders_pieces_mm;
+        let pieces = &self.inventory.flinders_pieces_mm;
         let mut lengths: Vec<(f64, Vec<f64>)> = (1_u32..1 << pieces.len())
             .map(|chosen| {
                 let held = |index: &usize| chosen & (1 << index) != 0;
@@ -116,14 +95,69 @@ impl BinnacleForm {
             .collect();
         lengths.sort_by(|a, b| {
             let by_length = a.0.total_cmp(&b.0);
-            let by_length = if super::same(a.0, b.0) {
+            let by_length = if nearly_equal(a.0, b.0) {
                 std::cmp::Ordering::Equal
             } else {
                 by_length
             };
             by_length.then(a.1.len().cmp(&b.1.len()))
         });
-        lengths.dedup_by(|later, earlier| super::same(later.0, earlier.0));
+        lengths.dedup_by(|later, earlier| nearly_equal(later.0, earlier.0));
         lengths
+    }
+}
+
+/// A measured effect and its relative standard deviation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Measured {
+    pub(crate) value: f64,
+    pub(crate) sd: f64,
+}
+
+impl BinnacleForm {
+    pub(crate) fn calibrated_magnet(&self, of: Axis, kind: &str, number: u16) -> Option<Measured> {
+        self.calibration.iter().find_map(|entry| match entry {
+            Calibrated::Magnet {
+                axis,
+                magnet,
+                hole,
+                field_nt,
+                sd,
+            } if *axis == of && magnet == kind && *hole == number => Some(Measured {
+                value: *field_nt,
+                sd: *sd,
+            }),
+            _ => None,
+        })
+    }
+
+    pub(crate) fn calibrated_pair(&self, name: &str, at_mm: f64) -> Option<Measured> {
+        self.calibration.iter().find_map(|entry| match entry {
+            Calibrated::Quadrantal {
+                size,
+                mark_mm,
+                q,
+                sd,
+            } if size == name && nearly_equal(*mark_mm, at_mm) => {
+                Some(Measured { value: *q, sd: *sd })
+            }
+            _ => None,
+        })
+    }
+
+    pub(crate) fn calibrated_bar(&self, of_mm: f64) -> Option<Measured> {
+        self.calibration.iter().find_map(|entry| match entry {
+            Calibrated::Flinders { length_mm, c, sd } if nearly_equal(*length_mm, of_mm) => {
+                Some(Measured { value: *c, sd: *sd })
+            }
+            _ => None,
+        })
+    }
+
+    pub(crate) fn calibrated_heeling(&self, number: u16) -> Option<f64> {
+        self.calibration.iter().find_map(|entry| match entry {
+            Calibrated::Heeling { position, field_nt } if *position == number => Some(*field_nt),
+            _ => None,
+        })
     }
 }

@@ -1,5 +1,6 @@
 //! The written form of a binnacle's design (docs/binnacle.md).
 
+use crate::binnacle::axis::Axis;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -209,10 +210,10 @@ impl DesignForm {
     }
 
     /// The rack of an axis.
-    pub fn rack(&self, axis: super::Axis) -> &Rack {
+    pub fn rack(&self, axis: Axis) -> &Rack {
         match axis {
-            super::Axis::ForeAndAft => &self.fore_and_aft,
-            super::Axis::Athwartship => &self.athwartship,
+            Axis::ForeAndAft => &self.fore_and_aft,
+            Axis::Athwartship => &self.athwartship,
         }
     }
 }

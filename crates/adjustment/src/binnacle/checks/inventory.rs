@@ -1,7 +1,8 @@
 //! Whether what is said to be on board belongs to the design.
 
-use super::check::{count, number, text_given, version};
-use super::{BinnacleError, BinnacleForm};
+use crate::binnacle::binnacle_form::BinnacleForm;
+use crate::binnacle::error::BinnacleError;
+use crate::binnacle::value_checks::{count, number, text_given, version};
 
 /// Ways to set spheres and bar.
 const MOST_CHOICES: usize = 50_000;
@@ -14,14 +15,14 @@ const MOST_PIECES: usize = 10;
 pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
     version(form.version)?;
     text_given("serial", &form.serial)?;
-    count("aboard.magnets", form.aboard.magnets.len())?;
-    for (index, lot) in form.aboard.magnets.iter().enumerate() {
+    count("aboard.magnets", form.inventory.magnets.len())?;
+    for (index, lot) in form.inventory.magnets.iter().enumerate() {
         let field = |part: &str| format!("aboard.magnets[{index}].{part}");
         if form.design.magnet(&lot.magnet).is_none() {
             let what = format!("the type has no magnets {:?}", lot.magnet);
             return Err(BinnacleError::new(field("magnet"), what));
         }
-        let earlier = &form.aboard.magnets[..index];
+        let earlier = &form.inventory.magnets[..index];
         if earlier.iter().any(|other| other.magnet == lot.magnet) {
             let what = format!("{:?} stands there twice", lot.magnet);
             return Err(BinnacleError::new(field("magnet"), what));
@@ -41,8 +42,8 @@ pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
 /// Whether magnets can have what was tested of them. One loses strength with the years, and a
 /// bar of its size holds little more than a maker gives it: what is farther off was read or
 /// written wrongly.
-pub(super) fn credible(form: &BinnacleForm) -> Result<(), BinnacleError> {
-    for (index, lot) in form.aboard.magnets.iter().enumerate() {
+pub(crate) fn check_tested_moments(form: &BinnacleForm) -> Result<(), BinnacleError> {
+    for (index, lot) in form.inventory.magnets.iter().enumerate() {
         let nominal = form.design.magnet(&lot.magnet).map(|kind| kind.moment_am2);
         let Some((moment, nominal)) = lot.tested_moment_am2.zip(nominal) else {
             continue;
@@ -63,7 +64,7 @@ pub(super) fn credible(form: &BinnacleForm) -> Result<(), BinnacleError> {
 /// So that a search ends, and its memory is bounded.
 fn choices(form: &BinnacleForm) -> Result<(), BinnacleError> {
     let pairs = form.design.quadrantal.as_ref().map_or(0, |iron| {
-        form.aboard.quadrantal.len() * iron.marks.len() * iron.slews_deg.len()
+        form.inventory.quadrantal.len() * iron.marks.len() * iron.slews_deg.len()
     });
     let bars = form.design.flinders.as_ref().map_or(0, |bar| {
         form.bar_lengths().len() * bar.sides.len() * bar.slews_deg.len()
@@ -78,7 +79,7 @@ fn choices(form: &BinnacleForm) -> Result<(), BinnacleError> {
 
 fn quadrantal(form: &BinnacleForm) -> Result<(), BinnacleError> {
     let sizes = form.design.quadrantal.as_ref().map(|iron| &iron.sizes);
-    for (index, name) in form.aboard.quadrantal.iter().enumerate() {
+    for (index, name) in form.inventory.quadrantal.iter().enumerate() {
         if !sizes.is_some_and(|sizes| sizes.iter().any(|size| size.name == *name)) {
             let what = format!("the type has no quadrantal correctors {name:?}");
             return Err(BinnacleError::new(
@@ -91,7 +92,7 @@ fn quadrantal(form: &BinnacleForm) -> Result<(), BinnacleError> {
 }
 
 fn pieces(form: &BinnacleForm) -> Result<(), BinnacleError> {
-    let pieces = &form.aboard.flinders_pieces_mm;
+    let pieces = &form.inventory.flinders_pieces_mm;
     let field = "aboard.flinders_pieces_mm";
     if pieces.len() > MOST_PIECES {
         let what = format!("{} pieces; at most {MOST_PIECES} are taken", pieces.len());
