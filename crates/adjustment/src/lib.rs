@@ -12,4 +12,7 @@ pub mod berth;
 pub mod adjust;
 
 #[cfg(test)]
+use binnacle_compass::ship::{EarthField, ShipMagnetism};
+#[cfg(test)]
+#[path = "../../compass/src/ship/test_support.rs"]
 mod test_support;
