@@ -3,24 +3,15 @@
 //! The card does not err in heel while the vertical force aboard is λ(1 − D) Z: what
 //! the athwartship force would be in a field as strong (docs/science.md, eq. 23).
 
-use super::Adjustment;
-use super::condition::Condition;
-use super::instructions::NORMAL_99;
-use super::tolerance::errors_between;
-use crate::berth::BerthError;
+use super::inputs::Adjustment;
+use super::state::{Condition, errors_between};
 use crate::binnacle::{HeelingSetting, Red, Setting};
 use crate::corrector::{Effect, Iron, effect, heeling_effect};
+use binnacle_compass::deviation::NORMAL_99;
 use serde::{Deserialize, Serialize};
 
 /// Heeling error that is left alone, degrees for each degree of heel.
 const GOOD_ENOUGH: f64 = 0.05;
-
-/// The vertical field at the card's place, correctors as they stood.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct VerticalReading {
-    /// nT, down positive.
-    pub down_nt: f64,
-}
 
 /// What becomes of the heeling magnets.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,20 +25,6 @@ pub struct HeelingPlan {
     pub left_as_found: bool,
 }
 
-impl VerticalReading {
-    pub(super) fn must_be_a_field(self) -> Result<(), BerthError> {
-        if (-200_000.0..=200_000.0).contains(&self.down_nt) {
-            return Ok(());
-        }
-        Err(BerthError::Reading {
-            name: "down_nt",
-            value: self.down_nt,
-            least: -200_000.0,
-            greatest: 200_000.0,
-        })
-    }
-}
-
 /// What the magnetometer would read down with correctors of this effect, nT.
 fn down_nt(adjustment: &Adjustment<'_>, condition: &Condition<'_>, effect: &Effect) -> Option<f64> {
     let read_nt = condition.vertical?.down_nt;
@@ -57,7 +34,7 @@ fn down_nt(adjustment: &Adjustment<'_>, condition: &Condition<'_>, effect: &Effe
 
 /// How a step with heeling magnets is verified, which no compass on an even keel shows;
 /// none where the vertical force was not read.
-pub(super) fn check(
+pub(crate) fn check(
     adjustment: &Adjustment<'_>,
     condition: &Condition<'_>,
     before: &Setting,
@@ -103,7 +80,7 @@ fn heeling_error(
 
 /// The magnets that leave the least heeling error with this iron; those that stand
 /// where it was not read, or where they are good enough.
-pub(super) fn chosen(
+pub(crate) fn chosen(
     adjustment: &Adjustment<'_>,
     condition: &Condition<'_>,
     iron: &Iron,
@@ -146,7 +123,7 @@ pub(super) fn chosen(
     best.1
 }
 
-pub(super) fn said(
+pub(crate) fn said(
     adjustment: &Adjustment<'_>,
     condition: &Condition<'_>,
     setting: &Setting,

@@ -1,40 +1,40 @@
 //! Ships and berths for tests of the planner.
 
-mod best;
-mod card;
+mod card_check;
+mod corrector_scale;
+mod field_drift;
+mod headings_at_sea;
+mod optimal_plans;
 mod paper;
-mod refused;
-mod sea;
-mod since;
-
+mod refusals;
 mod steps;
-mod strength;
-mod vertical;
+mod vertical_check;
 
+use super::state::Condition;
 use super::*;
-use crate::berth::{Alignment, ReadingErrors};
+use crate::berth::{Alignment, BerthReading, ReadingErrors};
 use crate::binnacle::tests::class_a;
-use crate::binnacle::{Axis, BinnacleForm, DesignForm};
+use crate::binnacle::{Axis, Binnacle, BinnacleForm, DesignForm, Setting};
 use crate::corrector::effect;
 use binnacle_compass::angle::MagneticHeading;
-use binnacle_compass::model::{Identifiable, Parameters};
-use binnacle_compass::ship::ShipMagnetism;
+use binnacle_compass::model::{Identifiable, Model, Parameters};
+use binnacle_compass::ship::{EarthField, ShipMagnetism};
 
-pub(super) const BISCAY: EarthField = EarthField {
+pub(crate) const BISCAY: EarthField = EarthField {
     h_nt: 24_000.0,
     z_nt: 38_500.0,
 };
 
 /// A ship without correctors, and what is read and known of her with those of a binnacle.
-pub(super) struct Case {
-    pub(super) model: Model,
-    pub(super) reading: BerthReading,
-    pub(super) binnacle: Binnacle,
-    pub(super) waters: Vec<Water>,
+pub(crate) struct Case {
+    pub(crate) model: Model,
+    pub(crate) reading: BerthReading,
+    pub(crate) binnacle: Binnacle,
+    pub(crate) waters: Vec<Water>,
     bare: ShipMagnetism,
 }
 
-pub(super) fn bare() -> ShipMagnetism {
+pub(crate) fn bare() -> ShipMagnetism {
     ShipMagnetism {
         chi: [
             [-0.06, 0.002, -0.021],
@@ -57,7 +57,7 @@ fn small_covariance() -> binnacle_compass::model::Covariance {
 }
 
 impl Case {
-    pub(super) fn new(bare: ShipMagnetism, binnacle: Binnacle, magnetic_deg: f64) -> Case {
+    pub(crate) fn new(bare: ShipMagnetism, binnacle: Binnacle, magnetic_deg: f64) -> Case {
         let waters = vec![
             water("Biscay", BISCAY.h_nt, BISCAY.z_nt, 2.0),
             water("Cape Town", 15_500.0, -20_000.0, 1.0),
@@ -94,7 +94,7 @@ impl Case {
         }
     }
 
-    pub(super) fn adjustment(&self) -> Adjustment<'_> {
+    pub(crate) fn adjustment(&self) -> Adjustment<'_> {
         Adjustment {
             model: &self.model,
             earth: BISCAY,
@@ -114,12 +114,12 @@ impl Case {
         }
     }
 
-    pub(super) fn plan(&self) -> Outcome {
+    pub(crate) fn plan(&self) -> Outcome {
         plan(&self.adjustment()).unwrap()
     }
 }
 
-pub(super) fn water(name: &str, h_nt: f64, z_nt: f64, weight: f64) -> Water {
+pub(crate) fn water(name: &str, h_nt: f64, z_nt: f64, weight: f64) -> Water {
     Water {
         name: name.to_owned(),
         h_nt,
@@ -128,19 +128,19 @@ pub(super) fn water(name: &str, h_nt: f64, z_nt: f64, weight: f64) -> Water {
     }
 }
 
-pub(super) fn sum(one: &ShipMagnetism, other: &ShipMagnetism) -> ShipMagnetism {
+pub(crate) fn sum(one: &ShipMagnetism, other: &ShipMagnetism) -> ShipMagnetism {
     ShipMagnetism {
         chi: std::array::from_fn(|r| std::array::from_fn(|c| one.chi[r][c] + other.chi[r][c])),
         b_nt: std::array::from_fn(|axis| one.b_nt[axis] + other.b_nt[axis]),
     }
 }
 
-pub(super) fn case(magnetic_deg: f64) -> Case {
+pub(crate) fn case(magnetic_deg: f64) -> Case {
     Case::new(bare(), class_a(), magnetic_deg)
 }
 
 /// A binnacle with so little in it that every setting can be tried.
-pub(super) fn little() -> Binnacle {
+pub(crate) fn little() -> Binnacle {
     let mut form: BinnacleForm = class_a().into();
     let mut design: DesignForm = form.design.into();
     for rack in [&mut design.fore_and_aft, &mut design.athwartship] {

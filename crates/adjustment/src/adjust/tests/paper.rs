@@ -1,6 +1,5 @@
 //! The worked adjustment of Basterretxea-Iribar et al., found again.
 
-use super::super::*;
 use super::*;
 use crate::binnacle::{Hole, Red, Tray};
 

@@ -147,17 +147,18 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
         }
     }
     let condition = Condition::new(&adjustment).unwrap();
-    let change = instructions::change_deg(&adjustment, &condition, &step.setting_before, &reversed);
+    let change =
+        instructions::compass_turn(&adjustment, &condition, &step.setting_before, &reversed);
     let Recheck::WrongEnd {
         setting, outcome, ..
-    } = read(change.0)
+    } = read(change.change_deg)
     else {
         panic!("{change:?}")
     };
     assert_eq!(setting, reversed);
     // The new plan goes on from what was read.
     let first = &outcome.plans[0].steps[0];
-    let read_deg = wrap(50.0 + change.0);
+    let read_deg = wrap(50.0 + change.change_deg);
     let next_deg = wrap(read_deg + first.change_deg);
     assert!((first.expected_compass_deg - next_deg).abs() < 1e-9);
     assert!(outcome.plans[0].moves > 0);
@@ -170,7 +171,8 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
     };
     let truly = Condition::new(&weak).unwrap();
     let change =
-        instructions::change_deg(&weak, &truly, &step.setting_before, &step.setting_after).0;
+        instructions::compass_turn(&weak, &truly, &step.setting_before, &step.setting_after)
+            .change_deg;
     let Recheck::OtherStrength {
         share,
         outcome,

@@ -1,0 +1,83 @@
+//! Checks of a berth before a plan.
+
+use super::card_check::Card;
+use super::misreadings::mistakes;
+use super::refusal::Refusal;
+use super::vertical_check::{Vertical, swapped};
+use crate::adjust::inputs::{AdjustError, Adjustment, Unit};
+use crate::berth::BerthError;
+
+impl Adjustment<'_> {
+    /// The vertical field held against the earth's.
+    pub(crate) fn vertical_judged(&self) -> Option<Vertical> {
+        let judged = |read| Vertical::new(read, self.earth, self.binnacle);
+        self.vertical.map(judged)
+    }
+
+    /// The compass held against the field, while the correctors stand as they did when
+    /// both were read.
+    pub(crate) fn card(&self) -> Option<Card> {
+        if *self.standing() != self.binnacle.setting {
+            return None;
+        }
+        let constant_deg = self.model.constant_deg;
+        let card = |read_deg| {
+            Card::new(
+                read_deg,
+                self.reading,
+                self.earth,
+                self.binnacle,
+                constant_deg,
+            )
+        };
+        self.compass_deg.map(card)
+    }
+}
+
+/// What is known to be wrong before anything is calculated.
+pub(crate) fn beforehand(adjustment: &Adjustment<'_>) -> Vec<Refusal> {
+    let mut refusals = Vec::new();
+    if adjustment.model.covariance.is_none() {
+        refusals.push(Refusal::NoCovariance);
+    }
+    let limit_days = adjustment.limits.model_age_days;
+    if let Some(days) = adjustment.circumstances.model_age_days
+        && days > limit_days
+    {
+        refusals.push(Refusal::ModelTooOld { days, limit_days });
+    }
+    if adjustment.circumstances.cargo_on_board {
+        refusals.push(Refusal::CargoOnBoard);
+    }
+    refusals
+}
+
+/// A berth that fails its check is refused; one that cannot be is an error.
+pub(crate) fn of_berth(
+    adjustment: &Adjustment<'_>,
+    error: BerthError,
+) -> Result<Refusal, AdjustError> {
+    let reading = adjustment.reading;
+    let mistakes = || {
+        let (model, earth) = (adjustment.model, adjustment.earth);
+        let mut found = mistakes(
+            model,
+            earth,
+            reading.magnetic(),
+            reading.field_nt(),
+            Unit::Nanotesla,
+            reading.errors(),
+            reading.alignment(),
+        );
+        let with = |vertical| swapped(model, earth, reading, vertical, adjustment.binnacle);
+        found.extend(adjustment.vertical.map(with).unwrap_or_default());
+        found
+    };
+    match error {
+        BerthError::Inconsistent(_) | BerthError::Implausible(_) => {
+            Ok(Refusal::of_reading(&error, mistakes()))
+        }
+        BerthError::NoDirectiveForce { .. } => Ok(Refusal::of_reading(&error, Vec::new())),
+        error => Err(error.into()),
+    }
+}

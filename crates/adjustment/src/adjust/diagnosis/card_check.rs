@@ -1,0 +1,130 @@
+//! The card held against the field that turns it.
+//!
+//! With the bowl out the magnetometer reads what the card stood in, but for what the
+//! needles magnetise in the spheres. So the field alone says what the compass must have
+//! read, whatever the model and the heading given are.
+
+use super::card_precision::heading_sd_deg;
+use crate::berth::{Alignment, BerthReading};
+use crate::binnacle::Binnacle;
+use crate::corrector::effect;
+use binnacle_compass::angle::{MagneticHeading, wrap_180, wrap_360};
+use binnacle_compass::deviation::NORMAL_99;
+use binnacle_compass::ship::{EarthField, compass_rad};
+use serde::{Deserialize, Serialize};
+
+/// Up to here a card is never called wrong, degrees.
+const LEAST_REFUSED_DEG: f64 = 4.0;
+/// Nor up to so many times what right readings differ by once in a hundred.
+const REFUSED_TOLERANCES: f64 = 1.5;
+
+/// What the compass read, and what the field read says it must.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Card {
+    /// What it read, degrees.
+    pub read_deg: f64,
+    /// What a card in the field read points to, degrees.
+    pub implied_deg: f64,
+    /// Read less implied, degrees, less what the model's constant would explain.
+    pub off_deg: f64,
+    /// Right readings differ by more once in a hundred, degrees.
+    pub tolerance_deg: f64,
+}
+
+impl Card {
+    /// A compass reading, its correctors as they stood for the magnetometer.
+    pub(crate) fn new(
+        read_deg: f64,
+        reading: &BerthReading,
+        earth: EarthField,
+        binnacle: &Binnacle,
+        constant_deg: f64,
+    ) -> Card {
+        let magnetic = reading.magnetic();
+        let [x, y] = with_needles(reading.field_nt(), magnetic, earth, binnacle);
+        let implied_deg = wrap_360(compass_rad(x, y).to_degrees());
+        let off_deg = wrap_180(read_deg - implied_deg);
+        // The magnetometer lies along the keel, the card is read at the lubber line: the
+        // constant may be between them, or be the reference's.
+        let between_deg = match reading.alignment() {
+            Alignment::Keel => -constant_deg,
+            Alignment::AsFitted => 0.0,
+        };
+        let explained_deg = off_deg.clamp(between_deg.min(0.0), between_deg.max(0.0));
+        let errors = reading.errors();
+        let leaked_nt = earth.z_nt * errors.tilt_sd_deg.to_radians();
+        let of_field_deg = (errors.field_sd_nt.hypot(leaked_nt) / x.hypot(y)).to_degrees();
+        let sd_deg = of_field_deg
+            .hypot(errors.alignment_sd_deg)
+            .hypot(heading_sd_deg(earth.h_nt));
+        Card {
+            read_deg,
+            implied_deg,
+            off_deg: off_deg - explained_deg,
+            tolerance_deg: NORMAL_99 * sd_deg,
+        }
+    }
+
+    /// Whether errors explain it.
+    pub fn agrees(&self) -> bool {
+        self.off_deg.abs() <= self.tolerance_deg
+    }
+
+    /// Whether nothing can be built on both.
+    pub fn is_refused(&self) -> bool {
+        let most_deg = LEAST_REFUSED_DEG.max(REFUSED_TOLERANCES * self.tolerance_deg);
+        self.off_deg.abs() > most_deg
+    }
+
+    /// What it is.
+    pub fn found(&self) -> String {
+        format!(
+            "the compass read {:.1} degrees where the field read would turn it to {:.1} (to {:.1})",
+            self.read_deg, self.implied_deg, self.tolerance_deg
+        )
+    }
+
+    /// What could be wrong.
+    pub fn suspects(&self) -> Vec<String> {
+        let off_deg = self.off_deg.abs();
+        let mut suspects = Vec::new();
+        if off_deg > 150.0 {
+            suspects.push("the card was read at the wrong side of the bowl".to_owned());
+        }
+        let side = if self.off_deg < 0.0 {
+            "starboard"
+        } else {
+            "port"
+        };
+        suspects.extend([
+            "the compass was misread, or its heading mistyped".to_owned(),
+            "the card sticks".to_owned(),
+            format!("the lubber line is {off_deg:.1} degrees out"),
+            format!("the magnetometer is turned {off_deg:.1} degrees to {side}"),
+            "the magnetometer was not where the card is".to_owned(),
+        ]);
+        suspects
+    }
+
+    /// All of it in one line.
+    pub fn in_words(&self) -> String {
+        format!(
+            "{}; it could be that {}",
+            self.found(),
+            self.suspects().join(", or that ")
+        )
+    }
+}
+
+/// The field that the card was in: the magnetometer meets no needles.
+fn with_needles(
+    [x, y]: [f64; 2],
+    magnetic: MagneticHeading,
+    earth: EarthField,
+    binnacle: &Binnacle,
+) -> [f64; 2] {
+    let needle_nt = effect(binnacle, &binnacle.setting).needle_nt;
+    let [hx, hy, _] = earth.in_ship_axes(magnetic.radians());
+    let of = |row: [f64; 2]| (row[0] * hx + row[1] * hy) / earth.h_nt;
+    [x + of(needle_nt[0]), y + of(needle_nt[1])]
+}

@@ -1,0 +1,190 @@
+//! Mistakes at the berth that would explain a reading that does not fit.
+
+use crate::adjust::inputs::{Unit, VerticalReading};
+use crate::berth::{Alignment, BerthReading, ReadingErrors, lambda_at_berth};
+use binnacle_compass::angle::MagneticHeading;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// One thing that, done otherwise, makes a reading fit the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mistake {
+    /// Figures in nT where another unit was named.
+    Nanotesla,
+    /// Figures in µT.
+    Microtesla,
+    /// Figures in gauss.
+    Gauss,
+    /// Figures in milligauss.
+    Milligauss,
+    /// Forward and starboard have changed places.
+    SwappedAxes,
+    /// Port was taken for positive.
+    StarboardReversed,
+    /// Aft was taken for positive.
+    ForwardReversed,
+    /// The heading is that of the stern, or the magnetometer lies the wrong way round.
+    HeadingReversed,
+    /// Up was taken for positive.
+    DownReversed,
+    /// The vertical figure is in another unit than the other two.
+    DownInAnotherUnit,
+    /// Forward and down have changed places.
+    ForwardDownSwapped,
+    /// Starboard and down have changed places.
+    StarboardDownSwapped,
+}
+
+impl Mistake {
+    /// Those that the horizontal field tells.
+    pub(crate) const ALL: [Mistake; 8] = [
+        // The commonest first: so they are told.
+        Mistake::HeadingReversed,
+        Mistake::Nanotesla,
+        Mistake::Microtesla,
+        Mistake::Gauss,
+        Mistake::Milligauss,
+        Mistake::SwappedAxes,
+        Mistake::StarboardReversed,
+        Mistake::ForwardReversed,
+    ];
+
+    /// The field of the form that it stands in.
+    pub fn field(self) -> &'static str {
+        match self {
+            Mistake::Nanotesla
+            | Mistake::Microtesla
+            | Mistake::Gauss
+            | Mistake::Milligauss
+            | Mistake::SwappedAxes => "forward, starboard",
+            Mistake::StarboardReversed => "starboard",
+            Mistake::ForwardReversed => "forward",
+            Mistake::HeadingReversed => "heading_true_deg",
+            Mistake::DownReversed | Mistake::DownInAnotherUnit => "down",
+            Mistake::ForwardDownSwapped => "forward, down",
+            Mistake::StarboardDownSwapped => "starboard, down",
+        }
+    }
+
+    /// The unit that the figures are in, if that is the mistake.
+    fn unit(self) -> Option<Unit> {
+        match self {
+            Mistake::Nanotesla => Some(Unit::Nanotesla),
+            Mistake::Microtesla => Some(Unit::Microtesla),
+            Mistake::Gauss => Some(Unit::Gauss),
+            Mistake::Milligauss => Some(Unit::Milligauss),
+            _ => None,
+        }
+    }
+
+    /// What was read if this was done wrong, `named` being the unit that was named.
+    fn undone(self, degrees: f64, [x, y]: [f64; 2], named: Unit) -> (f64, [f64; 2]) {
+        match self {
+            Mistake::SwappedAxes => (degrees, [y, x]),
+            Mistake::StarboardReversed => (degrees, [x, -y]),
+            Mistake::ForwardReversed => (degrees, [-x, y]),
+            Mistake::HeadingReversed => (degrees + 180.0, [x, y]),
+            _ => {
+                let times = self.times(named);
+                (degrees, [x * times, y * times])
+            }
+        }
+    }
+
+    /// How many times what was said in another unit is.
+    fn times(self, named: Unit) -> f64 {
+        self.unit().map_or(1.0, |unit| unit.nt() / named.nt())
+    }
+
+    /// A whole reading if this was done wrong; none when no ship has such a field.
+    pub(crate) fn undone_reading(
+        self,
+        reading: &BerthReading,
+        vertical: Option<VerticalReading>,
+        named: Unit,
+    ) -> Option<(BerthReading, Option<VerticalReading>)> {
+        let (degrees, field_nt) =
+            self.undone(reading.magnetic().degrees(), reading.field_nt(), named);
+        let heading = MagneticHeading::new(degrees)?;
+        let undone = BerthReading::new(heading, field_nt, reading.errors(), reading.alignment());
+        let vertical = vertical.map(|vertical| VerticalReading {
+            down_nt: vertical.down_nt * self.times(named),
+        });
+        Some((undone.ok()?, vertical))
+    }
+}
+
+/// The mistakes each of which alone explains this reading, whose figures were said to be
+/// in a unit; none where it fits as it is.
+pub fn mistakes(
+    model: &Model,
+    earth: EarthField,
+    magnetic: MagneticHeading,
+    field_nt: [f64; 2],
+    named: Unit,
+    errors: ReadingErrors,
+    alignment: Alignment,
+) -> Vec<Mistake> {
+    let fits = |degrees: f64, field_nt: [f64; 2]| {
+        let Some(magnetic) = MagneticHeading::new(degrees) else {
+            return false;
+        };
+        let reading = BerthReading::new(magnetic, field_nt, errors, alignment);
+        let found = reading.and_then(|reading| lambda_at_berth(model, earth, &reading));
+        found.is_ok()
+    };
+    if fits(magnetic.degrees(), field_nt) {
+        return Vec::new();
+    }
+    let explains = |mistake: &Mistake| {
+        let (degrees, field_nt) = mistake.undone(magnetic.degrees(), field_nt, named);
+        fits(degrees, field_nt)
+    };
+    Mistake::ALL.into_iter().filter(explains).collect()
+}
+
+/// Mistakes with the axes that this heading would not show: the reading fits the model
+/// with and without them.
+pub(crate) fn unseen(model: &Model, earth: EarthField, reading: &BerthReading) -> Vec<Mistake> {
+    let fits = |mistake: &Mistake| {
+        let degrees = reading.magnetic().degrees();
+        let (_, field_nt) = mistake.undone(degrees, reading.field_nt(), Unit::Nanotesla);
+        let (errors, alignment) = (reading.errors(), reading.alignment());
+        let undone = BerthReading::new(reading.magnetic(), field_nt, errors, alignment);
+        undone.is_ok_and(|undone| lambda_at_berth(model, earth, &undone).is_ok())
+    };
+    let axes = [
+        Mistake::SwappedAxes,
+        Mistake::StarboardReversed,
+        Mistake::ForwardReversed,
+    ];
+    axes.into_iter().filter(fits).collect()
+}
+
+impl fmt::Display for Mistake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Mistake::Nanotesla => "the figures are in nanotesla",
+            Mistake::Microtesla => "the figures are in microtesla (1 microtesla is 1000 nT)",
+            Mistake::Gauss => "the figures are in gauss (1 gauss is 100000 nT)",
+            Mistake::Milligauss => "the figures are in milligauss (1 milligauss is 100 nT)",
+            Mistake::SwappedAxes => "the magnetometer's axes are swapped",
+            Mistake::StarboardReversed => "the magnetometer's athwartship axis points to port",
+            Mistake::ForwardReversed => "the magnetometer's fore-and-aft axis points aft",
+            Mistake::HeadingReversed => "the heading is 180 degrees off",
+            Mistake::DownReversed => "the magnetometer's vertical axis points up",
+            Mistake::DownInAnotherUnit => {
+                "the vertical figure is in another unit than the other two"
+            }
+            Mistake::ForwardDownSwapped => {
+                "the magnetometer's fore-and-aft and vertical axes are swapped"
+            }
+            Mistake::StarboardDownSwapped => {
+                "the magnetometer's athwartship and vertical axes are swapped"
+            }
+        })
+    }
+}

@@ -1,0 +1,95 @@
+//! Checks of a written reading against the model.
+
+use super::card_check::Card;
+use super::cures::Refused;
+use super::misreadings::{Mistake, mistakes};
+use super::refusal::Refusal;
+use super::vertical_check::{Vertical, swapped};
+use crate::adjust::inputs::{BerthForm, FormError, ReadingForm};
+use crate::berth::{BerthEstimate, BerthReading, lambda_at_berth};
+use crate::binnacle::Binnacle;
+use binnacle_compass::angle::Variation;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
+
+impl ReadingForm {
+    /// λ and the berth's consistency, or why the reading is not taken; its correctors
+    /// stood as the binnacle says.
+    ///
+    /// # Errors
+    /// The refusal, with what alone would explain it.
+    pub fn check(
+        &self,
+        model: &Model,
+        earth: EarthField,
+        variation: Variation,
+        binnacle: &Binnacle,
+    ) -> Result<(BerthReading, BerthEstimate), Box<Refused>> {
+        if earth.h_nt < WEAKEST_H_NT {
+            let h_nt = earth.h_nt;
+            return Err(Box::new(Refusal::FieldTooWeak { h_nt }.with_cures()));
+        }
+        let found = self.reading(variation).and_then(|reading| {
+            let estimate = lambda_at_berth(model, earth, &reading)?;
+            Ok((reading, estimate))
+        });
+        let (reading, estimate) = found.map_err(|error| {
+            let explain = self.mistakes(model, earth, variation, binnacle);
+            Box::new(Refusal::of_reading(&error, explain).with_cures())
+        })?;
+        let card = |read_deg| Card::new(read_deg, &reading, earth, binnacle, model.constant_deg);
+        let card = self.compass_deg.map(card).filter(Card::is_refused);
+        if let Some(card) = card {
+            return Err(Box::new(Refusal::CardDisagrees(card).with_cures()));
+        }
+        let vertical = self.vertical();
+        let vertical = vertical.map(|read| Vertical::new(read, earth, binnacle));
+        match vertical.and_then(|vertical| vertical.refusal()) {
+            Some(refusal) => Err(Box::new(refusal.with_cures())),
+            None => Ok((reading, estimate)),
+        }
+    }
+
+    fn mistakes(
+        &self,
+        model: &Model,
+        earth: EarthField,
+        variation: Variation,
+        binnacle: &Binnacle,
+    ) -> Vec<Mistake> {
+        let Ok(magnetic) = self.magnetic(variation) else {
+            return Vec::new();
+        };
+        let (field_nt, unit) = (self.field_nt(), self.unit);
+        let (errors, alignment) = (self.errors(), self.alignment());
+        let mut found = mistakes(model, earth, magnetic, field_nt, unit, errors, alignment);
+        let reading = BerthReading::new(magnetic, field_nt, errors, alignment);
+        if let (Ok(reading), Some(vertical)) = (reading, self.vertical()) {
+            found.extend(swapped(model, earth, &reading, vertical, binnacle));
+        }
+        found
+    }
+}
+
+impl BerthForm {
+    /// The mistakes each of which alone makes the reading fit the model, if there are any.
+    pub fn mistaken(&self, model: &Model, binnacle: &Binnacle) -> Option<FormError> {
+        self.reading.must_be_numbers().ok()?;
+        let (earth, variation) = self.field().ok()?;
+        let refused = self
+            .reading
+            .check(model, earth, variation, binnacle)
+            .err()?;
+        let mistakes = refused.refusal.mistakes();
+        let mut fields: Vec<String> = Vec::new();
+        for mistake in mistakes {
+            let field = format!("reading.{}", mistake.field());
+            if !fields.contains(&field) {
+                fields.push(field);
+            }
+        }
+        let each: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
+        let what = format!("it could be that {}", each.join(", or that "));
+        (!mistakes.is_empty()).then(|| FormError::new(fields.join(" or "), what))
+    }
+}

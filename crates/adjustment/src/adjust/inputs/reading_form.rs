@@ -1,0 +1,244 @@
+//! What a magnetometer read at the berth, as it is written: in a file for `plan` and in
+//! the API alike (docs/plan.md).
+//!
+//! What always holds: the unit is named, never guessed; a form is taken with all its
+//! errors, or the complaint names the field, or the mistakes each of which alone would
+//! explain what was read.
+
+use super::number_error::NumberError;
+use super::unit::Unit;
+use super::vertical_reading::VerticalReading;
+use crate::berth::{Alignment, BerthError, BerthReading, ReadingErrors};
+use binnacle_compass::angle::{MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::time::Timestamp;
+use serde::{Deserialize, Serialize};
+
+/// What was read at the berth.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReadingForm {
+    /// When it was read.
+    pub at: Timestamp,
+    /// The berth, degrees north.
+    pub lat: f64,
+    /// The berth, degrees east.
+    pub lon: f64,
+    /// The true heading of the bow.
+    pub heading_true_deg: f64,
+    /// What that heading is from.
+    pub heading_from: HeadingFrom,
+    /// Its standard deviation, variation included, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heading_sd_deg: Option<f64>,
+    /// Horizontal field at the card's centre, bowl out, forward positive.
+    pub forward: f64,
+    /// The same, starboard positive.
+    pub starboard: f64,
+    /// Vertical field there, down positive, if it was read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub down: Option<f64>,
+    /// What all three are in.
+    pub unit: Unit,
+    /// What they were read with.
+    pub magnetometer: Magnetometer,
+    /// Its maker, type and number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub magnetometer_serial: Option<String>,
+    /// Standard deviation of each part, nT; its kind's where it is not said, and so on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub field_sd_nt: Option<f64>,
+    /// Relative standard deviation of its scale.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale_sd: Option<f64>,
+    /// Standard deviation of how it lies to its line, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub alignment_sd_deg: Option<f64>,
+    /// Standard deviation of its tilt in roll and in pitch, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tilt_sd_deg: Option<f64>,
+    /// Standard deviation of what steel may add to each part, nT.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steel_sd_nt: Option<f64>,
+    /// What the compass read before the bowl was taken out, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compass_deg: Option<f64>,
+    /// The ship's heel, degrees to starboard.
+    #[serde(default)]
+    pub heel_deg: f64,
+    /// Whether there is steel near: a crane, a ship alongside, a quay of steel piles.
+    #[serde(default)]
+    pub steel_nearby: bool,
+    /// Whether magnetic cargo is on board that the model does not know.
+    #[serde(default)]
+    pub cargo_on_board: bool,
+}
+
+/// Where a heading at the berth comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum HeadingFrom {
+    /// From the very reference that the model was fitted with; and the magnetometer lies
+    /// along the compass's lubber line.
+    ModelReference,
+    /// From outside the ship: a surveyed quay, leading marks, the sun; and the
+    /// magnetometer lies along the keel.
+    Ashore,
+}
+
+/// Kinds of magnetometer, by how well they read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Magnetometer {
+    /// A fluxgate or a proton magnetometer made for it.
+    Fluxgate,
+    /// An instrument with a magnetoresistive sensor.
+    Magnetoresistive,
+    /// A telephone: enough for magnets, too poor for spheres.
+    Phone,
+    /// Another.
+    Other,
+}
+
+/// What is usual for a kind: standard deviations.
+struct Usual {
+    field_sd_nt: f64,
+    scale_sd: f64,
+    alignment_sd_deg: f64,
+    tilt_sd_deg: f64,
+}
+
+/// No telephone reads so many times better than is usual.
+const PHONE_TIMES: f64 = 3.0;
+/// Steel of an ordinary quay, nT.
+const USUAL_STEEL_NT: f64 = 100.0;
+/// Where there is steel near, nT.
+const NEARBY_STEEL_NT: f64 = 500.0;
+/// A heading from ashore or from the ship's own reference, degrees.
+const USUAL_HEADING_SD_DEG: f64 = 0.5;
+
+impl Magnetometer {
+    fn usual(self) -> Usual {
+        let (field_sd_nt, scale_sd, alignment_sd_deg, tilt_sd_deg) = match self {
+            Magnetometer::Fluxgate => (100.0, 0.004, 0.5, 0.3),
+            Magnetometer::Magnetoresistive => (300.0, 0.01, 0.5, 0.5),
+            Magnetometer::Phone => (1_500.0, 0.03, 2.0, 1.0),
+            Magnetometer::Other => (500.0, 0.02, 1.0, 0.5),
+        };
+        Usual {
+            field_sd_nt,
+            scale_sd,
+            alignment_sd_deg,
+            tilt_sd_deg,
+        }
+    }
+}
+
+impl ReadingForm {
+    /// Refuses what cannot be a number of its kind; what only cannot be true is
+    /// [`ReadingForm::check`]'s.
+    ///
+    /// # Errors
+    /// Names the field.
+    pub fn must_be_numbers(&self) -> Result<(), NumberError> {
+        let or_nil = |value: Option<f64>| value.unwrap_or(0.0);
+        let usual = self.magnetometer.usual();
+        // Whatever is claimed for it.
+        let best = |usual: f64| match self.magnetometer {
+            Magnetometer::Phone => usual / PHONE_TIMES,
+            _ => 0.0,
+        };
+        let claimed = |claim: Option<f64>, usual: f64| (claim.unwrap_or(usual), best(usual));
+        let (field_sd_nt, best_nt) = claimed(self.field_sd_nt, usual.field_sd_nt);
+        let (scale_sd, best_scale) = claimed(self.scale_sd, usual.scale_sd);
+        let (lies_sd_deg, best_lies_deg) = claimed(self.alignment_sd_deg, usual.alignment_sd_deg);
+        let (tilt_sd_deg, best_tilt_deg) = claimed(self.tilt_sd_deg, usual.tilt_sd_deg);
+        for (field, value, least, greatest) in [
+            ("lat", self.lat, -90.0, 90.0),
+            ("lon", self.lon, -180.0, 180.0),
+            ("heading_true_deg", self.heading_true_deg, 0.0, 360.0),
+            ("heading_sd_deg", or_nil(self.heading_sd_deg), 0.0, 5.0),
+            ("field_sd_nt", field_sd_nt, best_nt.max(1.0), 5_000.0),
+            ("scale_sd", scale_sd, best_scale, 0.5),
+            ("alignment_sd_deg", lies_sd_deg, best_lies_deg, 5.0),
+            ("tilt_sd_deg", tilt_sd_deg, best_tilt_deg, 4.0),
+            ("steel_sd_nt", or_nil(self.steel_sd_nt), 0.0, 5_000.0),
+            ("compass_deg", or_nil(self.compass_deg), 0.0, 360.0),
+            ("heel_deg", self.heel_deg, -5.0, 5.0),
+        ] {
+            if !(least..=greatest).contains(&value) {
+                return Err(NumberError {
+                    field,
+                    what: format!("{value} is not between {least} and {greatest}"),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Relative standard deviation of the magnetometer's scale.
+    pub fn scale_sd(&self) -> f64 {
+        self.scale_sd.unwrap_or(self.magnetometer.usual().scale_sd)
+    }
+
+    /// The vertical field, if it was read.
+    pub fn vertical(&self) -> Option<VerticalReading> {
+        let down_nt = self.down? * self.unit.nt();
+        Some(VerticalReading { down_nt })
+    }
+
+    /// The reading as the science takes it.
+    ///
+    /// # Errors
+    /// When no ship has such a field.
+    pub fn reading(&self, variation: Variation) -> Result<BerthReading, BerthError> {
+        if let Some(vertical) = self.vertical() {
+            vertical.must_be_a_field()?;
+        }
+        BerthReading::new(
+            self.magnetic(variation)?,
+            self.field_nt(),
+            self.errors(),
+            self.alignment(),
+        )
+    }
+
+    pub(crate) fn field_nt(&self) -> [f64; 2] {
+        [self.forward, self.starboard].map(|part| part * self.unit.nt())
+    }
+
+    pub(crate) fn magnetic(&self, variation: Variation) -> Result<MagneticHeading, BerthError> {
+        let heading = TrueHeading::new(self.heading_true_deg);
+        let heading = heading.ok_or(BerthError::Reading {
+            name: "heading_true_deg",
+            value: self.heading_true_deg,
+            least: 0.0,
+            greatest: 360.0,
+        })?;
+        Ok(heading - variation)
+    }
+
+    pub(crate) fn errors(&self) -> ReadingErrors {
+        let usual = self.magnetometer.usual();
+        let usual_steel_nt = if self.steel_nearby {
+            NEARBY_STEEL_NT
+        } else {
+            USUAL_STEEL_NT
+        };
+        let noise_nt = self.field_sd_nt.unwrap_or(usual.field_sd_nt);
+        let tilt_sd_deg = self.tilt_sd_deg.unwrap_or(usual.tilt_sd_deg);
+        ReadingErrors {
+            field_sd_nt: noise_nt.hypot(self.steel_sd_nt.unwrap_or(usual_steel_nt)),
+            heading_sd_deg: self.heading_sd_deg.unwrap_or(USUAL_HEADING_SD_DEG),
+            alignment_sd_deg: self.alignment_sd_deg.unwrap_or(usual.alignment_sd_deg),
+            // A heeled ship's magnetometer is levelled by no better than its heel.
+            tilt_sd_deg: tilt_sd_deg.hypot(self.heel_deg / 2.0),
+        }
+    }
+
+    pub(crate) fn alignment(&self) -> Alignment {
+        match self.heading_from {
+            HeadingFrom::ModelReference => Alignment::AsFitted,
+            HeadingFrom::Ashore => Alignment::Keel,
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Turn of the compass at the berth from one setting to another.
+
+use crate::adjust::diagnosis::turn_sd_deg;
+use crate::adjust::inputs::Adjustment;
+use crate::adjust::state::{Condition, errors_between};
+use crate::berth::Alignment;
+use crate::binnacle::Setting;
+use crate::corrector::{Effect, effect};
+use binnacle_compass::angle::{wrap_180, wrap_360};
+use binnacle_compass::deviation::NORMAL_99;
+
+/// No step is held to less, degrees.
+const LEAST_TOLERANCE_DEG: f64 = 0.5;
+
+/// What the compass reads at the berth with correctors of this effect, degrees.
+pub(crate) fn compass_at_berth(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    effect: &Effect,
+) -> f64 {
+    let reading = adjustment.reading;
+    let aligned_deg = match reading.alignment() {
+        Alignment::Keel => 0.0,
+        Alignment::AsFitted => condition.constant_deg(),
+    };
+    let magnetic_deg = reading.magnetic().degrees() - aligned_deg;
+    let ship = condition.with_effect(effect, adjustment.earth.h_nt);
+    let deviation = ship.deviation_rad(magnetic_deg.to_radians(), adjustment.earth);
+    wrap_360(magnetic_deg - deviation.to_degrees())
+}
+
+/// Turn of the compass from one setting to another.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CompassTurn {
+    /// Change of the compass heading, degrees, clockwise positive.
+    pub(crate) change_deg: f64,
+    /// Standard error of the change, degrees.
+    pub(crate) sd_deg: f64,
+}
+
+/// Predicts the turn of the compass at the berth from one setting to another.
+pub(crate) fn compass_turn(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    before: &Setting,
+    after: &Setting,
+) -> CompassTurn {
+    let of = |effect: &Effect| compass_at_berth(adjustment, condition, effect);
+    let [old, new] = [before, after].map(|setting| effect(condition.binnacle, setting));
+    let shown = of(&new);
+    let change = wrap_180(shown - of(&old));
+    let errors = errors_between(condition.binnacle, before, after);
+    let variance: f64 = errors
+        .iter()
+        .map(|error| wrap_180(of(&new.plus(error)) - shown).powi(2))
+        .sum();
+    let of_lambda = change * condition.lambda_sd_share();
+    CompassTurn {
+        change_deg: change,
+        sd_deg: variance.sqrt().hypot(of_lambda),
+    }
+}
+
+/// How far off a turn may be that is known to so much, degrees, in a horizontal field
+/// of so many nT.
+pub(crate) fn tolerance_deg(sd_deg: f64, h_nt: f64) -> f64 {
+    let tolerance_deg = NORMAL_99 * sd_deg.hypot(turn_sd_deg(h_nt));
+    tolerance_deg.max(LEAST_TOLERANCE_DEG)
+}

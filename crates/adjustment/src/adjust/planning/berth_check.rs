@@ -1,0 +1,88 @@
+//! What the berth told, and what can be seen on its heading.
+
+use crate::adjust::inputs::Adjustment;
+use crate::adjust::state::Condition;
+use crate::berth::{Consistency, Estimated, USUAL_LAMBDA, Verdict};
+use serde::{Deserialize, Serialize};
+
+/// Less than this share of a coefficient is not seen on a heading.
+const HARDLY: f64 = 0.25;
+
+/// The berth's check.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BerthCheck {
+    /// λ, which every heading tells equally well.
+    pub lambda: Estimated,
+    /// Its standard error with the magnetometer's scale, as a share of it.
+    pub lambda_sd: f64,
+    /// How well the field's direction agrees with the model.
+    pub consistency: Consistency,
+    /// What part of each coefficient's deviation the compass shows on this heading: how
+    /// well a step can be checked on the spot.
+    pub seen: Seen,
+}
+
+/// Parts of the coefficients' deviations that a heading shows, 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Seen {
+    /// Of B: fore-and-aft magnets and the Flinders bar.
+    pub b: f64,
+    /// Of C: athwartship magnets.
+    pub c: f64,
+    /// Of D: spheres.
+    pub d: f64,
+    /// Of E: slewed spheres.
+    pub e: f64,
+}
+
+impl BerthCheck {
+    pub(crate) fn new(adjustment: &Adjustment<'_>, condition: &Condition<'_>) -> BerthCheck {
+        let (sin, cos) = adjustment.reading.magnetic().radians().sin_cos();
+        BerthCheck {
+            lambda: condition.estimate.lambda,
+            lambda_sd: condition.lambda_sd_share(),
+            consistency: condition.estimate.consistency,
+            seen: Seen {
+                b: sin.abs(),
+                c: cos.abs(),
+                d: (2.0 * sin * cos).abs(),
+                e: (cos * cos - sin * sin).abs(),
+            },
+        }
+    }
+
+    /// What the adjuster should know of it.
+    pub(crate) fn in_words(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        if self.consistency.verdict == Verdict::Loose {
+            words.push(format!(
+                "the berth has checked little: {}",
+                self.consistency.in_words()
+            ));
+        }
+        let lambda = self.lambda.value;
+        if !USUAL_LAMBDA.contains(&lambda) {
+            let (least, greatest) = (USUAL_LAMBDA.start(), USUAL_LAMBDA.end());
+            words.push(format!(
+                "lambda is {lambda:.2}, where {least} to {greatest} is usual: a magnetometer whose \
+                 scale is wrong, or that was not where the card is, would do that, and the whole \
+                 plan errs in proportion; read again before anything is moved"
+            ));
+        }
+        let Seen { b, c, d, e } = self.seen;
+        for (seen, what) in [
+            (b, "fore-and-aft magnets and the Flinders bar"),
+            (c, "athwartship magnets"),
+            (d, "spheres"),
+            (e, "slewing of spheres"),
+        ] {
+            if seen < HARDLY {
+                words.push(format!(
+                    "on this heading the compass hardly shows {what}: such steps cannot be \
+                     checked on the spot (lambda does not depend on the heading)"
+                ));
+            }
+        }
+        words
+    }
+}

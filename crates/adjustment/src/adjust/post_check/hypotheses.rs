@@ -1,0 +1,333 @@
+//! What else than the plan could stand: slips of the hand that a step may have had, magnets
+//! of another moment, and whatever else is not what was taken.
+//!
+//! What always holds: each doubt has a share of belief beforehand; the compass's turn at
+//! its step, where it was read, and the magnetometer afterwards raise or lower it. A place
+//! that something was moved to again later raises no doubt any more.
+
+use super::innovation::{Cause, EIGHT, Eight, News, Nt};
+use super::result::{Done, Slip};
+use crate::adjust::inputs::Adjustment;
+use crate::adjust::instructions::{
+    Corrector, Place, compass_turn, moved, replaced, reversed, stands,
+};
+use crate::adjust::state::{Condition, Known};
+use crate::binnacle::{Axis, Setting, Tray};
+use crate::corrector::{Effect, Iron, effect, tray_effect};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::deviation::NORMAL_99;
+use nalgebra::SMatrix;
+
+/// Belief beforehand that the magnets of a step went in with the wrong end.
+const WRONG_END: f64 = 0.01;
+/// That they are one, two or three holes off, one way.
+const HOLES_OFF: [f64; 3] = [0.004, 0.002, 0.002];
+/// That a step was not done at all.
+const NOT_DONE: f64 = 0.004;
+/// That all magnets of a kind have another moment than is said.
+const OTHER_MOMENT: f64 = 0.2;
+/// By so much, as a share of it.
+const MOMENT_SD: f64 = 0.2;
+/// That there is something else.
+const ELSEWHERE: f64 = 0.01;
+/// Of this size along each axis, nT.
+const ELSEWHERE_NT: f64 = 2_000.0;
+
+/// One way in which the ship may be other than planned, or none.
+pub(crate) struct Doubt {
+    pub(crate) what: What,
+    /// Logarithm of the belief beforehand.
+    log_prior: f64,
+    shift: Option<Cause>,
+    wider: Vec<Cause>,
+}
+
+/// What is doubted.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum What {
+    /// Nothing.
+    Nothing,
+    /// A step, and how the correctors would stand.
+    Step(u32, Slip, Setting),
+    /// The moment of a kind of magnet.
+    Moment(String),
+    /// Something that none of the others is.
+    Elsewhere,
+}
+
+/// What is left of a doubt after the reading, and what the model then is.
+pub(crate) struct Weighed {
+    pub(crate) what: What,
+    /// Share of belief.
+    pub(crate) share: f64,
+    pub(crate) correction: Eight,
+    pub(crate) covariance: SMatrix<f64, EIGHT, EIGHT>,
+    /// How far the reading is off even so, in squared standard errors.
+    pub(crate) squared: f64,
+}
+
+/// All doubts as the compass alone leaves them, but for what no step has to do with.
+pub(crate) fn weigh_by_compass(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    known: &Known<'_>,
+    news: &News,
+    done: &[Done],
+) -> Vec<Weighed> {
+    let covariance = covariance(known);
+    let doubts = doubts(adjustment, condition, known, news, done).into_iter();
+    let doubts = doubts.filter(|doubt| doubt.what != What::Elsewhere);
+    shared(doubts.map(|doubt| doubt.unread(&covariance)).collect())
+}
+
+/// All doubts as the reading leaves them; shares add up to one.
+pub(crate) fn weigh(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    known: &Known<'_>,
+    news: &News,
+    done: &[Done],
+) -> Vec<Weighed> {
+    let covariance = covariance(known);
+    let doubts = doubts(adjustment, condition, known, news, done);
+    let found: Vec<(f64, Weighed)> = doubts
+        .into_iter()
+        .filter_map(|doubt| doubt.weighed(news, &covariance))
+        .collect();
+    shared(found)
+}
+
+/// Of what is foretold.
+fn covariance(known: &Known<'_>) -> SMatrix<f64, EIGHT, EIGHT> {
+    let covariance = known.model.covariance.unwrap_or_default();
+    SMatrix::from_fn(|r, c| covariance[r][c])
+}
+
+/// Shares of belief by its logarithms.
+fn shared(found: Vec<(f64, Weighed)>) -> Vec<Weighed> {
+    let likeliest = found
+        .iter()
+        .map(|(log, _)| *log)
+        .fold(f64::NEG_INFINITY, f64::max);
+    let sum: f64 = found.iter().map(|(log, _)| (log - likeliest).exp()).sum();
+    let shared = found.into_iter().map(|(log, weighed)| Weighed {
+        share: (log - likeliest).exp() / sum,
+        ..weighed
+    });
+    shared.collect()
+}
+
+impl Doubt {
+    /// The same where the field was not read.
+    fn unread(self, covariance: &SMatrix<f64, EIGHT, EIGHT>) -> (f64, Weighed) {
+        let wider = self.wider.iter().map(|cause| cause.of_model);
+        let weighed = Weighed {
+            what: self.what,
+            share: 0.0,
+            correction: self.shift.map_or_else(Eight::zeros, |shift| shift.of_model),
+            covariance: wider.fold(*covariance, |sum, way| sum + way * way.transpose()),
+            squared: 0.0,
+        };
+        (self.log_prior, weighed)
+    }
+
+    /// Its belief as a logarithm, and what it makes of the model.
+    fn weighed(
+        self,
+        news: &News,
+        covariance: &SMatrix<f64, EIGHT, EIGHT>,
+    ) -> Option<(f64, Weighed)> {
+        let nothing = Cause {
+            of_reading: Nt::zeros(),
+            of_model: Eight::zeros(),
+        };
+        let shift = self.shift.unwrap_or(nothing);
+        let (mut spread, mut together, mut covariance) = (news.spread, news.together, *covariance);
+        for cause in &self.wider {
+            spread += cause.of_reading * cause.of_reading.transpose();
+            together += cause.of_model * cause.of_reading.transpose();
+            covariance += cause.of_model * cause.of_model.transpose();
+        }
+        let spread = spread.cholesky()?;
+        let off = news.off() - shift.of_reading;
+        let solved = spread.solve(&off);
+        let squared = off.dot(&solved);
+        let size: f64 = spread.l_dirty().diagonal().iter().map(|d| d.ln()).sum();
+        let gain = spread.solve(&together.transpose()).transpose();
+        let weighed = Weighed {
+            what: self.what,
+            share: 0.0,
+            correction: shift.of_model + together * solved,
+            covariance: covariance - gain * together.transpose(),
+            squared,
+        };
+        Some((self.log_prior - squared / 2.0 - size, weighed))
+    }
+}
+
+fn doubts(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    known: &Known<'_>,
+    news: &News,
+    done: &[Done],
+) -> Vec<Doubt> {
+    let mut doubts = vec![Doubt::of(What::Nothing, 1.0)];
+    let mut seen: Vec<&Place> = Vec::new();
+    for (index, done) in done.iter().enumerate().rev() {
+        let number = index as u32 + 1;
+        let to = done.step.to.as_ref();
+        let stands = to.is_none_or(|to| stands(&known.setting, done.step.corrector, to));
+        if !stands || to.is_some_and(|to| seen.contains(&to)) {
+            continue;
+        }
+        seen.extend(to);
+        let of_step = of_step(adjustment, condition, known, news, number, done);
+        doubts.extend(of_step);
+    }
+    for kind in moved_kinds(condition, known) {
+        let more = Effect::default();
+        let more = more.plus(&magnets(condition, &known.setting, &kind));
+        let more = more.less(&magnets(condition, &condition.binnacle.setting, &kind));
+        let (off, sd, log_shown) = moment_shown(done, &kind);
+        doubts.push(Doubt {
+            shift: Some(news.cause(known, &more.times(off))),
+            wider: vec![news.cause(known, &more.times(sd))],
+            log_prior: OTHER_MOMENT.ln() + log_shown,
+            ..Doubt::of(What::Moment(kind), OTHER_MOMENT)
+        });
+    }
+    let along = |axis: usize| {
+        let mut effect = Effect::default();
+        effect.b_nt[axis] = ELSEWHERE_NT;
+        news.cause(known, &effect)
+    };
+    doubts.push(Doubt {
+        wider: vec![along(0), along(1), along(2)],
+        ..Doubt::of(What::Elsewhere, ELSEWHERE)
+    });
+    doubts
+}
+
+/// What the compass showed of another moment of a kind at the steps with it: the share by
+/// which it is off and the standard deviation of that, and the logarithm of how much better
+/// that explains the turns than the moment that is said.
+fn moment_shown(done: &[Done], kind: &str) -> (f64, f64, f64) {
+    let of_kind = |place: &Option<Place>| match place {
+        Some(Place::Magnets(tray)) => tray.magnet == kind,
+        _ => true,
+    };
+    let (mut weight, mut sum) = (1.0 / MOMENT_SD.powi(2), 0.0);
+    for Done { step, turned_deg } in done {
+        let magnets = matches!(
+            step.corrector,
+            Corrector::ForeAndAft | Corrector::Athwartship
+        );
+        let Some(turned_deg) = turned_deg else {
+            continue;
+        };
+        if !magnets || !of_kind(&step.from) || !of_kind(&step.to) {
+            continue;
+        }
+        // All of the turn is theirs, and grows with their moment.
+        let by_share = step.change_deg;
+        let off_deg = wrap_180(turned_deg - step.change_deg);
+        let sd_deg = step.tolerance_deg / NORMAL_99;
+        weight += (by_share / sd_deg).powi(2);
+        sum += by_share * off_deg / sd_deg.powi(2);
+    }
+    let off = sum / weight;
+    let log_shown = (off * sum - (weight * MOMENT_SD.powi(2)).ln()) / 2.0;
+    (off, weight.sqrt().recip(), log_shown)
+}
+
+impl Doubt {
+    fn of(what: What, prior: f64) -> Doubt {
+        Doubt {
+            what,
+            log_prior: prior.ln(),
+            shift: None,
+            wider: Vec::new(),
+        }
+    }
+}
+
+/// What may have gone wrong with one step.
+fn of_step(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    known: &Known<'_>,
+    news: &News,
+    number: u32,
+    done: &Done,
+) -> Vec<Doubt> {
+    let step = &done.step;
+    let to = step.to.as_ref();
+    let mut others: Vec<(Slip, f64, Option<Place>)> =
+        vec![(Slip::NotDone, NOT_DONE, step.from.clone())];
+    if let Some(turned) = to.and_then(reversed) {
+        others.push((Slip::WrongEnd, WRONG_END, Some(turned)));
+    }
+    for (holes, prior) in (1..).zip(HOLES_OFF) {
+        for by in [holes, -holes] {
+            if let Some((place, hole)) = to.and_then(|to| moved(to, by)) {
+                others.push((Slip::OtherHole { hole }, prior, Some(place)));
+            }
+        }
+    }
+    let doubt = |(slip, prior, place): (Slip, f64, Option<Place>)| {
+        let instead = |setting: &Setting| replaced(setting, step.corrector, to, place.as_ref());
+        let setting = instead(&known.setting);
+        condition.binnacle.with_setting(setting.clone()).ok()?;
+        let more = effect(condition.binnacle, &setting).less(&known.effect);
+        let shown = done.turned_deg.map_or(0.0, |turned_deg| {
+            let off = |after: &Setting| {
+                let turn = compass_turn(adjustment, condition, &step.setting_before, after);
+                wrap_180(turned_deg - turn.change_deg)
+            };
+            let sd_deg = step.tolerance_deg / NORMAL_99;
+            let [so, as_planned] = [instead(&step.setting_after), step.setting_after.clone()];
+            (off(&as_planned).powi(2) - off(&so).powi(2)) / (2.0 * sd_deg.powi(2))
+        });
+        Some(Doubt {
+            shift: Some(news.cause(known, &more)),
+            log_prior: prior.ln() + shown,
+            ..Doubt::of(What::Step(number, slip, setting), prior)
+        })
+    };
+    others.into_iter().filter_map(doubt).collect()
+}
+
+/// Kinds of magnets that stand otherwise than when she was measured.
+fn moved_kinds(condition: &Condition<'_>, known: &Known<'_>) -> Vec<String> {
+    let was = &condition.binnacle.setting;
+    let mut kinds = Vec::new();
+    for axis in Axis::BOTH {
+        let (old, new) = (was.trays(axis), known.setting.trays(axis));
+        let only = |these: &[Tray], others: &[Tray]| -> Vec<String> {
+            let differing = these.iter().filter(|tray| !others.contains(tray));
+            differing.map(|tray| tray.magnet.clone()).collect()
+        };
+        kinds.extend(only(old, new));
+        kinds.extend(only(new, old));
+    }
+    kinds.sort();
+    kinds.dedup();
+    kinds
+}
+
+/// What the magnets of one kind do in a setting.
+fn magnets(condition: &Condition<'_>, setting: &Setting, kind: &str) -> Effect {
+    let iron = Iron::new(condition.binnacle, &setting.soft());
+    let mut sum = Effect::default();
+    for axis in Axis::BOTH {
+        for tray in setting
+            .trays(axis)
+            .iter()
+            .filter(|tray| tray.magnet == kind)
+        {
+            sum = sum.plus(&tray_effect(condition.binnacle, &iron, axis, tray));
+        }
+    }
+    sum
+}

@@ -1,0 +1,290 @@
+//! Every setting there is to choose from.
+
+use super::magnet_use::{Used, stock, used_by};
+use super::tray_pruning::{self, Item};
+use crate::adjust::corrector_moves as moves;
+use crate::binnacle::{Axis, Binnacle, Setting, Tray};
+use crate::corrector::{Iron, Vector, magnet_field};
+use std::ops::RangeInclusive;
+
+/// More settings of one axis than this are not all gone through: of those with more trays,
+/// one of each few nT is then taken.
+const MOST_SETTINGS: usize = 40_000;
+/// Magnets that one hole can hold, red end forward or to starboard.
+struct Holding {
+    tray: Tray,
+    used: Used,
+    /// Index of hole and kind among the fields of one magnet.
+    field: usize,
+}
+
+/// What a rack can take, by the fields of single magnets.
+struct Capacity {
+    at_once: usize,
+    magnets_each: f64,
+    /// Of each kind that fits, how many are on board.
+    aboard: Vec<f64>,
+}
+
+/// One way to set the magnets of an axis.
+#[derive(Clone, Debug)]
+pub(crate) struct Magnets {
+    pub(crate) trays: Vec<Tray>,
+    pub(crate) used: Used,
+    pub(crate) moves: u32,
+    /// Fields of single magnets, with how often each counts.
+    parts: Vec<(usize, f64)>,
+}
+
+impl Magnets {
+    /// Their field at the card, nT: forward and starboard.
+    pub(crate) fn field_nt(&self, single: &[Vector]) -> [f64; 2] {
+        let parts = self.parts.iter();
+        parts.fold([0.0; 2], |sum, (index, count)| {
+            [0, 1].map(|axis| sum[axis] + count * single[*index][axis])
+        })
+    }
+}
+
+/// All ways to set the magnets of an axis.
+pub(crate) struct AxisCandidates {
+    axis: Axis,
+    /// Holes and kinds in the order of the fields of single magnets.
+    singles: Vec<(u16, String)>,
+    pub(crate) settings: Vec<Magnets>,
+    /// Most trays or holes in use at once.
+    pub(crate) trays: u8,
+    /// Whether every setting is among them.
+    pub(crate) is_whole: bool,
+    capacity: Capacity,
+}
+
+impl AxisCandidates {
+    /// All that are within stock, the standing ones first; none with red ends against
+    /// each other, which only weakens magnets that are there to be strong.
+    pub(crate) fn new(binnacle: &Binnacle, axis: Axis, standing: &Setting) -> AxisCandidates {
+        let rack = binnacle.design.rack(axis);
+        let stock = stock(binnacle);
+        let mut singles = Vec::new();
+        let mut holdings = Vec::new();
+        for hole in &rack.holes {
+            for magnet in &rack.magnets {
+                for count in 1..=rack.magnets_each {
+                    let used = used_by(binnacle, magnet, count);
+                    if !used.within(stock) {
+                        continue;
+                    }
+                    holdings.push(Holding {
+                        tray: Tray {
+                            hole: hole.number,
+                            magnet: magnet.clone(),
+                            count,
+                            red: axis.red(true),
+                        },
+                        used,
+                        field: singles.len(),
+                    });
+                }
+                singles.push((hole.number, magnet.clone()));
+            }
+        }
+        let standing = standing.trays(axis);
+        let mut candidates = AxisCandidates {
+            axis,
+            singles,
+            settings: Vec::new(),
+            trays: 0,
+            is_whole: true,
+            capacity: Capacity {
+                at_once: usize::from(rack.at_once),
+                magnets_each: f64::from(rack.magnets_each),
+                aboard: rack
+                    .magnets
+                    .iter()
+                    .map(|magnet| f64::from(binnacle.magnet_count(magnet)))
+                    .collect(),
+            },
+        };
+        let as_it_stands = candidates.of_trays(binnacle, standing);
+        candidates.settings.push(as_it_stands);
+        candidates.add(&[], &holdings, standing, stock);
+        for trays in 1..=rack.at_once {
+            let chosen = choices(&holdings, usize::from(trays));
+            if candidates.settings.len() + 2 * chosen.len() > MOST_SETTINGS {
+                candidates.thinned(&(trays..=rack.at_once), binnacle, &holdings, standing);
+                break;
+            }
+            candidates.trays = trays;
+            for chosen in chosen {
+                candidates.add(&chosen, &holdings, standing, stock);
+            }
+        }
+        candidates
+    }
+
+    /// Of the settings with so many trays one of each few nT.
+    fn thinned(
+        &mut self,
+        trays: &RangeInclusive<u8>,
+        binnacle: &Binnacle,
+        holdings: &[Holding],
+        standing: &[Tray],
+    ) {
+        (self.is_whole, self.trays) = (false, *trays.end());
+        let stock = stock(binnacle);
+        let fields = self.fields(binnacle, &Iron::default());
+        let along = usize::from(self.axis == Axis::Athwartship);
+        for positive in [true, false] {
+            let red = self.axis.red(positive);
+            let item = |h: &Holding| {
+                let tray = Tray {
+                    red,
+                    ..h.tray.clone()
+                };
+                let alone = standing.iter().map(|stood| {
+                    moves::trays(std::slice::from_ref(stood), std::slice::from_ref(&tray))
+                });
+                Item {
+                    hole: tray.hole,
+                    field_nt: (f64::from(tray.count) * fields[h.field][along]).abs(),
+                    used: h.used,
+                    stands: standing.contains(&tray),
+                    cost: 8 * alone.min().unwrap_or(1).min(2) + u32::from(tray.count),
+                }
+            };
+            let items: Vec<Item> = holdings.iter().map(item).collect();
+            for chosen in tray_pruning::sets(&items, trays, stock) {
+                self.add_with(positive, &chosen, holdings, standing);
+            }
+        }
+    }
+
+    /// No setting of the rack, gone through or not, makes a stronger field than this, nT:
+    /// forward and to starboard, either way.
+    pub(crate) fn reach_nt(&self, single: &[Vector]) -> [f64; 2] {
+        let Capacity {
+            at_once,
+            magnets_each,
+            aboard,
+        } = &self.capacity;
+        let kinds = aboard.len().max(1);
+        [0, 1].map(|part| {
+            let of = |index: usize| single[index][part].abs();
+            // Each hole with its strongest kind, however few of it there are.
+            let holes = (0..single.len()).step_by(kinds);
+            let mut strongest: Vec<f64> = holes
+                .map(|first| (first..first + kinds).map(of).fold(0.0, f64::max))
+                .collect();
+            strongest.sort_by(|a, b| b.total_cmp(a));
+            let with_holes = magnets_each * strongest.iter().take(*at_once).sum::<f64>();
+            // Each kind with the whole rack for itself, as many of it as there are.
+            let with_stock = (0..kinds).map(|kind| {
+                let mut of_kind: Vec<f64> = (kind..single.len()).step_by(kinds).map(of).collect();
+                of_kind.sort_by(|a, b| b.total_cmp(a));
+                let mut left = aboard.get(kind).copied().unwrap_or(0.0);
+                let mut sum = 0.0;
+                for one in of_kind.into_iter().take(*at_once) {
+                    let count = magnets_each.min(left);
+                    sum += count * one;
+                    left -= count;
+                }
+                sum
+            });
+            with_holes.min(with_stock.sum())
+        })
+    }
+
+    fn add(&mut self, chosen: &[usize], holdings: &[Holding], standing: &[Tray], stock: Used) {
+        let held = chosen.iter().map(|index| &holdings[*index]);
+        let used = held.fold(Used::default(), |sum, h| sum.plus(h.used));
+        if !used.within(stock) {
+            return;
+        }
+        for positive in [true, false] {
+            self.add_with(positive, chosen, holdings, standing);
+        }
+    }
+
+    fn add_with(
+        &mut self,
+        positive: bool,
+        chosen: &[usize],
+        holdings: &[Holding],
+        standing: &[Tray],
+    ) {
+        let held = || chosen.iter().map(|index| &holdings[*index]);
+        let red = self.axis.red(positive);
+        let with_red = |h: &Holding| Tray {
+            red,
+            ..h.tray.clone()
+        };
+        let trays: Vec<Tray> = held().map(with_red).collect();
+        let moves = moves::trays(standing, &trays);
+        // What stands so already is there, and nothing has no other end.
+        if moves > 0 && (positive || !trays.is_empty()) {
+            let parts = held().map(|h| (h.field, red.sign() * f64::from(h.tray.count)));
+            self.settings.push(Magnets {
+                parts: parts.collect(),
+                trays,
+                used: held().fold(Used::default(), |sum, h| sum.plus(h.used)),
+                moves,
+            });
+        }
+    }
+
+    fn of_trays(&self, binnacle: &Binnacle, trays: &[Tray]) -> Magnets {
+        let single = |tray: &Tray| {
+            let found = self
+                .singles
+                .iter()
+                .position(|(h, m)| *h == tray.hole && *m == tray.magnet);
+            found.map(|index| (index, tray.red.sign() * f64::from(tray.count)))
+        };
+        let used = trays.iter().map(|t| used_by(binnacle, &t.magnet, t.count));
+        Magnets {
+            trays: trays.to_vec(),
+            used: used.fold(Used::default(), Used::plus),
+            moves: 0,
+            parts: trays.iter().filter_map(single).collect(),
+        }
+    }
+
+    /// Fields of single magnets, soft iron standing so.
+    pub(crate) fn fields(&self, binnacle: &Binnacle, iron: &Iron) -> Vec<Vector> {
+        let of = |(hole, magnet): &(u16, String)| {
+            magnet_field(binnacle, iron, self.axis, magnet, *hole).unwrap_or_default()
+        };
+        self.singles.iter().map(of).collect()
+    }
+}
+
+/// All choices of so many holdings in holes that differ.
+fn choices(holdings: &[Holding], many: usize) -> Vec<Vec<usize>> {
+    let mut all = Vec::new();
+    let mut chosen = Vec::new();
+    extend(holdings, many, 0, &mut chosen, &mut all);
+    all
+}
+
+fn extend(
+    holdings: &[Holding],
+    many: usize,
+    from: usize,
+    chosen: &mut Vec<usize>,
+    all: &mut Vec<Vec<usize>>,
+) {
+    if chosen.len() == many {
+        all.push(chosen.clone());
+        return;
+    }
+    for index in from..holdings.len() {
+        let last = chosen.last().map(|last| holdings[*last].tray.hole);
+        // So that four trays of twelve magnets do not fill the memory first.
+        if last == Some(holdings[index].tray.hole) || all.len() > MOST_SETTINGS {
+            continue;
+        }
+        chosen.push(index);
+        extend(holdings, many, index + 1, chosen, all);
+        chosen.pop();
+    }
+}

@@ -1,0 +1,58 @@
+//! Bounds of settings that were not gone through.
+
+use super::objective::{Box2, Objective};
+
+/// About a second of one core.
+const MOST_RELAXED: u64 = 200_000;
+/// A smaller box of the continuum is not divided, nT.
+const SMALLEST_NT: f64 = 2.0;
+/// A smaller box is bounded on every heading, nT.
+const SMALL_NT: f64 = 300.0;
+
+/// The lesser of what is known to be left and what magnets of any field within a box would
+/// leave, degrees: a bound from below.
+pub(crate) fn relaxed_within(
+    objective: &Objective<'_>,
+    within: Box2,
+    mut left_deg: f64,
+    nodes: &mut u64,
+) -> f64 {
+    let bound = |within: &Box2| {
+        if within.extent() < SMALL_NT {
+            objective.fine_bound_deg(within)
+        } else {
+            objective.bound_deg(within)
+        }
+    };
+    let mut open = vec![(within, bound(&within))];
+    while let Some((within, bound_deg)) = open.pop() {
+        if bound_deg >= left_deg {
+            continue;
+        }
+        *nodes += 1;
+        if within.extent() < SMALLEST_NT || *nodes >= MOST_RELAXED {
+            left_deg = bound_deg;
+            continue;
+        }
+        let mut halves = halved(within).map(|half| (half, bound(&half)));
+        // The last one in is the first out.
+        if halves[0].1 < halves[1].1 {
+            halves.swap(0, 1);
+        }
+        open.extend(halves);
+    }
+    left_deg
+}
+
+fn halved(within: Box2) -> [Box2; 2] {
+    let along_x = within.x[1] - within.x[0] >= within.y[1] - within.y[0];
+    let [low, high] = if along_x { within.x } else { within.y };
+    let middle = f64::midpoint(low, high);
+    [[low, middle], [middle, high]].map(|part| {
+        if along_x {
+            Box2 { x: part, ..within }
+        } else {
+            Box2 { y: part, ..within }
+        }
+    })
+}

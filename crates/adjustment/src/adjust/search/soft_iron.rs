@@ -1,0 +1,73 @@
+//! Choices of soft iron.
+
+use crate::adjust::corrector_moves as moves;
+use crate::adjust::state::Condition;
+use crate::binnacle::{BarSetting, Binnacle, PairSetting, Setting, Soft};
+
+/// All choices of soft iron, with the moves from how it stands.
+pub(crate) fn iron(condition: &Condition<'_>, standing: &Setting) -> Vec<(Soft, u32)> {
+    let binnacle = condition.binnacle;
+    let pairs = pairs(binnacle, standing, condition.may_move_pair);
+    let bars = bars(condition, standing);
+    let mut all = Vec::with_capacity(pairs.len() * bars.len());
+    for pair in &pairs {
+        let pair_moves = moves::pair(standing.quadrantal.as_ref(), pair.as_ref());
+        for bar in &bars {
+            let soft = Soft {
+                quadrantal: pair.clone(),
+                flinders: bar.clone(),
+            };
+            let bar_moves = moves::bar(standing.flinders.as_ref(), bar.as_ref());
+            all.push((soft, pair_moves + bar_moves));
+        }
+    }
+    all
+}
+
+fn pairs(binnacle: &Binnacle, standing: &Setting, may_move: bool) -> Vec<Option<PairSetting>> {
+    let Some(iron) = binnacle.design.quadrantal.as_ref().filter(|_| may_move) else {
+        return vec![standing.quadrantal.clone()];
+    };
+    let mut all = vec![None];
+    let aboard = |name: &String| binnacle.inventory.quadrantal.contains(name);
+    for size in iron.sizes.iter().filter(|size| aboard(&size.name)) {
+        for mark in &iron.marks {
+            for slew_deg in &iron.slews_deg {
+                all.push(Some(PairSetting {
+                    size: size.name.clone(),
+                    mark_mm: mark.mark_mm,
+                    slew_deg: *slew_deg,
+                }));
+            }
+        }
+    }
+    all
+}
+
+/// A bar cures what the vertical field induces and nothing else: one that leaves more of
+/// it than the standing one would trade a permanent field for one that changes sign with
+/// the hemisphere, however well it may look in the waters that are known.
+fn bars(condition: &Condition<'_>, standing: &Setting) -> Vec<Option<BarSetting>> {
+    let binnacle = condition.binnacle;
+    let may_move = condition.may_move_bar;
+    let Some(holder) = binnacle.design.flinders.as_ref().filter(|_| may_move) else {
+        return vec![standing.flinders.clone()];
+    };
+    let mut all = vec![None];
+    for (length_mm, _) in binnacle.bar_lengths() {
+        for side in &holder.sides {
+            for slew_deg in &holder.slews_deg {
+                all.push(Some(BarSetting {
+                    length_mm,
+                    side: *side,
+                    slew_deg: *slew_deg,
+                }));
+            }
+        }
+    }
+    let left_now = condition.left_to_induction(standing.flinders.as_ref());
+    all.retain(|bar| {
+        *bar == standing.flinders || condition.left_to_induction(bar.as_ref()) <= left_now
+    });
+    all
+}

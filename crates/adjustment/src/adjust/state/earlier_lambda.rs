@@ -1,0 +1,49 @@
+//! λ of an earlier berth, carried over to the present setting.
+
+use super::corrector_errors::errors_of;
+use super::field_drift::drift_nt;
+use super::magnetic_state::Condition;
+use crate::adjust::inputs::{AdjustError, Adjustment, EarlierLambda};
+use crate::binnacle::{Binnacle, Setting};
+use crate::corrector::{Effect, effect};
+use binnacle_compass::time::Timestamp;
+
+impl EarlierLambda {
+    /// As a berth tells it, its correctors as its binnacle has them.
+    ///
+    /// # Errors
+    /// When its reading tells none.
+    pub fn told(
+        at: Timestamp,
+        adjustment: &Adjustment<'_>,
+    ) -> Result<Option<EarlierLambda>, AdjustError> {
+        let condition = Condition::new(adjustment)?;
+        let lambda = condition.lambda();
+        let [forward, starboard] = adjustment.reading.field_nt();
+        let drift = drift_nt(adjustment) / forward.hypot(starboard);
+        // Without the model's covariance nothing is known of its error.
+        let told = adjustment.model.covariance.map(|_| EarlierLambda {
+            at,
+            lambda,
+            standard_error: lambda * condition.lambda_sd_share().hypot(drift),
+        });
+        Ok(told)
+    }
+
+    /// The same with the correctors as this binnacle has them, where they stood so when it was
+    /// told; what was moved errs by its tolerance. None where the binnacle cannot be set so.
+    #[must_use]
+    pub fn set_as(self, binnacle: &Binnacle, stood: &Setting) -> Option<EarlierLambda> {
+        binnacle.with_setting(stood.clone()).ok()?;
+        // Needles add nothing to λ.
+        let share = |effect: &Effect| effect.as_ship(f64::INFINITY).lambda() - 1.0;
+        let of = |setting: &Setting| share(&effect(binnacle, setting));
+        let errors = errors_of(binnacle, stood).into_iter();
+        let add = |sum: f64, error: Effect| sum.hypot(share(&error));
+        Some(EarlierLambda {
+            at: self.at,
+            lambda: self.lambda + of(&binnacle.setting) - of(stood),
+            standard_error: errors.fold(self.standard_error, add),
+        })
+    }
+}

@@ -1,0 +1,199 @@
+//! What the compass showed after a step, held against what was expected; and a new
+//! plan from there where it was otherwise.
+
+mod corrector_scale;
+mod result;
+
+pub use result::{InAll, Proven, Recheck};
+
+use super::inputs::{AdjustError, Adjustment};
+use super::instructions::{Place, Step, compass_turn, elsewhere, moved, replaced, tolerance_deg};
+use super::planning::plan;
+use super::state::Condition;
+use crate::binnacle::{Axis, Binnacle, Setting};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::deviation::NORMAL_99;
+use corrector_scale::strength;
+
+/// A card that turned by less may not have turned at all, degrees.
+const UNMOVED_DEG: f64 = 0.5;
+/// Holes are miscounted by no more.
+const MISCOUNTED: i32 = 3;
+/// Holds the compass, read now, against what it read with the magnetometer: small errors
+/// of steps, each within its own tolerance, add up.
+///
+/// # Errors
+/// When the adjustment itself cannot be.
+pub fn turned_in_all(
+    adjustment: &Adjustment<'_>,
+    first_deg: f64,
+    now: &Setting,
+    now_deg: f64,
+) -> Result<InAll, AdjustError> {
+    let condition = Condition::new(adjustment)?;
+    let first = &adjustment.binnacle.setting;
+    let turn = compass_turn(adjustment, &condition, first, now);
+    let turned_deg = wrap_180(now_deg - first_deg);
+    Ok(InAll {
+        turned_deg,
+        expected_deg: turn.change_deg,
+        off_deg: wrap_180(turned_deg - turn.change_deg),
+        tolerance_deg: tolerance_deg(turn.sd_deg, adjustment.earth.h_nt),
+    })
+}
+
+/// Judges a step by the compass at the berth before and after it, degrees.
+///
+/// # Errors
+/// When the adjustment itself cannot be, or the headings are not finite.
+pub fn recheck(
+    adjustment: &Adjustment<'_>,
+    step: &Step,
+    before_deg: f64,
+    after_deg: f64,
+) -> Result<Recheck, AdjustError> {
+    for (field, value) in [("before_deg", before_deg), ("after_deg", after_deg)] {
+        if !(0.0..=360.0).contains(&value) {
+            return Err(AdjustError::Value {
+                field,
+                value,
+                least: 0.0,
+                greatest: 360.0,
+            });
+        }
+    }
+    let turned_deg = wrap_180(after_deg - before_deg);
+    let off_deg = wrap_180(turned_deg - step.change_deg);
+    if off_deg.abs() <= step.tolerance_deg {
+        return Ok(if step.seen {
+            let proven = Proven::new(turned_deg, step.change_deg, adjustment.earth.h_nt);
+            Recheck::Confirmed { off_deg, proven }
+        } else {
+            Recheck::NotSeen {
+                expected_deg: step.change_deg,
+            }
+        });
+    }
+    let condition = Condition::new(adjustment)?;
+    if let Some(setting) = wrong_end(adjustment, &condition, step, turned_deg) {
+        let outcome = Box::new(plan(&Adjustment {
+            now: Some(&setting),
+            compass_deg: Some(after_deg),
+            ..adjustment.clone()
+        })?);
+        return Ok(Recheck::WrongEnd {
+            turned_deg,
+            setting,
+            outcome,
+        });
+    }
+    let Some(found) = strength(adjustment, step, turned_deg)? else {
+        let unmoved = turned_deg.abs() <= UNMOVED_DEG;
+        return Ok(Recheck::Unexplained { off_deg, unmoved });
+    };
+    let setting = step.setting_after.clone();
+    let outcome = Box::new(plan(&Adjustment {
+        binnacle: &found.binnacle,
+        now: Some(&setting),
+        compass_deg: Some(after_deg),
+        ..adjustment.clone()
+    })?);
+    Ok(Recheck::OtherStrength {
+        share: found.share,
+        share_sd: found.share_sd,
+        other_hole: other_hole(adjustment, &condition, step, turned_deg),
+        binnacle: Box::new(found.binnacle),
+        setting,
+        outcome,
+    })
+}
+
+/// What a step came to whose corrector, it turns out, stands as `setting` says: the step as
+/// it was done, and the binnacle, its corrector as strong as the compass shows where that
+/// was read since. `adjustment` is that of before the step.
+///
+/// # Errors
+/// When the adjustment itself cannot be.
+pub fn recheck_elsewhere(
+    adjustment: &Adjustment<'_>,
+    step: &Step,
+    before_deg: f64,
+    setting: &Setting,
+    compass_deg: Option<f64>,
+) -> Result<(Step, Binnacle), AdjustError> {
+    let condition = Condition::new(adjustment)?;
+    let turn = compass_turn(adjustment, &condition, &step.setting_before, setting);
+    let change_deg = turn.change_deg;
+    let tolerance_deg = (NORMAL_99 * turn.sd_deg).max(step.tolerance_deg);
+    let to = step.to.as_ref();
+    let done = Step {
+        to: match to {
+            Some(to) if step.is_gainsaid(&step.setting_after, setting) => {
+                elsewhere(setting, step.corrector, to, &step.setting_after)
+            }
+            to => to.cloned(),
+        },
+        change_deg,
+        tolerance_deg,
+        seen: change_deg.abs() > tolerance_deg,
+        setting_after: setting.clone(),
+        ..step.clone()
+    };
+    let turned_deg = compass_deg.map(|compass_deg| wrap_180(compass_deg - before_deg));
+    let otherwise =
+        turned_deg.filter(|turned_deg| wrap_180(turned_deg - change_deg).abs() > tolerance_deg);
+    let found = match otherwise {
+        Some(turned_deg) => strength(adjustment, &done, turned_deg)?,
+        None => None,
+    };
+    let binnacle = found.map_or_else(|| adjustment.binnacle.clone(), |found| found.binnacle);
+    Ok((done, binnacle))
+}
+
+/// The hole near the step's own in which its magnets, as strong as was taken, would turn the
+/// compass by what was read.
+fn other_hole(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    step: &Step,
+    turned_deg: f64,
+) -> Option<u16> {
+    let to = step.to.as_ref()?;
+    let off = |by: i32| {
+        let (place, hole) = moved(to, by)?;
+        let setting = replaced(&step.setting_after, step.corrector, Some(to), Some(&place));
+        condition.binnacle.with_setting(setting.clone()).ok()?;
+        let turn = compass_turn(adjustment, condition, &step.setting_before, &setting);
+        let off_deg = wrap_180(turned_deg - turn.change_deg).abs();
+        let tolerance_deg = (NORMAL_99 * turn.sd_deg).max(step.tolerance_deg);
+        (off_deg <= tolerance_deg).then_some((off_deg, hole))
+    };
+    let others = (-MISCOUNTED..=MISCOUNTED).filter(|by| *by != 0);
+    let nearest = others.filter_map(off).min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.map(|(_, hole)| hole)
+}
+
+/// The setting with the step's magnets turned end for end, if that is what was read.
+fn wrong_end(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    step: &Step,
+    turned_deg: f64,
+) -> Option<Setting> {
+    let Some(Place::Magnets(tray)) = &step.to else {
+        return None;
+    };
+    let mut setting = step.setting_after.clone();
+    for axis in Axis::BOTH {
+        for other in setting
+            .trays_mut(axis)
+            .iter_mut()
+            .filter(|other| *other == tray)
+        {
+            other.red = other.red.reversed();
+        }
+    }
+    let turn = compass_turn(adjustment, condition, &step.setting_before, &setting);
+    let tolerance = (NORMAL_99 * turn.sd_deg).max(step.tolerance_deg);
+    (wrap_180(turned_deg - turn.change_deg).abs() <= tolerance).then_some(setting)
+}
