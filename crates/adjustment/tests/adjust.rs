@@ -113,7 +113,7 @@ fn the_berth_in_the_documentation_reads() {
     let from = page.split("```json\n").nth(1).unwrap();
     let form = from.split("```").next().unwrap();
     let form: binnacle_adjustment::adjust::BerthForm = serde_json::from_str(form).unwrap();
-    let berth = form.read().unwrap();
+    let berth = form.parse().unwrap();
     assert_eq!(berth.waters.len(), 2);
     assert!((22_000.0..27_000.0).contains(&berth.earth.h_nt));
     // Variation is about nil there in 2026.
@@ -141,7 +141,7 @@ fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
     // The reading is hers, so that most of what is written does give a plan.
     let page: binnacle_adjustment::adjust::BerthForm =
         serde_json::from_value(form.clone()).unwrap();
-    let there = page.read().unwrap();
+    let there = page.parse().unwrap();
     let place = (there.earth.h_nt, there.earth.z_nt);
     let [x, y, z] = truth.field(place, there.reading.magnetic().degrees());
     let reading = &mut form["reading"];
@@ -168,7 +168,7 @@ fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
             let form = serde_json::from_value::<binnacle_adjustment::adjust::BerthForm>(form);
             let Ok(berth) = form
                 .map_err(drop)
-                .and_then(|form| form.read().map_err(drop))
+                .and_then(|form| form.parse().map_err(drop))
             else {
                 continue;
             };

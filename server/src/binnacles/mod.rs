@@ -124,7 +124,7 @@ async fn put_binnacle(
     let request_hash = idempotency::request_hash(&format!("binnacle of {compass}"), &form)?;
     let reason = optional_text("reason", why.reason.as_deref())?;
     let binnacle = Binnacle::try_from(form)?;
-    binnacle.must_be_credible()?;
+    binnacle.check_tested_moments()?;
     let now = app.clock.now().into();
     let wanted = BinnacleId::new();
     let mut tx = request.begin().await?;

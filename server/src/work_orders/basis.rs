@@ -190,7 +190,7 @@ impl Prepared {
                 model_age_days: Some((age_s / 86_400.0).max(0.0)),
                 cargo_on_board: self.basis.cargo_on_board,
                 earlier_lambda: earlier.and_then(|earlier| earlier.set_as(&self.binnacle)),
-                has_learnt_here: self.basis.has_learnt_here,
+                is_updated_here: self.basis.has_learnt_here,
             },
             limits: self.limits,
         }

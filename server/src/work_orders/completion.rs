@@ -19,7 +19,7 @@ use crate::ids::{BinnacleId, EntryId, FirmId, KeyId, ModelId};
 use crate::logbook;
 use crate::models::{self, ModelJson, StoredModel};
 use crate::time::Time;
-use binnacle_adjustment::adjust::Learnt;
+use binnacle_adjustment::adjust::UpdatedPrediction;
 use binnacle_adjustment::binnacle::Setting;
 use binnacle_compass::model::Model;
 use serde::{Deserialize, Serialize};
@@ -195,7 +195,7 @@ pub(super) fn must_stand_as_planned(standing: &Standing) -> Result<&Setting> {
 pub(super) async fn complete(
     change: &mut Change<'_>,
     aboard: &Aboard,
-    learnt: Learnt,
+    learnt: UpdatedPrediction,
     word: Word,
     at: Time,
 ) -> Result<()> {

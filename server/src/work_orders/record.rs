@@ -10,7 +10,7 @@ use super::store::Whole;
 use crate::compasses::Compass;
 use crate::error::Result;
 use crate::time::Time;
-use binnacle_adjustment::adjust::{HeelingPlan, Learnt};
+use binnacle_adjustment::adjust::{HeelingPlan, UpdatedPrediction};
 use binnacle_adjustment::binnacle::Binnacle;
 use serde_json::json;
 
@@ -27,7 +27,7 @@ pub(super) struct Aboard {
 pub(super) fn text(
     aboard: &Aboard,
     whole: &Whole,
-    learnt: &Learnt,
+    learnt: &UpdatedPrediction,
     word: &Word,
     account: &str,
     after: &Binnacle,

@@ -3,15 +3,15 @@
 use crate::binnacle::{BarSetting, HeelingSetting, PairSetting, Tray, nearly_equal};
 
 /// Magnets of one axis, each tray taken for whichever costs least.
-pub(crate) fn trays(from: &[Tray], to: &[Tray]) -> u32 {
-    matched(from, to)
+pub(crate) fn tray_moves(from: &[Tray], to: &[Tray]) -> u32 {
+    match_trays(from, to)
         .iter()
-        .map(|pair| tray(pair.0, pair.1))
+        .map(|pair| moves_of_tray(pair.0, pair.1))
         .sum()
 }
 
 /// Which trays of before become which of after: the pairing with the fewest moves.
-pub(crate) fn matched<'t>(
+pub(crate) fn match_trays<'t>(
     from: &'t [Tray],
     to: &'t [Tray],
 ) -> Vec<(Option<&'t Tray>, Option<&'t Tray>)> {
@@ -22,7 +22,7 @@ pub(crate) fn matched<'t>(
         let cost = order
             .iter()
             .enumerate()
-            .map(|(before, after)| tray(from.get(before), to.get(*after)))
+            .map(|(before, after)| moves_of_tray(from.get(before), to.get(*after)))
             .sum();
         if best.as_ref().is_none_or(|(least, _)| cost < *least) {
             best = Some((cost, order.to_vec()));
@@ -47,7 +47,7 @@ fn permute(order: &mut [usize], fixed: usize, visit: &mut impl FnMut(&[usize])) 
     }
 }
 
-fn tray(from: Option<&Tray>, to: Option<&Tray>) -> u32 {
+fn moves_of_tray(from: Option<&Tray>, to: Option<&Tray>) -> u32 {
     match (from, to) {
         (None, None) => 0,
         (None, Some(_)) | (Some(_), None) => 1,
@@ -58,7 +58,7 @@ fn tray(from: Option<&Tray>, to: Option<&Tray>) -> u32 {
     }
 }
 
-pub(crate) fn pair(from: Option<&PairSetting>, to: Option<&PairSetting>) -> u32 {
+pub(crate) fn pair_moves(from: Option<&PairSetting>, to: Option<&PairSetting>) -> u32 {
     match (from, to) {
         (None, None) => 0,
         (None, Some(_)) | (Some(_), None) => 1,
@@ -72,7 +72,7 @@ pub(crate) fn pair(from: Option<&PairSetting>, to: Option<&PairSetting>) -> u32 
     }
 }
 
-pub(crate) fn bar(from: Option<&BarSetting>, to: Option<&BarSetting>) -> u32 {
+pub(crate) fn bar_moves(from: Option<&BarSetting>, to: Option<&BarSetting>) -> u32 {
     match (from, to) {
         (None, None) => 0,
         (None, Some(_)) | (Some(_), None) => 1,
@@ -84,6 +84,6 @@ pub(crate) fn bar(from: Option<&BarSetting>, to: Option<&BarSetting>) -> u32 {
     }
 }
 
-pub(crate) fn heeling(from: Option<&HeelingSetting>, to: Option<&HeelingSetting>) -> u32 {
+pub(crate) fn heeling_moves(from: Option<&HeelingSetting>, to: Option<&HeelingSetting>) -> u32 {
     u32::from(from != to)
 }

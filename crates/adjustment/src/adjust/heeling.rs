@@ -4,7 +4,7 @@
 //! the athwartship force would be in a field as strong (docs/science.md, eq. 23).
 
 use super::inputs::Adjustment;
-use super::state::{Condition, errors_between};
+use super::state::{MagneticState, errors_between};
 use crate::binnacle::{HeelingSetting, Red, Setting};
 use crate::corrector::{Effect, Iron, effect, heeling_effect};
 use binnacle_compass::deviation::NORMAL_99;
@@ -26,29 +26,29 @@ pub struct HeelingPlan {
 }
 
 /// What the magnetometer would read down with correctors of this effect, nT.
-fn down_nt(adjustment: &Adjustment<'_>, condition: &Condition<'_>, effect: &Effect) -> Option<f64> {
-    let read_nt = condition.vertical?.down_nt;
+fn down_nt(adjustment: &Adjustment<'_>, state: &MagneticState<'_>, effect: &Effect) -> Option<f64> {
+    let read_nt = state.vertical?.down_nt;
     let z_nt = adjustment.earth.z_nt;
-    Some(read_nt + condition.chi33_change(effect) * z_nt + condition.bz_change(effect))
+    Some(read_nt + state.chi33_change(effect) * z_nt + state.bz_change(effect))
 }
 
 /// How a step with heeling magnets is verified, which no compass on an even keel shows;
 /// none where the vertical force was not read.
-pub(crate) fn check(
+pub(crate) fn check_instruction(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     before: &Setting,
     after: &Setting,
 ) -> Option<String> {
-    let binnacle = condition.binnacle;
+    let binnacle = state.binnacle;
     let [was_nt, will_nt] =
-        [before, after].map(|setting| down_nt(adjustment, condition, &effect(binnacle, setting)));
+        [before, after].map(|setting| down_nt(adjustment, state, &effect(binnacle, setting)));
     let (was_nt, will_nt) = (was_nt?, will_nt?);
     let errors = adjustment.reading.errors();
     let tilted_nt = adjustment.earth.h_nt * errors.tilt_sd_deg.to_radians();
     // Read twice with the same instrument: noise and tilt differ, its scale does not.
     let instrument_nt = std::f64::consts::SQRT_2 * errors.field_sd_nt.hypot(tilted_nt);
-    let scale_nt = adjustment.scale_sd * (will_nt - condition.vertical?.down_nt);
+    let scale_nt = adjustment.scale_sd * (will_nt - state.vertical?.down_nt);
     let of_correctors = errors_between(binnacle, &binnacle.setting, after);
     let squares = of_correctors.iter().map(|error| {
         let down_nt = error.chi[2][2] * adjustment.earth.z_nt + error.b_nt[2];
@@ -68,30 +68,30 @@ pub(crate) fn check(
 /// J with correctors of this effect, degrees per degree.
 fn heeling_error(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     effect: &Effect,
 ) -> Option<f64> {
-    let aboard_nt = down_nt(adjustment, condition, effect)?;
+    let aboard_nt = down_nt(adjustment, state, effect)?;
     let z_nt = adjustment.earth.z_nt;
     let h_nt = adjustment.earth.h_nt;
-    let ship = condition.with_effect(effect, h_nt);
+    let ship = state.with_effect(effect, h_nt);
     Some(((1.0 + ship.chi[1][1]) * z_nt - aboard_nt) / (ship.lambda() * h_nt))
 }
 
 /// The magnets that leave the least heeling error with this iron; those that stand
 /// where it was not read, or where they are good enough.
-pub(crate) fn chosen(
+pub(crate) fn choose_magnets(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     iron: &Iron,
     of_iron: &Effect,
 ) -> Option<HeelingSetting> {
     let standing = adjustment.standing().heeling.clone();
-    let binnacle = condition.binnacle;
+    let binnacle = state.binnacle;
     let error = |set: Option<&HeelingSetting>| {
         let of_magnets = set.map(|set| heeling_effect(binnacle, iron, set));
         let whole = of_iron.plus(&of_magnets.unwrap_or_default());
-        heeling_error(adjustment, condition, &whole).map(f64::abs)
+        heeling_error(adjustment, state, &whole).map(f64::abs)
     };
     let (Some(bucket), Some(now)) = (&binnacle.design.heeling, error(standing.as_ref())) else {
         return standing;
@@ -123,17 +123,15 @@ pub(crate) fn chosen(
     best.1
 }
 
-pub(crate) fn said(
+pub(crate) fn heeling_plan(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     setting: &Setting,
 ) -> HeelingPlan {
-    let of = |setting: &Setting| {
-        heeling_error(adjustment, condition, &effect(condition.binnacle, setting))
-    };
+    let of = |setting: &Setting| heeling_error(adjustment, state, &effect(state.binnacle, setting));
     HeelingPlan {
         before_deg_per_deg: of(&adjustment.binnacle.setting),
         after_deg_per_deg: of(setting),
-        left_as_found: condition.vertical.is_none(),
+        left_as_found: state.vertical.is_none(),
     }
 }

@@ -29,20 +29,27 @@ mod post_check;
 
 mod verification;
 
-pub use diagnosis::{Card, Coefficient, Compared, Cure, Mistake, Refusal, Refused, mistakes};
+pub use diagnosis::{
+    CardCheck, Coefficient, Cure, LambdaComparison, Misreading, Refusal, Refused, find_misreadings,
+};
 pub use heeling::HeelingPlan;
 pub use inputs::{
-    AdjustError, Adjustment, AfterForm, AgainForm, Berth, BerthForm, Circumstances, EarlierLambda,
-    FieldForm, FormError, HeadingFrom, Limits, Magnetometer, NumberError, ReadingForm, Unit,
-    VerticalReading, Water, WaterForm,
+    AdjustError, Adjustment, Berth, BerthForm, Circumstances, EarlierLambda, FieldForm, FormError,
+    HeadingFrom, Limits, Magnetometer, NumberError, PostCheckForm, ReadingForm, SecondReadingForm,
+    Unit, VerticalReading, Water, WaterForm,
 };
 pub use instructions::{Action, Corrector, Place, Step};
-pub use planning::{BerthCheck, Outcome, Plan, Seen, plan};
-pub use post_check::{Again, Done, Learnt, Part, Slip, Verdict, by_compass, read_again};
+pub use planning::{BerthCheck, HeadingVisibility, Outcome, Plan, plan};
+pub use post_check::{
+    CompletedStep, FieldComponent, PostCheck, Slip, UpdatedPrediction, Verdict,
+    check_second_reading, predict_by_compass,
+};
 pub use prediction::{PredictedRow, PredictedTable};
 pub use search::Optimality;
-pub use step_check::{InAll, Proven, Recheck, recheck, recheck_elsewhere, turned_in_all};
-pub use verification::{Needed, Settled, Verification, verify};
+pub use step_check::{
+    ProvenEffect, StepCheck, TotalTurn, check_step, check_step_with_setting, check_total_turn,
+};
+pub use verification::{NeededHeadings, SettledHeading, Verification, verify};
 
 #[cfg(test)]
 pub(crate) mod tests;

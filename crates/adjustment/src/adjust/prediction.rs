@@ -1,7 +1,7 @@
 //! Deviations foretold for a setting, with their bands.
 
 use super::inputs::{AdjustError, Adjustment, Water};
-use super::state::Condition;
+use super::state::MagneticState;
 use crate::binnacle::Setting;
 use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::deviation::DeviationError;
@@ -50,13 +50,11 @@ const ROW: usize = 5;
 /// At the berth and in each water.
 pub(crate) fn tables(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     setting: &Setting,
 ) -> Result<Vec<PredictedTable>, AdjustError> {
-    let model = condition.model_with(setting)?;
-    tables_by(adjustment, |earth| {
-        condition.model_at(&model, setting, earth)
-    })
+    let model = state.model_with(setting)?;
+    tables_by(adjustment, |earth| state.model_at(&model, setting, earth))
 }
 
 /// The same by a model that may be another in each field.

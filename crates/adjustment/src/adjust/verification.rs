@@ -31,7 +31,7 @@ const USUAL_SD_DEG: f64 = 0.7;
 
 /// A settled heading at sea.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settled {
+pub struct SettledHeading {
     /// What the compass read.
     pub compass: CompassHeading,
     /// Reference less variation less compass, degrees.
@@ -60,7 +60,7 @@ pub enum Verification {
         /// Headings that counted.
         headings: usize,
         /// Which others are needed.
-        needed: Needed,
+        needed: NeededHeadings,
     },
     /// One is off by too much.
     Alarm {
@@ -75,7 +75,7 @@ pub enum Verification {
 
 /// Headings that are still needed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Needed {
+pub struct NeededHeadings {
     /// How many.
     pub count: usize,
     /// Compass headings that would do, degrees, the best first.
@@ -89,37 +89,37 @@ pub struct Needed {
 /// field to steer by.
 pub fn verify(
     model_after: &Model,
-    settled: &[Settled],
+    settled: &[SettledHeading],
     here: EarthField,
 ) -> Result<Verification, DeviationError> {
-    let foretold = model_after.covariance.ok_or(DeviationError::NotFinite)?;
-    let mut learnt = Learnt::new(&foretold, here);
-    let mut met = Vec::new();
+    let predicted = model_after.covariance.ok_or(DeviationError::NotFinite)?;
+    let mut posterior = Posterior::new(&predicted, here);
+    let mut means = Vec::new();
     for sector in 0..SECTORS {
         let Some((heading, off_deg)) = mean_of(model_after, settled, sector)? else {
             continue;
         };
         let slope = slope(model_after, heading.compass, heading.earth)?;
         let variance = heading.sd_deg.powi(2);
-        learnt.tell(&slope, off_deg, variance);
-        met.push(Met {
+        posterior.observe(&slope, off_deg, variance);
+        means.push(SectorMean {
             sector,
             compass_deg: heading.compass.degrees(),
             off_deg,
-            standard_error_deg: (quadratic(&foretold, &slope) + variance).sqrt(),
+            standard_error_deg: (quadratic(&predicted, &slope) + variance).sqrt(),
             slope,
         });
     }
-    if let Some(alarm) = alarm(&learnt, &met) {
+    if let Some(alarm) = alarm(&posterior, &means) {
         return Ok(alarm);
     }
-    let headings = met.len();
-    let squares: f64 = met.iter().map(|met| met.off_deg.powi(2)).sum();
-    let everywhere = everywhere(model_after, here)?;
-    let band95_deg = everywhere.iter().map(|slope| learnt.band_deg(slope));
+    let headings = means.len();
+    let squares: f64 = means.iter().map(|mean| mean.off_deg.powi(2)).sum();
+    let sector_slopes = sector_slopes(model_after, here)?;
+    let band95_deg = sector_slopes.iter().map(|slope| posterior.band_deg(slope));
     let band95_deg = band95_deg.fold(0.0, f64::max);
-    let counted = met.iter().map(|met| met.sector).collect();
-    let needed = needed(&everywhere, learnt, counted);
+    let counted = means.iter().map(|mean| mean.sector).collect();
+    let needed = needed(&sector_slopes, posterior, counted);
     if needed.count > 0 {
         return Ok(Verification::MoreNeeded { headings, needed });
     }
@@ -131,7 +131,7 @@ pub fn verify(
 }
 
 /// A sector in which there were headings.
-struct Met {
+struct SectorMean {
     sector: usize,
     compass_deg: f64,
     off_deg: f64,
@@ -143,36 +143,36 @@ struct Met {
 type Slope = [f64; PARAMETERS + 1];
 
 /// The worst of what is off by too much.
-fn alarm(learnt: &Learnt, met: &[Met]) -> Option<Verification> {
-    let too_far = met.iter().filter_map(|met| {
-        let together_deg = learnt.off_deg(&met.slope);
-        let beyond_errors = met.off_deg.abs() > ALARM_SD * met.standard_error_deg;
+fn alarm(posterior: &Posterior, means: &[SectorMean]) -> Option<Verification> {
+    let too_far = means.iter().filter_map(|mean| {
+        let together_deg = posterior.off_deg(&mean.slope);
+        let beyond_errors = mean.off_deg.abs() > ALARM_SD * mean.standard_error_deg;
         if !beyond_errors && together_deg.abs() <= ALARM_DEG {
             return None;
         }
-        let own = met.off_deg.abs() >= together_deg.abs();
-        Some((met, if own { met.off_deg } else { together_deg }))
+        let own = mean.off_deg.abs() >= together_deg.abs();
+        Some((mean, if own { mean.off_deg } else { together_deg }))
     });
     let worst = too_far.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-    worst.map(|(met, off_deg)| Verification::Alarm {
-        compass_deg: met.compass_deg,
+    worst.map(|(mean, off_deg)| Verification::Alarm {
+        compass_deg: mean.compass_deg,
         off_deg,
-        standard_error_deg: met.standard_error_deg,
+        standard_error_deg: mean.standard_error_deg,
     })
 }
 
 /// What the headings say of the difference to what was foretold.
-struct Learnt {
+struct Posterior {
     /// Of the model's parameters and constant.
     correction: Slope,
     covariance: Covariance,
 }
 
-impl Learnt {
+impl Posterior {
     /// Nothing yet: what was foretold, and what slips may have done.
-    fn new(foretold: &Covariance, here: EarthField) -> Learnt {
+    fn new(predicted: &Covariance, here: EarthField) -> Posterior {
         let [magnets, spheres] = SLIP_DEG.map(f64::to_radians);
-        let mut covariance = *foretold;
+        let mut covariance = *predicted;
         for b in [0, 2] {
             covariance[b][b] += (magnets * here.h_nt).powi(2);
         }
@@ -181,7 +181,7 @@ impl Learnt {
         for (row, column) in [(5, 5), (5, 6), (6, 5), (6, 6)] {
             covariance[row][column] += spheres.powi(2);
         }
-        Learnt {
+        Posterior {
             correction: [0.0; PARAMETERS + 1],
             covariance,
         }
@@ -197,12 +197,12 @@ impl Learnt {
     }
 
     /// Takes in that a heading was off by so much.
-    fn tell(&mut self, slope: &Slope, off_deg: f64, variance: f64) {
+    fn observe(&mut self, slope: &Slope, off_deg: f64, variance: f64) {
         let with = times(&self.covariance, slope);
         let whole = quadratic(&self.covariance, slope) + variance;
-        let news = (off_deg - self.off_deg(slope)) / whole;
+        let innovation = (off_deg - self.off_deg(slope)) / whole;
         for row in 0..=PARAMETERS {
-            self.correction[row] += with[row] * news;
+            self.correction[row] += with[row] * innovation;
             for column in 0..=PARAMETERS {
                 self.covariance[row][column] -= with[row] * with[column] / whole;
             }
@@ -213,18 +213,18 @@ impl Learnt {
 /// The mean of what is off within a sector, and its last heading.
 fn mean_of(
     model: &Model,
-    settled: &[Settled],
+    settled: &[SettledHeading],
     sector: usize,
-) -> Result<Option<(Settled, f64)>, DeviationError> {
+) -> Result<Option<(SettledHeading, f64)>, DeviationError> {
     let here = settled
         .iter()
         .filter(|s| sector_of(s.compass.degrees()) == sector);
     let (mut weights, mut sum, mut last) = (0.0, 0.0, None);
     for one in here {
-        let foretold = model.deviation(one.compass, one.earth)?.deviation;
+        let predicted = model.deviation(one.compass, one.earth)?.deviation;
         let weight = one.sd_deg.max(0.05).powi(-2);
         weights += weight;
-        sum += weight * wrap_180(one.deviation_deg - foretold.degrees_east());
+        sum += weight * wrap_180(one.deviation_deg - predicted.degrees_east());
         last = Some(*one);
     }
     Ok(last.map(|last| (last, sum / weights)))
@@ -265,25 +265,29 @@ fn quadratic(covariance: &Covariance, slope: &Slope) -> f64 {
 }
 
 /// Slopes in the middle of every sector.
-fn everywhere(model: &Model, here: EarthField) -> Result<Vec<Slope>, DeviationError> {
+fn sector_slopes(model: &Model, here: EarthField) -> Result<Vec<Slope>, DeviationError> {
     let middles = (0..SECTORS).filter_map(|sector| CompassHeading::new(compass_of(sector)));
     middles.map(|compass| slope(model, compass, here)).collect()
 }
 
 /// Goes on as if the heading that may be off most were sailed next and were off by as much
 /// as is thought, until all is well.
-fn needed(everywhere: &[Slope], mut learnt: Learnt, mut counted: Vec<usize>) -> Needed {
+fn needed(
+    sector_slopes: &[Slope],
+    mut posterior: Posterior,
+    mut counted: Vec<usize>,
+) -> NeededHeadings {
     let quadrant = |sector: usize| sector * QUADRANTS / SECTORS;
     let mut compass_deg = Vec::new();
     // No heading is worth sailing twice, as it errs by the same reference.
     while counted.len() < SECTORS {
-        let band = |sector: usize| learnt.band_deg(&everywhere[sector]);
-        let reach = |sector: usize| learnt.off_deg(&everywhere[sector]).abs() + band(sector);
+        let band = |sector: usize| posterior.band_deg(&sector_slopes[sector]);
+        let reach = |sector: usize| posterior.off_deg(&sector_slopes[sector]).abs() + band(sector);
         let is_open = |sector| band(sector) > PASSED_BAND_DEG || reach(sector) > ALARM_DEG;
         let unseen = (0..QUADRANTS).find(|q| !counted.iter().any(|s| quadrant(*s) == *q));
         let sector = match unseen {
-            _ if (0..everywhere.len()).any(is_open) => {
-                let new = (0..everywhere.len()).filter(|sector| !counted.contains(sector));
+            _ if (0..sector_slopes.len()).any(is_open) => {
+                let new = (0..sector_slopes.len()).filter(|sector| !counted.contains(sector));
                 new.max_by(|a, b| reach(*a).total_cmp(&reach(*b)))
             }
             Some(unseen) => Some(unseen * SECTORS / QUADRANTS + SECTORS / QUADRANTS / 2),
@@ -292,13 +296,13 @@ fn needed(everywhere: &[Slope], mut learnt: Learnt, mut counted: Vec<usize>) -> 
         let Some(sector) = sector else {
             break;
         };
-        let slope = &everywhere[sector];
-        let as_thought = learnt.off_deg(slope);
-        learnt.tell(slope, as_thought, USUAL_SD_DEG.powi(2));
+        let slope = &sector_slopes[sector];
+        let as_thought = posterior.off_deg(slope);
+        posterior.observe(slope, as_thought, USUAL_SD_DEG.powi(2));
         counted.push(sector);
         compass_deg.push(compass_of(sector));
     }
-    Needed {
+    NeededHeadings {
         count: compass_deg.len(),
         compass_deg,
     }

@@ -112,12 +112,12 @@ impl Consistency {
 
     /// What no more than one in a hundred such berths would have hidden, degrees: a turn of the
     /// ship's field by less may have passed its check.
-    pub fn shows_from_deg(&self) -> Option<f64> {
+    pub fn detectable_turn_deg(&self) -> Option<f64> {
         self.standard_error_deg.map(|error| NORMAL_99 * error)
     }
 
     /// The angle and its error.
-    pub fn apart(&self) -> String {
+    pub fn angle_summary(&self) -> String {
         let error = self
             .standard_error_deg
             .map_or("unknown".to_owned(), |error| format!("{error:.1} degrees"));
@@ -126,12 +126,14 @@ impl Consistency {
             self.angle_deg.abs()
         )
     }
+}
 
-    /// One line: the angle, its error, and the suspects.
-    pub fn in_words(&self) -> String {
+impl fmt::Display for Consistency {
+    /// Writes the angle, its error, and the suspects in one line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let suspects = self.suspects();
         let suspects: Vec<String> = suspects.iter().map(ToString::to_string).collect();
-        format!("{}; {}", self.apart(), suspects.join(", or "))
+        write!(f, "{}; {}", self.angle_summary(), suspects.join(", or "))
     }
 }
 

@@ -43,7 +43,7 @@ pub enum BerthError {
     },
     /// The field does not point where the model says, beyond what the errors
     /// given explain.
-    #[error("the berth is inconsistent: {}", .0.in_words())]
+    #[error("the berth is inconsistent: {0}")]
     Inconsistent(Consistency),
     /// The direction is right, the strength is not.
     #[error(

@@ -8,8 +8,8 @@ use super::adjusting::scene::Scene;
 use super::adjusting::wrap;
 use super::tally::{mean, quantile};
 use binnacle_adjustment::adjust::{
-    Adjustment, Done, Outcome, Place, PredictedTable, Recheck, Step, Unit, Verdict,
-    VerticalReading, by_compass, plan, read_again, recheck,
+    Adjustment, CompletedStep, Outcome, Place, PredictedTable, Step, StepCheck, Unit, Verdict,
+    VerticalReading, check_second_reading, check_step, plan, predict_by_compass,
 };
 use binnacle_adjustment::berth::BerthReading;
 use binnacle_adjustment::binnacle::{Axis, Binnacle, Setting, Tray};
@@ -77,7 +77,7 @@ struct Work {
     /// The step that it is still to happen at.
     slips_at: Option<u32>,
     /// Steps that were taken for done.
-    done: Vec<Done>,
+    done: Vec<CompletedStep>,
     readings: usize,
     /// The model after a second reading that called for another plan, and that reading.
     learnt: Option<(Model, BerthReading, f64)>,
@@ -189,11 +189,11 @@ impl Hands {
                 at += 1;
                 self.step(scene, &step.clone(), work)
             } else if ending == Ending::ReadAgain {
-                self.read_again(scene, work)
+                self.check_second_reading(scene, work)
             } else {
                 let standing = work.standing.clone();
                 let adjustment = work.adjustment(scene, &standing);
-                let learnt = by_compass(&adjustment, &work.done).unwrap();
+                let learnt = predict_by_compass(&adjustment, &work.done).unwrap();
                 self.end(scene, &learnt.after, work);
                 Next::Ended("done")
             };
@@ -218,7 +218,7 @@ impl Hands {
         let truly = work.truly(&step.setting_after);
         let after_deg = shown(scene, &truly);
         let adjustment = work.adjustment(scene, &now);
-        let found = recheck(&adjustment, step, before_deg, after_deg).unwrap();
+        let found = check_step(&adjustment, step, before_deg, after_deg).unwrap();
         let turned_deg = wrap(after_deg - before_deg);
         let off_deg = wrap(turned_deg - step.change_deg).abs();
         // Magnets of another moment make every step with them a slip.
@@ -236,23 +236,23 @@ impl Hands {
             *self.right.entry(name(&found)).or_default() += 1;
         }
         let (setting, binnacle, anew) = match found {
-            Recheck::Confirmed { .. } | Recheck::NotSeen { .. } => {
+            StepCheck::Confirmed { .. } | StepCheck::NotSeen { .. } => {
                 work.standing = step.setting_after.clone();
                 let turned_deg = Some(turned_deg);
                 let step = step.clone();
-                work.done.push(Done { step, turned_deg });
+                work.done.push(CompletedStep { step, turned_deg });
                 return Next::Step;
             }
-            Recheck::WrongEnd {
+            StepCheck::WrongEnd {
                 setting, outcome, ..
             } => (setting, None, outcome),
-            Recheck::OtherStrength {
+            StepCheck::OtherStrength {
                 setting,
                 binnacle,
                 outcome,
                 ..
             } => (setting, Some(binnacle), outcome),
-            Recheck::Unexplained { .. } => return Next::Ended("sent to look"),
+            StepCheck::Unexplained { .. } => return Next::Ended("sent to look"),
         };
         if setting != step.setting_after {
             // What stands the wrong way round is known now.
@@ -266,7 +266,7 @@ impl Hands {
         Next::Plan(*anew)
     }
 
-    fn read_again(&mut self, scene: &mut Scene, work: &mut Work) -> Next {
+    fn check_second_reading(&mut self, scene: &mut Scene, work: &mut Work) -> Next {
         work.readings += 1;
         if work.readings > MOST_READINGS {
             return Next::Ended("never confirmed");
@@ -277,21 +277,21 @@ impl Hands {
         let adjustment = work.adjustment(scene, &work.standing);
         let vertical = Some(VerticalReading { down_nt });
         let unit = Unit::Nanotesla;
-        let found = read_again(&adjustment, &work.done, &reading, vertical, None, unit);
+        let found = check_second_reading(&adjustment, &work.done, &reading, vertical, None, unit);
         let found = found.unwrap().verdict;
         let slipped = usize::from(work.is_slipped());
         let (word, next) = match found {
-            Verdict::AsPlanned { learnt } => {
-                self.end(scene, &learnt.after, work);
+            Verdict::AsPlanned { updated } => {
+                self.end(scene, &updated.after, work);
                 ("as planned", Next::Ended("done"))
             }
             Verdict::Replan {
-                learnt,
+                updated,
                 binnacle,
                 outcome,
                 ..
             } => {
-                work.learnt = Some((learnt.model_after, reading, down_nt));
+                work.learnt = Some((updated.model_after, reading, down_nt));
                 work.binnacle = *binnacle;
                 work.done.clear();
                 ("beyond limits", Next::Plan(*outcome))
@@ -364,13 +364,13 @@ fn slipped(binnacle: &Binnacle, step: &Step, slip: Slip) -> Option<(Axis, Tray, 
     Some((axis, meant.clone(), done))
 }
 
-fn name(found: &Recheck) -> &'static str {
+fn name(found: &StepCheck) -> &'static str {
     match found {
-        Recheck::Confirmed { .. } => "confirmed",
-        Recheck::NotSeen { .. } => "not seen",
-        Recheck::WrongEnd { .. } => "wrong end",
-        Recheck::OtherStrength { .. } => "other strength",
-        Recheck::Unexplained { .. } => "unexplained",
+        StepCheck::Confirmed { .. } => "confirmed",
+        StepCheck::NotSeen { .. } => "not seen",
+        StepCheck::WrongEnd { .. } => "wrong end",
+        StepCheck::OtherStrength { .. } => "other strength",
+        StepCheck::Unexplained { .. } => "unexplained",
     }
 }
 

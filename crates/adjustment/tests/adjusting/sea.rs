@@ -5,7 +5,7 @@
 use super::adjusting::knowledge::FLUXGATE;
 use super::adjusting::scene::Scene;
 use super::tally::quantile;
-use binnacle_adjustment::adjust::{Plan, Settled, Verification, plan, verify};
+use binnacle_adjustment::adjust::{Plan, SettledHeading, Verification, plan, verify};
 use binnacle_compass::angle::CompassHeading;
 use std::fmt;
 
@@ -54,7 +54,7 @@ impl Sea {
         scene.truth.bare_b_nt[1] += size_nt * towards.sin();
         let adjusted = scene.truth.with(&best.setting);
         let earth = scene.waters[0].earth();
-        let mut settled: Vec<Settled> = Vec::new();
+        let mut settled: Vec<SettledHeading> = Vec::new();
         loop {
             let needed = match verify(&best.model_after, &settled, earth).unwrap() {
                 Verification::Passed { headings, .. } => {
@@ -81,7 +81,7 @@ impl Sea {
             let compass = CompassHeading::new(needed.compass_deg[0] + within).unwrap();
             let truth = adjusted.deviation_deg(place, compass.degrees());
             let error = scene.reference_deg + HEADING_SD_DEG * scene.rng.gaussian();
-            settled.push(Settled {
+            settled.push(SettledHeading {
                 compass,
                 deviation_deg: truth + error,
                 sd_deg: HEADING_SD_DEG,

@@ -1,28 +1,28 @@
 //! Checks of a berth before a plan.
 
-use super::card_check::Card;
-use super::misreadings::mistakes;
+use super::card_check::CardCheck;
+use super::misreadings::find_misreadings;
 use super::refusal::Refusal;
-use super::vertical_check::{Vertical, swapped};
+use super::vertical_check::{VerticalCheck, find_swapped_axes};
 use crate::adjust::inputs::{AdjustError, Adjustment, Unit};
 use crate::berth::BerthError;
 
 impl Adjustment<'_> {
     /// The vertical field held against the earth's.
-    pub(crate) fn vertical_judged(&self) -> Option<Vertical> {
-        let judged = |read| Vertical::new(read, self.earth, self.binnacle);
+    pub(crate) fn vertical_check(&self) -> Option<VerticalCheck> {
+        let judged = |read| VerticalCheck::new(read, self.earth, self.binnacle);
         self.vertical.map(judged)
     }
 
     /// The compass held against the field, while the correctors stand as they did when
     /// both were read.
-    pub(crate) fn card(&self) -> Option<Card> {
+    pub(crate) fn card(&self) -> Option<CardCheck> {
         if *self.standing() != self.binnacle.setting {
             return None;
         }
         let constant_deg = self.model.constant_deg;
         let card = |read_deg| {
-            Card::new(
+            CardCheck::new(
                 read_deg,
                 self.reading,
                 self.earth,
@@ -35,7 +35,7 @@ impl Adjustment<'_> {
 }
 
 /// What is known to be wrong before anything is calculated.
-pub(crate) fn beforehand(adjustment: &Adjustment<'_>) -> Vec<Refusal> {
+pub(crate) fn check_preconditions(adjustment: &Adjustment<'_>) -> Vec<Refusal> {
     let mut refusals = Vec::new();
     if adjustment.model.covariance.is_none() {
         refusals.push(Refusal::NoCovariance);
@@ -53,14 +53,14 @@ pub(crate) fn beforehand(adjustment: &Adjustment<'_>) -> Vec<Refusal> {
 }
 
 /// A berth that fails its check is refused; one that cannot be is an error.
-pub(crate) fn of_berth(
+pub(crate) fn refuse_berth(
     adjustment: &Adjustment<'_>,
     error: BerthError,
 ) -> Result<Refusal, AdjustError> {
     let reading = adjustment.reading;
-    let mistakes = || {
+    let misreadings = || {
         let (model, earth) = (adjustment.model, adjustment.earth);
-        let mut found = mistakes(
+        let mut found = find_misreadings(
             model,
             earth,
             reading.magnetic(),
@@ -69,15 +69,16 @@ pub(crate) fn of_berth(
             reading.errors(),
             reading.alignment(),
         );
-        let with = |vertical| swapped(model, earth, reading, vertical, adjustment.binnacle);
+        let with =
+            |vertical| find_swapped_axes(model, earth, reading, vertical, adjustment.binnacle);
         found.extend(adjustment.vertical.map(with).unwrap_or_default());
         found
     };
     match error {
         BerthError::Inconsistent(_) | BerthError::Implausible(_) => {
-            Ok(Refusal::of_reading(&error, mistakes()))
+            Ok(Refusal::from_berth_error(&error, misreadings()))
         }
-        BerthError::NoDirectiveForce { .. } => Ok(Refusal::of_reading(&error, Vec::new())),
+        BerthError::NoDirectiveForce { .. } => Ok(Refusal::from_berth_error(&error, Vec::new())),
         error => Err(error.into()),
     }
 }

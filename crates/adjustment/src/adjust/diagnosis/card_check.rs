@@ -12,6 +12,7 @@ use binnacle_compass::angle::{MagneticHeading, wrap_180, wrap_360};
 use binnacle_compass::deviation::NORMAL_99;
 use binnacle_compass::ship::{EarthField, compass_rad};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Up to here a card is never called wrong, degrees.
 const LEAST_REFUSED_DEG: f64 = 4.0;
@@ -20,7 +21,7 @@ const REFUSED_TOLERANCES: f64 = 1.5;
 
 /// What the compass read, and what the field read says it must.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Card {
+pub struct CardCheck {
     /// What it read, degrees.
     pub read_deg: f64,
     /// What a card in the field read points to, degrees.
@@ -31,7 +32,7 @@ pub struct Card {
     pub tolerance_deg: f64,
 }
 
-impl Card {
+impl CardCheck {
     /// A compass reading, its correctors as they stood for the magnetometer.
     pub(crate) fn new(
         read_deg: f64,
@@ -39,7 +40,7 @@ impl Card {
         earth: EarthField,
         binnacle: &Binnacle,
         constant_deg: f64,
-    ) -> Card {
+    ) -> CardCheck {
         let magnetic = reading.magnetic();
         let [x, y] = with_needles(reading.field_nt(), magnetic, earth, binnacle);
         let implied_deg = wrap_360(compass_rad(x, y).to_degrees());
@@ -57,7 +58,7 @@ impl Card {
         let sd_deg = of_field_deg
             .hypot(errors.alignment_sd_deg)
             .hypot(heading_sd_deg(earth.h_nt));
-        Card {
+        CardCheck {
             read_deg,
             implied_deg,
             off_deg: off_deg - explained_deg,
@@ -77,7 +78,7 @@ impl Card {
     }
 
     /// What it is.
-    pub fn found(&self) -> String {
+    pub fn summary(&self) -> String {
         format!(
             "the compass read {:.1} degrees where the field read would turn it to {:.1} (to {:.1})",
             self.read_deg, self.implied_deg, self.tolerance_deg
@@ -105,12 +106,15 @@ impl Card {
         ]);
         suspects
     }
+}
 
-    /// All of it in one line.
-    pub fn in_words(&self) -> String {
-        format!(
+impl fmt::Display for CardCheck {
+    /// Writes the summary and the suspects in one line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
             "{}; it could be that {}",
-            self.found(),
+            self.summary(),
             self.suspects().join(", or that ")
         )
     }

@@ -75,7 +75,7 @@ impl Refusal {
             }
             // No corrector cures A.
             Refusal::ResidualTooLarge {
-                mostly: Coefficient::A,
+                dominant: Coefficient::A,
                 ..
             } => vec![Cure::Alignment, Cure::HeadingsAtSea, Cure::Swing],
             // Known better it would be as large.

@@ -5,23 +5,28 @@ use serde::{Deserialize, Serialize};
 
 /// λ beside an earlier one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Compared {
+pub struct LambdaComparison {
     /// As it was told before.
     pub earlier: EarlierLambda,
     /// How much more it is now.
-    pub off: f64,
+    #[serde(rename = "off")]
+    pub difference: f64,
     /// Of that.
     pub standard_error: f64,
 }
 
-impl Compared {
+impl LambdaComparison {
     /// How far they are apart, in words.
-    pub(crate) fn apart(&self, lambda: f64) -> String {
+    pub(crate) fn summary(&self, lambda: f64) -> String {
         format!(
             "lambda is {lambda:.3}, {:.3} {} than this compass's berth of {} told (standard error \
              {:.3})",
-            self.off.abs(),
-            if self.off > 0.0 { "more" } else { "less" },
+            self.difference.abs(),
+            if self.difference > 0.0 {
+                "more"
+            } else {
+                "less"
+            },
             &self.earlier.at.to_string()[..10],
             self.standard_error
         )

@@ -11,7 +11,7 @@ use std::fmt;
 /// One thing that, done otherwise, makes a reading fit the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Mistake {
+pub enum Misreading {
     /// Figures in nT where another unit was named.
     Nanotesla,
     /// Figures in µT.
@@ -38,44 +38,44 @@ pub enum Mistake {
     StarboardDownSwapped,
 }
 
-impl Mistake {
+impl Misreading {
     /// Those that the horizontal field tells.
-    pub(crate) const ALL: [Mistake; 8] = [
+    pub(crate) const ALL: [Misreading; 8] = [
         // The commonest first: so they are told.
-        Mistake::HeadingReversed,
-        Mistake::Nanotesla,
-        Mistake::Microtesla,
-        Mistake::Gauss,
-        Mistake::Milligauss,
-        Mistake::SwappedAxes,
-        Mistake::StarboardReversed,
-        Mistake::ForwardReversed,
+        Misreading::HeadingReversed,
+        Misreading::Nanotesla,
+        Misreading::Microtesla,
+        Misreading::Gauss,
+        Misreading::Milligauss,
+        Misreading::SwappedAxes,
+        Misreading::StarboardReversed,
+        Misreading::ForwardReversed,
     ];
 
     /// The field of the form that it stands in.
     pub fn field(self) -> &'static str {
         match self {
-            Mistake::Nanotesla
-            | Mistake::Microtesla
-            | Mistake::Gauss
-            | Mistake::Milligauss
-            | Mistake::SwappedAxes => "forward, starboard",
-            Mistake::StarboardReversed => "starboard",
-            Mistake::ForwardReversed => "forward",
-            Mistake::HeadingReversed => "heading_true_deg",
-            Mistake::DownReversed | Mistake::DownInAnotherUnit => "down",
-            Mistake::ForwardDownSwapped => "forward, down",
-            Mistake::StarboardDownSwapped => "starboard, down",
+            Misreading::Nanotesla
+            | Misreading::Microtesla
+            | Misreading::Gauss
+            | Misreading::Milligauss
+            | Misreading::SwappedAxes => "forward, starboard",
+            Misreading::StarboardReversed => "starboard",
+            Misreading::ForwardReversed => "forward",
+            Misreading::HeadingReversed => "heading_true_deg",
+            Misreading::DownReversed | Misreading::DownInAnotherUnit => "down",
+            Misreading::ForwardDownSwapped => "forward, down",
+            Misreading::StarboardDownSwapped => "starboard, down",
         }
     }
 
     /// The unit that the figures are in, if that is the mistake.
     fn unit(self) -> Option<Unit> {
         match self {
-            Mistake::Nanotesla => Some(Unit::Nanotesla),
-            Mistake::Microtesla => Some(Unit::Microtesla),
-            Mistake::Gauss => Some(Unit::Gauss),
-            Mistake::Milligauss => Some(Unit::Milligauss),
+            Misreading::Nanotesla => Some(Unit::Nanotesla),
+            Misreading::Microtesla => Some(Unit::Microtesla),
+            Misreading::Gauss => Some(Unit::Gauss),
+            Misreading::Milligauss => Some(Unit::Milligauss),
             _ => None,
         }
     }
@@ -83,10 +83,10 @@ impl Mistake {
     /// What was read if this was done wrong, `named` being the unit that was named.
     fn undone(self, degrees: f64, [x, y]: [f64; 2], named: Unit) -> (f64, [f64; 2]) {
         match self {
-            Mistake::SwappedAxes => (degrees, [y, x]),
-            Mistake::StarboardReversed => (degrees, [x, -y]),
-            Mistake::ForwardReversed => (degrees, [-x, y]),
-            Mistake::HeadingReversed => (degrees + 180.0, [x, y]),
+            Misreading::SwappedAxes => (degrees, [y, x]),
+            Misreading::StarboardReversed => (degrees, [x, -y]),
+            Misreading::ForwardReversed => (degrees, [-x, y]),
+            Misreading::HeadingReversed => (degrees + 180.0, [x, y]),
             _ => {
                 let times = self.times(named);
                 (degrees, [x * times, y * times])
@@ -119,7 +119,7 @@ impl Mistake {
 
 /// The mistakes each of which alone explains this reading, whose figures were said to be
 /// in a unit; none where it fits as it is.
-pub fn mistakes(
+pub fn find_misreadings(
     model: &Model,
     earth: EarthField,
     magnetic: MagneticHeading,
@@ -127,7 +127,7 @@ pub fn mistakes(
     named: Unit,
     errors: ReadingErrors,
     alignment: Alignment,
-) -> Vec<Mistake> {
+) -> Vec<Misreading> {
     let fits = |degrees: f64, field_nt: [f64; 2]| {
         let Some(magnetic) = MagneticHeading::new(degrees) else {
             return false;
@@ -139,50 +139,54 @@ pub fn mistakes(
     if fits(magnetic.degrees(), field_nt) {
         return Vec::new();
     }
-    let explains = |mistake: &Mistake| {
-        let (degrees, field_nt) = mistake.undone(magnetic.degrees(), field_nt, named);
+    let explains = |misreading: &Misreading| {
+        let (degrees, field_nt) = misreading.undone(magnetic.degrees(), field_nt, named);
         fits(degrees, field_nt)
     };
-    Mistake::ALL.into_iter().filter(explains).collect()
+    Misreading::ALL.into_iter().filter(explains).collect()
 }
 
 /// Mistakes with the axes that this heading would not show: the reading fits the model
 /// with and without them.
-pub(crate) fn unseen(model: &Model, earth: EarthField, reading: &BerthReading) -> Vec<Mistake> {
-    let fits = |mistake: &Mistake| {
+pub(crate) fn undetectable_misreadings(
+    model: &Model,
+    earth: EarthField,
+    reading: &BerthReading,
+) -> Vec<Misreading> {
+    let fits = |misreading: &Misreading| {
         let degrees = reading.magnetic().degrees();
-        let (_, field_nt) = mistake.undone(degrees, reading.field_nt(), Unit::Nanotesla);
+        let (_, field_nt) = misreading.undone(degrees, reading.field_nt(), Unit::Nanotesla);
         let (errors, alignment) = (reading.errors(), reading.alignment());
         let undone = BerthReading::new(reading.magnetic(), field_nt, errors, alignment);
         undone.is_ok_and(|undone| lambda_at_berth(model, earth, &undone).is_ok())
     };
     let axes = [
-        Mistake::SwappedAxes,
-        Mistake::StarboardReversed,
-        Mistake::ForwardReversed,
+        Misreading::SwappedAxes,
+        Misreading::StarboardReversed,
+        Misreading::ForwardReversed,
     ];
     axes.into_iter().filter(fits).collect()
 }
 
-impl fmt::Display for Mistake {
+impl fmt::Display for Misreading {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Mistake::Nanotesla => "the figures are in nanotesla",
-            Mistake::Microtesla => "the figures are in microtesla (1 microtesla is 1000 nT)",
-            Mistake::Gauss => "the figures are in gauss (1 gauss is 100000 nT)",
-            Mistake::Milligauss => "the figures are in milligauss (1 milligauss is 100 nT)",
-            Mistake::SwappedAxes => "the magnetometer's axes are swapped",
-            Mistake::StarboardReversed => "the magnetometer's athwartship axis points to port",
-            Mistake::ForwardReversed => "the magnetometer's fore-and-aft axis points aft",
-            Mistake::HeadingReversed => "the heading is 180 degrees off",
-            Mistake::DownReversed => "the magnetometer's vertical axis points up",
-            Mistake::DownInAnotherUnit => {
+            Misreading::Nanotesla => "the figures are in nanotesla",
+            Misreading::Microtesla => "the figures are in microtesla (1 microtesla is 1000 nT)",
+            Misreading::Gauss => "the figures are in gauss (1 gauss is 100000 nT)",
+            Misreading::Milligauss => "the figures are in milligauss (1 milligauss is 100 nT)",
+            Misreading::SwappedAxes => "the magnetometer's axes are swapped",
+            Misreading::StarboardReversed => "the magnetometer's athwartship axis points to port",
+            Misreading::ForwardReversed => "the magnetometer's fore-and-aft axis points aft",
+            Misreading::HeadingReversed => "the heading is 180 degrees off",
+            Misreading::DownReversed => "the magnetometer's vertical axis points up",
+            Misreading::DownInAnotherUnit => {
                 "the vertical figure is in another unit than the other two"
             }
-            Mistake::ForwardDownSwapped => {
+            Misreading::ForwardDownSwapped => {
                 "the magnetometer's fore-and-aft and vertical axes are swapped"
             }
-            Mistake::StarboardDownSwapped => {
+            Misreading::StarboardDownSwapped => {
                 "the magnetometer's athwartship and vertical axes are swapped"
             }
         })

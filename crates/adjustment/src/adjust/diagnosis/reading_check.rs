@@ -1,10 +1,10 @@
 //! Checks of a written reading against the model.
 
-use super::card_check::Card;
+use super::card_check::CardCheck;
 use super::cures::Refused;
-use super::misreadings::{Mistake, mistakes};
+use super::misreadings::{Misreading, find_misreadings};
 use super::refusal::Refusal;
-use super::vertical_check::{Vertical, swapped};
+use super::vertical_check::{VerticalCheck, find_swapped_axes};
 use crate::adjust::inputs::{BerthForm, FormError, ReadingForm};
 use crate::berth::{BerthEstimate, BerthReading, lambda_at_berth};
 use crate::binnacle::Binnacle;
@@ -34,38 +34,41 @@ impl ReadingForm {
             Ok((reading, estimate))
         });
         let (reading, estimate) = found.map_err(|error| {
-            let explain = self.mistakes(model, earth, variation, binnacle);
-            Box::new(Refusal::of_reading(&error, explain).with_cures())
+            let explain = self.explain(model, earth, variation, binnacle);
+            Box::new(Refusal::from_berth_error(&error, explain).with_cures())
         })?;
-        let card = |read_deg| Card::new(read_deg, &reading, earth, binnacle, model.constant_deg);
-        let card = self.compass_deg.map(card).filter(Card::is_refused);
+        let card =
+            |read_deg| CardCheck::new(read_deg, &reading, earth, binnacle, model.constant_deg);
+        let card = self.compass_deg.map(card).filter(CardCheck::is_refused);
         if let Some(card) = card {
             return Err(Box::new(Refusal::CardDisagrees(card).with_cures()));
         }
         let vertical = self.vertical();
-        let vertical = vertical.map(|read| Vertical::new(read, earth, binnacle));
+        let vertical = vertical.map(|read| VerticalCheck::new(read, earth, binnacle));
         match vertical.and_then(|vertical| vertical.refusal()) {
             Some(refusal) => Err(Box::new(refusal.with_cures())),
             None => Ok((reading, estimate)),
         }
     }
 
-    fn mistakes(
+    fn explain(
         &self,
         model: &Model,
         earth: EarthField,
         variation: Variation,
         binnacle: &Binnacle,
-    ) -> Vec<Mistake> {
+    ) -> Vec<Misreading> {
         let Ok(magnetic) = self.magnetic(variation) else {
             return Vec::new();
         };
         let (field_nt, unit) = (self.field_nt(), self.unit);
         let (errors, alignment) = (self.errors(), self.alignment());
-        let mut found = mistakes(model, earth, magnetic, field_nt, unit, errors, alignment);
+        let mut found = find_misreadings(model, earth, magnetic, field_nt, unit, errors, alignment);
         let reading = BerthReading::new(magnetic, field_nt, errors, alignment);
         if let (Ok(reading), Some(vertical)) = (reading, self.vertical()) {
-            found.extend(swapped(model, earth, &reading, vertical, binnacle));
+            found.extend(find_swapped_axes(
+                model, earth, &reading, vertical, binnacle,
+            ));
         }
         found
     }
@@ -73,23 +76,23 @@ impl ReadingForm {
 
 impl BerthForm {
     /// The mistakes each of which alone makes the reading fit the model, if there are any.
-    pub fn mistaken(&self, model: &Model, binnacle: &Binnacle) -> Option<FormError> {
-        self.reading.must_be_numbers().ok()?;
+    pub fn explain_misreadings(&self, model: &Model, binnacle: &Binnacle) -> Option<FormError> {
+        self.reading.check_ranges().ok()?;
         let (earth, variation) = self.field().ok()?;
         let refused = self
             .reading
             .check(model, earth, variation, binnacle)
             .err()?;
-        let mistakes = refused.refusal.mistakes();
+        let misreadings = refused.refusal.misreadings();
         let mut fields: Vec<String> = Vec::new();
-        for mistake in mistakes {
-            let field = format!("reading.{}", mistake.field());
+        for misreading in misreadings {
+            let field = format!("reading.{}", misreading.field());
             if !fields.contains(&field) {
                 fields.push(field);
             }
         }
-        let each: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
+        let each: Vec<String> = misreadings.iter().map(ToString::to_string).collect();
         let what = format!("it could be that {}", each.join(", or that "));
-        (!mistakes.is_empty()).then(|| FormError::new(fields.join(" or "), what))
+        (!misreadings.is_empty()).then(|| FormError::new(fields.join(" or "), what))
     }
 }

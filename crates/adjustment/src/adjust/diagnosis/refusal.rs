@@ -1,8 +1,8 @@
 //! Why there is no plan, and what would cure it.
 
-use super::card_check::Card;
-use super::lambda_comparison::Compared;
-use super::misreadings::Mistake;
+use super::card_check::CardCheck;
+use super::lambda_comparison::LambdaComparison;
+use super::misreadings::Misreading;
 use crate::berth::{BerthError, Consistency};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -27,24 +27,27 @@ pub enum Refusal {
         /// By how much.
         consistency: Consistency,
         /// Mistakes that alone would explain it.
-        mistakes: Vec<Mistake>,
+        #[serde(rename = "mistakes")]
+        misreadings: Vec<Misreading>,
     },
     /// The field at the berth is not as strong as any ship's.
     ImplausibleLambda {
         /// What it would make λ.
         lambda: f64,
         /// Mistakes that alone would explain it.
-        mistakes: Vec<Mistake>,
+        #[serde(rename = "mistakes")]
+        misreadings: Vec<Misreading>,
     },
     /// What was read is no field that a ship lies in.
     NoSuchField {
         /// What it would be.
         what: String,
         /// Mistakes that alone would explain it.
-        mistakes: Vec<Mistake>,
+        #[serde(rename = "mistakes")]
+        misreadings: Vec<Misreading>,
     },
     /// The compass did not read what the field read would turn it to.
-    CardDisagrees(Card),
+    CardDisagrees(CardCheck),
     /// The earth's field at the berth is too weak to steer by.
     FieldTooWeak {
         /// Its horizontal part, nT.
@@ -62,7 +65,8 @@ pub enum Refusal {
         /// What changes of the ship along the needle would do that, nT.
         along_nt: f64,
         /// Beside the earlier one.
-        compared: Compared,
+        #[serde(rename = "compared")]
+        comparison: LambdaComparison,
     },
     /// The berth has not shown whether the ship's magnetism is still the model's, and what that
     /// leaves open is too much.
@@ -90,7 +94,8 @@ pub enum Refusal {
         /// The greatest that is taken, band included.
         limit_deg: f64,
         /// The coefficient that most of it is.
-        mostly: Coefficient,
+        #[serde(rename = "mostly")]
+        dominant: Coefficient,
     },
     /// Spheres would have to be moved, and λ is too unsure to tell how far.
     MagnetometerTooPoor {
@@ -119,16 +124,16 @@ pub enum Coefficient {
 
 impl Refusal {
     /// Why a reading is not taken, and what alone would explain it.
-    pub(crate) fn of_reading(error: &BerthError, mistakes: Vec<Mistake>) -> Refusal {
+    pub(crate) fn from_berth_error(error: &BerthError, misreadings: Vec<Misreading>) -> Refusal {
         let what = error.to_string();
         match error {
             BerthError::Inconsistent(consistency) => Refusal::InconsistentBerth {
                 consistency: *consistency,
-                mistakes,
+                misreadings,
             },
             BerthError::Implausible(lambda) => Refusal::ImplausibleLambda {
                 lambda: *lambda,
-                mistakes,
+                misreadings,
             },
             BerthError::Reading {
                 name,
@@ -137,9 +142,9 @@ impl Refusal {
                 ..
             } => Refusal::NoSuchField {
                 what: too_strong(name, *value, *greatest).unwrap_or(what),
-                mistakes,
+                misreadings,
             },
-            BerthError::NothingRead => Refusal::NoSuchField { what, mistakes },
+            BerthError::NothingRead => Refusal::NoSuchField { what, misreadings },
             BerthError::NoDirectiveForce { .. } | BerthError::Model(_) | BerthError::Field(_) => {
                 Refusal::AmbiguousHeadings { what }
             }
@@ -147,11 +152,11 @@ impl Refusal {
     }
 
     /// The mistakes each of which alone would explain it.
-    pub fn mistakes(&self) -> &[Mistake] {
+    pub fn misreadings(&self) -> &[Misreading] {
         match self {
-            Refusal::InconsistentBerth { mistakes, .. }
-            | Refusal::ImplausibleLambda { mistakes, .. }
-            | Refusal::NoSuchField { mistakes, .. } => mistakes,
+            Refusal::InconsistentBerth { misreadings, .. }
+            | Refusal::ImplausibleLambda { misreadings, .. }
+            | Refusal::NoSuchField { misreadings, .. } => misreadings,
             _ => &[],
         }
     }

@@ -1,19 +1,19 @@
 //! Wording of refusals.
 
-use super::misreadings::Mistake;
+use super::misreadings::Misreading;
 use super::refusal::Refusal;
 use std::fmt;
 
 impl Refusal {
     /// What alone would explain it, in words, mistakes first.
-    pub fn could_be(&self) -> Vec<String> {
-        let mistakes = self.mistakes().iter().map(ToString::to_string);
+    pub fn explanations(&self) -> Vec<String> {
+        let misreadings = self.misreadings().iter().map(ToString::to_string);
         let suspects = match self {
             // A mistake that explains all of it leaves nothing to suspect the steel of.
             Refusal::InconsistentBerth {
                 consistency,
-                mistakes,
-            } if mistakes.is_empty() => consistency
+                misreadings,
+            } if misreadings.is_empty() => consistency
                 .suspects()
                 .iter()
                 .map(ToString::to_string)
@@ -21,19 +21,19 @@ impl Refusal {
             Refusal::CardDisagrees(card) => card.suspects(),
             _ => Vec::new(),
         };
-        mistakes.chain(suspects).collect()
+        misreadings.chain(suspects).collect()
     }
 
     /// What is wrong, without what could explain it.
-    pub fn found(&self) -> String {
+    pub fn summary(&self) -> String {
         match self {
             Refusal::InconsistentBerth { consistency, .. } => {
-                format!("the berth is inconsistent: {}", consistency.apart())
+                format!("the berth is inconsistent: {}", consistency.angle_summary())
             }
             Refusal::ImplausibleLambda { lambda, .. } => {
                 format!("the field read would make lambda {lambda:.3}")
             }
-            Refusal::CardDisagrees(card) => card.found(),
+            Refusal::CardDisagrees(card) => card.summary(),
             Refusal::NoSuchField { what, .. } => format!("no ship lies in such a field: {what}"),
             other => other.to_string(),
         }
@@ -41,7 +41,7 @@ impl Refusal {
 }
 
 /// A place in a sentence: the berth has no name of its own.
-pub(crate) fn said(place: &str) -> &str {
+pub(crate) fn place_text(place: &str) -> &str {
     match place {
         "berth" => "the berth",
         named => named,
@@ -50,8 +50,8 @@ pub(crate) fn said(place: &str) -> &str {
 
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let explained = |f: &mut fmt::Formatter<'_>, mistakes: &[Mistake]| {
-            mistakes
+        let explained = |f: &mut fmt::Formatter<'_>, misreadings: &[Misreading]| {
+            misreadings
                 .iter()
                 .try_for_each(|m| write!(f, "; it would fit if {m}"))
         };
@@ -68,21 +68,22 @@ impl fmt::Display for Refusal {
             }
             Refusal::InconsistentBerth {
                 consistency,
-                mistakes,
+                misreadings,
             } => {
-                let words = if mistakes.is_empty() {
-                    consistency.in_words()
+                let words = if misreadings.is_empty() {
+                    consistency.to_string()
                 } else {
-                    consistency.apart()
+                    consistency.angle_summary()
                 };
                 write!(f, "the berth is inconsistent: {words}")?;
-                explained(f, mistakes)
+                explained(f, misreadings)
             }
-            Refusal::ImplausibleLambda { mistakes, .. } | Refusal::NoSuchField { mistakes, .. } => {
-                f.write_str(&self.found())?;
-                explained(f, mistakes)
+            Refusal::ImplausibleLambda { misreadings, .. }
+            | Refusal::NoSuchField { misreadings, .. } => {
+                f.write_str(&self.summary())?;
+                explained(f, misreadings)
             }
-            Refusal::CardDisagrees(card) => f.write_str(&card.in_words()),
+            Refusal::CardDisagrees(card) => card.fmt(f),
             Refusal::FieldTooWeak { h_nt } => write!(
                 f,
                 "the earth's horizontal field at the berth, {h_nt:.0} nT, is too weak for a compass"
@@ -93,14 +94,14 @@ impl fmt::Display for Refusal {
             Refusal::OtherLambda {
                 lambda,
                 along_nt,
-                compared,
+                comparison,
             } => write!(
                 f,
                 "{}: the ship's magnetism has changed by {:.1} microtesla along the needle since \
                  the model, or a magnetometer's scale or place was another, or iron near the \
                  compass was altered: an entry of repair in the logbook since then, that says \
                  so, ends the comparison",
-                compared.apart(*lambda),
+                comparison.summary(*lambda),
                 along_nt / 1e3
             ),
             Refusal::BandTooWide {
@@ -111,19 +112,19 @@ impl fmt::Display for Refusal {
                 f,
                 "at {} the residual is known to {band_deg:.1} degrees only, of \
                  {limit_deg:.1} at most",
-                said(place)
+                place_text(place)
             ),
             Refusal::ResidualTooLarge {
                 place,
                 reach_deg,
                 worst_deg,
                 limit_deg,
-                mostly,
+                dominant,
             } => write!(
                 f,
                 "at {} the best setting found of the correctors on board leaves {worst_deg:.1} \
-                 degrees, {reach_deg:.1} with the band, of {limit_deg:.1} at most; most of it is {mostly}",
-                said(place)
+                 degrees, {reach_deg:.1} with the band, of {limit_deg:.1} at most; most of it is {dominant}",
+                place_text(place)
             ),
             Refusal::MagnetometerTooPoor { lambda_sd, limit } => write!(
                 f,

@@ -5,7 +5,7 @@
 //! What always holds: a reading that no ship makes is refused; one that few ships make, and
 //! a mistake would make usual, sets no magnets.
 
-use super::misreadings::Mistake;
+use super::misreadings::Misreading;
 use super::refusal::Refusal;
 use crate::adjust::inputs::{Unit, VerticalReading};
 use crate::berth::{BerthReading, lambda_at_berth};
@@ -23,25 +23,25 @@ const GREATEST_NT: f64 = 25_000.0;
 const INDUCED_SHARE: f64 = 0.15;
 
 /// What a vertical reading makes of the ship.
-pub(crate) struct Vertical {
+pub(crate) struct VerticalCheck {
     read_nt: f64,
     /// The earth's and the correctors' alone, nT.
     without_ship_nt: f64,
     induced_nt: f64,
-    mistakes: Vec<Mistake>,
+    misreadings: Vec<Misreading>,
 }
 
-impl Vertical {
+impl VerticalCheck {
     pub(crate) fn new(reading: VerticalReading, earth: EarthField, binnacle: &Binnacle) -> Self {
         let of_correctors = effect(binnacle, &binnacle.setting);
-        let mut vertical = Vertical {
+        let mut vertical = VerticalCheck {
             read_nt: reading.down_nt,
             without_ship_nt: (1.0 + of_correctors.chi[2][2]) * earth.z_nt + of_correctors.b_nt[2],
             induced_nt: INDUCED_SHARE * earth.z_nt.abs(),
-            mistakes: Vec::new(),
+            misreadings: Vec::new(),
         };
         if !vertical.is_usual(vertical.read_nt) {
-            vertical.mistakes = vertical.explanations();
+            vertical.misreadings = vertical.find_misreadings();
         }
         vertical
     }
@@ -56,23 +56,23 @@ impl Vertical {
         down_nt - self.without_ship_nt
     }
 
-    fn explanations(&self) -> Vec<Mistake> {
-        let mut mistakes = Vec::new();
+    fn find_misreadings(&self) -> Vec<Misreading> {
+        let mut misreadings = Vec::new();
         if self.is_usual(-self.read_nt) {
-            mistakes.push(Mistake::DownReversed);
+            misreadings.push(Misreading::DownReversed);
         }
         let units = Unit::ALL.map(Unit::nt);
         let ratios = units.iter().flat_map(|one| units.map(|other| one / other));
         let mut others = ratios.filter(|ratio| (ratio - 1.0).abs() > 1e-9);
         if others.any(|ratio| self.is_usual(ratio * self.read_nt)) {
-            mistakes.push(Mistake::DownInAnotherUnit);
+            misreadings.push(Misreading::DownInAnotherUnit);
         }
-        mistakes
+        misreadings
     }
 
     /// Whether heeling magnets may be set by it.
-    pub(crate) fn is_believed(&self) -> bool {
-        self.refusal().is_none() && self.mistakes.is_empty()
+    pub(crate) fn is_credible(&self) -> bool {
+        self.refusal().is_none() && self.misreadings.is_empty()
     }
 
     /// Why no plan rests on it.
@@ -84,13 +84,13 @@ impl Vertical {
         let what = format!(
             "{}; without a vertical part (down) the heeling magnets stay as found, and the rest \
              is planned",
-            self.found()
+            self.summary()
         );
-        let mistakes = self.mistakes.clone();
-        Some(Refusal::NoSuchField { what, mistakes })
+        let misreadings = self.misreadings.clone();
+        Some(Refusal::NoSuchField { what, misreadings })
     }
 
-    fn found(&self) -> String {
+    fn summary(&self) -> String {
         format!(
             "{:.1} microtesla down, where the earth and the correctors make {:.1}",
             self.read_nt / 1e3,
@@ -99,43 +99,43 @@ impl Vertical {
     }
 
     /// Why heeling magnets are not set by it, though the rest is planned.
-    pub(crate) fn doubts(&self) -> Option<String> {
-        if self.mistakes.is_empty() {
+    pub(crate) fn note(&self) -> Option<String> {
+        if self.misreadings.is_empty() {
             return None;
         }
-        let each: Vec<String> = self.mistakes.iter().map(ToString::to_string).collect();
+        let each: Vec<String> = self.misreadings.iter().map(ToString::to_string).collect();
         Some(format!(
             "the heeling magnets are left as found: the magnetometer read {}, which few ships \
              add to; it could be that {}: read again, or set them with a heeling-error instrument",
-            self.found(),
+            self.summary(),
             each.join(", or that ")
         ))
     }
 }
 
 /// Which of forward and starboard, with down in its place, makes a reading that fits.
-pub(crate) fn swapped(
+pub(crate) fn find_swapped_axes(
     model: &Model,
     earth: EarthField,
     reading: &BerthReading,
     vertical: VerticalReading,
     binnacle: &Binnacle,
-) -> Vec<Mistake> {
+) -> Vec<Misreading> {
     let [x, y] = reading.field_nt();
     let down_nt = vertical.down_nt;
     let fits = |field_nt: [f64; 2], down_nt: f64| {
         let (errors, alignment) = (reading.errors(), reading.alignment());
         let undone = BerthReading::new(reading.magnetic(), field_nt, errors, alignment);
         let found = undone.and_then(|undone| lambda_at_berth(model, earth, &undone));
-        let vertical = Vertical::new(VerticalReading { down_nt }, earth, binnacle);
+        let vertical = VerticalCheck::new(VerticalReading { down_nt }, earth, binnacle);
         found.is_ok() && vertical.is_usual(down_nt)
     };
-    let mut mistakes = Vec::new();
+    let mut misreadings = Vec::new();
     if fits([down_nt, y], x) {
-        mistakes.push(Mistake::ForwardDownSwapped);
+        misreadings.push(Misreading::ForwardDownSwapped);
     }
     if fits([x, down_nt], y) {
-        mistakes.push(Mistake::StarboardDownSwapped);
+        misreadings.push(Misreading::StarboardDownSwapped);
     }
-    mistakes
+    misreadings
 }

@@ -60,7 +60,7 @@ pub struct Circumstances {
     pub earlier_lambda: Option<EarlierLambda>,
     /// Whether the model has learnt from a reading at this berth: then its covariance has what
     /// may have become of the ship before it.
-    pub has_learnt_here: bool,
+    pub is_updated_here: bool,
 }
 
 /// λ as an earlier berth of the same compass told it.

@@ -7,7 +7,7 @@
 use super::adjustment::{Adjustment, Circumstances, Water};
 use super::limits::Limits;
 use super::reading_form::ReadingForm;
-use super::second_reading_form::AgainForm;
+use super::second_reading_form::SecondReadingForm;
 use super::vertical_reading::VerticalReading;
 use crate::berth::{BerthError, BerthReading};
 use crate::binnacle::Binnacle;
@@ -76,7 +76,7 @@ pub struct WaterForm {
 /// What was done at the berth after a plan, and what the magnetometer read then.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct AfterForm {
+pub struct PostCheckForm {
     /// Which of the plans was followed, from 1.
     #[serde(default = "recommended")]
     pub plan: usize,
@@ -85,7 +85,7 @@ pub struct AfterForm {
     #[serde(default)]
     pub turned_deg: Vec<Option<f64>>,
     /// What was read.
-    pub reading: AgainForm,
+    pub reading: SecondReadingForm,
 }
 
 fn recommended() -> usize {
@@ -156,13 +156,13 @@ impl BerthForm {
     ///
     /// # Errors
     /// Names the field that cannot be, or is missing.
-    pub fn read(&self) -> Result<Berth, FormError> {
+    pub fn parse(&self) -> Result<Berth, FormError> {
         let given = &self.reading;
         given
-            .must_be_numbers()
+            .check_ranges()
             .map_err(|error| FormError::new(format!("reading.{}", error.field), error.what))?;
         self.limits
-            .must_be_sane()
+            .check_ranges()
             .map_err(|error| FormError::new(format!("limits.{}", error.field), error.what))?;
         let (earth, variation) = self.field()?;
         let reading = given.reading(variation).map_err(|error| match &error {
@@ -206,7 +206,7 @@ impl BerthForm {
     ///
     /// # Errors
     /// Names the field of it that cannot be.
-    pub fn read_after(&self, after: &AfterForm) -> Result<Berth, FormError> {
+    pub fn parse_after(&self, after: &PostCheckForm) -> Result<Berth, FormError> {
         let reading = after.reading.as_reading(&self.reading);
         let reading = reading
             .map_err(|error| FormError::new(format!("reading.{}", error.field), error.what))?;
@@ -220,7 +220,7 @@ impl BerthForm {
             reading,
             ..self.clone()
         }
-        .read()
+        .parse()
     }
 
     pub(crate) fn field(&self) -> Result<(EarthField, Variation), FormError> {
@@ -247,13 +247,13 @@ impl BerthForm {
             }]);
         }
         let each = self.waters.iter().enumerate();
-        each.map(|(index, water)| water.read(index, self.reading.at))
+        each.map(|(index, water)| water.parse(index, self.reading.at))
             .collect()
     }
 }
 
 impl WaterForm {
-    fn read(&self, index: usize, time: Timestamp) -> Result<Water, FormError> {
+    fn parse(&self, index: usize, time: Timestamp) -> Result<Water, FormError> {
         let prefix = format!("waters[{index}].");
         let field = match (self.h_nt, self.z_nt, self.lat, self.lon) {
             (Some(h_nt), Some(z_nt), None, None) => earth(&prefix, h_nt, z_nt)?,

@@ -38,7 +38,7 @@ impl Limits {
     ///
     /// # Errors
     /// Names the limit.
-    pub fn must_be_sane(&self) -> Result<(), NumberError> {
+    pub fn check_ranges(&self) -> Result<(), NumberError> {
         for (field, value, least, greatest) in [
             ("residual_deg", self.residual_deg, 0.5, 5.0),
             ("band_deg", self.band_deg, 0.2, 4.0),

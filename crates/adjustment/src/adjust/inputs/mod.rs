@@ -15,12 +15,12 @@ mod number_error;
 mod validation;
 
 pub use adjustment::{Adjustment, Circumstances, EarlierLambda, Water};
-pub use berth_form::{AfterForm, Berth, BerthForm, FieldForm, FormError, WaterForm};
+pub use berth_form::{Berth, BerthForm, FieldForm, FormError, PostCheckForm, WaterForm};
 pub use error::AdjustError;
 pub use limits::Limits;
 pub use number_error::NumberError;
 pub use reading_form::{HeadingFrom, Magnetometer, ReadingForm};
-pub use second_reading_form::AgainForm;
+pub use second_reading_form::SecondReadingForm;
 pub use unit::Unit;
-pub(crate) use validation::check;
+pub(crate) use validation::validate;
 pub use vertical_reading::VerticalReading;

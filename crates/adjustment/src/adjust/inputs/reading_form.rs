@@ -139,7 +139,7 @@ impl ReadingForm {
     ///
     /// # Errors
     /// Names the field.
-    pub fn must_be_numbers(&self) -> Result<(), NumberError> {
+    pub fn check_ranges(&self) -> Result<(), NumberError> {
         let or_nil = |value: Option<f64>| value.unwrap_or(0.0);
         let usual = self.magnetometer.usual();
         // Whatever is claimed for it.
@@ -192,7 +192,7 @@ impl ReadingForm {
     /// When no ship has such a field.
     pub fn reading(&self, variation: Variation) -> Result<BerthReading, BerthError> {
         if let Some(vertical) = self.vertical() {
-            vertical.must_be_a_field()?;
+            vertical.check_range()?;
         }
         BerthReading::new(
             self.magnetic(variation)?,

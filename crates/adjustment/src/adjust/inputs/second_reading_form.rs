@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// lying the same way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct AgainForm {
+pub struct SecondReadingForm {
     /// When it was read.
     pub at: Timestamp,
     /// Horizontal field at the card's centre, bowl out, forward positive.
@@ -30,7 +30,7 @@ pub struct AgainForm {
     pub compass_deg: Option<f64>,
 }
 
-impl AgainForm {
+impl SecondReadingForm {
     /// The same as a reading of its own, all else as at the first one.
     ///
     /// # Errors
@@ -52,7 +52,7 @@ impl AgainForm {
             compass_deg: self.compass_deg,
             ..first.clone()
         };
-        reading.must_be_numbers()?;
+        reading.check_ranges()?;
         Ok(reading)
     }
 }

@@ -11,10 +11,10 @@ const MOST_WATERS: usize = 24;
 ///
 /// # Errors
 /// Names the first that cannot.
-pub(crate) fn check(adjustment: &Adjustment<'_>) -> Result<(), AdjustError> {
+pub(crate) fn validate(adjustment: &Adjustment<'_>) -> Result<(), AdjustError> {
     numbers(adjustment)?;
     if let Some(vertical) = &adjustment.vertical {
-        vertical.must_be_a_field()?;
+        vertical.check_range()?;
     }
     waters(adjustment.waters)?;
     if let Some(now) = adjustment.now {

@@ -11,7 +11,7 @@ pub struct VerticalReading {
 }
 
 impl VerticalReading {
-    pub(crate) fn must_be_a_field(self) -> Result<(), BerthError> {
+    pub(crate) fn check_range(self) -> Result<(), BerthError> {
         if (-200_000.0..=200_000.0).contains(&self.down_nt) {
             return Ok(());
         }

@@ -2,7 +2,7 @@
 
 use crate::adjust::diagnosis::turn_sd_deg;
 use crate::adjust::inputs::Adjustment;
-use crate::adjust::state::{Condition, errors_between};
+use crate::adjust::state::{MagneticState, errors_between};
 use crate::berth::Alignment;
 use crate::binnacle::Setting;
 use crate::corrector::{Effect, effect};
@@ -15,16 +15,16 @@ const LEAST_TOLERANCE_DEG: f64 = 0.5;
 /// What the compass reads at the berth with correctors of this effect, degrees.
 pub(crate) fn compass_at_berth(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     effect: &Effect,
 ) -> f64 {
     let reading = adjustment.reading;
     let aligned_deg = match reading.alignment() {
         Alignment::Keel => 0.0,
-        Alignment::AsFitted => condition.constant_deg(),
+        Alignment::AsFitted => state.constant_deg(),
     };
     let magnetic_deg = reading.magnetic().degrees() - aligned_deg;
-    let ship = condition.with_effect(effect, adjustment.earth.h_nt);
+    let ship = state.with_effect(effect, adjustment.earth.h_nt);
     let deviation = ship.deviation_rad(magnetic_deg.to_radians(), adjustment.earth);
     wrap_360(magnetic_deg - deviation.to_degrees())
 }
@@ -41,20 +41,20 @@ pub(crate) struct CompassTurn {
 /// Predicts the turn of the compass at the berth from one setting to another.
 pub(crate) fn compass_turn(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     before: &Setting,
     after: &Setting,
 ) -> CompassTurn {
-    let of = |effect: &Effect| compass_at_berth(adjustment, condition, effect);
-    let [old, new] = [before, after].map(|setting| effect(condition.binnacle, setting));
+    let of = |effect: &Effect| compass_at_berth(adjustment, state, effect);
+    let [old, new] = [before, after].map(|setting| effect(state.binnacle, setting));
     let shown = of(&new);
     let change = wrap_180(shown - of(&old));
-    let errors = errors_between(condition.binnacle, before, after);
+    let errors = errors_between(state.binnacle, before, after);
     let variance: f64 = errors
         .iter()
         .map(|error| wrap_180(of(&new.plus(error)) - shown).powi(2))
         .sum();
-    let of_lambda = change * condition.lambda_sd_share();
+    let of_lambda = change * state.lambda_sd_share();
     CompassTurn {
         change_deg: change,
         sd_deg: variance.sqrt().hypot(of_lambda),

@@ -19,29 +19,29 @@ pub use step::{Action, Corrector, Place, Step};
 
 use super::heeling;
 use super::inputs::Adjustment;
-use super::state::Condition;
+use super::state::MagneticState;
 use crate::binnacle::Setting;
 use crate::corrector::effect;
 use binnacle_compass::angle::wrap_360;
 use compass_turn::compass_at_berth;
 use sequence::{Movement, sequence};
-use wording::{retentive, words};
+use wording::{describe_movement, retentive_check};
 
 pub(crate) fn steps(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     to: &Setting,
 ) -> Vec<Step> {
     let start = adjustment.standing();
-    let first_deg = adjustment.compass_deg.unwrap_or_else(|| {
-        compass_at_berth(adjustment, condition, &effect(condition.binnacle, start))
-    });
+    let first_deg = adjustment
+        .compass_deg
+        .unwrap_or_else(|| compass_at_berth(adjustment, state, &effect(state.binnacle, start)));
     let mut steps = Vec::new();
     let mut before = start.clone();
     let mut shown_deg = first_deg;
-    for movement in sequence(condition, start, to) {
+    for movement in sequence(state, start, to) {
         let number = steps.len() as u32 + 1;
-        let step = step(adjustment, condition, number, movement, before, shown_deg);
+        let step = step(adjustment, state, number, movement, before, shown_deg);
         shown_deg = step.expected_compass_deg;
         before = step.setting_after.clone();
         steps.push(step);
@@ -51,7 +51,7 @@ pub(crate) fn steps(
 
 fn step(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     number: u32,
     movement: Movement,
     before: Setting,
@@ -63,7 +63,7 @@ fn step(
         to,
         setting_after: after,
     } = movement;
-    let turn = compass_turn(adjustment, condition, &before, &after);
+    let turn = compass_turn(adjustment, state, &before, &after);
     let change_deg = turn.change_deg;
     let tolerance_deg = tolerance_deg(turn.sd_deg, adjustment.earth.h_nt);
     let action = action(from.as_ref(), to.as_ref());
@@ -71,11 +71,11 @@ fn step(
         number,
         corrector,
         action,
-        words: words(condition, corrector, from.as_ref(), to.as_ref()),
+        words: describe_movement(state, corrector, from.as_ref(), to.as_ref()),
         check: match corrector {
-            Corrector::Heeling => heeling::check(adjustment, condition, &before, &after),
+            Corrector::Heeling => heeling::check_instruction(adjustment, state, &before, &after),
             // Iron that comes out needs no check of its retentive magnetism.
-            _ => to.as_ref().and_then(|_| retentive(corrector)),
+            _ => to.as_ref().and_then(|_| retentive_check(corrector)),
         },
         from,
         to,

@@ -126,7 +126,7 @@ pub(crate) fn replaced(
 
 impl Step {
     /// Whether what it moved is where it was to be by one setting, and not by another.
-    pub fn is_gainsaid(&self, taken: &Setting, said: &Setting) -> bool {
+    pub fn is_contradicted(&self, taken: &Setting, said: &Setting) -> bool {
         let is_done = |setting: &Setting| match (&self.to, &self.from) {
             (Some(to), _) => stands(setting, self.corrector, to),
             (None, Some(from)) => !stands(setting, self.corrector, from),

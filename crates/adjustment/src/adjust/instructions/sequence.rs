@@ -1,8 +1,8 @@
 //! Order of the movements of a plan.
 
 use super::step::{Corrector, Place};
-use crate::adjust::corrector_moves::matched;
-use crate::adjust::state::Condition;
+use crate::adjust::corrector_moves::match_trays;
+use crate::adjust::state::MagneticState;
 use crate::binnacle::{Axis, Setting, Tray};
 
 /// One movement of a corrector.
@@ -28,7 +28,7 @@ impl Movement {
 }
 
 /// Arranges the movements from one setting to another in an allowed order.
-pub(crate) fn sequence(condition: &Condition<'_>, from: &Setting, to: &Setting) -> Vec<Movement> {
+pub(crate) fn sequence(state: &MagneticState<'_>, from: &Setting, to: &Setting) -> Vec<Movement> {
     let mut all = Vec::new();
     let mut now = from.clone();
     if from.flinders != to.flinders {
@@ -48,7 +48,7 @@ pub(crate) fn sequence(condition: &Condition<'_>, from: &Setting, to: &Setting) 
     }
     let mut pending: Vec<(Axis, Option<Tray>, Option<Tray>)> = Vec::new();
     for axis in Axis::BOTH {
-        for (old, new) in matched(from.trays(axis), to.trays(axis)) {
+        for (old, new) in match_trays(from.trays(axis), to.trays(axis)) {
             if old != new {
                 pending.push((axis, old.cloned(), new.cloned()));
             }
@@ -59,7 +59,7 @@ pub(crate) fn sequence(condition: &Condition<'_>, from: &Setting, to: &Setting) 
     while !pending.is_empty() {
         let possible = pending.iter().position(|(axis, old, new)| {
             let after = replaced(&now, *axis, old.as_ref(), new.as_ref());
-            condition.binnacle.with_setting(after).is_ok()
+            state.binnacle.with_setting(after).is_ok()
         });
         let (axis, old, new) = if let Some(index) = possible {
             pending.remove(index)

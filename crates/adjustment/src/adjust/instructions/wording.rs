@@ -1,10 +1,10 @@
 //! Wording of the steps.
 
 use super::step::{Corrector, Place};
-use crate::adjust::state::Condition;
+use crate::adjust::state::MagneticState;
 use crate::binnacle::{Carrier, Side, Tray, nearly_equal};
 
-pub(crate) fn retentive(corrector: Corrector) -> Option<String> {
+pub(crate) fn retentive_check(corrector: Corrector) -> Option<String> {
     let words = match corrector {
         Corrector::Flinders => {
             "before it goes in, hold each piece upright beside the card, then the other end up: \
@@ -21,13 +21,13 @@ pub(crate) fn retentive(corrector: Corrector) -> Option<String> {
     Some(words.to_owned())
 }
 
-pub(crate) fn words(
-    condition: &Condition<'_>,
+pub(crate) fn describe_movement(
+    state: &MagneticState<'_>,
     corrector: Corrector,
     from: Option<&Place>,
     to: Option<&Place>,
 ) -> String {
-    let place = |place: &Place| said(condition, corrector, place);
+    let place = |place: &Place| describe_place(state, corrector, place);
     match (from.map(place), to.map(place)) {
         (Some(from), Some(to)) => format!("{corrector}: from {from} to {to}"),
         (None, Some(to)) => format!("{corrector}: fit {to}"),
@@ -36,8 +36,8 @@ pub(crate) fn words(
     }
 }
 
-fn said(condition: &Condition<'_>, corrector: Corrector, place: &Place) -> String {
-    let design = &condition.binnacle.design;
+fn describe_place(state: &MagneticState<'_>, corrector: Corrector, place: &Place) -> String {
+    let design = &state.binnacle.design;
     match place {
         Place::Magnets(tray) => {
             let rack = match corrector {
@@ -65,7 +65,7 @@ fn said(condition: &Condition<'_>, corrector: Corrector, place: &Place) -> Strin
             format!("{} at {} mm{slew}", pair.size, pair.mark_mm)
         }
         Place::Bar(bar) => {
-            let pieces = condition.binnacle.bar_lengths();
+            let pieces = state.binnacle.bar_lengths();
             let pieces = pieces.iter().find(|(l, _)| nearly_equal(*l, bar.length_mm));
             let pieces = pieces.map_or_else(Vec::new, |(_, pieces)| pieces.clone());
             let pieces: Vec<String> = pieces.iter().map(f64::to_string).collect();

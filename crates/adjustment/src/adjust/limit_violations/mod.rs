@@ -6,22 +6,22 @@
 
 mod spheres;
 
-use super::diagnosis::{Coefficient, Refusal, said};
+use super::diagnosis::{Coefficient, Refusal, place_text};
 use super::inputs::{Adjustment, Limits, Water};
 use super::prediction::{PredictedTable, counted};
-use super::state::Condition;
+use super::state::MagneticState;
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
 
 /// What is wrong with residuals foretold by a model.
-pub(crate) fn beyond_limits(
+pub(crate) fn find_violations(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     after: &[PredictedTable],
     model: &Model,
 ) -> Vec<Refusal> {
-    let found = beyond(after, model, &adjustment.limits, adjustment.waters);
+    let found = first_violation(after, model, &adjustment.limits, adjustment.waters);
     let is_by_band = match &found {
         Some(Refusal::BandTooWide { .. }) => true,
         Some(Refusal::ResidualTooLarge {
@@ -33,17 +33,17 @@ pub(crate) fn beyond_limits(
     };
     let mut refusals = match found {
         Some(too_large @ Refusal::ResidualTooLarge { .. }) => {
-            spheres::residual_too_large(adjustment, condition, after, too_large)
+            spheres::explain_large_residual(adjustment, state, after, too_large)
         }
         found => found.into_iter().collect(),
     };
-    if let Some(what) = condition.since.unchecked().filter(|_| is_by_band) {
+    if let Some(what) = state.drift.unchecked_note().filter(|_| is_by_band) {
         refusals.insert(0, Refusal::UncheckedBerth { what });
     }
     refusals
 }
 
-pub(crate) fn beyond(
+pub(crate) fn first_violation(
     after: &[PredictedTable],
     model: &Model,
     limits: &Limits,
@@ -53,7 +53,7 @@ pub(crate) fn beyond(
     for table in counted(after, waters) {
         let place = table.place.clone();
         let (Some(reach_deg), Some(worst_deg)) = (table.reach_deg, table.worst_deg) else {
-            let what = format!("compass headings are ambiguous at {}", said(&place));
+            let what = format!("compass headings are ambiguous at {}", place_text(&place));
             return Some(Refusal::AmbiguousHeadings { what });
         };
         let band_deg = table.widest_band_deg.unwrap_or(f64::INFINITY);
@@ -62,7 +62,7 @@ pub(crate) fn beyond(
             reach_deg,
             worst_deg,
             limit_deg: limits.residual_deg,
-            mostly: mostly(model, table),
+            dominant: dominant_coefficient(model, table),
         };
         if worst_deg > limits.residual_deg {
             // No band is narrow enough for that.
@@ -82,7 +82,7 @@ pub(crate) fn beyond(
 }
 
 /// The greatest of the exact coefficients, the model's constant with A.
-fn mostly(model: &Model, table: &PredictedTable) -> Coefficient {
+fn dominant_coefficient(model: &Model, table: &PredictedTable) -> Coefficient {
     let earth = EarthField {
         h_nt: table.h_nt,
         z_nt: table.z_nt,

@@ -4,24 +4,24 @@ use crate::adjust::diagnosis::Refusal;
 use crate::adjust::inputs::Adjustment;
 use crate::adjust::prediction::{self, PredictedTable};
 use crate::adjust::search;
-use crate::adjust::state::Condition;
+use crate::adjust::state::MagneticState;
 
 /// What the search takes a water for where headings are ambiguous, degrees.
 const AMBIGUOUS_DEG: f64 = 90.0;
 
 /// Why the residual is too large: where spheres on board would lessen it, had they not to
 /// stay because λ is too unsure, that is the magnetometer's and no corrector's.
-pub(crate) fn residual_too_large(
+pub(crate) fn explain_large_residual(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     after: &[PredictedTable],
     too_large: Refusal,
 ) -> Vec<Refusal> {
     let limits = &adjustment.limits;
-    if condition.may_move_pair || condition.binnacle.design.quadrantal.is_none() {
+    if state.may_move_pair || state.binnacle.design.quadrantal.is_none() {
         return vec![too_large];
     }
-    let free = condition.with_free_spheres();
+    let free = state.with_free_spheres();
     let front = search::search(adjustment, &free);
     let Some(&best) = front.undominated().last() else {
         return vec![too_large];
@@ -30,7 +30,7 @@ pub(crate) fn residual_too_large(
         return vec![too_large];
     }
     let poor = Refusal::MagnetometerTooPoor {
-        lambda_sd: condition.lambda_sd_share(),
+        lambda_sd: state.lambda_sd_share(),
         limit: limits.lambda_sd,
     };
     // The band is wide by λ, which a better magnetometer tells: the residual alone counts.

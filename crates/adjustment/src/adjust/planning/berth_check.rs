@@ -1,7 +1,7 @@
 //! What the berth told, and what can be seen on its heading.
 
 use crate::adjust::inputs::Adjustment;
-use crate::adjust::state::Condition;
+use crate::adjust::state::MagneticState;
 use crate::berth::{Consistency, Estimated, USUAL_LAMBDA, Verdict};
 use serde::{Deserialize, Serialize};
 
@@ -19,12 +19,12 @@ pub struct BerthCheck {
     pub consistency: Consistency,
     /// What part of each coefficient's deviation the compass shows on this heading: how
     /// well a step can be checked on the spot.
-    pub seen: Seen,
+    pub seen: HeadingVisibility,
 }
 
 /// Parts of the coefficients' deviations that a heading shows, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Seen {
+pub struct HeadingVisibility {
     /// Of B: fore-and-aft magnets and the Flinders bar.
     pub b: f64,
     /// Of C: athwartship magnets.
@@ -36,13 +36,13 @@ pub struct Seen {
 }
 
 impl BerthCheck {
-    pub(crate) fn new(adjustment: &Adjustment<'_>, condition: &Condition<'_>) -> BerthCheck {
+    pub(crate) fn new(adjustment: &Adjustment<'_>, state: &MagneticState<'_>) -> BerthCheck {
         let (sin, cos) = adjustment.reading.magnetic().radians().sin_cos();
         BerthCheck {
-            lambda: condition.estimate.lambda,
-            lambda_sd: condition.lambda_sd_share(),
-            consistency: condition.estimate.consistency,
-            seen: Seen {
+            lambda: state.estimate.lambda,
+            lambda_sd: state.lambda_sd_share(),
+            consistency: state.estimate.consistency,
+            seen: HeadingVisibility {
                 b: sin.abs(),
                 c: cos.abs(),
                 d: (2.0 * sin * cos).abs(),
@@ -52,12 +52,12 @@ impl BerthCheck {
     }
 
     /// What the adjuster should know of it.
-    pub(crate) fn in_words(&self) -> Vec<String> {
+    pub(crate) fn notes(&self) -> Vec<String> {
         let mut words = Vec::new();
         if self.consistency.verdict == Verdict::Loose {
             words.push(format!(
                 "the berth has checked little: {}",
-                self.consistency.in_words()
+                self.consistency
             ));
         }
         let lambda = self.lambda.value;
@@ -69,7 +69,7 @@ impl BerthCheck {
                  plan errs in proportion; read again before anything is moved"
             ));
         }
-        let Seen { b, c, d, e } = self.seen;
+        let HeadingVisibility { b, c, d, e } = self.seen;
         for (seen, what) in [
             (b, "fore-and-aft magnets and the Flinders bar"),
             (c, "athwartship magnets"),

@@ -4,17 +4,17 @@ mod berth_check;
 mod notes;
 mod outcome;
 
-pub use berth_check::{BerthCheck, Seen};
+pub use berth_check::{BerthCheck, HeadingVisibility};
 pub use outcome::{Outcome, Plan};
 
-use super::diagnosis::{Card, Refusal, beforehand, of_berth};
+use super::diagnosis::{CardCheck, Refusal, check_preconditions, refuse_berth};
 use super::heeling;
 use super::inputs::{self, AdjustError, Adjustment};
 use super::instructions;
-use super::limit_violations::beyond_limits;
+use super::limit_violations::find_violations;
 use super::prediction;
-use super::search::{self, Found, Front};
-use super::state::Condition;
+use super::search::{self, BestSetting, ParetoFront};
+use super::state::MagneticState;
 use crate::binnacle::Setting;
 
 /// The best few ways to set the correctors, or why there is none.
@@ -23,34 +23,40 @@ use crate::binnacle::Setting;
 /// When something given cannot be. An inconsistent berth, a model too old and the like
 /// are no errors but refusals.
 pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
-    inputs::check(adjustment)?;
-    let mut refusals = beforehand(adjustment);
-    let condition = match Condition::new(adjustment) {
-        Ok(condition) => condition,
+    inputs::validate(adjustment)?;
+    let mut refusals = check_preconditions(adjustment);
+    let state = match MagneticState::new(adjustment) {
+        Ok(state) => state,
         Err(AdjustError::Berth(error)) => {
-            refusals.push(of_berth(adjustment, error)?);
-            return Ok(refused(None, refusals));
+            refusals.push(refuse_berth(adjustment, error)?);
+            return Ok(refused_outcome(None, refusals));
         }
         Err(error) => return Err(error),
     };
-    let berth = BerthCheck::new(adjustment, &condition);
+    let berth = BerthCheck::new(adjustment, &state);
     let card = adjustment.card();
-    refusals.extend(card.filter(Card::is_refused).map(Refusal::CardDisagrees));
-    refusals.extend(condition.since.refusal());
-    let vertical = adjustment.vertical_judged();
+    refusals.extend(
+        card.filter(CardCheck::is_refused)
+            .map(Refusal::CardDisagrees),
+    );
+    refusals.extend(state.drift.refusal());
+    let vertical = adjustment.vertical_check();
     refusals.extend(vertical.and_then(|vertical| vertical.refusal()));
     if !refusals.is_empty() {
-        return Ok(refused(Some(berth), refusals));
+        return Ok(refused_outcome(Some(berth), refusals));
     }
-    let front = search::search(adjustment, &condition);
+    let front = search::search(adjustment, &state);
     let mut plans = Vec::new();
-    for found in chosen(&front, adjustment.limits.near_equal_deg) {
-        let plan = whole(adjustment, &condition, found)?;
-        if plan.beyond(&adjustment.limits, adjustment.waters).is_none() {
+    for found in choose_plans(&front, adjustment.limits.near_equal_deg) {
+        let plan = complete_plan(adjustment, &state, found)?;
+        if plan
+            .limit_violation(&adjustment.limits, adjustment.waters)
+            .is_none()
+        {
             plans.push(plan);
         } else if refusals.is_empty() {
             // Of the plan that would be recommended.
-            refusals = beyond_limits(adjustment, &condition, &plan.after, &plan.model_after);
+            refusals = find_violations(adjustment, &state, &plan.after, &plan.model_after);
         }
     }
     // What is beyond the limits is no alternative either.
@@ -58,11 +64,11 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
         return Ok(Outcome {
             notes: notes::left_out(&front.optimality).into_iter().collect(),
             optimality: Some(front.optimality),
-            ..refused(Some(berth), refusals)
+            ..refused_outcome(Some(berth), refusals)
         });
     }
     Ok(Outcome {
-        notes: notes::notes(adjustment, &condition, &berth, &plans, &front.optimality),
+        notes: notes::notes(adjustment, &state, &berth, &plans, &front.optimality),
         berth: Some(berth),
         refusals: Vec::new(),
         plans,
@@ -70,7 +76,7 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
     })
 }
 
-fn refused(berth: Option<BerthCheck>, refusals: Vec<Refusal>) -> Outcome {
+fn refused_outcome(berth: Option<BerthCheck>, refusals: Vec<Refusal>) -> Outcome {
     Outcome {
         berth,
         refusals: refusals.into_iter().map(Refusal::with_cures).collect(),
@@ -85,7 +91,7 @@ const PLANS: usize = 5;
 
 /// The fewest moves among near-equals first, then what is better for more moves, then
 /// what is cheaper.
-fn chosen(front: &Front, near_equal_deg: f64) -> Vec<&Found> {
+fn choose_plans(front: &ParetoFront, near_equal_deg: f64) -> Vec<&BestSetting> {
     let found = front.undominated();
     let Some(best) = found.last() else {
         return Vec::new();
@@ -100,24 +106,24 @@ fn chosen(front: &Front, near_equal_deg: f64) -> Vec<&Found> {
     order
 }
 
-fn whole(
+fn complete_plan(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
-    found: &Found,
+    state: &MagneticState<'_>,
+    found: &BestSetting,
 ) -> Result<Plan, AdjustError> {
-    let tables = |setting: &Setting| prediction::tables(adjustment, condition, setting);
+    let tables = |setting: &Setting| prediction::tables(adjustment, state, setting);
     let after = tables(&found.setting)?;
     let widest = after.iter().filter_map(|table| table.widest_band_deg);
     Ok(Plan {
         moves: found.moves,
         worst_residual_deg: found.worst_deg,
         widest_band_deg: widest.fold(0.0, f64::max),
-        lambda: condition.lambda_with(&found.setting),
+        lambda: state.lambda_with(&found.setting),
         before: tables(&adjustment.binnacle.setting)?,
         after,
-        heeling: heeling::said(adjustment, condition, &found.setting),
-        steps: instructions::steps(adjustment, condition, &found.setting),
-        model_after: condition.model_with(&found.setting)?,
+        heeling: heeling::heeling_plan(adjustment, state, &found.setting),
+        steps: instructions::steps(adjustment, state, &found.setting),
+        model_after: state.model_with(&found.setting)?,
         setting: found.setting.clone(),
     })
 }

@@ -2,28 +2,28 @@
 
 use super::berth_check::BerthCheck;
 use super::outcome::Plan;
-use crate::adjust::diagnosis::{friction_deg, unseen};
+use crate::adjust::diagnosis::{friction_deg, undetectable_misreadings};
 use crate::adjust::inputs::Adjustment;
 use crate::adjust::search::Optimality;
-use crate::adjust::state::Condition;
+use crate::adjust::state::MagneticState;
 use binnacle_compass::ship::CAUTION_H_NT;
 
 /// All of it, the gravest first.
 pub(crate) fn notes(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     berth: &BerthCheck,
     plans: &[Plan],
     optimality: &Optimality,
 ) -> Vec<String> {
     let mut notes: Vec<String> = only_here(adjustment, plans).into_iter().collect();
-    notes.extend(berth.in_words());
-    let shows_from_deg = berth.consistency.shows_from_deg();
-    notes.extend(condition.since.in_words(shows_from_deg));
-    let unseen = unseen(adjustment.model, adjustment.earth, adjustment.reading);
-    notes.extend(unseen.iter().map(|mistake| {
+    notes.extend(berth.notes());
+    let detectable_turn_deg = berth.consistency.detectable_turn_deg();
+    notes.extend(state.drift.notes(detectable_turn_deg));
+    let unseen = undetectable_misreadings(adjustment.model, adjustment.earth, adjustment.reading);
+    notes.extend(unseen.iter().map(|misreading| {
         format!(
-            "this heading cannot show whether {mistake}: the reading fits either way, and lambda \
+            "this heading cannot show whether {misreading}: the reading fits either way, and lambda \
              hardly differs"
         )
     }));
@@ -44,14 +44,14 @@ pub(crate) fn notes(
         ));
     }
     let card = adjustment.card().filter(|card| !card.agrees());
-    notes.extend(card.map(|card| card.in_words()));
-    if !condition.may_move_pair && adjustment.binnacle.design.quadrantal.is_some() {
+    notes.extend(card.map(|card| card.to_string()));
+    if !state.may_move_pair && adjustment.binnacle.design.quadrantal.is_some() {
         notes.push(format!(
             "spheres are left as found: lambda is sure only to {:.1} per cent",
-            100.0 * condition.lambda_sd_share()
+            100.0 * state.lambda_sd_share()
         ));
     }
-    if !condition.may_move_bar && adjustment.binnacle.design.flinders.is_some() {
+    if !state.may_move_bar && adjustment.binnacle.design.flinders.is_some() {
         notes.push(
             "the Flinders bar is left as found: the model does not tell chi13 from bx".to_owned(),
         );
@@ -64,8 +64,8 @@ pub(crate) fn notes(
     }
     notes.extend(
         adjustment
-            .vertical_judged()
-            .and_then(|vertical| vertical.doubts()),
+            .vertical_check()
+            .and_then(|vertical| vertical.note()),
     );
     notes.extend(heeling_left(plans));
     notes.extend(left_out(optimality));

@@ -5,7 +5,7 @@ use crate::adjust::diagnosis::{Refusal, Refused};
 use crate::adjust::heeling::HeelingPlan;
 use crate::adjust::inputs::{Limits, Water};
 use crate::adjust::instructions::Step;
-use crate::adjust::limit_violations::beyond;
+use crate::adjust::limit_violations::first_violation;
 use crate::adjust::prediction::PredictedTable;
 use crate::adjust::search::Optimality;
 use crate::binnacle::Setting;
@@ -57,7 +57,7 @@ impl Plan {
     /// Which of these limits it breaks in these waters, with what would cure that; nothing
     /// that [`crate::adjust::plan`] offers breaks those it was asked for.
     #[must_use]
-    pub fn beyond(&self, limits: &Limits, waters: &[Water]) -> Option<Refused> {
-        beyond(&self.after, &self.model_after, limits, waters).map(Refusal::with_cures)
+    pub fn limit_violation(&self, limits: &Limits, waters: &[Water]) -> Option<Refused> {
+        first_violation(&self.after, &self.model_after, limits, waters).map(Refusal::with_cures)
     }
 }

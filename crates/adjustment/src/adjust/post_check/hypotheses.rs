@@ -5,13 +5,13 @@
 //! its step, where it was read, and the magnetometer afterwards raise or lower it. A place
 //! that something was moved to again later raises no doubt any more.
 
-use super::innovation::{Cause, EIGHT, Eight, News, Nt};
-use super::result::{Done, Slip};
+use super::innovation::{FieldVector, Innovation, MODEL_SIZE, ModelVector, Perturbation};
+use super::result::{CompletedStep, Slip};
 use crate::adjust::inputs::Adjustment;
 use crate::adjust::instructions::{
     Corrector, Place, compass_turn, moved, replaced, reversed, stands,
 };
-use crate::adjust::state::{Condition, Known};
+use crate::adjust::state::{MagneticState, StateWithSetting};
 use crate::binnacle::{Axis, Setting, Tray};
 use crate::corrector::{Effect, Iron, effect, tray_effect};
 use binnacle_compass::angle::wrap_180;
@@ -29,39 +29,39 @@ const OTHER_MOMENT: f64 = 0.2;
 /// By so much, as a share of it.
 const MOMENT_SD: f64 = 0.2;
 /// That there is something else.
-const ELSEWHERE: f64 = 0.01;
+const OTHER_FIELD: f64 = 0.01;
 /// Of this size along each axis, nT.
-const ELSEWHERE_NT: f64 = 2_000.0;
+const OTHER_FIELD_NT: f64 = 2_000.0;
 
 /// One way in which the ship may be other than planned, or none.
-pub(crate) struct Doubt {
-    pub(crate) what: What,
+pub(crate) struct Hypothesis {
+    pub(crate) kind: HypothesisKind,
     /// Logarithm of the belief beforehand.
     log_prior: f64,
-    shift: Option<Cause>,
-    wider: Vec<Cause>,
+    shift: Option<Perturbation>,
+    extra_errors: Vec<Perturbation>,
 }
 
 /// What is doubted.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum What {
+pub(crate) enum HypothesisKind {
     /// Nothing.
-    Nothing,
+    AsPlanned,
     /// A step, and how the correctors would stand.
     Step(u32, Slip, Setting),
     /// The moment of a kind of magnet.
     Moment(String),
     /// Something that none of the others is.
-    Elsewhere,
+    OtherField,
 }
 
 /// What is left of a doubt after the reading, and what the model then is.
-pub(crate) struct Weighed {
-    pub(crate) what: What,
+pub(crate) struct Posterior {
+    pub(crate) kind: HypothesisKind,
     /// Share of belief.
     pub(crate) share: f64,
-    pub(crate) correction: Eight,
-    pub(crate) covariance: SMatrix<f64, EIGHT, EIGHT>,
+    pub(crate) correction: ModelVector,
+    pub(crate) covariance: SMatrix<f64, MODEL_SIZE, MODEL_SIZE>,
     /// How far the reading is off even so, in squared standard errors.
     pub(crate) squared: f64,
 }
@@ -69,156 +69,169 @@ pub(crate) struct Weighed {
 /// All doubts as the compass alone leaves them, but for what no step has to do with.
 pub(crate) fn weigh_by_compass(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
-    known: &Known<'_>,
-    news: &News,
-    done: &[Done],
-) -> Vec<Weighed> {
+    state: &MagneticState<'_>,
+    known: &StateWithSetting<'_>,
+    innovation: &Innovation,
+    done: &[CompletedStep],
+) -> Vec<Posterior> {
     let covariance = covariance(known);
-    let doubts = doubts(adjustment, condition, known, news, done).into_iter();
-    let doubts = doubts.filter(|doubt| doubt.what != What::Elsewhere);
-    shared(doubts.map(|doubt| doubt.unread(&covariance)).collect())
+    let hypotheses = hypotheses(adjustment, state, known, innovation, done).into_iter();
+    let hypotheses = hypotheses.filter(|hypothesis| hypothesis.kind != HypothesisKind::OtherField);
+    normalise(
+        hypotheses
+            .map(|hypothesis| hypothesis.without_reading(&covariance))
+            .collect(),
+    )
 }
 
 /// All doubts as the reading leaves them; shares add up to one.
-pub(crate) fn weigh(
+pub(crate) fn weigh_hypotheses(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
-    known: &Known<'_>,
-    news: &News,
-    done: &[Done],
-) -> Vec<Weighed> {
+    state: &MagneticState<'_>,
+    known: &StateWithSetting<'_>,
+    innovation: &Innovation,
+    done: &[CompletedStep],
+) -> Vec<Posterior> {
     let covariance = covariance(known);
-    let doubts = doubts(adjustment, condition, known, news, done);
-    let found: Vec<(f64, Weighed)> = doubts
+    let hypotheses = hypotheses(adjustment, state, known, innovation, done);
+    let found: Vec<(f64, Posterior)> = hypotheses
         .into_iter()
-        .filter_map(|doubt| doubt.weighed(news, &covariance))
+        .filter_map(|hypothesis| hypothesis.posterior(innovation, &covariance))
         .collect();
-    shared(found)
+    normalise(found)
 }
 
 /// Of what is foretold.
-fn covariance(known: &Known<'_>) -> SMatrix<f64, EIGHT, EIGHT> {
+fn covariance(known: &StateWithSetting<'_>) -> SMatrix<f64, MODEL_SIZE, MODEL_SIZE> {
     let covariance = known.model.covariance.unwrap_or_default();
     SMatrix::from_fn(|r, c| covariance[r][c])
 }
 
 /// Shares of belief by its logarithms.
-fn shared(found: Vec<(f64, Weighed)>) -> Vec<Weighed> {
+fn normalise(found: Vec<(f64, Posterior)>) -> Vec<Posterior> {
     let likeliest = found
         .iter()
         .map(|(log, _)| *log)
         .fold(f64::NEG_INFINITY, f64::max);
     let sum: f64 = found.iter().map(|(log, _)| (log - likeliest).exp()).sum();
-    let shared = found.into_iter().map(|(log, weighed)| Weighed {
+    let normalised = found.into_iter().map(|(log, posterior)| Posterior {
         share: (log - likeliest).exp() / sum,
-        ..weighed
+        ..posterior
     });
-    shared.collect()
+    normalised.collect()
 }
 
-impl Doubt {
+impl Hypothesis {
     /// The same where the field was not read.
-    fn unread(self, covariance: &SMatrix<f64, EIGHT, EIGHT>) -> (f64, Weighed) {
-        let wider = self.wider.iter().map(|cause| cause.of_model);
-        let weighed = Weighed {
-            what: self.what,
+    fn without_reading(
+        self,
+        covariance: &SMatrix<f64, MODEL_SIZE, MODEL_SIZE>,
+    ) -> (f64, Posterior) {
+        let extra_errors = self
+            .extra_errors
+            .iter()
+            .map(|perturbation| perturbation.of_model);
+        let posterior = Posterior {
+            kind: self.kind,
             share: 0.0,
-            correction: self.shift.map_or_else(Eight::zeros, |shift| shift.of_model),
-            covariance: wider.fold(*covariance, |sum, way| sum + way * way.transpose()),
+            correction: self
+                .shift
+                .map_or_else(ModelVector::zeros, |shift| shift.of_model),
+            covariance: extra_errors.fold(*covariance, |sum, way| sum + way * way.transpose()),
             squared: 0.0,
         };
-        (self.log_prior, weighed)
+        (self.log_prior, posterior)
     }
 
     /// Its belief as a logarithm, and what it makes of the model.
-    fn weighed(
+    fn posterior(
         self,
-        news: &News,
-        covariance: &SMatrix<f64, EIGHT, EIGHT>,
-    ) -> Option<(f64, Weighed)> {
-        let nothing = Cause {
-            of_reading: Nt::zeros(),
-            of_model: Eight::zeros(),
+        innovation: &Innovation,
+        covariance: &SMatrix<f64, MODEL_SIZE, MODEL_SIZE>,
+    ) -> Option<(f64, Posterior)> {
+        let nothing = Perturbation {
+            of_reading: FieldVector::zeros(),
+            of_model: ModelVector::zeros(),
         };
         let shift = self.shift.unwrap_or(nothing);
-        let (mut spread, mut together, mut covariance) = (news.spread, news.together, *covariance);
-        for cause in &self.wider {
-            spread += cause.of_reading * cause.of_reading.transpose();
-            together += cause.of_model * cause.of_reading.transpose();
-            covariance += cause.of_model * cause.of_model.transpose();
+        let (mut spread, mut cross_covariance, mut covariance) =
+            (innovation.spread, innovation.cross_covariance, *covariance);
+        for perturbation in &self.extra_errors {
+            spread += perturbation.of_reading * perturbation.of_reading.transpose();
+            cross_covariance += perturbation.of_model * perturbation.of_reading.transpose();
+            covariance += perturbation.of_model * perturbation.of_model.transpose();
         }
         let spread = spread.cholesky()?;
-        let off = news.off() - shift.of_reading;
-        let solved = spread.solve(&off);
-        let squared = off.dot(&solved);
+        let difference = innovation.difference() - shift.of_reading;
+        let solved = spread.solve(&difference);
+        let squared = difference.dot(&solved);
         let size: f64 = spread.l_dirty().diagonal().iter().map(|d| d.ln()).sum();
-        let gain = spread.solve(&together.transpose()).transpose();
-        let weighed = Weighed {
-            what: self.what,
+        let gain = spread.solve(&cross_covariance.transpose()).transpose();
+        let posterior = Posterior {
+            kind: self.kind,
             share: 0.0,
-            correction: shift.of_model + together * solved,
-            covariance: covariance - gain * together.transpose(),
+            correction: shift.of_model + cross_covariance * solved,
+            covariance: covariance - gain * cross_covariance.transpose(),
             squared,
         };
-        Some((self.log_prior - squared / 2.0 - size, weighed))
+        Some((self.log_prior - squared / 2.0 - size, posterior))
     }
 }
 
-fn doubts(
+fn hypotheses(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
-    known: &Known<'_>,
-    news: &News,
-    done: &[Done],
-) -> Vec<Doubt> {
-    let mut doubts = vec![Doubt::of(What::Nothing, 1.0)];
-    let mut seen: Vec<&Place> = Vec::new();
+    state: &MagneticState<'_>,
+    known: &StateWithSetting<'_>,
+    innovation: &Innovation,
+    done: &[CompletedStep],
+) -> Vec<Hypothesis> {
+    let mut hypotheses = vec![Hypothesis::new(HypothesisKind::AsPlanned, 1.0)];
+    let mut places: Vec<&Place> = Vec::new();
     for (index, done) in done.iter().enumerate().rev() {
         let number = index as u32 + 1;
         let to = done.step.to.as_ref();
         let stands = to.is_none_or(|to| stands(&known.setting, done.step.corrector, to));
-        if !stands || to.is_some_and(|to| seen.contains(&to)) {
+        if !stands || to.is_some_and(|to| places.contains(&to)) {
             continue;
         }
-        seen.extend(to);
-        let of_step = of_step(adjustment, condition, known, news, number, done);
-        doubts.extend(of_step);
+        places.extend(to);
+        let of_step = step_hypotheses(adjustment, state, known, innovation, number, done);
+        hypotheses.extend(of_step);
     }
-    for kind in moved_kinds(condition, known) {
+    for kind in moved_kinds(state, known) {
         let more = Effect::default();
-        let more = more.plus(&magnets(condition, &known.setting, &kind));
-        let more = more.less(&magnets(condition, &condition.binnacle.setting, &kind));
+        let more = more.plus(&magnets(state, &known.setting, &kind));
+        let more = more.less(&magnets(state, &state.binnacle.setting, &kind));
         let (off, sd, log_shown) = moment_shown(done, &kind);
-        doubts.push(Doubt {
-            shift: Some(news.cause(known, &more.times(off))),
-            wider: vec![news.cause(known, &more.times(sd))],
+        hypotheses.push(Hypothesis {
+            shift: Some(innovation.perturbation(known, &more.times(off))),
+            extra_errors: vec![innovation.perturbation(known, &more.times(sd))],
             log_prior: OTHER_MOMENT.ln() + log_shown,
-            ..Doubt::of(What::Moment(kind), OTHER_MOMENT)
+            ..Hypothesis::new(HypothesisKind::Moment(kind), OTHER_MOMENT)
         });
     }
     let along = |axis: usize| {
         let mut effect = Effect::default();
-        effect.b_nt[axis] = ELSEWHERE_NT;
-        news.cause(known, &effect)
+        effect.b_nt[axis] = OTHER_FIELD_NT;
+        innovation.perturbation(known, &effect)
     };
-    doubts.push(Doubt {
-        wider: vec![along(0), along(1), along(2)],
-        ..Doubt::of(What::Elsewhere, ELSEWHERE)
+    hypotheses.push(Hypothesis {
+        extra_errors: vec![along(0), along(1), along(2)],
+        ..Hypothesis::new(HypothesisKind::OtherField, OTHER_FIELD)
     });
-    doubts
+    hypotheses
 }
 
 /// What the compass showed of another moment of a kind at the steps with it: the share by
 /// which it is off and the standard deviation of that, and the logarithm of how much better
 /// that explains the turns than the moment that is said.
-fn moment_shown(done: &[Done], kind: &str) -> (f64, f64, f64) {
+fn moment_shown(done: &[CompletedStep], kind: &str) -> (f64, f64, f64) {
     let of_kind = |place: &Option<Place>| match place {
         Some(Place::Magnets(tray)) => tray.magnet == kind,
         _ => true,
     };
     let (mut weight, mut sum) = (1.0 / MOMENT_SD.powi(2), 0.0);
-    for Done { step, turned_deg } in done {
+    for CompletedStep { step, turned_deg } in done {
         let magnets = matches!(
             step.corrector,
             Corrector::ForeAndAft | Corrector::Athwartship
@@ -241,26 +254,26 @@ fn moment_shown(done: &[Done], kind: &str) -> (f64, f64, f64) {
     (off, weight.sqrt().recip(), log_shown)
 }
 
-impl Doubt {
-    fn of(what: What, prior: f64) -> Doubt {
-        Doubt {
-            what,
+impl Hypothesis {
+    fn new(kind: HypothesisKind, prior: f64) -> Hypothesis {
+        Hypothesis {
+            kind,
             log_prior: prior.ln(),
             shift: None,
-            wider: Vec::new(),
+            extra_errors: Vec::new(),
         }
     }
 }
 
 /// What may have gone wrong with one step.
-fn of_step(
+fn step_hypotheses(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
-    known: &Known<'_>,
-    news: &News,
+    state: &MagneticState<'_>,
+    known: &StateWithSetting<'_>,
+    innovation: &Innovation,
     number: u32,
-    done: &Done,
-) -> Vec<Doubt> {
+    done: &CompletedStep,
+) -> Vec<Hypothesis> {
     let step = &done.step;
     let to = step.to.as_ref();
     let mut others: Vec<(Slip, f64, Option<Place>)> =
@@ -275,32 +288,32 @@ fn of_step(
             }
         }
     }
-    let doubt = |(slip, prior, place): (Slip, f64, Option<Place>)| {
+    let hypothesis = |(slip, prior, place): (Slip, f64, Option<Place>)| {
         let instead = |setting: &Setting| replaced(setting, step.corrector, to, place.as_ref());
         let setting = instead(&known.setting);
-        condition.binnacle.with_setting(setting.clone()).ok()?;
-        let more = effect(condition.binnacle, &setting).less(&known.effect);
+        state.binnacle.with_setting(setting.clone()).ok()?;
+        let more = effect(state.binnacle, &setting).less(&known.effect);
         let shown = done.turned_deg.map_or(0.0, |turned_deg| {
-            let off = |after: &Setting| {
-                let turn = compass_turn(adjustment, condition, &step.setting_before, after);
+            let off_deg = |after: &Setting| {
+                let turn = compass_turn(adjustment, state, &step.setting_before, after);
                 wrap_180(turned_deg - turn.change_deg)
             };
             let sd_deg = step.tolerance_deg / NORMAL_99;
             let [so, as_planned] = [instead(&step.setting_after), step.setting_after.clone()];
-            (off(&as_planned).powi(2) - off(&so).powi(2)) / (2.0 * sd_deg.powi(2))
+            (off_deg(&as_planned).powi(2) - off_deg(&so).powi(2)) / (2.0 * sd_deg.powi(2))
         });
-        Some(Doubt {
-            shift: Some(news.cause(known, &more)),
+        Some(Hypothesis {
+            shift: Some(innovation.perturbation(known, &more)),
             log_prior: prior.ln() + shown,
-            ..Doubt::of(What::Step(number, slip, setting), prior)
+            ..Hypothesis::new(HypothesisKind::Step(number, slip, setting), prior)
         })
     };
-    others.into_iter().filter_map(doubt).collect()
+    others.into_iter().filter_map(hypothesis).collect()
 }
 
 /// Kinds of magnets that stand otherwise than when she was measured.
-fn moved_kinds(condition: &Condition<'_>, known: &Known<'_>) -> Vec<String> {
-    let was = &condition.binnacle.setting;
+fn moved_kinds(state: &MagneticState<'_>, known: &StateWithSetting<'_>) -> Vec<String> {
+    let was = &state.binnacle.setting;
     let mut kinds = Vec::new();
     for axis in Axis::BOTH {
         let (old, new) = (was.trays(axis), known.setting.trays(axis));
@@ -317,8 +330,8 @@ fn moved_kinds(condition: &Condition<'_>, known: &Known<'_>) -> Vec<String> {
 }
 
 /// What the magnets of one kind do in a setting.
-fn magnets(condition: &Condition<'_>, setting: &Setting, kind: &str) -> Effect {
-    let iron = Iron::new(condition.binnacle, &setting.soft());
+fn magnets(state: &MagneticState<'_>, setting: &Setting, kind: &str) -> Effect {
+    let iron = Iron::new(state.binnacle, &setting.soft());
     let mut sum = Effect::default();
     for axis in Axis::BOTH {
         for tray in setting
@@ -326,7 +339,7 @@ fn magnets(condition: &Condition<'_>, setting: &Setting, kind: &str) -> Effect {
             .iter()
             .filter(|tray| tray.magnet == kind)
         {
-            sum = sum.plus(&tray_effect(condition.binnacle, &iron, axis, tray));
+            sum = sum.plus(&tray_effect(state.binnacle, &iron, axis, tray));
         }
     }
     sum

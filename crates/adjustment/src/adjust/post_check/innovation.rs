@@ -7,32 +7,32 @@
 //! correctors have changed; how it lay and how it was levelled is new each time.
 
 use crate::adjust::inputs::{Adjustment, VerticalReading};
-use crate::adjust::state::{Condition, Known, errors_of};
+use crate::adjust::state::{MagneticState, StateWithSetting, setting_errors};
 use crate::berth::{Alignment, BerthReading, slopes};
 use crate::corrector::Effect;
 use binnacle_compass::ship::PARAMETERS;
 use nalgebra::{SMatrix, SVector};
 
 /// Seven parameters and the constant.
-pub(crate) const EIGHT: usize = PARAMETERS + 1;
+pub(crate) const MODEL_SIZE: usize = PARAMETERS + 1;
 /// With λ.
-const NINE: usize = EIGHT + 1;
+const JOINT_SIZE: usize = MODEL_SIZE + 1;
 
 /// A field, `[forward, starboard, down]`, nT.
-pub(crate) type Nt = SVector<f64, 3>;
-pub(crate) type Eight = SVector<f64, EIGHT>;
+pub(crate) type FieldVector = SVector<f64, 3>;
+pub(crate) type ModelVector = SVector<f64, MODEL_SIZE>;
 
 /// What one cause adds to the reading and to the model.
 #[derive(Clone, Copy)]
-pub(crate) struct Cause {
-    pub(crate) of_reading: Nt,
-    pub(crate) of_model: Eight,
+pub(crate) struct Perturbation {
+    pub(crate) of_reading: FieldVector,
+    pub(crate) of_model: ModelVector,
 }
 
 /// A second reading beside what was foretold for it.
-pub(crate) struct News {
-    pub(crate) expected: Nt,
-    pub(crate) read: Nt,
+pub(crate) struct Innovation {
+    pub(crate) expected: FieldVector,
+    pub(crate) read: FieldVector,
     /// Whether the vertical part was read both times.
     pub(crate) is_vertical_known: bool,
     /// The earth's field in ship axes.
@@ -41,32 +41,32 @@ pub(crate) struct News {
     /// the rest.
     pub(crate) spread: SMatrix<f64, 3, 3>,
     /// Of the model's eight with it.
-    pub(crate) together: SMatrix<f64, EIGHT, 3>,
+    pub(crate) cross_covariance: SMatrix<f64, MODEL_SIZE, 3>,
 }
 
-impl News {
+impl Innovation {
     pub(crate) fn new(
         adjustment: &Adjustment<'_>,
-        condition: &Condition<'_>,
-        known: &Known<'_>,
+        state: &MagneticState<'_>,
+        known: &StateWithSetting<'_>,
         reading: &BerthReading,
         vertical: Option<VerticalReading>,
-    ) -> News {
+    ) -> Innovation {
         let first = adjustment.reading;
         let [first_earth, earth] =
-            [first, reading].map(|r| earth_in_ship_axes(adjustment, condition, r));
-        let was = condition.field(condition.then(), first_earth);
-        let expected = condition.field(&known.effect, earth);
+            [first, reading].map(|r| earth_in_ship_axes(adjustment, state, r));
+        let was = state.field(state.measured_effect(), first_earth);
+        let expected = state.field(&known.effect, earth);
         let verticals = adjustment.vertical.zip(vertical);
         let (was_down, down) = verticals.map_or((0.0, 0.0), |(was, _)| {
             let part = |effect: &Effect, earth: [f64; 3]| down_of(effect, earth);
-            let change = part(&known.effect, earth) - part(condition.then(), first_earth);
+            let change = part(&known.effect, earth) - part(state.measured_effect(), first_earth);
             (was.down_nt, was.down_nt + change)
         });
         let [forward, starboard] = reading.field_nt();
-        let mut news = News {
-            expected: Nt::new(expected[0], expected[1], down),
-            read: Nt::new(
+        let mut innovation = Innovation {
+            expected: FieldVector::new(expected[0], expected[1], down),
+            read: FieldVector::new(
                 forward,
                 starboard,
                 verticals.map_or(0.0, |(_, now)| now.down_nt),
@@ -74,53 +74,57 @@ impl News {
             is_vertical_known: verticals.is_some(),
             earth,
             spread: SMatrix::zeros(),
-            together: SMatrix::zeros(),
+            cross_covariance: SMatrix::zeros(),
         };
-        news.add_model(adjustment, condition, known, reading);
-        let was = Nt::new(was[0], was[1], was_down);
-        for cause in news.causes(adjustment, condition, known, reading, was) {
-            news.add(&cause);
+        innovation.add_model(adjustment, state, known, reading);
+        let was = FieldVector::new(was[0], was[1], was_down);
+        for perturbation in innovation.perturbations(adjustment, state, known, reading, was) {
+            innovation.add(&perturbation);
         }
-        if !news.is_vertical_known {
-            news.spread[(2, 2)] = 1.0;
+        if !innovation.is_vertical_known {
+            innovation.spread[(2, 2)] = 1.0;
         }
-        news
+        innovation
     }
 
     /// What an effect that comes on top adds.
-    pub(crate) fn cause(&self, known: &Known<'_>, effect: &Effect) -> Cause {
+    pub(crate) fn perturbation(
+        &self,
+        known: &StateWithSetting<'_>,
+        effect: &Effect,
+    ) -> Perturbation {
         let field = |axis: usize| {
             let induced = effect.chi[axis].iter().zip(self.earth);
             effect.b_nt[axis] + induced.map(|(chi, earth)| chi * earth).sum::<f64>()
         };
-        Cause {
-            of_reading: self.seen(Nt::from_fn(|axis, _| field(axis))),
-            of_model: Eight::from(known.way(effect)),
+        Perturbation {
+            of_reading: self.masked(FieldVector::from_fn(|axis, _| field(axis))),
+            of_model: ModelVector::from(known.sensitivity(effect)),
         }
     }
 
-    pub(crate) fn off(&self) -> Nt {
+    pub(crate) fn difference(&self) -> FieldVector {
         self.read - self.expected
     }
 
-    fn seen(&self, mut field: Nt) -> Nt {
+    fn masked(&self, mut field: FieldVector) -> FieldVector {
         if !self.is_vertical_known {
             field[2] = 0.0;
         }
         field
     }
 
-    fn add(&mut self, cause: &Cause) {
-        self.spread += cause.of_reading * cause.of_reading.transpose();
-        self.together += cause.of_model * cause.of_reading.transpose();
+    fn add(&mut self, perturbation: &Perturbation) {
+        self.spread += perturbation.of_reading * perturbation.of_reading.transpose();
+        self.cross_covariance += perturbation.of_model * perturbation.of_reading.transpose();
     }
 
     /// The model's own errors and λ's, but for the magnetometer's scale.
     fn add_model(
         &mut self,
         adjustment: &Adjustment<'_>,
-        condition: &Condition<'_>,
-        known: &Known<'_>,
+        state: &MagneticState<'_>,
+        known: &StateWithSetting<'_>,
         reading: &BerthReading,
     ) {
         let p = &adjustment.model.parameters_over_lambda;
@@ -130,54 +134,58 @@ impl News {
         };
         let by_unknown = slopes(p, self.earth, heading_by_constant);
         let over_lambda = p.field_over_lambda_in_ship_axes(self.earth);
-        let lambda = condition.lambda();
-        let by_nine = SMatrix::<f64, 3, NINE>::from_fn(|axis, unknown| match axis {
+        let lambda = state.lambda();
+        let by_nine = SMatrix::<f64, 3, JOINT_SIZE>::from_fn(|axis, unknown| match axis {
             2 => 0.0,
             _ => by_unknown
                 .get(unknown)
                 .map_or(over_lambda[axis], |slope| lambda * slope[axis]),
         });
-        let mut joint =
-            SMatrix::<f64, NINE, NINE>::from_fn(|row, column| condition.joint()[row][column]);
-        joint[(EIGHT, EIGHT)] -= (lambda * adjustment.scale_sd).powi(2);
-        let slopes =
-            SMatrix::<f64, EIGHT, NINE>::from_fn(|row, column| known.slopes()[row][column]);
+        let mut joint = SMatrix::<f64, JOINT_SIZE, JOINT_SIZE>::from_fn(|row, column| {
+            state.joint()[row][column]
+        });
+        joint[(MODEL_SIZE, MODEL_SIZE)] -= (lambda * adjustment.scale_sd).powi(2);
+        let slopes = SMatrix::<f64, MODEL_SIZE, JOINT_SIZE>::from_fn(|row, column| {
+            known.slopes()[row][column]
+        });
         self.spread += by_nine * joint * by_nine.transpose();
-        self.together += slopes * joint * by_nine.transpose();
+        self.cross_covariance += slopes * joint * by_nine.transpose();
     }
 
     /// Everything else that errs.
-    fn causes(
+    fn perturbations(
         &self,
         adjustment: &Adjustment<'_>,
-        condition: &Condition<'_>,
-        known: &Known<'_>,
+        state: &MagneticState<'_>,
+        known: &StateWithSetting<'_>,
         reading: &BerthReading,
-        was: Nt,
-    ) -> Vec<Cause> {
-        let of_reading = |x: f64, y: f64, z: f64| Cause {
-            of_reading: self.seen(Nt::new(x, y, z)),
-            of_model: Eight::zeros(),
+        was: FieldVector,
+    ) -> Vec<Perturbation> {
+        let of_reading = |x: f64, y: f64, z: f64| Perturbation {
+            of_reading: self.masked(FieldVector::new(x, y, z)),
+            of_model: ModelVector::zeros(),
         };
-        let effects = errors_of(condition.binnacle, &known.setting).into_iter();
-        let mut causes: Vec<Cause> = effects.map(|effect| self.cause(known, &effect)).collect();
+        let effects = setting_errors(state.binnacle, &known.setting).into_iter();
+        let mut perturbations: Vec<Perturbation> = effects
+            .map(|effect| self.perturbation(known, &effect))
+            .collect();
 
         // λ is too great by what the scale is, and what was foretold with it.
-        let by_lambda = known.slopes().map(|row| row[EIGHT]);
+        let by_lambda = known.slopes().map(|row| row[MODEL_SIZE]);
         let scale = adjustment.scale_sd;
-        causes.push(Cause {
-            of_reading: self.seen((self.expected - was) * scale),
-            of_model: Eight::from(by_lambda) * (-condition.lambda() * scale),
+        perturbations.push(Perturbation {
+            of_reading: self.masked((self.expected - was) * scale),
+            of_model: ModelVector::from(by_lambda) * (-state.lambda() * scale),
         });
 
         let errors = reading.errors();
         let noise = errors.field_sd_nt;
-        causes.push(of_reading(noise, 0.0, 0.0));
-        causes.push(of_reading(0.0, noise, 0.0));
-        causes.push(of_reading(0.0, 0.0, noise));
+        perturbations.push(of_reading(noise, 0.0, 0.0));
+        perturbations.push(of_reading(0.0, noise, 0.0));
+        perturbations.push(of_reading(0.0, 0.0, noise));
         let [x, y, z] = [self.expected[0], self.expected[1], self.expected[2]];
         let alignment = errors.alignment_sd_deg.to_radians();
-        causes.push(of_reading(y * alignment, -x * alignment, 0.0));
+        perturbations.push(of_reading(y * alignment, -x * alignment, 0.0));
         // What is down aboard is not known without a reading of it; the earth's is most.
         let down = if self.is_vertical_known {
             z
@@ -185,35 +193,35 @@ impl News {
             self.earth[2]
         };
         let tilt = errors.tilt_sd_deg.to_radians();
-        causes.push(of_reading(down * tilt, 0.0, -x * tilt));
-        causes.push(of_reading(0.0, down * tilt, -y * tilt));
+        perturbations.push(of_reading(down * tilt, 0.0, -x * tilt));
+        perturbations.push(of_reading(0.0, down * tilt, -y * tilt));
 
         // The heading that was told is the same as before.
         let heading = errors.heading_sd_deg.to_radians();
         let [hx, hy, _] = self.earth;
-        let ahead = condition.field(
+        let ahead = state.field(
             &known.effect,
             [hx + hy * heading, hy - hx * heading, self.earth[2]],
         );
-        causes.push(of_reading(ahead[0] - x, ahead[1] - y, 0.0));
+        perturbations.push(of_reading(ahead[0] - x, ahead[1] - y, 0.0));
 
         // Of the vertical part the first reading's errors are met again.
         let first = adjustment.reading.errors();
         let tilt = first.tilt_sd_deg.to_radians();
         let of_first = [first.field_sd_nt, was[0] * tilt, was[1] * tilt];
-        causes.extend(of_first.map(|down| of_reading(0.0, 0.0, down)));
-        causes
+        perturbations.extend(of_first.map(|down| of_reading(0.0, 0.0, down)));
+        perturbations
     }
 }
 
 fn earth_in_ship_axes(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     reading: &BerthReading,
 ) -> [f64; 3] {
     let aligned_deg = match reading.alignment() {
         Alignment::Keel => 0.0,
-        Alignment::AsFitted => condition.constant_deg(),
+        Alignment::AsFitted => state.constant_deg(),
     };
     let magnetic_deg = reading.magnetic().degrees() - aligned_deg;
     adjustment.earth.in_ship_axes(magnetic_deg.to_radians())

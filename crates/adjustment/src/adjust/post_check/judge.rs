@@ -1,14 +1,14 @@
 //! Verdict on a second reading.
 
-use super::hypotheses::{Weighed, What};
-use super::innovation::News;
+use super::hypotheses::{HypothesisKind, Posterior};
+use super::innovation::Innovation;
 use super::result::{Slip, Verdict};
-use super::update::learnt;
-use crate::adjust::diagnosis::{Card, Mistake, Refusal};
+use super::update::update_prediction;
+use crate::adjust::diagnosis::{CardCheck, Misreading, Refusal};
 use crate::adjust::inputs::{AdjustError, Adjustment, Circumstances, Unit, VerticalReading};
-use crate::adjust::limit_violations::beyond_limits;
+use crate::adjust::limit_violations::find_violations;
 use crate::adjust::planning::plan;
-use crate::adjust::state::{Condition, Known};
+use crate::adjust::state::{MagneticState, StateWithSetting};
 use crate::berth::BerthReading;
 use crate::binnacle::Setting;
 
@@ -20,8 +20,8 @@ const LIKELY: f64 = 0.5;
 /// All that a verdict leans on.
 pub(crate) struct Judge<'a> {
     pub(crate) adjustment: &'a Adjustment<'a>,
-    pub(crate) condition: &'a Condition<'a>,
-    pub(crate) known: &'a Known<'a>,
+    pub(crate) state: &'a MagneticState<'a>,
+    pub(crate) known: &'a StateWithSetting<'a>,
     pub(crate) reading: &'a BerthReading,
     pub(crate) vertical: Option<VerticalReading>,
     pub(crate) compass_deg: Option<f64>,
@@ -30,54 +30,58 @@ pub(crate) struct Judge<'a> {
 
 impl Judge<'_> {
     /// The compass, where it was read, held against such a reading.
-    pub(crate) fn card(&self, reading: &BerthReading) -> Result<Option<Card>, AdjustError> {
+    pub(crate) fn card(&self, reading: &BerthReading) -> Result<Option<CardCheck>, AdjustError> {
         let Some(read_deg) = self.compass_deg else {
             return Ok(None);
         };
         let standing = self.known.setting.clone();
-        let binnacle = self.condition.binnacle.with_setting(standing)?;
+        let binnacle = self.state.binnacle.with_setting(standing)?;
         let constant_deg = self.adjustment.model.constant_deg;
         let earth = self.adjustment.earth;
-        let card = Card::new(read_deg, reading, earth, &binnacle, constant_deg);
+        let card = CardCheck::new(read_deg, reading, earth, &binnacle, constant_deg);
         Ok(Some(card))
     }
 
-    pub(crate) fn verdict(&self, news: &News, weighed: &[Weighed]) -> Result<Verdict, AdjustError> {
+    pub(crate) fn verdict(
+        &self,
+        innovation: &Innovation,
+        posterior: &[Posterior],
+    ) -> Result<Verdict, AdjustError> {
         if self.adjustment.model.covariance.is_none() {
             return Ok(Verdict::Unexplained {
-                mistakes: self.mistakes(),
+                misreadings: self.misreadings(),
             });
         }
-        let fits = weighed
-            .iter()
-            .any(|one| one.what != What::Elsewhere && one.squared <= greatest(news));
-        let share_of = |wanted: fn(&What) -> bool| {
-            let those = weighed.iter().filter(|one| wanted(&one.what));
+        let fits = posterior.iter().any(|one| {
+            one.kind != HypothesisKind::OtherField && one.squared <= chi_squared_limit(innovation)
+        });
+        let share_of = |wanted: fn(&HypothesisKind) -> bool| {
+            let those = posterior.iter().filter(|one| wanted(&one.kind));
             those.map(|one| one.share).sum::<f64>()
         };
-        if !fits || share_of(|what| *what == What::Elsewhere) > LIKELY {
+        if !fits || share_of(|kind| *kind == HypothesisKind::OtherField) > LIKELY {
             return Ok(Verdict::Unexplained {
-                mistakes: self.mistakes(),
+                misreadings: self.misreadings(),
             });
         }
-        if share_of(|what| matches!(what, What::Step(..))) > LIKELY {
-            return self.slip(weighed);
+        if share_of(|kind| matches!(kind, HypothesisKind::Step(..))) > LIKELY {
+            return self.slip(posterior);
         }
-        let learnt = learnt(self.adjustment, self.condition, self.known, weighed)?;
-        let learnt = Box::new(learnt);
-        let beyond = beyond_limits(
+        let updated = update_prediction(self.adjustment, self.state, self.known, posterior)?;
+        let updated = Box::new(updated);
+        let beyond = find_violations(
             self.adjustment,
-            self.condition,
-            &learnt.after,
-            &learnt.model_after,
+            self.state,
+            &updated.after,
+            &updated.model_after,
         );
         if beyond.is_empty() {
-            return Ok(Verdict::AsPlanned { learnt });
+            return Ok(Verdict::AsPlanned { updated });
         }
         let standing = self.known.setting.clone();
-        let binnacle = Box::new(self.condition.binnacle.with_setting(standing)?);
+        let binnacle = Box::new(self.state.binnacle.with_setting(standing)?);
         let outcome = plan(&Adjustment {
-            model: &learnt.model_after,
+            model: &updated.model_after,
             reading: self.reading,
             vertical: self.vertical,
             binnacle: &binnacle,
@@ -86,13 +90,13 @@ impl Judge<'_> {
             compass_deg: None,
             circumstances: Circumstances {
                 earlier_lambda: None,
-                has_learnt_here: true,
+                is_updated_here: true,
                 ..self.adjustment.circumstances
             },
             ..self.adjustment.clone()
         })?;
         Ok(Verdict::Replan {
-            learnt,
+            updated,
             refusals: beyond.into_iter().map(Refusal::with_cures).collect(),
             binnacle,
             outcome: Box::new(outcome),
@@ -100,16 +104,16 @@ impl Judge<'_> {
     }
 
     /// The step that is doubted most, and the likeliest way in which it was done.
-    fn slip(&self, weighed: &[Weighed]) -> Result<Verdict, AdjustError> {
+    fn slip(&self, posterior: &[Posterior]) -> Result<Verdict, AdjustError> {
         let share_of = |wanted: u32| {
-            let those = weighed
-                .iter()
-                .filter(|one| matches!(one.what, What::Step(number, ..) if number == wanted));
+            let those = posterior.iter().filter(
+                |one| matches!(one.kind, HypothesisKind::Step(number, ..) if number == wanted),
+            );
             those.map(|one| one.share).sum::<f64>()
         };
-        let mut best: Option<(f64, &Weighed, u32, Slip, &Setting)> = None;
-        for one in weighed {
-            let What::Step(number, slip, setting) = &one.what else {
+        let mut best: Option<(f64, &Posterior, u32, Slip, &Setting)> = None;
+        for one in posterior {
+            let HypothesisKind::Step(number, slip, setting) = &one.kind else {
                 continue;
             };
             let rank = share_of(*number) + one.share;
@@ -119,7 +123,7 @@ impl Judge<'_> {
         }
         let Some((_, _, step, slip, setting)) = best else {
             return Ok(Verdict::Unexplained {
-                mistakes: Vec::new(),
+                misreadings: Vec::new(),
             });
         };
         let outcome = plan(&Adjustment {
@@ -138,21 +142,21 @@ impl Judge<'_> {
 
     /// What done otherwise with the magnetometer would make it as planned, and the compass
     /// agree with it.
-    pub(crate) fn mistakes(&self) -> Vec<Mistake> {
+    pub(crate) fn misreadings(&self) -> Vec<Misreading> {
         if self.adjustment.model.covariance.is_none() {
             // Nothing is known of what differences there may be.
             return Vec::new();
         }
-        let explains = |mistake: &Mistake| {
-            let undone = mistake.undone_reading(self.reading, self.vertical, self.named);
+        let explains = |misreading: &Misreading| {
+            let undone = misreading.undone_reading(self.reading, self.vertical, self.named);
             undone.is_some_and(|(reading, vertical)| self.fits(&reading, vertical))
         };
-        let whole = Mistake::ALL.into_iter().filter(explains);
-        whole.chain(self.mistakes_with_down()).collect()
+        let whole = Misreading::ALL.into_iter().filter(explains);
+        whole.chain(self.misreadings_with_down()).collect()
     }
 
     /// Those that only a vertical part tells.
-    fn mistakes_with_down(&self) -> Vec<Mistake> {
+    fn misreadings_with_down(&self) -> Vec<Misreading> {
         let (Some(_), Some(vertical)) = (self.adjustment.vertical, self.vertical) else {
             return Vec::new();
         };
@@ -164,16 +168,16 @@ impl Judge<'_> {
         };
         let mut units = Unit::ALL.iter().filter(|unit| **unit != self.named);
         let found = [
-            (Mistake::DownReversed, fits([x, y], -down_nt)),
+            (Misreading::DownReversed, fits([x, y], -down_nt)),
             (
-                Mistake::DownInAnotherUnit,
+                Misreading::DownInAnotherUnit,
                 units.any(|unit| fits([x, y], unit.nt() / self.named.nt() * down_nt)),
             ),
-            (Mistake::ForwardDownSwapped, fits([down_nt, y], x)),
-            (Mistake::StarboardDownSwapped, fits([x, down_nt], y)),
+            (Misreading::ForwardDownSwapped, fits([down_nt, y], x)),
+            (Misreading::StarboardDownSwapped, fits([x, down_nt], y)),
         ];
         let explaining = found.into_iter().filter(|(_, explains)| *explains);
-        explaining.map(|(mistake, _)| mistake).collect()
+        explaining.map(|(misreading, _)| misreading).collect()
     }
 
     /// Whether such a reading is as planned, and turns the compass to what it read.
@@ -182,21 +186,18 @@ impl Judge<'_> {
         if card.is_some_and(|card| card.is_refused()) {
             return false;
         }
-        let news = News::new(
-            self.adjustment,
-            self.condition,
-            self.known,
-            reading,
-            vertical,
-        );
-        let solved = news
+        let innovation =
+            Innovation::new(self.adjustment, self.state, self.known, reading, vertical);
+        let solved = innovation
             .spread
             .cholesky()
-            .map(|spread| spread.solve(&news.off()));
-        solved.is_some_and(|solved| news.off().dot(&solved) <= greatest(&news))
+            .map(|spread| spread.solve(&innovation.difference()));
+        solved.is_some_and(|solved| {
+            innovation.difference().dot(&solved) <= chi_squared_limit(&innovation)
+        })
     }
 }
 
-fn greatest(news: &News) -> f64 {
-    CHI_SQUARED_99[usize::from(news.is_vertical_known)]
+fn chi_squared_limit(innovation: &Innovation) -> f64 {
+    CHI_SQUARED_99[usize::from(innovation.is_vertical_known)]
 }

@@ -16,15 +16,15 @@ mod innovation;
 mod judge;
 mod update;
 
-pub use result::{Again, Done, Learnt, Part, Slip, Verdict};
+pub use result::{CompletedStep, FieldComponent, PostCheck, Slip, UpdatedPrediction, Verdict};
 
 use super::inputs::{self, AdjustError, Adjustment, Unit, VerticalReading};
-use super::state::Condition;
+use super::state::MagneticState;
 use crate::berth::BerthReading;
-use hypotheses::{weigh, weigh_by_compass};
-use innovation::News;
+use hypotheses::{weigh_by_compass, weigh_hypotheses};
+use innovation::Innovation;
 use judge::Judge;
-use update::learnt;
+use update::update_prediction;
 
 /// Judges a second reading by the same magnetometer, the correctors standing as
 /// `adjustment.now` says after these steps. `named` is the unit that its figures were said
@@ -32,25 +32,25 @@ use update::learnt;
 ///
 /// # Errors
 /// When the adjustment itself cannot be.
-pub fn read_again(
+pub fn check_second_reading(
     adjustment: &Adjustment<'_>,
-    done: &[Done],
+    done: &[CompletedStep],
     reading: &BerthReading,
     vertical: Option<VerticalReading>,
     compass_deg: Option<f64>,
     named: Unit,
-) -> Result<Again, AdjustError> {
-    inputs::check(adjustment)?;
+) -> Result<PostCheck, AdjustError> {
+    inputs::validate(adjustment)?;
     if let Some(vertical) = vertical {
-        vertical.must_be_a_field()?;
+        vertical.check_range()?;
     }
-    let condition = Condition::new(adjustment)?;
-    let known = condition.known_with(adjustment.standing())?;
-    let news = News::new(adjustment, &condition, &known, reading, vertical);
-    let weighed = weigh(adjustment, &condition, &known, &news, done);
+    let state = MagneticState::new(adjustment)?;
+    let known = state.with_setting(adjustment.standing())?;
+    let innovation = Innovation::new(adjustment, &state, &known, reading, vertical);
+    let posterior = weigh_hypotheses(adjustment, &state, &known, &innovation, done);
     let judge = Judge {
         adjustment,
-        condition: &condition,
+        state: &state,
         known: &known,
         reading,
         vertical,
@@ -60,13 +60,13 @@ pub fn read_again(
     let card = judge.card(reading)?;
     let verdict = if card.is_some_and(|card| card.is_refused()) {
         Verdict::Unexplained {
-            mistakes: judge.mistakes(),
+            misreadings: judge.misreadings(),
         }
     } else {
-        judge.verdict(&news, &weighed)?
+        judge.verdict(&innovation, &posterior)?
     };
-    Ok(Again {
-        parts: parts(&news),
+    Ok(PostCheck {
+        parts: parts(&innovation),
         card,
         verdict,
     })
@@ -78,22 +78,25 @@ pub fn read_again(
 ///
 /// # Errors
 /// When the adjustment itself cannot be.
-pub fn by_compass(adjustment: &Adjustment<'_>, done: &[Done]) -> Result<Learnt, AdjustError> {
-    inputs::check(adjustment)?;
-    let condition = Condition::new(adjustment)?;
-    let known = condition.known_with(adjustment.standing())?;
+pub fn predict_by_compass(
+    adjustment: &Adjustment<'_>,
+    done: &[CompletedStep],
+) -> Result<UpdatedPrediction, AdjustError> {
+    inputs::validate(adjustment)?;
+    let state = MagneticState::new(adjustment)?;
+    let known = state.with_setting(adjustment.standing())?;
     let reading = adjustment.reading;
-    let news = News::new(adjustment, &condition, &known, reading, adjustment.vertical);
-    let weighed = weigh_by_compass(adjustment, &condition, &known, &news, done);
-    learnt(adjustment, &condition, &known, &weighed)
+    let innovation = Innovation::new(adjustment, &state, &known, reading, adjustment.vertical);
+    let posterior = weigh_by_compass(adjustment, &state, &known, &innovation, done);
+    update_prediction(adjustment, &state, &known, &posterior)
 }
 
-fn parts(news: &News) -> Vec<Part> {
-    let count = if news.is_vertical_known { 3 } else { 2 };
-    let part = |axis: usize| Part {
-        expected_nt: news.expected[axis],
-        read_nt: news.read[axis],
-        standard_error_nt: news.spread[(axis, axis)].sqrt(),
+fn parts(innovation: &Innovation) -> Vec<FieldComponent> {
+    let count = if innovation.is_vertical_known { 3 } else { 2 };
+    let part = |axis: usize| FieldComponent {
+        expected_nt: innovation.expected[axis],
+        read_nt: innovation.read[axis],
+        standard_error_nt: innovation.spread[(axis, axis)].sqrt(),
     };
     (0..count).map(part).collect()
 }

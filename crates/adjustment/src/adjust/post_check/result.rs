@@ -1,9 +1,9 @@
 //! Result of a second reading.
 
-use crate::adjust::diagnosis::{Card, Mistake, Refusal, Refused};
+use crate::adjust::diagnosis::{CardCheck, Misreading, Refusal, Refused};
 use crate::adjust::inputs::{Limits, Water};
 use crate::adjust::instructions::Step;
-use crate::adjust::limit_violations::beyond;
+use crate::adjust::limit_violations::first_violation;
 use crate::adjust::planning::Outcome;
 use crate::adjust::prediction::PredictedTable;
 use crate::binnacle::{Binnacle, Setting};
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// A step that was done.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Done {
+pub struct CompletedStep {
     /// The step.
     pub step: Step,
     /// By how much the compass turned, degrees, where it was read.
@@ -21,12 +21,12 @@ pub struct Done {
 
 /// What the second reading came to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Again {
+pub struct PostCheck {
     /// Forward, to starboard and, where it was read both times, down.
-    pub parts: Vec<Part>,
+    pub parts: Vec<FieldComponent>,
     /// The compass held against the field, where it was read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub card: Option<Card>,
+    pub card: Option<CardCheck>,
     /// What to make of it.
     #[serde(flatten)]
     pub verdict: Verdict,
@@ -34,7 +34,7 @@ pub struct Again {
 
 /// One part of the field.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Part {
+pub struct FieldComponent {
     /// What was foretold, nT.
     pub expected_nt: f64,
     /// What was read, nT.
@@ -50,12 +50,14 @@ pub enum Verdict {
     /// The correctors do what they were to do.
     AsPlanned {
         /// What is foretold now.
-        learnt: Box<Learnt>,
+        #[serde(rename = "learnt")]
+        updated: Box<UpdatedPrediction>,
     },
     /// They do, but what is foretold now is beyond the limits: there is a plan from here.
     Replan {
         /// What is foretold now.
-        learnt: Box<Learnt>,
+        #[serde(rename = "learnt")]
+        updated: Box<UpdatedPrediction>,
         /// What of it is beyond the limits.
         refusals: Vec<Refused>,
         /// The binnacle with its correctors as they stand.
@@ -79,7 +81,8 @@ pub enum Verdict {
     /// Nothing explains it: read again.
     Unexplained {
         /// Mistakes each of which alone would explain it.
-        mistakes: Vec<Mistake>,
+        #[serde(rename = "mistakes")]
+        misreadings: Vec<Misreading>,
     },
 }
 
@@ -100,7 +103,7 @@ pub enum Slip {
 
 /// What is foretold after the second reading, or after the steps without one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Learnt {
+pub struct UpdatedPrediction {
     /// The model that holds from now on, with covariance.
     pub model_after: Model,
     /// Residuals at the berth and in the waters.
@@ -111,10 +114,10 @@ pub struct Learnt {
     pub widest_band_deg: f64,
 }
 
-impl Learnt {
+impl UpdatedPrediction {
     /// Which of these limits it breaks in these waters, with what would cure that.
     #[must_use]
-    pub fn beyond(&self, limits: &Limits, waters: &[Water]) -> Option<Refused> {
-        beyond(&self.after, &self.model_after, limits, waters).map(Refusal::with_cures)
+    pub fn limit_violation(&self, limits: &Limits, waters: &[Water]) -> Option<Refused> {
+        first_violation(&self.after, &self.model_after, limits, waters).map(Refusal::with_cures)
     }
 }

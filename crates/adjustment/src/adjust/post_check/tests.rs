@@ -1,9 +1,9 @@
 //! The magnetometer read again: what fits, what a slip explains, and what nothing does.
 
-use super::super::state::{Condition, errors_of};
+use super::super::state::{MagneticState, setting_errors};
 use super::super::tests::{BISCAY, Case, bare, sum};
 use super::super::*;
-use super::innovation::Eight;
+use super::innovation::ModelVector;
 use crate::berth::BerthReading;
 use crate::binnacle::tests::class_a;
 use crate::binnacle::{Binnacle, Setting};
@@ -56,10 +56,10 @@ impl Adjusted {
         }
     }
 
-    fn done(&self) -> Vec<Done> {
+    fn done(&self) -> Vec<CompletedStep> {
         let steps = self.plan.steps.iter().cloned();
         steps
-            .map(|step| Done {
+            .map(|step| CompletedStep {
                 step,
                 turned_deg: None,
             })
@@ -67,7 +67,7 @@ impl Adjusted {
     }
 
     /// What comes of it when the correctors truly stand so and what is read is off so much.
-    fn read(&self, truly: &Setting, off_nt: [f64; 3]) -> Again {
+    fn read(&self, truly: &Setting, off_nt: [f64; 3]) -> PostCheck {
         let [x, y, z] = field(&ship(), &self.case.binnacle, truly, self.magnetic_deg);
         self.judge(
             [x + off_nt[0], y + off_nt[1], z + off_nt[2]],
@@ -75,11 +75,11 @@ impl Adjusted {
         )
     }
 
-    fn judge(&self, field_nt: [f64; 3], named: Unit) -> Again {
+    fn judge(&self, field_nt: [f64; 3], named: Unit) -> PostCheck {
         self.judge_with(field_nt, None, named)
     }
 
-    fn judge_with(&self, [x, y, z]: [f64; 3], compass_deg: Option<f64>, named: Unit) -> Again {
+    fn judge_with(&self, [x, y, z]: [f64; 3], compass_deg: Option<f64>, named: Unit) -> PostCheck {
         let first = &self.case.reading;
         let reading =
             BerthReading::new(first.magnetic(), [x, y], first.errors(), first.alignment()).unwrap();
@@ -90,7 +90,7 @@ impl Adjusted {
         adjustment.now = Some(&self.plan.setting);
         let vertical = Some(VerticalReading { down_nt: z });
         let done = self.done();
-        read_again(&adjustment, &done, &reading, vertical, compass_deg, named).unwrap()
+        check_second_reading(&adjustment, &done, &reading, vertical, compass_deg, named).unwrap()
     }
 }
 
@@ -106,7 +106,7 @@ fn what_is_read_as_foretold_confirms_the_plan_and_its_band() {
                 "{part:?}"
             );
         }
-        let Verdict::AsPlanned { learnt } = again.verdict else {
+        let Verdict::AsPlanned { updated: learnt } = again.verdict else {
             panic!("{magnetic_deg}: {:?}", again.verdict)
         };
         let wider_deg = learnt.widest_band_deg - adjusted.plan.widest_band_deg;
@@ -134,7 +134,11 @@ fn what_is_read_off_moves_bx_and_by_towards_it() {
         [-300.0, -200.0],
     ] {
         let again = adjusted.read(&adjusted.plan.setting, [off_nt[0], off_nt[1], 0.0]);
-        let (Verdict::AsPlanned { learnt } | Verdict::Replan { learnt, .. }) = again.verdict else {
+        let (Verdict::AsPlanned { updated: learnt }
+        | Verdict::Replan {
+            updated: learnt, ..
+        }) = again.verdict
+        else {
             panic!("{off_nt:?}: {:?}", again.verdict)
         };
         let after = learnt.model_after.parameters_over_lambda;
@@ -211,7 +215,7 @@ fn a_reading_that_nothing_explains_confirms_nothing() {
     assert_eq!(
         again.verdict,
         Verdict::Unexplained {
-            mistakes: Vec::new()
+            misreadings: Vec::new()
         }
     );
 }
@@ -225,17 +229,17 @@ fn swapped_axes_and_another_unit_are_named() {
         &adjusted.plan.setting,
         70.0,
     );
-    let Verdict::Unexplained { mistakes } = adjusted.judge([y, x, z], Unit::Nanotesla).verdict
+    let Verdict::Unexplained { misreadings } = adjusted.judge([y, x, z], Unit::Nanotesla).verdict
     else {
         panic!("swapped")
     };
-    assert_eq!(mistakes, [Mistake::SwappedAxes]);
+    assert_eq!(misreadings, [Misreading::SwappedAxes]);
     let as_gauss = [x, y, z].map(|part| part / 1e3 * 1e2);
-    let Verdict::Unexplained { mistakes } = adjusted.judge(as_gauss, Unit::Milligauss).verdict
+    let Verdict::Unexplained { misreadings } = adjusted.judge(as_gauss, Unit::Milligauss).verdict
     else {
         panic!("unit")
     };
-    assert_eq!(mistakes, [Mistake::Microtesla]);
+    assert_eq!(misreadings, [Misreading::Microtesla]);
 }
 
 /// The compass tells them apart from a field that is right and a card that sticks.
@@ -247,13 +251,13 @@ fn swapped_axes_are_named_where_the_compass_was_read_too() {
     let compass_deg = binnacle_compass::angle::wrap_360((-y).atan2(x).to_degrees());
     let judged = |field_nt: [f64; 3], compass_deg: f64| {
         let again = adjusted.judge_with(field_nt, Some(compass_deg), Unit::Nanotesla);
-        let Verdict::Unexplained { mistakes } = again.verdict else {
+        let Verdict::Unexplained { misreadings } = again.verdict else {
             panic!("{:?}", again.verdict)
         };
         assert!(again.card.unwrap().is_refused());
-        mistakes
+        misreadings
     };
-    assert_eq!(judged([y, x, z], compass_deg), [Mistake::SwappedAxes]);
+    assert_eq!(judged([y, x, z], compass_deg), [Misreading::SwappedAxes]);
     let stuck_deg = binnacle_compass::angle::wrap_360(compass_deg + 60.0);
     assert!(judged([x, y, z], stuck_deg).is_empty());
 }
@@ -264,13 +268,13 @@ fn causes_and_model_add_up_to_the_covariance_of_the_plan() {
     let adjusted = Adjusted::new(45.0);
     let mut adjustment = adjusted.case.adjustment();
     adjustment.now = Some(&adjusted.plan.setting);
-    let condition = Condition::new(&adjustment).unwrap();
-    let known = condition.known_with(&adjusted.plan.setting).unwrap();
+    let state = MagneticState::new(&adjustment).unwrap();
+    let known = state.with_setting(&adjusted.plan.setting).unwrap();
     let slopes = SMatrix::<f64, 8, 9>::from_fn(|r, c| known.slopes()[r][c]);
-    let joint = SMatrix::<f64, 9, 9>::from_fn(|r, c| condition.joint()[r][c]);
+    let joint = SMatrix::<f64, 9, 9>::from_fn(|r, c| state.joint()[r][c]);
     let mut sum = slopes * joint * slopes.transpose();
-    for error in errors_of(condition.binnacle, &adjusted.plan.setting) {
-        let way = Eight::from(known.way(&error));
+    for error in setting_errors(state.binnacle, &adjusted.plan.setting) {
+        let way = ModelVector::from(known.sensitivity(&error));
         sum += way * way.transpose();
     }
     let covariance = known.model.covariance.unwrap();
@@ -281,13 +285,13 @@ fn causes_and_model_add_up_to_the_covariance_of_the_plan() {
 }
 
 /// What each step turned the compass by, of what it should have.
-fn turned(adjusted: &Adjusted, share: f64) -> Vec<Done> {
+fn turned(adjusted: &Adjusted, share: f64) -> Vec<CompletedStep> {
     let steps = adjusted.plan.steps.iter();
     steps
         .map(|step| {
             let magnets = matches!(step.to, Some(Place::Magnets(_)));
             let share = if magnets { share } else { 1.0 };
-            Done {
+            CompletedStep {
                 step: step.clone(),
                 turned_deg: Some(share * step.change_deg),
             }
@@ -302,7 +306,7 @@ fn what_the_compass_leaves_open_of_the_steps_is_in_the_band() {
     let adjusted = Adjusted::new(45.0);
     let mut adjustment = adjusted.case.adjustment();
     adjustment.now = Some(&adjusted.plan.setting);
-    let by = |share: f64| by_compass(&adjustment, &turned(&adjusted, share)).unwrap();
+    let by = |share: f64| predict_by_compass(&adjustment, &turned(&adjusted, share)).unwrap();
     let planned = &adjusted.plan;
     let right = by(1.0);
     let wider_deg = right.widest_band_deg - planned.widest_band_deg;
@@ -310,7 +314,7 @@ fn what_the_compass_leaves_open_of_the_steps_is_in_the_band() {
     let weak = by(0.8);
     assert!(weak.widest_band_deg > planned.widest_band_deg);
     // Magnets that do less leave more of what they were to take away.
-    let left = |learnt: &Learnt| {
+    let left = |learnt: &UpdatedPrediction| {
         let after = learnt.model_after.parameters_over_lambda;
         let before = adjusted.case.model.parameters_over_lambda;
         let plan = planned.model_after.parameters_over_lambda;
@@ -330,22 +334,22 @@ fn a_vertical_part_the_wrong_way_round_or_in_another_unit_is_named() {
     let adjusted = Adjusted::new(45.0);
     let setting = &adjusted.plan.setting;
     let [x, y, z] = field(&ship(), &adjusted.case.binnacle, setting, 45.0);
-    for (down_nt, mistake) in [
-        (-z, Mistake::DownReversed),
-        (z / 1_000.0, Mistake::DownInAnotherUnit),
+    for (down_nt, misreading) in [
+        (-z, Misreading::DownReversed),
+        (z / 1_000.0, Misreading::DownInAnotherUnit),
     ] {
-        let Verdict::Unexplained { mistakes } =
+        let Verdict::Unexplained { misreadings } =
             adjusted.judge([x, y, down_nt], Unit::Nanotesla).verdict
         else {
             panic!("{down_nt}")
         };
-        assert_eq!(mistakes, [mistake]);
+        assert_eq!(misreadings, [misreading]);
     }
     let swapped = adjusted.judge([z, y, x], Unit::Nanotesla).verdict;
-    let Verdict::Unexplained { mistakes } = swapped else {
+    let Verdict::Unexplained { misreadings } = swapped else {
         panic!("{swapped:?}")
     };
-    assert!(mistakes.contains(&Mistake::ForwardDownSwapped));
+    assert!(misreadings.contains(&Misreading::ForwardDownSwapped));
 }
 
 #[test]
@@ -376,8 +380,8 @@ fn the_second_reading_in_the_documentation_reads() {
         from.split("```").next().unwrap()
     };
     let berth: BerthForm = serde_json::from_str(block(1)).unwrap();
-    let after: AfterForm = serde_json::from_str(block(2)).unwrap();
-    let (first, there) = (berth.read().unwrap(), berth.read_after(&after).unwrap());
+    let after: PostCheckForm = serde_json::from_str(block(2)).unwrap();
+    let (first, there) = (berth.parse().unwrap(), berth.parse_after(&after).unwrap());
     // Variation is that of its own time.
     let [one, other] = [&there, &first].map(|berth| berth.reading.magnetic().degrees());
     assert!((one - other).abs() < 1e-3);
@@ -385,9 +389,9 @@ fn the_second_reading_in_the_documentation_reads() {
     assert!((there.reading.field_nt()[0] - 15_100.0).abs() < 1e-6);
     let mut early = after.clone();
     early.reading.at = binnacle_compass::time::Timestamp::parse("2026-11-21T09:59:59Z").unwrap();
-    let refused = berth.read_after(&early).unwrap_err();
+    let refused = berth.parse_after(&early).unwrap_err();
     assert_eq!(refused.field, "reading.at");
     let mut wild = after;
     wild.turned_deg = vec![None, Some(f64::NAN)];
-    assert_eq!(berth.read_after(&wild).unwrap_err().field, "turned_deg[1]");
+    assert_eq!(berth.parse_after(&wild).unwrap_err().field, "turned_deg[1]");
 }

@@ -1,8 +1,8 @@
 //! Every setting there is to choose from.
 
-use super::magnet_use::{Used, stock, used_by};
-use super::tray_pruning::{self, Item};
-use crate::adjust::corrector_moves as moves;
+use super::magnet_use::{MagnetUse, stock, used_by};
+use super::tray_pruning::{self, PruningCandidate};
+use crate::adjust::corrector_moves;
 use crate::binnacle::{Axis, Binnacle, Setting, Tray};
 use crate::corrector::{Iron, Vector, magnet_field};
 use std::ops::RangeInclusive;
@@ -11,9 +11,9 @@ use std::ops::RangeInclusive;
 /// one of each few nT is then taken.
 const MOST_SETTINGS: usize = 40_000;
 /// Magnets that one hole can hold, red end forward or to starboard.
-struct Holding {
+struct TrayCandidate {
     tray: Tray,
-    used: Used,
+    used: MagnetUse,
     /// Index of hole and kind among the fields of one magnet.
     field: usize,
 }
@@ -28,15 +28,15 @@ struct Capacity {
 
 /// One way to set the magnets of an axis.
 #[derive(Clone, Debug)]
-pub(crate) struct Magnets {
+pub(crate) struct AxisSetting {
     pub(crate) trays: Vec<Tray>,
-    pub(crate) used: Used,
+    pub(crate) used: MagnetUse,
     pub(crate) moves: u32,
     /// Fields of single magnets, with how often each counts.
     parts: Vec<(usize, f64)>,
 }
 
-impl Magnets {
+impl AxisSetting {
     /// Their field at the card, nT: forward and starboard.
     pub(crate) fn field_nt(&self, single: &[Vector]) -> [f64; 2] {
         let parts = self.parts.iter();
@@ -51,11 +51,11 @@ pub(crate) struct AxisCandidates {
     axis: Axis,
     /// Holes and kinds in the order of the fields of single magnets.
     singles: Vec<(u16, String)>,
-    pub(crate) settings: Vec<Magnets>,
+    pub(crate) settings: Vec<AxisSetting>,
     /// Most trays or holes in use at once.
     pub(crate) trays: u8,
     /// Whether every setting is among them.
-    pub(crate) is_whole: bool,
+    pub(crate) is_complete: bool,
     capacity: Capacity,
 }
 
@@ -66,7 +66,7 @@ impl AxisCandidates {
         let rack = binnacle.design.rack(axis);
         let stock = stock(binnacle);
         let mut singles = Vec::new();
-        let mut holdings = Vec::new();
+        let mut candidates_in_holes = Vec::new();
         for hole in &rack.holes {
             for magnet in &rack.magnets {
                 for count in 1..=rack.magnets_each {
@@ -74,7 +74,7 @@ impl AxisCandidates {
                     if !used.within(stock) {
                         continue;
                     }
-                    holdings.push(Holding {
+                    candidates_in_holes.push(TrayCandidate {
                         tray: Tray {
                             hole: hole.number,
                             magnet: magnet.clone(),
@@ -94,7 +94,7 @@ impl AxisCandidates {
             singles,
             settings: Vec::new(),
             trays: 0,
-            is_whole: true,
+            is_complete: true,
             capacity: Capacity {
                 at_once: usize::from(rack.at_once),
                 magnets_each: f64::from(rack.magnets_each),
@@ -105,46 +105,54 @@ impl AxisCandidates {
                     .collect(),
             },
         };
-        let as_it_stands = candidates.of_trays(binnacle, standing);
+        let as_it_stands = candidates.from_trays(binnacle, standing);
         candidates.settings.push(as_it_stands);
-        candidates.add(&[], &holdings, standing, stock);
+        candidates.add(&[], &candidates_in_holes, standing, stock);
         for trays in 1..=rack.at_once {
-            let chosen = choices(&holdings, usize::from(trays));
+            let chosen = combinations(&candidates_in_holes, usize::from(trays));
             if candidates.settings.len() + 2 * chosen.len() > MOST_SETTINGS {
-                candidates.thinned(&(trays..=rack.at_once), binnacle, &holdings, standing);
+                candidates.add_pruned(
+                    &(trays..=rack.at_once),
+                    binnacle,
+                    &candidates_in_holes,
+                    standing,
+                );
                 break;
             }
             candidates.trays = trays;
             for chosen in chosen {
-                candidates.add(&chosen, &holdings, standing, stock);
+                candidates.add(&chosen, &candidates_in_holes, standing, stock);
             }
         }
         candidates
     }
 
     /// Of the settings with so many trays one of each few nT.
-    fn thinned(
+    fn add_pruned(
         &mut self,
         trays: &RangeInclusive<u8>,
         binnacle: &Binnacle,
-        holdings: &[Holding],
+        candidates_in_holes: &[TrayCandidate],
         standing: &[Tray],
     ) {
-        (self.is_whole, self.trays) = (false, *trays.end());
+        (self.is_complete, self.trays) = (false, *trays.end());
         let stock = stock(binnacle);
         let fields = self.fields(binnacle, &Iron::default());
         let along = usize::from(self.axis == Axis::Athwartship);
         for positive in [true, false] {
             let red = self.axis.red(positive);
-            let item = |h: &Holding| {
+            let item = |h: &TrayCandidate| {
                 let tray = Tray {
                     red,
                     ..h.tray.clone()
                 };
                 let alone = standing.iter().map(|stood| {
-                    moves::trays(std::slice::from_ref(stood), std::slice::from_ref(&tray))
+                    corrector_moves::tray_moves(
+                        std::slice::from_ref(stood),
+                        std::slice::from_ref(&tray),
+                    )
                 });
-                Item {
+                PruningCandidate {
                     hole: tray.hole,
                     field_nt: (f64::from(tray.count) * fields[h.field][along]).abs(),
                     used: h.used,
@@ -152,9 +160,9 @@ impl AxisCandidates {
                     cost: 8 * alone.min().unwrap_or(1).min(2) + u32::from(tray.count),
                 }
             };
-            let items: Vec<Item> = holdings.iter().map(item).collect();
-            for chosen in tray_pruning::sets(&items, trays, stock) {
-                self.add_with(positive, &chosen, holdings, standing);
+            let items: Vec<PruningCandidate> = candidates_in_holes.iter().map(item).collect();
+            for chosen in tray_pruning::prune(&items, trays, stock) {
+                self.add_with(positive, &chosen, candidates_in_holes, standing);
             }
         }
     }
@@ -194,14 +202,20 @@ impl AxisCandidates {
         })
     }
 
-    fn add(&mut self, chosen: &[usize], holdings: &[Holding], standing: &[Tray], stock: Used) {
-        let held = chosen.iter().map(|index| &holdings[*index]);
-        let used = held.fold(Used::default(), |sum, h| sum.plus(h.used));
+    fn add(
+        &mut self,
+        chosen: &[usize],
+        candidates_in_holes: &[TrayCandidate],
+        standing: &[Tray],
+        stock: MagnetUse,
+    ) {
+        let held = chosen.iter().map(|index| &candidates_in_holes[*index]);
+        let used = held.fold(MagnetUse::default(), |sum, h| sum.plus(h.used));
         if !used.within(stock) {
             return;
         }
         for positive in [true, false] {
-            self.add_with(positive, chosen, holdings, standing);
+            self.add_with(positive, chosen, candidates_in_holes, standing);
         }
     }
 
@@ -209,30 +223,30 @@ impl AxisCandidates {
         &mut self,
         positive: bool,
         chosen: &[usize],
-        holdings: &[Holding],
+        candidates_in_holes: &[TrayCandidate],
         standing: &[Tray],
     ) {
-        let held = || chosen.iter().map(|index| &holdings[*index]);
+        let held = || chosen.iter().map(|index| &candidates_in_holes[*index]);
         let red = self.axis.red(positive);
-        let with_red = |h: &Holding| Tray {
+        let with_red = |h: &TrayCandidate| Tray {
             red,
             ..h.tray.clone()
         };
         let trays: Vec<Tray> = held().map(with_red).collect();
-        let moves = moves::trays(standing, &trays);
+        let moves = corrector_moves::tray_moves(standing, &trays);
         // What stands so already is there, and nothing has no other end.
         if moves > 0 && (positive || !trays.is_empty()) {
             let parts = held().map(|h| (h.field, red.sign() * f64::from(h.tray.count)));
-            self.settings.push(Magnets {
+            self.settings.push(AxisSetting {
                 parts: parts.collect(),
                 trays,
-                used: held().fold(Used::default(), |sum, h| sum.plus(h.used)),
+                used: held().fold(MagnetUse::default(), |sum, h| sum.plus(h.used)),
                 moves,
             });
         }
     }
 
-    fn of_trays(&self, binnacle: &Binnacle, trays: &[Tray]) -> Magnets {
+    fn from_trays(&self, binnacle: &Binnacle, trays: &[Tray]) -> AxisSetting {
         let single = |tray: &Tray| {
             let found = self
                 .singles
@@ -241,9 +255,9 @@ impl AxisCandidates {
             found.map(|index| (index, tray.red.sign() * f64::from(tray.count)))
         };
         let used = trays.iter().map(|t| used_by(binnacle, &t.magnet, t.count));
-        Magnets {
+        AxisSetting {
             trays: trays.to_vec(),
-            used: used.fold(Used::default(), Used::plus),
+            used: used.fold(MagnetUse::default(), MagnetUse::plus),
             moves: 0,
             parts: trays.iter().filter_map(single).collect(),
         }
@@ -259,15 +273,15 @@ impl AxisCandidates {
 }
 
 /// All choices of so many holdings in holes that differ.
-fn choices(holdings: &[Holding], many: usize) -> Vec<Vec<usize>> {
+fn combinations(candidates_in_holes: &[TrayCandidate], many: usize) -> Vec<Vec<usize>> {
     let mut all = Vec::new();
     let mut chosen = Vec::new();
-    extend(holdings, many, 0, &mut chosen, &mut all);
+    extend(candidates_in_holes, many, 0, &mut chosen, &mut all);
     all
 }
 
 fn extend(
-    holdings: &[Holding],
+    candidates_in_holes: &[TrayCandidate],
     many: usize,
     from: usize,
     chosen: &mut Vec<usize>,
@@ -277,14 +291,16 @@ fn extend(
         all.push(chosen.clone());
         return;
     }
-    for index in from..holdings.len() {
-        let last = chosen.last().map(|last| holdings[*last].tray.hole);
+    for index in from..candidates_in_holes.len() {
+        let last = chosen
+            .last()
+            .map(|last| candidates_in_holes[*last].tray.hole);
         // So that four trays of twelve magnets do not fill the memory first.
-        if last == Some(holdings[index].tray.hole) || all.len() > MOST_SETTINGS {
+        if last == Some(candidates_in_holes[index].tray.hole) || all.len() > MOST_SETTINGS {
             continue;
         }
         chosen.push(index);
-        extend(holdings, many, index + 1, chosen, all);
+        extend(candidates_in_holes, many, index + 1, chosen, all);
         chosen.pop();
     }
 }

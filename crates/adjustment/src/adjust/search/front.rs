@@ -26,23 +26,23 @@ pub struct Optimality {
 
 /// The best for a number of moves.
 #[derive(Clone, Debug)]
-pub(crate) struct Found {
+pub(crate) struct BestSetting {
     pub(crate) setting: Setting,
     pub(crate) moves: u32,
     pub(crate) worst_deg: f64,
 }
 
 /// For every number of moves the best found with no more of them.
-pub(crate) struct Front {
-    best: Vec<Option<Found>>,
+pub(crate) struct ParetoFront {
+    best: Vec<Option<BestSetting>>,
     pub(crate) optimality: Optimality,
     /// The least bound of what was not looked at.
     pub(crate) left_out_deg: f64,
 }
 
-impl Front {
-    pub(crate) fn new() -> Front {
-        Front {
+impl ParetoFront {
+    pub(crate) fn new() -> ParetoFront {
+        ParetoFront {
             best: vec![None; MOST_MOVES],
             optimality: Optimality {
                 proven: true,
@@ -66,7 +66,7 @@ impl Front {
 
     pub(crate) fn offer(&mut self, moves: u32, worst_deg: f64, setting: impl FnOnce() -> Setting) {
         if worst_deg < self.at(moves) && (moves as usize) < MOST_MOVES {
-            self.best[moves as usize] = Some(Found {
+            self.best[moves as usize] = Some(BestSetting {
                 setting: setting(),
                 moves,
                 worst_deg,
@@ -75,8 +75,8 @@ impl Front {
     }
 
     /// Each better than all with fewer moves, fewest moves first.
-    pub(crate) fn undominated(&self) -> Vec<&Found> {
-        let mut found: Vec<&Found> = Vec::new();
+    pub(crate) fn undominated(&self) -> Vec<&BestSetting> {
+        let mut found: Vec<&BestSetting> = Vec::new();
         for next in self.best.iter().flatten() {
             if found
                 .last()

@@ -7,15 +7,15 @@ const KINDS: usize = 8;
 
 /// How many magnets of each kind are used, a byte each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Used(u64);
+pub(crate) struct MagnetUse(u64);
 
-impl Used {
-    pub(crate) fn plus(self, other: Used) -> Used {
-        Used(self.0 + other.0)
+impl MagnetUse {
+    pub(crate) fn plus(self, other: MagnetUse) -> MagnetUse {
+        MagnetUse(self.0 + other.0)
     }
 
     /// Whether no kind is used more often than there are magnets.
-    pub(crate) fn within(self, stock: Used) -> bool {
+    pub(crate) fn within(self, stock: MagnetUse) -> bool {
         (0..KINDS).all(|kind| self.of(kind) <= stock.of(kind))
     }
 
@@ -23,26 +23,28 @@ impl Used {
         (self.0 >> (8 * kind)) & 0xff
     }
 
-    fn some(kind: usize, count: u64) -> Used {
-        Used(count.min(255) << (8 * kind))
+    fn some(kind: usize, count: u64) -> MagnetUse {
+        MagnetUse(count.min(255) << (8 * kind))
     }
 }
 
 /// What is on board.
-pub(crate) fn stock(binnacle: &Binnacle) -> Used {
+pub(crate) fn stock(binnacle: &Binnacle) -> MagnetUse {
     let kinds = binnacle.design.magnets.iter().take(KINDS).enumerate();
-    kinds.fold(Used::default(), |sum, (index, kind)| {
+    kinds.fold(MagnetUse::default(), |sum, (index, kind)| {
         // Half a byte's range is left for the sum of two axes.
         let count = binnacle.magnet_count(&kind.name).min(100);
-        sum.plus(Used::some(index, u64::from(count)))
+        sum.plus(MagnetUse::some(index, u64::from(count)))
     })
 }
 
-pub(crate) fn used_by(binnacle: &Binnacle, magnet: &str, count: u8) -> Used {
+pub(crate) fn used_by(binnacle: &Binnacle, magnet: &str, count: u8) -> MagnetUse {
     let index = binnacle
         .design
         .magnets
         .iter()
         .position(|kind| kind.name == magnet);
-    index.map_or_else(Used::default, |index| Used::some(index, u64::from(count)))
+    index.map_or_else(MagnetUse::default, |index| {
+        MagnetUse::some(index, u64::from(count))
+    })
 }

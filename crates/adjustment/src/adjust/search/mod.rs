@@ -20,18 +20,18 @@ mod relaxation;
 mod tree;
 
 pub use front::Optimality;
-pub(crate) use front::{Found, Front};
+pub(crate) use front::{BestSetting, ParetoFront};
 
-use super::corrector_moves as moves;
+use super::corrector_moves;
 use super::heeling;
 use super::inputs::Adjustment;
-use super::state::Condition;
+use super::state::MagneticState;
 use crate::binnacle::{Axis, HeelingSetting, Setting, Soft};
 use crate::corrector::{Effect, Iron, heeling_effect};
-use candidates::{AxisCandidates, Magnets};
+use candidates::{AxisCandidates, AxisSetting};
 use front::SLACK_DEG;
-use magnet_use::{Used, stock, used_by};
-use objective::{Box2, Compass, Objective};
+use magnet_use::{MagnetUse, stock, used_by};
+use objective::{FieldBox, HeadingGrid, Objective};
 use relaxation::relaxed_within;
 use soft_iron::iron;
 use tree::{Group, Pair};
@@ -42,11 +42,11 @@ const MOST_NODES: u64 = 6_000_000;
 /// card is read as well.
 const PROVEN_DEG: f64 = 0.05;
 /// One choice of soft iron with the heeling magnets that go with it.
-struct Choice {
+struct IronChoice {
     soft: Soft,
     heeling: Option<HeelingSetting>,
     moves: u32,
-    used: Used,
+    used: MagnetUse,
     iron: Iron,
     effect: Effect,
     bound_deg: f64,
@@ -55,32 +55,32 @@ struct Choice {
 /// What all choices are judged by.
 struct Search<'s> {
     adjustment: &'s Adjustment<'s>,
-    condition: &'s Condition<'s>,
-    compass: Compass,
+    state: &'s MagneticState<'s>,
+    compass: HeadingGrid,
     axes: [AxisCandidates; 2],
     groups: [Vec<Group>; 2],
-    stock: Used,
+    stock: MagnetUse,
 }
 
-pub(crate) fn search(adjustment: &Adjustment<'_>, condition: &Condition<'_>) -> Front {
-    let binnacle = condition.binnacle;
+pub(crate) fn search(adjustment: &Adjustment<'_>, state: &MagneticState<'_>) -> ParetoFront {
+    let binnacle = state.binnacle;
     let standing = adjustment.standing();
     let axes = Axis::BOTH.map(|axis| AxisCandidates::new(binnacle, axis, standing));
     let search = Search {
         adjustment,
-        condition,
-        compass: Compass::new(condition.constant_deg()),
-        groups: [0, 1].map(|axis| Group::by_moves(condition, &axes[axis])),
+        state,
+        compass: HeadingGrid::new(state.constant_deg()),
+        groups: [0, 1].map(|axis| Group::by_moves(state, &axes[axis])),
         axes,
         stock: stock(binnacle),
     };
-    let mut front = Front::new();
+    let mut front = ParetoFront::new();
     front.optimality.trays_in_use = [search.axes[0].trays, search.axes[1].trays];
-    let irons = iron(condition, standing);
-    let mut choices: Vec<Choice> = irons
+    let irons = iron(state, standing);
+    let mut choices: Vec<IronChoice> = irons
         .into_iter()
         // What is known of few moves makes the bounds of more moves bite.
-        .map(|(soft, moves)| search.with_magnets_as_they_stand(soft, moves, &mut front))
+        .map(|(soft, moves)| search.with_present_magnets(soft, moves, &mut front))
         .collect();
     choices.sort_by(|a, b| {
         let by_bound = a.bound_deg.total_cmp(&b.bound_deg);
@@ -89,8 +89,8 @@ pub(crate) fn search(adjustment: &Adjustment<'_>, condition: &Condition<'_>) -> 
     for choice in &choices {
         search.magnets(choice, &mut front);
     }
-    if !search.axes.iter().all(|axis| axis.is_whole) {
-        search.relaxed(&choices, &mut front);
+    if !search.axes.iter().all(|axis| axis.is_complete) {
+        search.bound_unsearched(&choices, &mut front);
     }
     let best_deg = front.at(u32::MAX);
     let optimality = &mut front.optimality;
@@ -102,16 +102,16 @@ pub(crate) fn search(adjustment: &Adjustment<'_>, condition: &Condition<'_>) -> 
 impl Search<'_> {
     fn objective(&self, effect: &Effect) -> Objective<'_> {
         Objective::new(&self.compass, self.adjustment.waters, |h_nt| {
-            self.condition.with_effect(effect, h_nt)
+            self.state.with_effect(effect, h_nt)
         })
     }
 
     /// A choice with its bound; with the magnets as they stand it is offered at once.
-    fn with_magnets_as_they_stand(&self, soft: Soft, moves: u32, front: &mut Front) -> Choice {
-        let binnacle = self.condition.binnacle;
+    fn with_present_magnets(&self, soft: Soft, moves: u32, front: &mut ParetoFront) -> IronChoice {
+        let binnacle = self.state.binnacle;
         let iron = Iron::new(binnacle, &soft);
         let of_iron = iron.effect(binnacle.design.needle_moment_am2);
-        let heeling = heeling::chosen(self.adjustment, self.condition, &iron, &of_iron);
+        let heeling = heeling::choose_magnets(self.adjustment, self.state, &iron, &of_iron);
         let of_heeling = heeling
             .as_ref()
             .map(|set| heeling_effect(binnacle, &iron, set));
@@ -120,8 +120,8 @@ impl Search<'_> {
         let bucket = binnacle.design.heeling.as_ref().zip(heeling.as_ref());
         let used = bucket.map(|(bucket, set)| used_by(binnacle, &bucket.magnet, set.count));
         let stood = self.adjustment.standing().heeling.as_ref();
-        let choice = Choice {
-            moves: moves + moves::heeling(stood, heeling.as_ref()),
+        let choice = IronChoice {
+            moves: moves + corrector_moves::heeling_moves(stood, heeling.as_ref()),
             bound_deg: objective.bound_for_iron(),
             soft,
             heeling,
@@ -140,7 +140,7 @@ impl Search<'_> {
     }
 }
 
-fn setting(choice: &Choice, fore_and_aft: &Magnets, athwartship: &Magnets) -> Setting {
+fn setting(choice: &IronChoice, fore_and_aft: &AxisSetting, athwartship: &AxisSetting) -> Setting {
     Setting {
         fore_and_aft: fore_and_aft.trays.clone(),
         athwartship: athwartship.trays.clone(),
@@ -152,7 +152,7 @@ fn setting(choice: &Choice, fore_and_aft: &Magnets, athwartship: &Magnets) -> Se
 
 impl Search<'_> {
     /// Looks through the magnets of one choice of iron.
-    fn magnets(&self, choice: &Choice, front: &mut Front) {
+    fn magnets(&self, choice: &IronChoice, front: &mut ParetoFront) {
         let mut known = None;
         let mut trees = [0, 1].map(|a| vec![None; self.groups[a].len()]);
         for (i, one) in self.groups[0].iter().enumerate() {
@@ -162,8 +162,7 @@ impl Search<'_> {
                     continue;
                 }
                 let (fields, objective) = known.get_or_insert_with(|| {
-                    let fields =
-                        |a: usize| self.axes[a].fields(self.condition.binnacle, &choice.iron);
+                    let fields = |a: usize| self.axes[a].fields(self.state.binnacle, &choice.iron);
                     ([fields(0), fields(1)], self.objective(&choice.effect))
                 });
                 let [along, across] = &mut trees;
@@ -182,7 +181,7 @@ impl Search<'_> {
     }
 
     /// Bounds what settings that were not gone through could do.
-    fn relaxed(&self, choices: &[Choice], front: &mut Front) {
+    fn bound_unsearched(&self, choices: &[IronChoice], front: &mut ParetoFront) {
         let mut left_deg = front.left_out_deg.min(front.at(u32::MAX) - SLACK_DEG);
         let mut nodes = 0;
         for choice in choices {
@@ -190,12 +189,12 @@ impl Search<'_> {
                 continue;
             }
             let reach = |axis: usize| {
-                let fields = self.axes[axis].fields(self.condition.binnacle, &choice.iron);
+                let fields = self.axes[axis].fields(self.state.binnacle, &choice.iron);
                 self.axes[axis].reach_nt(&fields)
             };
             let (one, other) = (reach(0), reach(1));
             let [x, y] = [0, 1].map(|part| one[part] + other[part]);
-            let within = Box2 {
+            let within = FieldBox {
                 x: [-x, x],
                 y: [-y, y],
             };
@@ -209,10 +208,10 @@ impl Search<'_> {
     /// Goes down both trees at once, the better half first.
     fn descend(
         &self,
-        choice: &Choice,
+        choice: &IronChoice,
         objective: &Objective<'_>,
         pair: &Pair<'_>,
-        front: &mut Front,
+        front: &mut ParetoFront,
     ) {
         let bound = |node: [usize; 2]| objective.bound_deg(&pair.within(node));
         let mut open = vec![([1, 1], bound([1, 1]))];

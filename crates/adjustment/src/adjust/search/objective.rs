@@ -17,12 +17,12 @@ const STRIDE: usize = 3;
 
 /// A rectangle of horizontal fields, nT.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Box2 {
+pub(crate) struct FieldBox {
     pub(crate) x: [f64; 2],
     pub(crate) y: [f64; 2],
 }
 
-impl Box2 {
+impl FieldBox {
     /// The longer side, nT.
     pub(crate) fn extent(self) -> f64 {
         (self.x[1] - self.x[0]).max(self.y[1] - self.y[0])
@@ -30,7 +30,7 @@ impl Box2 {
 }
 
 /// The headings and their directions, with the model's constant.
-pub(crate) struct Compass {
+pub(crate) struct HeadingGrid {
     /// (sin, cos) of the magnetic heading.
     heading: Vec<(f64, f64)>,
     /// The same of heading plus constant: the constant turns what is read.
@@ -39,25 +39,25 @@ pub(crate) struct Compass {
 
 /// One choice of soft iron in all the waters: what magnets are added to.
 pub(crate) struct Objective<'a> {
-    compass: &'a Compass,
-    waters: Vec<InWater>,
+    compass: &'a HeadingGrid,
+    waters: Vec<WaterField>,
 }
 
-struct InWater {
+struct WaterField {
     weight: f64,
     /// East and north of the field over all headings, without the magnets, nT.
     fixed: Vec<(f64, f64)>,
 }
 
-impl Compass {
-    pub(crate) fn new(constant_deg: f64) -> Compass {
+impl HeadingGrid {
+    pub(crate) fn new(constant_deg: f64) -> HeadingGrid {
         let angles = |turned: f64| {
             let step = std::f64::consts::TAU / HEADINGS as f64;
             (0..HEADINGS)
                 .map(|i| (i as f64 * step + turned).sin_cos())
                 .collect()
         };
-        Compass {
+        HeadingGrid {
             heading: angles(0.0),
             read: angles(constant_deg.to_radians()),
         }
@@ -68,14 +68,14 @@ impl<'a> Objective<'a> {
     /// `aboard` gives the ship, this soft iron included and the magnets not, where the
     /// horizontal field is as given.
     pub(crate) fn new(
-        compass: &'a Compass,
+        compass: &'a HeadingGrid,
         waters: &[Water],
-        aboard: impl Fn(f64) -> ShipMagnetism,
+        ship_at: impl Fn(f64) -> ShipMagnetism,
     ) -> Objective<'a> {
         let total: f64 = waters.iter().map(|water| water.weight).sum();
         let counted = waters.iter().filter(|water| water.weight > 0.0);
         let waters = counted.map(|water| {
-            let ship = aboard(water.h_nt);
+            let ship = ship_at(water.h_nt);
             let fixed = compass
                 .heading
                 .iter()
@@ -85,7 +85,7 @@ impl<'a> Objective<'a> {
                     let [x, y, _] = ship.field_at_compass(earth);
                     east_north(*read, x, y)
                 });
-            InWater {
+            WaterField {
                 weight: water.weight / total,
                 fixed: fixed.collect(),
             }
@@ -121,16 +121,16 @@ impl<'a> Objective<'a> {
     }
 
     /// No magnets within the box make it better than this, degrees.
-    pub(crate) fn bound_deg(&self, within: &Box2) -> f64 {
+    pub(crate) fn bound_deg(&self, within: &FieldBox) -> f64 {
         self.bound_by(STRIDE, within)
     }
 
     /// The same by every heading, for boxes that are small.
-    pub(crate) fn fine_bound_deg(&self, within: &Box2) -> f64 {
+    pub(crate) fn fine_bound_deg(&self, within: &FieldBox) -> f64 {
         self.bound_by(1, within)
     }
 
-    fn bound_by(&self, stride: usize, within: &Box2) -> f64 {
+    fn bound_by(&self, stride: usize, within: &FieldBox) -> f64 {
         self.weighted(|water| {
             let each = water.fixed.iter().zip(&self.compass.read).step_by(stride);
             each.map(|(fixed, read)| least_tangent(*fixed, *read, within))
@@ -138,7 +138,7 @@ impl<'a> Objective<'a> {
         })
     }
 
-    fn weighted(&self, worst: impl Fn(&InWater) -> f64) -> f64 {
+    fn weighted(&self, worst: impl Fn(&WaterField) -> f64) -> f64 {
         let each = self.waters.iter().map(|w| w.weight * worst(w).atan());
         each.sum::<f64>().to_degrees()
     }
@@ -163,7 +163,7 @@ fn tangent((east, north): (f64, f64)) -> f64 {
     }
 }
 
-fn least_tangent(fixed: (f64, f64), read: (f64, f64), within: &Box2) -> f64 {
+fn least_tangent(fixed: (f64, f64), read: (f64, f64), within: &FieldBox) -> f64 {
     let (sin, cos) = read;
     let (mid_x, half_x) = (
         f64::midpoint(within.x[0], within.x[1]),

@@ -1,6 +1,6 @@
 //! Bounds of settings that were not gone through.
 
-use super::objective::{Box2, Objective};
+use super::objective::{FieldBox, Objective};
 
 /// About a second of one core.
 const MOST_RELAXED: u64 = 200_000;
@@ -13,11 +13,11 @@ const SMALL_NT: f64 = 300.0;
 /// leave, degrees: a bound from below.
 pub(crate) fn relaxed_within(
     objective: &Objective<'_>,
-    within: Box2,
+    within: FieldBox,
     mut left_deg: f64,
     nodes: &mut u64,
 ) -> f64 {
-    let bound = |within: &Box2| {
+    let bound = |within: &FieldBox| {
         if within.extent() < SMALL_NT {
             objective.fine_bound_deg(within)
         } else {
@@ -44,15 +44,15 @@ pub(crate) fn relaxed_within(
     left_deg
 }
 
-fn halved(within: Box2) -> [Box2; 2] {
+fn halved(within: FieldBox) -> [FieldBox; 2] {
     let along_x = within.x[1] - within.x[0] >= within.y[1] - within.y[0];
     let [low, high] = if along_x { within.x } else { within.y };
     let middle = f64::midpoint(low, high);
     [[low, middle], [middle, high]].map(|part| {
         if along_x {
-            Box2 { x: part, ..within }
+            FieldBox { x: part, ..within }
         } else {
-            Box2 { y: part, ..within }
+            FieldBox { y: part, ..within }
         }
     })
 }

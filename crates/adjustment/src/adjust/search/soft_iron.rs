@@ -1,23 +1,23 @@
 //! Choices of soft iron.
 
-use crate::adjust::corrector_moves as moves;
-use crate::adjust::state::Condition;
+use crate::adjust::corrector_moves;
+use crate::adjust::state::MagneticState;
 use crate::binnacle::{BarSetting, Binnacle, PairSetting, Setting, Soft};
 
 /// All choices of soft iron, with the moves from how it stands.
-pub(crate) fn iron(condition: &Condition<'_>, standing: &Setting) -> Vec<(Soft, u32)> {
-    let binnacle = condition.binnacle;
-    let pairs = pairs(binnacle, standing, condition.may_move_pair);
-    let bars = bars(condition, standing);
+pub(crate) fn iron(state: &MagneticState<'_>, standing: &Setting) -> Vec<(Soft, u32)> {
+    let binnacle = state.binnacle;
+    let pairs = pairs(binnacle, standing, state.may_move_pair);
+    let bars = bars(state, standing);
     let mut all = Vec::with_capacity(pairs.len() * bars.len());
     for pair in &pairs {
-        let pair_moves = moves::pair(standing.quadrantal.as_ref(), pair.as_ref());
+        let pair_moves = corrector_moves::pair_moves(standing.quadrantal.as_ref(), pair.as_ref());
         for bar in &bars {
             let soft = Soft {
                 quadrantal: pair.clone(),
                 flinders: bar.clone(),
             };
-            let bar_moves = moves::bar(standing.flinders.as_ref(), bar.as_ref());
+            let bar_moves = corrector_moves::bar_moves(standing.flinders.as_ref(), bar.as_ref());
             all.push((soft, pair_moves + bar_moves));
         }
     }
@@ -47,9 +47,9 @@ fn pairs(binnacle: &Binnacle, standing: &Setting, may_move: bool) -> Vec<Option<
 /// A bar cures what the vertical field induces and nothing else: one that leaves more of
 /// it than the standing one would trade a permanent field for one that changes sign with
 /// the hemisphere, however well it may look in the waters that are known.
-fn bars(condition: &Condition<'_>, standing: &Setting) -> Vec<Option<BarSetting>> {
-    let binnacle = condition.binnacle;
-    let may_move = condition.may_move_bar;
+fn bars(state: &MagneticState<'_>, standing: &Setting) -> Vec<Option<BarSetting>> {
+    let binnacle = state.binnacle;
+    let may_move = state.may_move_bar;
     let Some(holder) = binnacle.design.flinders.as_ref().filter(|_| may_move) else {
         return vec![standing.flinders.clone()];
     };
@@ -65,9 +65,9 @@ fn bars(condition: &Condition<'_>, standing: &Setting) -> Vec<Option<BarSetting>
             }
         }
     }
-    let left_now = condition.left_to_induction(standing.flinders.as_ref());
+    let left_now = state.left_to_induction(standing.flinders.as_ref());
     all.retain(|bar| {
-        *bar == standing.flinders || condition.left_to_induction(bar.as_ref()) <= left_now
+        *bar == standing.flinders || state.left_to_induction(bar.as_ref()) <= left_now
     });
     all
 }

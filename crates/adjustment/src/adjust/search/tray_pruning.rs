@@ -6,18 +6,18 @@
 //! many trays where they stand, the one with the fewest movements of hand stays. What is
 //! left out thereby is not lost: the search bounds what it could do (`Search::relaxed`).
 
-use super::magnet_use::Used;
+use super::magnet_use::MagnetUse;
 use std::ops::RangeInclusive;
 
 /// Cells between no field and the strongest: a few nT each.
 const CELLS: usize = 6_000;
 
 /// What one hole may hold.
-pub(crate) struct Item {
+pub(crate) struct PruningCandidate {
     pub(crate) hole: u16,
     /// Its field where no iron stands, nT.
     pub(crate) field_nt: f64,
-    pub(crate) used: Used,
+    pub(crate) used: MagnetUse,
     /// Whether it stands there already.
     pub(crate) stands: bool,
     /// Movements of hand and magnets that it takes by itself, for choosing among equals.
@@ -26,16 +26,20 @@ pub(crate) struct Item {
 
 /// Some items in holes that differ.
 #[derive(Clone)]
-struct Set {
+struct TraySet {
     items: Vec<usize>,
     field_nt: f64,
-    used: Used,
+    used: MagnetUse,
     stand: usize,
     cost: u32,
 }
 
 /// Sets of as many items as are asked for, by their indices.
-pub(crate) fn sets(items: &[Item], many: &RangeInclusive<u8>, stock: Used) -> Vec<Vec<usize>> {
+pub(crate) fn prune(
+    items: &[PruningCandidate],
+    many: &RangeInclusive<u8>,
+    stock: MagnetUse,
+) -> Vec<Vec<usize>> {
     let strongest_nt = items.iter().map(|item| item.field_nt).fold(0.0, f64::max);
     let most = usize::from(*many.end());
     let full_nt = strongest_nt * most as f64;
@@ -43,15 +47,15 @@ pub(crate) fn sets(items: &[Item], many: &RangeInclusive<u8>, stock: Used) -> Ve
         return Vec::new();
     }
     let mut found = Vec::new();
-    let mut sets = vec![Set {
+    let mut sets = vec![TraySet {
         items: Vec::new(),
         field_nt: 0.0,
-        used: Used::default(),
+        used: MagnetUse::default(),
         stand: 0,
         cost: 0,
     }];
     for size in 1..=*many.end() {
-        sets = one_more(&sets, items, full_nt, most, stock);
+        sets = extend_sets(&sets, items, full_nt, most, stock);
         if many.contains(&size) {
             found.extend(sets.iter().map(|set| set.items.clone()));
         }
@@ -59,8 +63,14 @@ pub(crate) fn sets(items: &[Item], many: &RangeInclusive<u8>, stock: Used) -> Ve
     found
 }
 
-fn one_more(sets: &[Set], items: &[Item], full_nt: f64, most: usize, stock: Used) -> Vec<Set> {
-    let mut cells: Vec<Option<Set>> = vec![None; (most + 1) * (CELLS + 1)];
+fn extend_sets(
+    sets: &[TraySet],
+    items: &[PruningCandidate],
+    full_nt: f64,
+    most: usize,
+    stock: MagnetUse,
+) -> Vec<TraySet> {
+    let mut cells: Vec<Option<TraySet>> = vec![None; (most + 1) * (CELLS + 1)];
     for set in sets {
         for (index, item) in items.iter().enumerate() {
             let used = set.used.plus(item.used);
@@ -76,7 +86,7 @@ fn one_more(sets: &[Set], items: &[Item], full_nt: f64, most: usize, stock: Used
             if place.as_ref().is_none_or(|known| cost < known.cost) {
                 let mut held = set.items.clone();
                 held.push(index);
-                *place = Some(Set {
+                *place = Some(TraySet {
                     items: held,
                     field_nt,
                     used,

@@ -1,8 +1,8 @@
 //! Trees of magnet settings for branch and bound.
 
-use super::candidates::{AxisCandidates, Magnets};
-use super::objective::Box2;
-use crate::adjust::state::Condition;
+use super::candidates::{AxisCandidates, AxisSetting};
+use super::objective::FieldBox;
+use crate::adjust::state::MagneticState;
 use crate::corrector::{Iron, Vector};
 
 /// Magnets of one axis that take the same number of moves, as a tree whose node i has
@@ -14,8 +14,8 @@ pub(crate) struct Group {
 }
 
 impl Group {
-    pub(crate) fn by_moves(condition: &Condition<'_>, axis: &AxisCandidates) -> Vec<Group> {
-        let fields = axis.fields(condition.binnacle, &Iron::default());
+    pub(crate) fn by_moves(state: &MagneticState<'_>, axis: &AxisCandidates) -> Vec<Group> {
+        let fields = axis.fields(state.binnacle, &Iron::default());
         let strength = |index: &usize| axis.settings[*index].field_nt(&fields).iter().sum::<f64>();
         let mut groups: Vec<Group> = Vec::new();
         for (index, setting) in axis.settings.iter().enumerate() {
@@ -36,23 +36,23 @@ impl Group {
         groups
     }
 
-    pub(crate) fn tree(&self, settings: &[Magnets], fields: &[Vector]) -> Vec<Box2> {
+    pub(crate) fn tree(&self, settings: &[AxisSetting], fields: &[Vector]) -> Vec<FieldBox> {
         let leaves = self.members.len();
-        let none = Box2 {
+        let none = FieldBox {
             x: [0.0; 2],
             y: [0.0; 2],
         };
         let mut tree = vec![none; 2 * leaves];
         for (leaf, member) in self.members.iter().enumerate() {
             let [x, y] = settings[*member].field_nt(fields);
-            tree[leaves + leaf] = Box2 {
+            tree[leaves + leaf] = FieldBox {
                 x: [x, x],
                 y: [y, y],
             };
         }
         for node in (1..leaves).rev() {
             let (a, b) = (tree[2 * node], tree[2 * node + 1]);
-            tree[node] = Box2 {
+            tree[node] = FieldBox {
                 x: [a.x[0].min(b.x[0]), a.x[1].max(b.x[1])],
                 y: [a.y[0].min(b.y[0]), a.y[1].max(b.y[1])],
             };
@@ -64,14 +64,14 @@ impl Group {
 /// A group of each axis, with their trees.
 pub(crate) struct Pair<'p> {
     pub(crate) groups: [&'p Group; 2],
-    pub(crate) trees: [&'p [Box2]; 2],
+    pub(crate) trees: [&'p [FieldBox]; 2],
     pub(crate) moves: u32,
 }
 
 impl Pair<'_> {
-    pub(crate) fn within(&self, node: [usize; 2]) -> Box2 {
+    pub(crate) fn within(&self, node: [usize; 2]) -> FieldBox {
         let [one, other] = [self.trees[0][node[0]], self.trees[1][node[1]]];
-        Box2 {
+        FieldBox {
             x: [one.x[0] + other.x[0], one.x[1] + other.x[1]],
             y: [one.y[0] + other.y[0], one.y[1] + other.y[1]],
         }

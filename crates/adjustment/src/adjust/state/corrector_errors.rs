@@ -5,7 +5,7 @@
 //! she was measured. A tray's magnets err together; moved from one hole to another they
 //! err by the difference.
 
-use crate::adjust::corrector_moves::matched;
+use crate::adjust::corrector_moves::match_trays;
 use crate::binnacle::{Axis, Binnacle, Setting, Soft, Tray};
 use crate::corrector::{Effect, Iron, heeling_effect, tray_effect};
 
@@ -13,7 +13,7 @@ use crate::corrector::{Effect, Iron, heeling_effect, tray_effect};
 const NEEDLE_SD: f64 = 0.1;
 
 /// The errors of going from the binnacle's own setting to another.
-pub(crate) fn errors_of(binnacle: &Binnacle, to: &Setting) -> Vec<Effect> {
+pub(crate) fn setting_errors(binnacle: &Binnacle, to: &Setting) -> Vec<Effect> {
     errors_between(binnacle, &binnacle.setting, to)
 }
 
@@ -21,7 +21,7 @@ pub(crate) fn errors_between(binnacle: &Binnacle, from: &Setting, to: &Setting) 
     let mut errors = Vec::new();
     let irons = [from, to].map(|setting| Iron::new(binnacle, &setting.soft()));
     for axis in Axis::BOTH {
-        for (old, new) in matched(from.trays(axis), to.trays(axis)) {
+        for (old, new) in match_trays(from.trays(axis), to.trays(axis)) {
             if old != new {
                 errors.extend(magnets(binnacle, &irons, axis, old, new));
             }

@@ -1,8 +1,8 @@
 //! λ of an earlier berth, carried over to the present setting.
 
-use super::corrector_errors::errors_of;
+use super::corrector_errors::setting_errors;
 use super::field_drift::drift_nt;
-use super::magnetic_state::Condition;
+use super::magnetic_state::MagneticState;
 use crate::adjust::inputs::{AdjustError, Adjustment, EarlierLambda};
 use crate::binnacle::{Binnacle, Setting};
 use crate::corrector::{Effect, effect};
@@ -13,19 +13,19 @@ impl EarlierLambda {
     ///
     /// # Errors
     /// When its reading tells none.
-    pub fn told(
+    pub fn from_berth(
         at: Timestamp,
         adjustment: &Adjustment<'_>,
     ) -> Result<Option<EarlierLambda>, AdjustError> {
-        let condition = Condition::new(adjustment)?;
-        let lambda = condition.lambda();
+        let state = MagneticState::new(adjustment)?;
+        let lambda = state.lambda();
         let [forward, starboard] = adjustment.reading.field_nt();
         let drift = drift_nt(adjustment) / forward.hypot(starboard);
         // Without the model's covariance nothing is known of its error.
         let told = adjustment.model.covariance.map(|_| EarlierLambda {
             at,
             lambda,
-            standard_error: lambda * condition.lambda_sd_share().hypot(drift),
+            standard_error: lambda * state.lambda_sd_share().hypot(drift),
         });
         Ok(told)
     }
@@ -33,12 +33,12 @@ impl EarlierLambda {
     /// The same with the correctors as this binnacle has them, where they stood so when it was
     /// told; what was moved errs by its tolerance. None where the binnacle cannot be set so.
     #[must_use]
-    pub fn set_as(self, binnacle: &Binnacle, stood: &Setting) -> Option<EarlierLambda> {
+    pub fn adapted_to(self, binnacle: &Binnacle, stood: &Setting) -> Option<EarlierLambda> {
         binnacle.with_setting(stood.clone()).ok()?;
         // Needles add nothing to λ.
         let share = |effect: &Effect| effect.as_ship(f64::INFINITY).lambda() - 1.0;
         let of = |setting: &Setting| share(&effect(binnacle, setting));
-        let errors = errors_of(binnacle, stood).into_iter();
+        let errors = setting_errors(binnacle, stood).into_iter();
         let add = |sum: f64, error: Effect| sum.hypot(share(&error));
         Some(EarlierLambda {
             at: self.at,

@@ -7,7 +7,7 @@
 //! holds: whatever of either has not been shown is in the covariance that a plan carries, so
 //! that a band too wide refuses it (docs/science.md, §11).
 
-use crate::adjust::diagnosis::{Compared, Refusal};
+use crate::adjust::diagnosis::{LambdaComparison, Refusal};
 use crate::adjust::inputs::Adjustment;
 use crate::berth::{BerthEstimate, JointCovariance, USUAL_LAMBDA};
 use binnacle_compass::deviation::NORMAL_99;
@@ -27,7 +27,7 @@ const LAMBDA: usize = PARAMETERS + 1;
 pub(crate) fn drift_nt(adjustment: &Adjustment<'_>) -> f64 {
     let circumstances = &adjustment.circumstances;
     let days = circumstances.model_age_days.unwrap_or(0.0);
-    if circumstances.has_learnt_here {
+    if circumstances.is_updated_here {
         0.0
     } else {
         NoiseLevels::TYPICAL.drift_nt * (days / DRIFT_DAYS).sqrt()
@@ -36,7 +36,7 @@ pub(crate) fn drift_nt(adjustment: &Adjustment<'_>) -> f64 {
 
 /// What the permanent field may have changed by, one standard deviation, nT.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Since {
+pub(crate) struct FieldDrift {
     /// The way the needle points aboard, `[forward, starboard]`.
     along: [f64; 2],
     /// What was read, nT.
@@ -46,16 +46,16 @@ pub(crate) struct Since {
     /// Across the needle, as far as the berth's check has not shown it.
     across_nt: f64,
     lambda: f64,
-    compared: Option<Compared>,
+    comparison: Option<LambdaComparison>,
 }
 
-impl Since {
+impl FieldDrift {
     /// λ's variance with the magnetometer's scale.
     pub(crate) fn new(
         adjustment: &Adjustment<'_>,
         estimate: &BerthEstimate,
         lambda_variance: f64,
-    ) -> Since {
+    ) -> FieldDrift {
         let reading = adjustment.reading;
         let [forward, starboard] = reading.field_nt();
         let field_nt = forward.hypot(starboard);
@@ -63,23 +63,25 @@ impl Since {
         let circumstances = &adjustment.circumstances;
         let drift_nt = drift_nt(adjustment);
         let sd = lambda_variance.sqrt().hypot(drift_nt * lambda / field_nt);
-        let compared = circumstances.earlier_lambda.map(|earlier| Compared {
-            earlier,
-            off: lambda - earlier.lambda,
-            standard_error: sd.hypot(earlier.standard_error),
-        });
-        let unchecked_deg = if circumstances.has_learnt_here {
+        let comparison = circumstances
+            .earlier_lambda
+            .map(|earlier| LambdaComparison {
+                earlier,
+                difference: lambda - earlier.lambda,
+                standard_error: sd.hypot(earlier.standard_error),
+            });
+        let unchecked_deg = if circumstances.is_updated_here {
             0.0
         } else {
             estimate.consistency.unchecked_deg(reading.errors())
         };
-        Since {
+        FieldDrift {
             along: [forward / field_nt, starboard / field_nt],
             field_nt,
             drift_nt,
             across_nt: unchecked_deg.to_radians() * field_nt,
             lambda,
-            compared,
+            comparison,
         }
     }
 
@@ -109,7 +111,7 @@ impl Since {
     }
 
     /// What of a band the berth's check leaves open, in words; none at a good berth.
-    pub(crate) fn unchecked(&self) -> Option<String> {
+    pub(crate) fn unchecked_note(&self) -> Option<String> {
         let unchecked_deg = (self.across_nt / self.field_nt).to_degrees();
         (unchecked_deg > 0.0).then(|| {
             format!(
@@ -122,35 +124,35 @@ impl Since {
 
     /// Whether the earlier λ is contradicted beyond the errors of both.
     pub(crate) fn refusal(&self) -> Option<Refusal> {
-        let found = self.compared?;
-        let is_other = found.off.abs() > NORMAL_99 * found.standard_error;
+        let found = self.comparison?;
+        let is_other = found.difference.abs() > NORMAL_99 * found.standard_error;
         is_other.then(|| Refusal::OtherLambda {
             lambda: self.lambda,
-            along_nt: found.off.abs() / self.lambda * self.field_nt,
-            compared: found,
+            along_nt: found.difference.abs() / self.lambda * self.field_nt,
+            comparison: found,
         })
     }
 
     /// What the berth cannot have shown, for the adjuster.
-    pub(crate) fn in_words(&self, shows_from_deg: Option<f64>) -> Vec<String> {
-        let mut words: Vec<String> = self.unchecked().into_iter().collect();
-        if let Some(deg) = shows_from_deg.filter(|deg| *deg > SHOWS_LITTLE_DEG) {
+    pub(crate) fn notes(&self, detectable_turn_deg: Option<f64>) -> Vec<String> {
+        let mut words: Vec<String> = self.unchecked_note().into_iter().collect();
+        if let Some(deg) = detectable_turn_deg.filter(|deg| *deg > SHOWS_LITTLE_DEG) {
             words.push(format!(
                 "the check of the berth could not have shown a change of the ship's magnetism \
                  that turns the field by less than {deg:.0} degrees: a better heading or \
                  magnetometer would"
             ));
         }
-        words.push(self.along_the_needle());
+        words.push(self.needle_note());
         words
     }
 
     /// What no reading on one heading shows.
-    fn along_the_needle(&self) -> String {
+    fn needle_note(&self) -> String {
         let (least, greatest) = (USUAL_LAMBDA.start(), USUAL_LAMBDA.end());
         let room = (self.lambda - least).max(greatest - self.lambda);
         let usual = (room.max(0.0), "leave lambda usual");
-        let (could_be, why) = self.compared.map_or(usual, |found| {
+        let (could_be, why) = self.comparison.map_or(usual, |found| {
             let within = NORMAL_99 * found.standard_error;
             (within, "be within the errors of both berths")
         });

@@ -3,9 +3,9 @@
 //! `base` is she without correctors: what was measured less the effect of the setting
 //! then. The needles' part of that effect was fitted at a mean H of her waters.
 
-use super::corrector_errors::errors_of;
-use super::field_drift::Since;
-use crate::adjust::diagnosis::Vertical;
+use super::corrector_errors::setting_errors;
+use super::field_drift::FieldDrift;
+use crate::adjust::diagnosis::VerticalCheck;
 use crate::adjust::inputs::{AdjustError, Adjustment, VerticalReading};
 use crate::berth::{BerthEstimate, JointCovariance, lambda_at_berth};
 use crate::binnacle::{BarSetting, Binnacle, Setting, Soft};
@@ -18,16 +18,16 @@ const LAMBDA: usize = PARAMETERS + 1;
 
 type JointRow = [f64; LAMBDA + 1];
 
-pub(crate) struct Condition<'a> {
+pub(crate) struct MagneticState<'a> {
     pub(crate) binnacle: &'a Binnacle,
     model: &'a Model,
     pub(crate) estimate: BerthEstimate,
     joint: JointCovariance,
-    pub(crate) since: Since,
+    pub(crate) drift: FieldDrift,
     lambda: f64,
     base: ShipMagnetism,
     /// What the correctors did while the ship was measured.
-    then: Effect,
+    measured_effect: Effect,
     /// The horizontal field at which the needles' part was fitted, nT.
     reference_h_nt: f64,
     pub(crate) may_move_pair: bool,
@@ -36,13 +36,13 @@ pub(crate) struct Condition<'a> {
     pub(crate) vertical: Option<VerticalReading>,
 }
 
-impl<'a> Condition<'a> {
-    pub(crate) fn new(adjustment: &Adjustment<'a>) -> Result<Condition<'a>, AdjustError> {
+impl<'a> MagneticState<'a> {
+    pub(crate) fn new(adjustment: &Adjustment<'a>) -> Result<MagneticState<'a>, AdjustError> {
         let binnacle = adjustment.binnacle;
-        let then = effect(binnacle, &binnacle.setting);
+        let measured_effect = effect(binnacle, &binnacle.setting);
         let reference_h_nt = harmonic_mean_h(adjustment);
         let model = adjustment.model;
-        let needle = needle_only(&then, reference_h_nt);
+        let needle = needle_only(&measured_effect, reference_h_nt);
         let p = &model.parameters_over_lambda;
         let mut lambda = 0.9;
         let mut estimate;
@@ -66,33 +66,33 @@ impl<'a> Condition<'a> {
         }
         let mut joint = estimate.covariance.unwrap_or_default();
         joint[LAMBDA][LAMBDA] += (lambda * adjustment.scale_sd).powi(2);
-        let since = Since::new(adjustment, &estimate, joint[LAMBDA][LAMBDA]);
-        since.widen(&mut joint);
+        let drift = FieldDrift::new(adjustment, &estimate, joint[LAMBDA][LAMBDA]);
+        drift.widen(&mut joint);
         let measured = ShipMagnetism::from_parameters(p, lambda);
-        let base = minus(&measured, &then.as_ship(reference_h_nt));
-        let mut condition = Condition {
+        let base = minus(&measured, &measured_effect.as_ship(reference_h_nt));
+        let mut state = MagneticState {
             binnacle,
             model,
             estimate,
             joint,
-            since,
+            drift,
             lambda,
             base,
-            then,
+            measured_effect,
             reference_h_nt,
             may_move_pair: true,
             may_move_bar: model.identifiable.is_none_or(|known| known.chi13),
             vertical: adjustment
                 .vertical
-                .filter(|read| Vertical::new(*read, adjustment.earth, binnacle).is_believed()),
+                .filter(|read| VerticalCheck::new(*read, adjustment.earth, binnacle).is_credible()),
         };
-        condition.may_move_pair = condition.lambda_sd_share() <= adjustment.limits.lambda_sd;
-        Ok(condition)
+        state.may_move_pair = state.lambda_sd_share() <= adjustment.limits.lambda_sd;
+        Ok(state)
     }
 
     /// As if λ were sure enough for spheres to be moved.
-    pub(crate) fn with_free_spheres(&self) -> Condition<'a> {
-        Condition {
+    pub(crate) fn with_free_spheres(&self) -> MagneticState<'a> {
+        MagneticState {
             may_move_pair: true,
             ..*self
         }
@@ -137,12 +137,12 @@ impl<'a> Condition<'a> {
 
     /// How far the vertical field per earth's vertical field is from what it was.
     pub(crate) fn chi33_change(&self, effect: &Effect) -> f64 {
-        effect.chi[2][2] - self.then.chi[2][2]
+        effect.chi[2][2] - self.measured_effect.chi[2][2]
     }
 
     /// How far the permanent vertical field is from what it was, nT.
     pub(crate) fn bz_change(&self, effect: &Effect) -> f64 {
-        effect.b_nt[2] - self.then.b_nt[2]
+        effect.b_nt[2] - self.measured_effect.b_nt[2]
     }
 
     /// The model that holds with a setting: its covariance carries the errors of the
@@ -193,10 +193,10 @@ impl<'a> Condition<'a> {
                 covariance[row][column] = quadratic(&self.joint, by, with);
             }
         }
-        for error in errors_of(self.binnacle, setting) {
-            let way = self.way(&error, &after, new_lambda);
-            for (row, one) in way.iter().enumerate() {
-                for (column, other) in way.iter().enumerate() {
+        for error in setting_errors(self.binnacle, setting) {
+            let sensitivity = self.sensitivity(&error, &after, new_lambda);
+            for (row, one) in sensitivity.iter().enumerate() {
+                for (column, other) in sensitivity.iter().enumerate() {
                     covariance[row][column] += one * other;
                 }
             }
@@ -217,7 +217,12 @@ impl<'a> Condition<'a> {
     }
 
     /// What an effect that comes on top makes of the eight.
-    fn way(&self, effect: &Effect, after: &[f64; PARAMETERS], new_lambda: f64) -> [f64; LAMBDA] {
+    fn sensitivity(
+        &self,
+        effect: &Effect,
+        after: &[f64; PARAMETERS],
+        new_lambda: f64,
+    ) -> [f64; LAMBDA] {
         let effect = effect.as_ship(self.reference_h_nt);
         let way = seven(&effect);
         let lambda = effect.lambda() - 1.0;
@@ -228,14 +233,17 @@ impl<'a> Condition<'a> {
     }
 
     /// All that is known of the ship with a setting, for what is read then.
-    pub(crate) fn known_with(&self, setting: &Setting) -> Result<Known<'_>, DeviationError> {
+    pub(crate) fn with_setting(
+        &self,
+        setting: &Setting,
+    ) -> Result<StateWithSetting<'_>, DeviationError> {
         let effect = effect(self.binnacle, setting);
         let ship = self.with_effect(&effect, self.reference_h_nt);
         let model = self.model_with(setting)?;
         let after = model.parameters_over_lambda.to_array();
         let slopes = self.slopes(&after, ship.lambda());
-        Ok(Known {
-            condition: self,
+        Ok(StateWithSetting {
+            state: self,
             setting: setting.clone(),
             effect,
             model,
@@ -247,8 +255,8 @@ impl<'a> Condition<'a> {
 }
 
 /// The ship with a setting, as she is known before anything is read of her then.
-pub(crate) struct Known<'c> {
-    condition: &'c Condition<'c>,
+pub(crate) struct StateWithSetting<'c> {
+    state: &'c MagneticState<'c>,
     pub(crate) setting: Setting,
     pub(crate) effect: Effect,
     pub(crate) model: Model,
@@ -257,10 +265,10 @@ pub(crate) struct Known<'c> {
     slopes: [JointRow; LAMBDA],
 }
 
-impl Known<'_> {
+impl StateWithSetting<'_> {
     /// What an effect that comes on top makes of the model's eight.
-    pub(crate) fn way(&self, effect: &Effect) -> [f64; LAMBDA] {
-        self.condition.way(effect, &self.after, self.new_lambda)
+    pub(crate) fn sensitivity(&self, effect: &Effect) -> [f64; LAMBDA] {
+        self.state.sensitivity(effect, &self.after, self.new_lambda)
     }
 
     /// Slopes of the model's eight by the eight that were measured and, last, by λ.
@@ -269,7 +277,7 @@ impl Known<'_> {
     }
 }
 
-impl Condition<'_> {
+impl MagneticState<'_> {
     pub(crate) fn lambda(&self) -> f64 {
         self.lambda
     }
@@ -280,8 +288,8 @@ impl Condition<'_> {
     }
 
     /// What the correctors did while the ship was measured.
-    pub(crate) fn then(&self) -> &Effect {
-        &self.then
+    pub(crate) fn measured_effect(&self) -> &Effect {
+        &self.measured_effect
     }
 
     /// The horizontal field at the card without bowl and needles, nT, with correctors of

@@ -6,5 +6,5 @@ mod magnetic_state;
 
 mod earlier_lambda;
 
-pub(crate) use corrector_errors::{errors_between, errors_of};
-pub(crate) use magnetic_state::{Condition, Known};
+pub(crate) use corrector_errors::{errors_between, setting_errors};
+pub(crate) use magnetic_state::{MagneticState, StateWithSetting};

@@ -8,7 +8,7 @@
 use crate::adjust::diagnosis::turn_sd_deg;
 use crate::adjust::inputs::{AdjustError, Adjustment};
 use crate::adjust::instructions::{Place, Step, compass_turn};
-use crate::adjust::state::Condition;
+use crate::adjust::state::MagneticState;
 use crate::binnacle::{
     BarSetting, Binnacle, BinnacleForm, Calibrated, PairSetting, Side, Soft, Tray,
 };
@@ -16,26 +16,26 @@ use crate::corrector::Iron;
 use std::ops::RangeInclusive;
 
 /// Within these, as shares of what was taken, the search for a strength keeps.
-const LOOKED_FOR: RangeInclusive<f64> = 0.1..=5.0;
+const SEARCH_RANGE: RangeInclusive<f64> = 0.1..=5.0;
 /// Magnets lose strength, down to this share.
-const WEAKEST_MAGNET: f64 = 0.3;
+const MIN_MAGNET_SCALE: f64 = 0.3;
 /// Magnets gain none: those that were measured are as much stronger as that is unsure, but
 /// always up to this.
-const STRONGER_MEASURED: f64 = 0.25;
+const MAX_GAIN_MEASURED: f64 = 0.25;
 /// Those of which only a catalogue says what they have may be of another make.
-const STRONGER_NOMINAL: f64 = 1.0;
+const MAX_GAIN_NOMINAL: f64 = 1.0;
 /// Iron neither gains nor loses; it differs as its kind does, but always up to this.
-const OTHER_IRON: f64 = 0.2;
+const MIN_IRON_SPREAD: f64 = 0.2;
 /// So many standard deviations of its kind a corrector may differ.
-const FEW_SD: f64 = 5.0;
+const PLAUSIBLE_SD: f64 = 5.0;
 /// How well a turn is known that is weighed for a strength, degrees: twice read, and turned
 /// by neighbours that are not quite as taken.
-const LEAST_READ_SD_DEG: f64 = 0.5;
+const MIN_TURN_SD_DEG: f64 = 0.5;
 /// An effect that is found to this is found, degrees.
-const FOUND_DEG: f64 = 0.02;
+const CONVERGED_DEG: f64 = 0.02;
 
 /// The share with its standard error and the binnacle that has the corrector so.
-pub(crate) struct Strength {
+pub(crate) struct CorrectorScale {
     pub(crate) share: f64,
     pub(crate) share_sd: f64,
     pub(crate) binnacle: Binnacle,
@@ -43,44 +43,45 @@ pub(crate) struct Strength {
 
 /// How strong the step's corrector must be for what was read; none where no strength that
 /// it can have explains that.
-pub(crate) fn strength(
+pub(crate) fn find_scale(
     adjustment: &Adjustment<'_>,
     step: &Step,
     turned_deg: f64,
-) -> Result<Option<Strength>, AdjustError> {
+) -> Result<Option<CorrectorScale>, AdjustError> {
     let place = step.to.as_ref().or(step.from.as_ref());
-    let Some(can_be) = place.and_then(|place| shares(adjustment.binnacle, place)) else {
+    let Some(can_be) = place.and_then(|place| plausible_scales(adjustment.binnacle, place)) else {
         return Ok(None);
     };
     if !step.seen {
         return Ok(None);
     }
-    let read_sd_deg = LEAST_READ_SD_DEG.max(turn_sd_deg(adjustment.earth.h_nt));
+    let read_sd_deg = MIN_TURN_SD_DEG.max(turn_sd_deg(adjustment.earth.h_nt));
     let share_sd = (read_sd_deg / step.change_deg.abs()).min(0.5);
     let change = |share: f64| -> Result<Option<(f64, Binnacle)>, AdjustError> {
-        let binnacle = place.and_then(|place| times(adjustment.binnacle, place, share, share_sd));
+        let binnacle =
+            place.and_then(|place| scale_corrector(adjustment.binnacle, place, share, share_sd));
         let Some(binnacle) = binnacle else {
             return Ok(None);
         };
-        let condition = Condition::new(&Adjustment {
+        let state = MagneticState::new(&Adjustment {
             binnacle: &binnacle,
             ..adjustment.clone()
         })?;
         let (before, after) = (&step.setting_before, &step.setting_after);
-        let turn = compass_turn(adjustment, &condition, before, after);
+        let turn = compass_turn(adjustment, &state, before, after);
         Ok(Some((turn.change_deg, binnacle)))
     };
     let mut known = (1.0, step.change_deg);
     let mut share = turned_deg / step.change_deg;
     for _ in 0..8 {
-        if !LOOKED_FOR.contains(&share) {
+        if !SEARCH_RANGE.contains(&share) {
             return Ok(None);
         }
         let Some((found, binnacle)) = change(share)? else {
             return Ok(None);
         };
-        if (found - turned_deg).abs() < FOUND_DEG {
-            return Ok(can_be.contains(&share).then_some(Strength {
+        if (found - turned_deg).abs() < CONVERGED_DEG {
+            return Ok(can_be.contains(&share).then_some(CorrectorScale {
                 share,
                 share_sd,
                 binnacle,
@@ -94,7 +95,7 @@ pub(crate) fn strength(
 }
 
 /// The shares of what was taken that a corrector of this kind can have.
-fn shares(binnacle: &Binnacle, place: &Place) -> Option<RangeInclusive<f64>> {
+fn plausible_scales(binnacle: &Binnacle, place: &Place) -> Option<RangeInclusive<f64>> {
     let design = &binnacle.design;
     match place {
         Place::Magnets(tray) => {
@@ -106,44 +107,48 @@ fn shares(binnacle: &Binnacle, place: &Place) -> Option<RangeInclusive<f64>> {
                 |entry| matches!(entry, Calibrated::Magnet { magnet, .. } if *magnet == kind.name),
             );
             let least = if is_tested || is_calibrated {
-                STRONGER_MEASURED
+                MAX_GAIN_MEASURED
             } else {
-                STRONGER_NOMINAL
+                MAX_GAIN_NOMINAL
             };
-            let more = least.max(FEW_SD * binnacle.moment(kind).sd);
-            Some(WEAKEST_MAGNET..=1.0 + more)
+            let more = least.max(PLAUSIBLE_SD * binnacle.moment(kind).sd);
+            Some(MIN_MAGNET_SCALE..=1.0 + more)
         }
         Place::Pair(pair) => {
             let sizes = &design.quadrantal.as_ref()?.sizes;
             let size = sizes.iter().find(|size| size.name == pair.size)?;
             let measured = binnacle.calibrated_pair(&pair.size, pair.mark_mm);
-            Some(of_iron(measured.map_or(size.tolerance, |known| known.sd)))
+            Some(iron_scales(
+                measured.map_or(size.tolerance, |known| known.sd),
+            ))
         }
         Place::Bar(bar) => {
             let holder = design.flinders.as_ref()?;
             let measured = binnacle.calibrated_bar(bar.length_mm);
-            Some(of_iron(measured.map_or(holder.tolerance, |known| known.sd)))
+            Some(iron_scales(
+                measured.map_or(holder.tolerance, |known| known.sd),
+            ))
         }
         Place::Bucket(_) => None,
     }
 }
 
-fn of_iron(sd: f64) -> RangeInclusive<f64> {
-    let more = OTHER_IRON.max(FEW_SD * sd);
-    1.0 - more.min(1.0 - WEAKEST_MAGNET)..=1.0 + more
+fn iron_scales(sd: f64) -> RangeInclusive<f64> {
+    let more = MIN_IRON_SPREAD.max(PLAUSIBLE_SD * sd);
+    1.0 - more.min(1.0 - MIN_MAGNET_SCALE)..=1.0 + more
 }
 
 /// The binnacle with what stands there so many times as strong, wherever it is put.
-fn times(binnacle: &Binnacle, place: &Place, share: f64, sd: f64) -> Option<Binnacle> {
+fn scale_corrector(binnacle: &Binnacle, place: &Place, share: f64, sd: f64) -> Option<Binnacle> {
     match place {
-        Place::Magnets(tray) => magnets(binnacle, tray, share, sd),
-        Place::Pair(pair) => pairs(binnacle, pair, share, sd),
-        Place::Bar(_) => bars(binnacle, share, sd),
+        Place::Magnets(tray) => scale_magnets(binnacle, tray, share, sd),
+        Place::Pair(pair) => scale_pairs(binnacle, pair, share, sd),
+        Place::Bar(_) => scale_bars(binnacle, share, sd),
         Place::Bucket(_) => None,
     }
 }
 
-fn magnets(binnacle: &Binnacle, tray: &Tray, share: f64, sd: f64) -> Option<Binnacle> {
+fn scale_magnets(binnacle: &Binnacle, tray: &Tray, share: f64, sd: f64) -> Option<Binnacle> {
     let kind = binnacle.design.magnet(&tray.magnet)?;
     let moment_am2 = binnacle.moment(kind).am2 * share;
     let weighed = binnacle.with_moment(&kind.name, moment_am2, sd).ok()?;
@@ -168,7 +173,7 @@ fn magnets(binnacle: &Binnacle, tray: &Tray, share: f64, sd: f64) -> Option<Binn
     Binnacle::try_from(form).ok()
 }
 
-fn pairs(binnacle: &Binnacle, pair: &PairSetting, share: f64, sd: f64) -> Option<Binnacle> {
+fn scale_pairs(binnacle: &Binnacle, pair: &PairSetting, share: f64, sd: f64) -> Option<Binnacle> {
     let marks = &binnacle.design.quadrantal.as_ref()?.marks;
     let at_marks = marks.iter().filter_map(|mark| {
         let soft = Soft {
@@ -186,10 +191,10 @@ fn pairs(binnacle: &Binnacle, pair: &PairSetting, share: f64, sd: f64) -> Option
             sd,
         })
     });
-    calibrated(binnacle, at_marks.collect())
+    with_calibration(binnacle, at_marks.collect())
 }
 
-fn bars(binnacle: &Binnacle, share: f64, sd: f64) -> Option<Binnacle> {
+fn scale_bars(binnacle: &Binnacle, share: f64, sd: f64) -> Option<Binnacle> {
     let of_lengths = binnacle.bar_lengths().into_iter().filter_map(|(of_mm, _)| {
         let soft = Soft {
             quadrantal: None,
@@ -206,11 +211,11 @@ fn bars(binnacle: &Binnacle, share: f64, sd: f64) -> Option<Binnacle> {
             sd,
         })
     });
-    calibrated(binnacle, of_lengths.collect())
+    with_calibration(binnacle, of_lengths.collect())
 }
 
 /// The binnacle with these in the place of what was known of them.
-fn calibrated(binnacle: &Binnacle, entries: Vec<Calibrated>) -> Option<Binnacle> {
+fn with_calibration(binnacle: &Binnacle, entries: Vec<Calibrated>) -> Option<Binnacle> {
     let mut form: BinnacleForm = binnacle.clone().into();
     form.calibration
         .retain(|old| !entries.iter().any(|entry| entry.same_place(old)));

@@ -4,16 +4,16 @@
 mod corrector_scale;
 mod result;
 
-pub use result::{InAll, Proven, Recheck};
+pub use result::{ProvenEffect, StepCheck, TotalTurn};
 
 use super::inputs::{AdjustError, Adjustment};
 use super::instructions::{Place, Step, compass_turn, elsewhere, moved, replaced, tolerance_deg};
 use super::planning::plan;
-use super::state::Condition;
+use super::state::MagneticState;
 use crate::binnacle::{Axis, Binnacle, Setting};
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::NORMAL_99;
-use corrector_scale::strength;
+use corrector_scale::find_scale;
 
 /// A card that turned by less may not have turned at all, degrees.
 const UNMOVED_DEG: f64 = 0.5;
@@ -24,17 +24,17 @@ const MISCOUNTED: i32 = 3;
 ///
 /// # Errors
 /// When the adjustment itself cannot be.
-pub fn turned_in_all(
+pub fn check_total_turn(
     adjustment: &Adjustment<'_>,
     first_deg: f64,
     now: &Setting,
     now_deg: f64,
-) -> Result<InAll, AdjustError> {
-    let condition = Condition::new(adjustment)?;
+) -> Result<TotalTurn, AdjustError> {
+    let state = MagneticState::new(adjustment)?;
     let first = &adjustment.binnacle.setting;
-    let turn = compass_turn(adjustment, &condition, first, now);
+    let turn = compass_turn(adjustment, &state, first, now);
     let turned_deg = wrap_180(now_deg - first_deg);
-    Ok(InAll {
+    Ok(TotalTurn {
         turned_deg,
         expected_deg: turn.change_deg,
         off_deg: wrap_180(turned_deg - turn.change_deg),
@@ -46,12 +46,12 @@ pub fn turned_in_all(
 ///
 /// # Errors
 /// When the adjustment itself cannot be, or the headings are not finite.
-pub fn recheck(
+pub fn check_step(
     adjustment: &Adjustment<'_>,
     step: &Step,
     before_deg: f64,
     after_deg: f64,
-) -> Result<Recheck, AdjustError> {
+) -> Result<StepCheck, AdjustError> {
     for (field, value) in [("before_deg", before_deg), ("after_deg", after_deg)] {
         if !(0.0..=360.0).contains(&value) {
             return Err(AdjustError::Value {
@@ -66,30 +66,30 @@ pub fn recheck(
     let off_deg = wrap_180(turned_deg - step.change_deg);
     if off_deg.abs() <= step.tolerance_deg {
         return Ok(if step.seen {
-            let proven = Proven::new(turned_deg, step.change_deg, adjustment.earth.h_nt);
-            Recheck::Confirmed { off_deg, proven }
+            let proven = ProvenEffect::new(turned_deg, step.change_deg, adjustment.earth.h_nt);
+            StepCheck::Confirmed { off_deg, proven }
         } else {
-            Recheck::NotSeen {
+            StepCheck::NotSeen {
                 expected_deg: step.change_deg,
             }
         });
     }
-    let condition = Condition::new(adjustment)?;
-    if let Some(setting) = wrong_end(adjustment, &condition, step, turned_deg) {
+    let state = MagneticState::new(adjustment)?;
+    if let Some(setting) = wrong_end(adjustment, &state, step, turned_deg) {
         let outcome = Box::new(plan(&Adjustment {
             now: Some(&setting),
             compass_deg: Some(after_deg),
             ..adjustment.clone()
         })?);
-        return Ok(Recheck::WrongEnd {
+        return Ok(StepCheck::WrongEnd {
             turned_deg,
             setting,
             outcome,
         });
     }
-    let Some(found) = strength(adjustment, step, turned_deg)? else {
+    let Some(found) = find_scale(adjustment, step, turned_deg)? else {
         let unmoved = turned_deg.abs() <= UNMOVED_DEG;
-        return Ok(Recheck::Unexplained { off_deg, unmoved });
+        return Ok(StepCheck::Unexplained { off_deg, unmoved });
     };
     let setting = step.setting_after.clone();
     let outcome = Box::new(plan(&Adjustment {
@@ -98,10 +98,10 @@ pub fn recheck(
         compass_deg: Some(after_deg),
         ..adjustment.clone()
     })?);
-    Ok(Recheck::OtherStrength {
+    Ok(StepCheck::OtherStrength {
         share: found.share,
         share_sd: found.share_sd,
-        other_hole: other_hole(adjustment, &condition, step, turned_deg),
+        other_hole: other_hole(adjustment, &state, step, turned_deg),
         binnacle: Box::new(found.binnacle),
         setting,
         outcome,
@@ -114,21 +114,21 @@ pub fn recheck(
 ///
 /// # Errors
 /// When the adjustment itself cannot be.
-pub fn recheck_elsewhere(
+pub fn check_step_with_setting(
     adjustment: &Adjustment<'_>,
     step: &Step,
     before_deg: f64,
     setting: &Setting,
     compass_deg: Option<f64>,
 ) -> Result<(Step, Binnacle), AdjustError> {
-    let condition = Condition::new(adjustment)?;
-    let turn = compass_turn(adjustment, &condition, &step.setting_before, setting);
+    let state = MagneticState::new(adjustment)?;
+    let turn = compass_turn(adjustment, &state, &step.setting_before, setting);
     let change_deg = turn.change_deg;
     let tolerance_deg = (NORMAL_99 * turn.sd_deg).max(step.tolerance_deg);
     let to = step.to.as_ref();
     let done = Step {
         to: match to {
-            Some(to) if step.is_gainsaid(&step.setting_after, setting) => {
+            Some(to) if step.is_contradicted(&step.setting_after, setting) => {
                 elsewhere(setting, step.corrector, to, &step.setting_after)
             }
             to => to.cloned(),
@@ -143,7 +143,7 @@ pub fn recheck_elsewhere(
     let otherwise =
         turned_deg.filter(|turned_deg| wrap_180(turned_deg - change_deg).abs() > tolerance_deg);
     let found = match otherwise {
-        Some(turned_deg) => strength(adjustment, &done, turned_deg)?,
+        Some(turned_deg) => find_scale(adjustment, &done, turned_deg)?,
         None => None,
     };
     let binnacle = found.map_or_else(|| adjustment.binnacle.clone(), |found| found.binnacle);
@@ -154,7 +154,7 @@ pub fn recheck_elsewhere(
 /// compass by what was read.
 fn other_hole(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     step: &Step,
     turned_deg: f64,
 ) -> Option<u16> {
@@ -162,8 +162,8 @@ fn other_hole(
     let off = |by: i32| {
         let (place, hole) = moved(to, by)?;
         let setting = replaced(&step.setting_after, step.corrector, Some(to), Some(&place));
-        condition.binnacle.with_setting(setting.clone()).ok()?;
-        let turn = compass_turn(adjustment, condition, &step.setting_before, &setting);
+        state.binnacle.with_setting(setting.clone()).ok()?;
+        let turn = compass_turn(adjustment, state, &step.setting_before, &setting);
         let off_deg = wrap_180(turned_deg - turn.change_deg).abs();
         let tolerance_deg = (NORMAL_99 * turn.sd_deg).max(step.tolerance_deg);
         (off_deg <= tolerance_deg).then_some((off_deg, hole))
@@ -176,7 +176,7 @@ fn other_hole(
 /// The setting with the step's magnets turned end for end, if that is what was read.
 fn wrong_end(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     step: &Step,
     turned_deg: f64,
 ) -> Option<Setting> {
@@ -193,7 +193,7 @@ fn wrong_end(
             other.red = other.red.reversed();
         }
     }
-    let turn = compass_turn(adjustment, condition, &step.setting_before, &setting);
+    let turn = compass_turn(adjustment, state, &step.setting_before, &setting);
     let tolerance = (NORMAL_99 * turn.sd_deg).max(step.tolerance_deg);
     (wrap_180(turned_deg - turn.change_deg).abs() <= tolerance).then_some(setting)
 }

@@ -5,6 +5,7 @@ use crate::adjust::planning::Outcome;
 use crate::binnacle::{Binnacle, Setting};
 use binnacle_compass::deviation::NORMAL_95;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// What tells an effect no better, 95 %, is said to prove little.
 const PROVES_LITTLE: f64 = 0.3;
@@ -12,13 +13,13 @@ const PROVES_LITTLE: f64 = 0.3;
 /// What a step came to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "verdict", rename_all = "snake_case")]
-pub enum Recheck {
+pub enum StepCheck {
     /// It did what was expected: the next one may follow.
     Confirmed {
         /// By how much it turned less than, or beyond, what was expected, degrees.
         off_deg: f64,
         /// What that tells of the corrector, which may be little.
-        proven: Proven,
+        proven: ProvenEffect,
     },
     /// On this heading the compass does not show it, and showed nothing.
     NotSeen {
@@ -62,17 +63,18 @@ pub enum Recheck {
 
 /// What two readings of the card tell of what a corrector does.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Proven {
+pub struct ProvenEffect {
     /// Its effect as a share of what was taken.
     pub share: f64,
     /// How well the two readings tell that, 95 %, as a share of what was taken.
-    pub to: f64,
+    #[serde(rename = "to")]
+    pub precision: f64,
 }
 
 /// What all steps together have done to the compass, which is read no worse for it than
 /// after one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct InAll {
+pub struct TotalTurn {
     /// By how much it turned since the berth was read, degrees.
     pub turned_deg: f64,
     /// By how much it should have, degrees.
@@ -83,37 +85,44 @@ pub struct InAll {
     pub tolerance_deg: f64,
 }
 
-impl Proven {
-    pub(crate) fn new(turned_deg: f64, expected_deg: f64, h_nt: f64) -> Proven {
-        Proven {
+impl ProvenEffect {
+    pub(crate) fn new(turned_deg: f64, expected_deg: f64, h_nt: f64) -> ProvenEffect {
+        ProvenEffect {
             share: turned_deg / expected_deg,
-            to: NORMAL_95 * turn_sd_deg(h_nt) / expected_deg.abs(),
+            precision: NORMAL_95 * turn_sd_deg(h_nt) / expected_deg.abs(),
         }
     }
+}
 
-    /// All of it in words.
-    pub fn in_words(&self) -> String {
+impl fmt::Display for ProvenEffect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let share = 100.0 * self.share;
-        let to = 100.0 * self.to;
-        if self.to > PROVES_LITTLE {
-            return format!(
+        let to = 100.0 * self.precision;
+        if self.precision > PROVES_LITTLE {
+            return write!(
+                f,
                 "{share:.0} per cent of what was expected; on this heading the card tells that \
                  only to within {to:.0} per cent, which proves little"
             );
         }
-        format!("{share:.0} per cent of what was expected, to within {to:.0} per cent")
+        write!(
+            f,
+            "{share:.0} per cent of what was expected, to within {to:.0} per cent"
+        )
     }
 }
 
-impl InAll {
+impl TotalTurn {
     /// Whether errors explain it.
     pub fn agrees(&self) -> bool {
         self.off_deg.abs() <= self.tolerance_deg
     }
+}
 
-    /// All of it in words.
-    pub fn in_words(&self) -> String {
-        format!(
+impl fmt::Display for TotalTurn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
             "in all the compass turned by {:.1} degrees since the berth was read, where {:.1} \
              were expected (to {:.1})",
             self.turned_deg, self.expected_deg, self.tolerance_deg

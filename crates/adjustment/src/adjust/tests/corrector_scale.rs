@@ -24,9 +24,9 @@ fn step_of(adjustment: &Adjustment<'_>, corrector: Corrector) -> Step {
 }
 
 /// What is made of a step that turned the compass by so many times what it should.
-fn read(adjustment: &Adjustment<'_>, step: &Step, times: f64) -> Recheck {
+fn read(adjustment: &Adjustment<'_>, step: &Step, times: f64) -> StepCheck {
     let after_deg = binnacle_compass::angle::wrap_360(50.0 + times * step.change_deg);
-    recheck(adjustment, step, 50.0, after_deg).unwrap()
+    check_step(adjustment, step, 50.0, after_deg).unwrap()
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn a_pair_found_stronger_is_so_at_every_mark() {
     // Far beyond what the compass errs by, and yet what a pair can have.
     let mut step = step.clone();
     step.tolerance_deg = 0.2;
-    let Recheck::OtherStrength {
+    let StepCheck::OtherStrength {
         share, binnacle, ..
     } = read(&adjustment, &step, 1.12)
     else {
@@ -76,7 +76,7 @@ fn a_bar_found_weaker_is_so_at_every_length() {
     let adjustment = case.adjustment();
     let mut step = step_of(&adjustment, Corrector::Flinders);
     step.tolerance_deg = 0.2;
-    let Recheck::OtherStrength {
+    let StepCheck::OtherStrength {
         share, binnacle, ..
     } = read(&adjustment, &step, 0.85)
     else {
@@ -117,7 +117,7 @@ fn a_strength_that_no_corrector_of_its_kind_has_explains_nothing() {
         step.tolerance_deg = 0.2;
         let found = read(&adjustment, &step, times);
         assert!(
-            matches!(found, Recheck::Unexplained { .. }),
+            matches!(found, StepCheck::Unexplained { .. }),
             "{corrector:?} {times}: {found:?}"
         );
     }
@@ -134,7 +134,7 @@ fn magnets_that_were_tested_are_not_much_stronger() {
         let adjustment = case.adjustment();
         let step = step_of(&adjustment, Corrector::Athwartship);
         let found = read(&adjustment, &step, 1.6);
-        let is_other = matches!(found, Recheck::OtherStrength { .. });
+        let is_other = matches!(found, StepCheck::OtherStrength { .. });
         assert_eq!(is_other, is_found, "{is_tested}: {found:?}");
     }
 }
@@ -166,7 +166,7 @@ fn weak_magnets_are_found_in_holes_that_were_measured() {
     case.binnacle = Binnacle::try_from(form).unwrap();
     let adjustment = case.adjustment();
     let step = step_of(&adjustment, Corrector::Athwartship);
-    let Recheck::OtherStrength {
+    let StepCheck::OtherStrength {
         share, binnacle, ..
     } = read(&adjustment, &step, 0.5)
     else {
@@ -193,9 +193,9 @@ fn miscounted(adjustment: &Adjustment<'_>, step: &Step, by: i32) -> (u16, Settin
     let hole = u16::try_from(i32::from(to.hole) + by).unwrap();
     let mut trays = setting.trays_mut(Axis::Athwartship).iter_mut();
     trays.find(|tray| *tray == to).unwrap().hole = hole;
-    let condition = Condition::new(adjustment).unwrap();
+    let state = MagneticState::new(adjustment).unwrap();
     let before = &step.setting_before;
-    let turn = instructions::compass_turn(adjustment, &condition, before, &setting);
+    let turn = instructions::compass_turn(adjustment, &state, before, &setting);
     (hole, setting, turn.change_deg)
 }
 
@@ -208,14 +208,14 @@ fn magnets_that_seem_of_another_strength_may_stand_in_another_hole() {
     for by in [-2, 2, 3] {
         let (hole, _, change_deg) = miscounted(&adjustment, &step, by);
         let found = read(&adjustment, &step, change_deg / step.change_deg);
-        let Recheck::OtherStrength { other_hole, .. } = found else {
+        let StepCheck::OtherStrength { other_hole, .. } = found else {
             panic!("{by}: {found:?}")
         };
         assert_eq!(other_hole, Some(hole), "{by}");
     }
     // No hole so near makes that of it.
     let found = read(&adjustment, &step, 0.35);
-    let Recheck::OtherStrength { other_hole, .. } = found else {
+    let StepCheck::OtherStrength { other_hole, .. } = found else {
         panic!("{found:?}")
     };
     assert_eq!(other_hole, None);
@@ -229,7 +229,7 @@ fn a_strength_is_learnt_anew_from_where_the_magnets_stand() {
     let (hole, setting, change_deg) = miscounted(&adjustment, &step, 3);
     let anew = |turned_deg: Option<f64>| {
         let compass_deg = turned_deg.map(|turned| binnacle_compass::angle::wrap_360(50.0 + turned));
-        recheck_elsewhere(&adjustment, &step, 50.0, &setting, compass_deg).unwrap()
+        check_step_with_setting(&adjustment, &step, 50.0, &setting, compass_deg).unwrap()
     };
     // What the compass shows is what magnets as strong as was taken do there; and of what it
     // was not read for nothing is learnt.
@@ -237,7 +237,7 @@ fn a_strength_is_learnt_anew_from_where_the_magnets_stand() {
         let (done, binnacle) = anew(turned_deg);
         assert_eq!(binnacle, case.binnacle);
         assert!(matches!(&done.to, Some(Place::Magnets(tray)) if tray.hole == hole));
-        assert!(done.is_gainsaid(&setting, &step.setting_after));
+        assert!(done.is_contradicted(&setting, &step.setting_after));
     }
     // Magnets of 0.6 of their moment in that hole.
     let weaker = case.binnacle.with_moment("200 mm", 0.6, 0.02).unwrap();

@@ -52,11 +52,11 @@ fn no_uncertain_heading_lets_a_ship_pass_that_has_changed_across_the_needle() {
 #[test]
 fn what_the_check_leaves_open_is_across_the_needle_in_the_model_after() {
     let case = changed([0.0, 1_900.0], 5.0);
-    let condition = Condition::new(&case.adjustment()).unwrap();
-    let lambda = condition.lambda();
+    let state = MagneticState::new(&case.adjustment()).unwrap();
+    let lambda = state.lambda();
     let [x, y] = case.reading.field_nt();
     let field_nt = x.hypot(y);
-    let after = condition.model_with(&case.binnacle.setting).unwrap();
+    let after = state.model_with(&case.binnacle.setting).unwrap();
     let (old, new) = (case.model.covariance.unwrap(), after.covariance.unwrap());
     let more = |row: usize, column: usize| new[row][column] - old[row][column];
     // Nothing along the needle; across it the angle beyond 2.58° and the heading beyond 2°.
@@ -65,7 +65,7 @@ fn what_the_check_leaves_open_is_across_the_needle_in_the_model_after() {
     let along = along + east * east * more(2, 2);
     let across = (more(0, 0) + more(2, 2)).sqrt() * lambda;
     assert!(along.abs() < 1e-6 * across * across, "{along}");
-    let angle_deg = condition.estimate.consistency.angle_deg;
+    let angle_deg = state.estimate.consistency.angle_deg;
     let expected_deg = (angle_deg.powi(2) - 2.576_f64.powi(2) + 25.0 - 4.0).sqrt();
     let across_deg = (across / field_nt).to_degrees();
     assert!(
@@ -74,7 +74,7 @@ fn what_the_check_leaves_open_is_across_the_needle_in_the_model_after() {
     );
     // A good berth leaves nothing open.
     let good = changed([0.0, 300.0], 1.0);
-    let same = Condition::new(&good.adjustment()).unwrap();
+    let same = MagneticState::new(&good.adjustment()).unwrap();
     let same = same.model_with(&good.binnacle.setting).unwrap();
     let covariance = same.covariance.unwrap();
     for index in [0, 2] {
@@ -99,7 +99,7 @@ fn a_check_that_shows_little_says_what_it_could_not_have_shown() {
 
 fn earlier(case: &Case) -> EarlierLambda {
     let at = Timestamp::parse("2026-05-01T00:00:00Z").unwrap();
-    EarlierLambda::told(at, &case.adjustment())
+    EarlierLambda::from_berth(at, &case.adjustment())
         .unwrap()
         .unwrap()
 }
@@ -117,7 +117,7 @@ fn a_change_along_the_needle_contradicts_an_earlier_lambda() {
         assert!(!alone.plans.is_empty(), "{:?}", alone.refusals);
         assert!(alone.notes.iter().any(|n| n.contains("along the needle")));
         adjustment.circumstances.earlier_lambda =
-            earlier.set_as(&case.binnacle, &before.binnacle.setting);
+            earlier.adapted_to(&case.binnacle, &before.binnacle.setting);
         let outcome = plan(&adjustment).unwrap();
         if along_nt == 0.0 {
             assert!(!outcome.plans.is_empty(), "{:?}", outcome.refusals);
@@ -148,9 +148,9 @@ fn an_earlier_lambda_follows_the_spheres() {
     let before = Case::new(bare(), form.try_into().unwrap(), 200.0);
     let told = earlier(&before);
     let carried = told
-        .set_as(&now.binnacle, &before.binnacle.setting)
+        .adapted_to(&now.binnacle, &before.binnacle.setting)
         .unwrap();
-    let lambda = Condition::new(&now.adjustment()).unwrap().lambda();
+    let lambda = MagneticState::new(&now.adjustment()).unwrap().lambda();
     assert!((told.lambda - lambda).abs() > 0.01, "{}", told.lambda);
     assert!(
         (carried.lambda - lambda).abs() < 1e-3,

@@ -3,10 +3,10 @@
 use super::super::*;
 use super::*;
 
-fn settled(model: &Model, compass_deg: f64, off_deg: f64) -> Settled {
+fn settled(model: &Model, compass_deg: f64, off_deg: f64) -> SettledHeading {
     let compass = binnacle_compass::angle::CompassHeading::new(compass_deg).unwrap();
     let foretold = model.deviation(compass, BISCAY).unwrap().deviation;
-    Settled {
+    SettledHeading {
         compass,
         deviation_deg: foretold.degrees_east() + off_deg,
         sd_deg: 0.6,
@@ -25,7 +25,7 @@ fn headings_at_sea_pass_when_they_are_enough_and_say_how_many_are_not() {
         panic!()
     };
     assert!((4..30).contains(&needed.count), "{needed:?}");
-    let mut sailed: Vec<Settled> = needed
+    let mut sailed: Vec<SettledHeading> = needed
         .compass_deg
         .iter()
         .map(|deg| settled(model, *deg, 0.3))

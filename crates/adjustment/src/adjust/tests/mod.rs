@@ -10,7 +10,7 @@ mod refusals;
 mod steps;
 mod vertical_check;
 
-use super::state::Condition;
+use super::state::MagneticState;
 use super::*;
 use crate::berth::{Alignment, BerthReading, ReadingErrors};
 use crate::binnacle::tests::class_a;
@@ -173,8 +173,8 @@ fn the_parameters_before_are_those_of_the_model() {
     // With nothing moved the model after is the model, and no corrector errs.
     let case = case(60.0);
     let adjustment = case.adjustment();
-    let condition = Condition::new(&adjustment).unwrap();
-    let same = condition.model_with(&case.binnacle.setting).unwrap();
+    let state = MagneticState::new(&adjustment).unwrap();
+    let same = state.model_with(&case.binnacle.setting).unwrap();
     let (old, new): (Parameters, Parameters) = (
         case.model.parameters_over_lambda,
         same.parameters_over_lambda,

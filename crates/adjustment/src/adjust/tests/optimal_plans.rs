@@ -44,19 +44,22 @@ fn the_search_finds_what_trying_everything_finds() {
 
 fn trying_everything(case: &Case) {
     let adjustment = case.adjustment();
-    let condition = Condition::new(&adjustment).unwrap();
-    let front = search::search(&adjustment, &condition);
+    let state = MagneticState::new(&adjustment).unwrap();
+    let front = search::search(&adjustment, &state);
     let mut best: Vec<f64> = vec![f64::INFINITY; 20];
-    every_setting(&condition, |setting| {
+    every_setting(&state, |setting| {
         if case.binnacle.with_setting(setting.clone()).is_err() {
             return;
         }
         let standing = &case.binnacle.setting;
-        let moves = corrector_moves::trays(&standing.fore_and_aft, &setting.fore_and_aft)
-            + corrector_moves::trays(&standing.athwartship, &setting.athwartship)
-            + corrector_moves::pair(standing.quadrantal.as_ref(), setting.quadrantal.as_ref())
-            + corrector_moves::bar(standing.flinders.as_ref(), setting.flinders.as_ref());
-        let worst = worst_of(case, &condition, setting);
+        let moves = corrector_moves::tray_moves(&standing.fore_and_aft, &setting.fore_and_aft)
+            + corrector_moves::tray_moves(&standing.athwartship, &setting.athwartship)
+            + corrector_moves::pair_moves(
+                standing.quadrantal.as_ref(),
+                setting.quadrantal.as_ref(),
+            )
+            + corrector_moves::bar_moves(standing.flinders.as_ref(), setting.flinders.as_ref());
+        let worst = worst_of(case, &state, setting);
         let known = &mut best[moves as usize];
         *known = known.min(worst);
     });
@@ -73,17 +76,17 @@ fn trying_everything(case: &Case) {
     assert!(levels > 3 && front.optimality.proven);
 }
 
-fn worst_of(case: &Case, condition: &Condition<'_>, setting: &Setting) -> f64 {
-    let compass = objective::Compass::new(condition.constant_deg());
+fn worst_of(case: &Case, state: &MagneticState<'_>, setting: &Setting) -> f64 {
+    let compass = objective::HeadingGrid::new(state.constant_deg());
     let effect = effect(&case.binnacle, setting);
     objective::Objective::new(&compass, &case.waters, |h_nt| {
-        condition.with_effect(&effect, h_nt)
+        state.with_effect(&effect, h_nt)
     })
     .worst_deg([0.0; 2])
 }
 
-fn every_setting(condition: &Condition<'_>, mut visit: impl FnMut(&Setting)) {
-    let binnacle = condition.binnacle;
+fn every_setting(state: &MagneticState<'_>, mut visit: impl FnMut(&Setting)) {
+    let binnacle = state.binnacle;
     let standing = &binnacle.setting;
     let options = |axis: Axis| {
         let mut all = vec![Vec::new()];
@@ -101,7 +104,7 @@ fn every_setting(condition: &Condition<'_>, mut visit: impl FnMut(&Setting)) {
         }
         all
     };
-    for (soft, _) in soft_iron::iron(condition, standing) {
+    for (soft, _) in soft_iron::iron(state, standing) {
         for fore_and_aft in options(Axis::ForeAndAft) {
             for athwartship in options(Axis::Athwartship) {
                 visit(&Setting {
@@ -150,13 +153,13 @@ fn a_bound_is_never_above_what_it_bounds() {
         water("a", 24_000.0, 38_000.0, 1.0),
         water("b", 30_000.0, -9_000.0, 0.5),
     ];
-    let compass = objective::Compass::new(0.7);
+    let compass = objective::HeadingGrid::new(0.7);
     for _ in 0..200 {
         let ship = crate::test_support::random_ship(&mut rng);
         let objective = objective::Objective::new(&compass, &waters, |_| ship);
         let corner: [f64; 2] = std::array::from_fn(|_| rng.random_range(-9_000.0..9_000.0));
         let size: [f64; 2] = std::array::from_fn(|_| rng.random_range(0.0..4_000.0));
-        let within = objective::Box2 {
+        let within = objective::FieldBox {
             x: [corner[0], corner[0] + size[0]],
             y: [corner[1], corner[1] + size[1]],
         };
@@ -248,7 +251,10 @@ fn an_alternative_keeps_to_the_limits_that_the_recommended_plan_keeps_to() {
     assert!(!kept.is_empty() && kept.len() < all.len());
     for plan in &all {
         let within = reach(plan) <= narrow.residual_deg;
-        assert_eq!(plan.beyond(&narrow, &case.waters).is_none(), within);
+        assert_eq!(
+            plan.limit_violation(&narrow, &case.waters).is_none(),
+            within
+        );
         assert_eq!(kept.contains(plan), within);
     }
 }
@@ -385,11 +391,11 @@ fn nothing_is_beyond_the_reach_that_a_rack_is_said_to_have() {
     for (magnets, each) in [(40, 2), (5, 4), (3, 1), (12, 3)] {
         let case = Case::new(bare(), four_trays(magnets, each), 40.0);
         let adjustment = case.adjustment();
-        let condition = Condition::new(&adjustment).unwrap();
+        let state = MagneticState::new(&adjustment).unwrap();
         for axis in Axis::BOTH {
             let standing = &case.binnacle.setting;
             let rack = candidates::AxisCandidates::new(&case.binnacle, axis, standing);
-            for (soft, _) in soft_iron::iron(&condition, standing).iter().step_by(37) {
+            for (soft, _) in soft_iron::iron(&state, standing).iter().step_by(37) {
                 let iron = crate::corrector::Iron::new(&case.binnacle, soft);
                 let fields = rack.fields(&case.binnacle, &iron);
                 let reach = rack.reach_nt(&fields);

@@ -110,15 +110,15 @@ fn a_bar_is_left_alone_where_the_data_do_not_tell_chi13() {
 fn mistakes_at_the_berth_are_named() {
     let case = case(60.0);
     let [x, y] = case.reading.field_nt();
-    for (heading, field, mistake) in [
-        (60.0, [x / 1e5, y / 1e5], Mistake::Gauss),
-        (60.0, [x / 1e3, y / 1e3], Mistake::Microtesla),
-        (60.0, [y, x], Mistake::SwappedAxes),
-        (60.0, [x, -y], Mistake::StarboardReversed),
-        (60.0, [-x, y], Mistake::ForwardReversed),
-        (240.0, [x, y], Mistake::HeadingReversed),
+    for (heading, field, misreading) in [
+        (60.0, [x / 1e5, y / 1e5], Misreading::Gauss),
+        (60.0, [x / 1e3, y / 1e3], Misreading::Microtesla),
+        (60.0, [y, x], Misreading::SwappedAxes),
+        (60.0, [x, -y], Misreading::StarboardReversed),
+        (60.0, [-x, y], Misreading::ForwardReversed),
+        (240.0, [x, y], Misreading::HeadingReversed),
     ] {
-        let found = mistakes(
+        let found = find_misreadings(
             &case.model,
             BISCAY,
             MagneticHeading::new(heading).unwrap(),
@@ -127,9 +127,9 @@ fn mistakes_at_the_berth_are_named() {
             case.reading.errors(),
             Alignment::Keel,
         );
-        assert_eq!(found, [mistake], "{mistake}");
+        assert_eq!(found, [misreading], "{misreading}");
     }
-    let right = mistakes(
+    let right = find_misreadings(
         &case.model,
         BISCAY,
         case.reading.magnetic(),
@@ -235,7 +235,7 @@ fn nearly_nil() -> Case {
 #[test]
 fn all_mistakes_that_explain_a_reading_are_told_the_heading_first() {
     let case = nearly_nil();
-    let found = mistakes(
+    let found = find_misreadings(
         &case.model,
         BISCAY,
         MagneticHeading::new(225.0).unwrap(),
@@ -244,7 +244,10 @@ fn all_mistakes_that_explain_a_reading_are_told_the_heading_first() {
         case.reading.errors(),
         Alignment::Keel,
     );
-    assert_eq!(found, [Mistake::HeadingReversed, Mistake::SwappedAxes]);
+    assert_eq!(
+        found,
+        [Misreading::HeadingReversed, Misreading::SwappedAxes]
+    );
 }
 
 #[test]
@@ -301,8 +304,8 @@ fn a_telephone_is_not_believed_to_be_a_fluxgate() {
         }))
         .unwrap()
     };
-    assert_eq!(form("fluxgate").must_be_numbers(), Ok(()));
-    let error = form("phone").must_be_numbers().unwrap_err();
+    assert_eq!(form("fluxgate").check_ranges(), Ok(()));
+    let error = form("phone").check_ranges().unwrap_err();
     assert_eq!(error.field, "field_sd_nt");
     assert!(error.what.contains("500"), "{error}");
 }

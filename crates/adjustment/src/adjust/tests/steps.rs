@@ -126,10 +126,10 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
         .max_by(|a, b| a.change_deg.abs().total_cmp(&b.change_deg.abs()))
         .unwrap();
     let wrap = binnacle_compass::angle::wrap_360;
-    let read = |change: f64| recheck(&adjustment, step, 50.0, wrap(50.0 + change)).unwrap();
+    let read = |change: f64| check_step(&adjustment, step, 50.0, wrap(50.0 + change)).unwrap();
     let confirmed = read(step.change_deg + 0.1);
     assert!(
-        matches!(confirmed, Recheck::Confirmed { .. }),
+        matches!(confirmed, StepCheck::Confirmed { .. }),
         "{confirmed:?}"
     );
 
@@ -146,10 +146,9 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
             tray.red = tray.red.reversed();
         }
     }
-    let condition = Condition::new(&adjustment).unwrap();
-    let change =
-        instructions::compass_turn(&adjustment, &condition, &step.setting_before, &reversed);
-    let Recheck::WrongEnd {
+    let state = MagneticState::new(&adjustment).unwrap();
+    let change = instructions::compass_turn(&adjustment, &state, &step.setting_before, &reversed);
+    let StepCheck::WrongEnd {
         setting, outcome, ..
     } = read(change.change_deg)
     else {
@@ -169,11 +168,11 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
         binnacle: &weaker,
         ..adjustment.clone()
     };
-    let truly = Condition::new(&weak).unwrap();
+    let truly = MagneticState::new(&weak).unwrap();
     let change =
         instructions::compass_turn(&weak, &truly, &step.setting_before, &step.setting_after)
             .change_deg;
-    let Recheck::OtherStrength {
+    let StepCheck::OtherStrength {
         share,
         outcome,
         setting,
@@ -187,11 +186,11 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
     assert!(!outcome.plans.is_empty());
     let forgotten = read(0.2);
     assert!(
-        matches!(forgotten, Recheck::Unexplained { unmoved: true, .. }),
+        matches!(forgotten, StepCheck::Unexplained { unmoved: true, .. }),
         "{forgotten:?}"
     );
     let wild = read(step.change_deg + 25.0);
-    assert!(!matches!(wild, Recheck::Confirmed { .. }));
+    assert!(!matches!(wild, StepCheck::Confirmed { .. }));
 }
 
 #[test]
@@ -208,8 +207,8 @@ fn a_step_that_the_heading_does_not_show_is_said_to_be_so() {
         .find(|s| s.corrector == Corrector::ForeAndAft)
         .unwrap();
     assert!(!along.seen);
-    let found = recheck(&adjustment, along, 1.0, 1.0 + along.change_deg).unwrap();
-    assert!(matches!(found, Recheck::NotSeen { .. }));
+    let found = check_step(&adjustment, along, 1.0, 1.0 + along.change_deg).unwrap();
+    assert!(matches!(found, StepCheck::NotSeen { .. }));
     let notes = &outcome.notes;
     assert!(
         notes.iter().any(|n| n.contains("fore-and-aft magnets")),
@@ -227,21 +226,23 @@ fn a_small_turn_is_confirmed_with_how_little_it_proves() {
     let adjustment = case.adjustment();
     let mut step = plan(&adjustment).unwrap().plans[0].steps[0].clone();
     (step.change_deg, step.tolerance_deg, step.seen) = (-1.52, 0.80, true);
-    let Recheck::Confirmed { proven, .. } = recheck(&adjustment, &step, 50.0, 49.1).unwrap() else {
+    let StepCheck::Confirmed { proven, .. } = check_step(&adjustment, &step, 50.0, 49.1).unwrap()
+    else {
         panic!()
     };
     assert!((proven.share - 0.59).abs() < 0.01, "{proven:?}");
-    assert!((proven.to - 0.39).abs() < 0.01, "{proven:?}");
-    let words = proven.in_words();
+    assert!((proven.precision - 0.39).abs() < 0.01, "{proven:?}");
+    let words = proven.to_string();
     assert!(
         words.contains("59 per cent") && words.contains("only to within 39 per cent"),
         "{words}"
     );
     (step.change_deg, step.tolerance_deg) = (15.0, 2.0);
-    let Recheck::Confirmed { proven, .. } = recheck(&adjustment, &step, 50.0, 64.5).unwrap() else {
+    let StepCheck::Confirmed { proven, .. } = check_step(&adjustment, &step, 50.0, 64.5).unwrap()
+    else {
         panic!()
     };
-    assert!(!proven.in_words().contains("only"), "{proven:?}");
+    assert!(!proven.to_string().contains("only"), "{proven:?}");
 }
 
 /// Each step a little less than it should, all the same way: each within its tolerance.
@@ -256,7 +257,7 @@ fn what_each_step_hides_all_of_them_show() {
     let expected: f64 = steps.iter().map(|step| step.change_deg).sum();
     let wrap = binnacle_compass::angle::wrap_360;
     let in_all = |off_deg: f64| {
-        turned_in_all(&adjustment, 50.0, last, wrap(50.0 + expected + off_deg)).unwrap()
+        check_total_turn(&adjustment, 50.0, last, wrap(50.0 + expected + off_deg)).unwrap()
     };
     let found = in_all(0.0);
     assert!(found.agrees() && found.off_deg.abs() < 1e-6, "{found:?}");
@@ -264,7 +265,7 @@ fn what_each_step_hides_all_of_them_show() {
     assert!(steps.len() > 2 && hidden > found.tolerance_deg, "{found:?}");
     let found = in_all(hidden);
     assert!(!found.agrees(), "{found:?}");
-    assert!(found.in_words().starts_with("in all the compass turned"));
+    assert!(found.to_string().starts_with("in all the compass turned"));
 }
 
 /// What comes out needs no trial for magnetism of its own, and no place in the tube.
@@ -272,17 +273,17 @@ fn what_each_step_hides_all_of_them_show() {
 fn iron_is_tried_where_it_goes_in_and_a_bar_stands_at_the_cards_height() {
     let case = case(60.0);
     let adjustment = case.adjustment();
-    let condition = Condition::new(&adjustment).unwrap();
+    let state = MagneticState::new(&adjustment).unwrap();
     let mut bare = case.binnacle.setting.clone();
     (bare.flinders, bare.quadrantal) = (None, None);
-    let out = instructions::steps(&adjustment, &condition, &bare);
+    let out = instructions::steps(&adjustment, &state, &bare);
     assert_eq!(out.len(), 2);
     assert!(out.iter().all(|step| step.check.is_none()), "{out:?}");
     let adjustment = Adjustment {
         now: Some(&bare),
         ..adjustment.clone()
     };
-    let back = instructions::steps(&adjustment, &condition, &case.binnacle.setting);
+    let back = instructions::steps(&adjustment, &state, &case.binnacle.setting);
     assert!(back.iter().all(|step| step.check.is_some()));
     assert!(
         back[0].words.contains("fill the tube below"),

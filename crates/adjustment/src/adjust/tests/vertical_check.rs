@@ -28,13 +28,18 @@ fn an_upward_axis_or_another_unit_is_named_and_sets_no_heeling_magnets() {
     let down_nt = down_nt(&case);
     let sound = planned(&case, down_nt);
     assert!(!sound.plans.is_empty() && !sound.plans[0].heeling.left_as_found);
-    for (read_nt, mistake) in [
-        (-down_nt, Mistake::DownReversed),
-        (down_nt / 1e3, Mistake::DownInAnotherUnit),
-        (down_nt / 1e2, Mistake::DownInAnotherUnit),
+    for (read_nt, misreading) in [
+        (-down_nt, Misreading::DownReversed),
+        (down_nt / 1e3, Misreading::DownInAnotherUnit),
+        (down_nt / 1e2, Misreading::DownInAnotherUnit),
     ] {
         let refused = planned(&case, read_nt).refusals.remove(0);
-        assert_eq!(refused.refusal.mistakes(), [mistake], "{}", refused.words);
+        assert_eq!(
+            refused.refusal.misreadings(),
+            [misreading],
+            "{}",
+            refused.words
+        );
         assert_eq!(refused.cures[0], Cure::ReadAgain);
         assert!(
             refused.words.contains("microtesla down"),
@@ -44,7 +49,7 @@ fn an_upward_axis_or_another_unit_is_named_and_sets_no_heeling_magnets() {
     }
     // Stronger than anything on a ship, whatever the unit.
     let refused = planned(&case, 95_000.0).refusals.remove(0);
-    assert_eq!(refused.refusal.mistakes(), []);
+    assert_eq!(refused.refusal.misreadings(), []);
     assert!(refused.words.contains("stay as found"), "{}", refused.words);
 }
 
@@ -80,9 +85,9 @@ fn a_reading_that_few_ships_make_and_an_upward_axis_explains_leaves_the_magnets(
 fn a_vertical_axis_that_changed_places_is_named() {
     let case = without_magnets();
     let (down_nt, [x, y]) = (down_nt(&case), case.reading.field_nt());
-    for (field_nt, read_nt, mistake) in [
-        ([down_nt, y], x, Mistake::ForwardDownSwapped),
-        ([x, down_nt], y, Mistake::StarboardDownSwapped),
+    for (field_nt, read_nt, misreading) in [
+        ([down_nt, y], x, Misreading::ForwardDownSwapped),
+        ([x, down_nt], y, Misreading::StarboardDownSwapped),
     ] {
         let (errors, heading) = (case.reading.errors(), case.reading.magnetic());
         let reading = BerthReading::new(heading, field_nt, errors, Alignment::Keel).unwrap();
@@ -91,7 +96,7 @@ fn a_vertical_axis_that_changed_places_is_named() {
         adjustment.vertical = Some(VerticalReading { down_nt: read_nt });
         let refused = plan(&adjustment).unwrap().refusals.remove(0);
         assert!(
-            refused.refusal.mistakes().contains(&mistake),
+            refused.refusal.misreadings().contains(&misreading),
             "{}",
             refused.words
         );
