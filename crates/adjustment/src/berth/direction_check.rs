@@ -8,9 +8,10 @@ use binnacle_compass::deviation::NORMAL_99;
 use binnacle_compass::model::Covariance;
 use binnacle_compass::ship::{EarthField, compass_rad};
 
-/// Beyond this a berth is not a good one, whatever its errors explain.
+/// Greatest angle of a good berth, degrees, however wide its errors.
 const GOOD_DEG: f64 = 1.0;
 
+/// Compares the direction of the measured field with the expected one.
 pub(super) fn check_direction(
     expected: &ExpectedField,
     earth: EarthField,
@@ -43,7 +44,7 @@ fn verdict(angle_deg: f64, standard_error_deg: Option<f64>) -> Verdict {
     }
 }
 
-/// Slopes of the compass heading that a field gives, radians a nT.
+/// Returns the slopes of the compass heading by the field, radians per nT.
 fn compass_slope(field: Vector) -> Vector {
     let squared = dot(field, field);
     [field[1] / squared, -field[0] / squared]

@@ -1,5 +1,5 @@
-//! The field over λ that the model expects at the berth, and how anything
-//! calculated from it and the reading errs.
+//! Field over λ expected by the model at the berth, and error propagation of quantities
+//! derived from it and the reading.
 
 use super::error::BerthError;
 use super::reading::{Alignment, BerthReading};
@@ -10,40 +10,41 @@ use binnacle_compass::ship::{EarthField, PARAMETERS};
 /// Seven parameters and the constant.
 pub(super) const UNKNOWNS: usize = PARAMETERS + 1;
 
-/// With less than this share of the mean directive force the field's direction
-/// and strength are those of differences between large numbers.
+/// Least directive force, as a share of its mean; with less, direction and strength are
+/// small differences of large numbers.
 const LEAST_DIRECTIVE_FORCE: f64 = 0.1;
 
 /// A horizontal vector, `[forward, starboard]`.
 pub(super) type Vector = [f64; 2];
 
-/// u = B/λ by the model, with its slopes.
+/// Expected u = B/λ by the model, with its slopes.
 pub(super) struct ExpectedField {
-    /// nT.
+    /// Expected field over λ, nT.
     pub(super) u: Vector,
-    /// By the magnetic heading, nT a radian.
+    /// Slope by the magnetic heading, nT per radian.
     by_heading: Vector,
-    /// By the parameters in their order and by the constant's degrees.
+    /// Slopes by the parameters in their order and by the constant in degrees.
     by_unknown: [Vector; UNKNOWNS],
 }
 
-/// How far a quantity moves with the model's unknowns, and its variance from
-/// everything that is wrong with the reading.
+/// Gradient of a quantity by the model's unknowns, and its variance from all errors of the
+/// reading.
 pub(super) struct Spread {
     pub(super) by_unknown: [f64; UNKNOWNS],
     pub(super) reading_variance: f64,
 }
 
-/// Slope of the field over λ by the magnetic heading, nT a radian; the earth's field in
-/// ship axes.
+/// Returns the slope of the field over λ by the magnetic heading, nT per radian, for the
+/// earth's field in ship axes.
 fn slope_by_heading(p: &Parameters, [hx, hy, _]: [f64; 3]) -> Vector {
     let d = p.chi11_minus_chi22 / 2.0;
-    // As the ship turns to starboard the field turns to port: dHx = Hy, dHy = −Hx.
+    // As the ship turns to starboard, the field turns to port: dHx = Hy, dHy = −Hx.
     [(1.0 + d) * hy - p.chi12 * hx, p.chi21 * hy - (1.0 - d) * hx]
 }
 
-/// Slopes of the field over λ by the parameters in their order and by the constant's
-/// degrees, a degree of which makes the heading more by so many radians.
+/// Returns the slopes of the field over λ by the parameters in their order and by the
+/// constant in degrees, which changes the heading by `heading_by_constant` radians per
+/// degree.
 pub(crate) fn slopes(
     p: &Parameters,
     earth: [f64; 3],
@@ -63,7 +64,7 @@ pub(crate) fn slopes(
 }
 
 impl ExpectedField {
-    /// What the model expects for a reading.
+    /// Computes the field that the model expects for a reading.
     pub(super) fn new(
         model: &Model,
         earth: EarthField,
@@ -84,15 +85,15 @@ impl ExpectedField {
                 directive_force,
             });
         }
-        let aboard = earth.in_ship_axes(magnetic_rad);
+        let in_ship_axes = earth.in_ship_axes(magnetic_rad);
         Ok(ExpectedField {
             u: p.field_over_lambda(magnetic_rad, earth),
-            by_heading: slope_by_heading(p, aboard),
-            by_unknown: slopes(p, aboard, heading_by_constant),
+            by_heading: slope_by_heading(p, in_ship_axes),
+            by_unknown: slopes(p, in_ship_axes, heading_by_constant),
         })
     }
 
-    /// The spread of a quantity with these slopes by the field read and by u.
+    /// Propagates errors to a quantity with these slopes by the measured field and by u.
     pub(super) fn spread(
         &self,
         reading: &BerthReading,
@@ -115,7 +116,7 @@ impl ExpectedField {
 }
 
 impl Spread {
-    /// Variance from reading and model together.
+    /// Returns the variance from reading and model together.
     pub(super) fn variance(&self, covariance: &Covariance) -> f64 {
         let with_each = covariances(covariance, &self.by_unknown);
         let from_model: f64 = with_each
@@ -123,17 +124,17 @@ impl Spread {
             .zip(self.by_unknown)
             .map(|(c, g)| c * g)
             .sum();
-        // Rounding of a covariance that knows a direction exactly may go below nil.
+        // Rounding may make a variance of zero slightly negative.
         from_model.max(0.0) + self.reading_variance
     }
 
-    /// Standard error from reading and model together.
+    /// Returns the standard error from reading and model together.
     pub(super) fn standard_error(&self, covariance: Option<&Covariance>) -> Option<f64> {
         covariance.map(|covariance| self.variance(covariance).sqrt())
     }
 }
 
-/// Covariance of each unknown with a quantity of this gradient.
+/// Returns the covariance of each unknown with a quantity of this gradient.
 pub(super) fn covariances(covariance: &Covariance, gradient: &[f64; UNKNOWNS]) -> [f64; UNKNOWNS] {
     covariance.map(|row| row.iter().zip(gradient).map(|(c, g)| c * g).sum())
 }

@@ -1,9 +1,10 @@
 //! Plausible and usual values of λ.
 
-/// Less of the earth's field than this reaches no compass that was placed with any care.
+/// Least plausible λ of a reasonably placed compass.
 pub const LEAST_LAMBDA: f64 = 0.5;
-/// No ship gathers more of it at the compass than this.
+/// Greatest plausible λ of any ship.
 pub const GREATEST_LAMBDA: f64 = 1.25;
-/// Steel around a compass shields it, in a wheelhouse by up to a third, and hardly ever
-/// gathers more of the field than there is. Outside this a reading is looked at again.
+/// Usual range of λ: surrounding steel shields the compass, by up to a third in a
+/// wheelhouse, and rarely concentrates the field. A reading outside this range needs a
+/// second look.
 pub const USUAL_LAMBDA: std::ops::RangeInclusive<f64> = 0.65..=1.1;

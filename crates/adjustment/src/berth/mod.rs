@@ -1,12 +1,11 @@
-//! λ at the berth: what headings can never tell, from one magnetometer reading.
+//! λ at the berth from one magnetometer reading, which headings cannot determine.
 //!
-//! A fitted model knows the field at the compass but for one factor, λ. With
-//! the bowl out and a magnetometer in its place, the horizontal field itself
-//! gives that factor on any heading, and with it every parameter of Poisson's
-//! equations (docs/science.md, §5). The direction of the field is the check: it
-//! has to be the model's. A reading that fails it is refused, with what could
-//! be wrong; an answer carries standard errors that hold the reading's, the
-//! heading's and the model's own.
+//! A fitted model gives the field at the compass except for one factor, λ. With the bowl
+//! out and a magnetometer in its place, the horizontal field gives that factor on any
+//! heading, and with it every parameter of Poisson's equations (docs/science.md, §5). The
+//! direction of the field is the check: it must agree with the model's. A reading that
+//! fails it is refused with possible reasons. Standard errors include those of the reading,
+//! the heading and the model.
 
 mod estimated;
 mod reading;

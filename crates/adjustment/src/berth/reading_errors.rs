@@ -1,18 +1,17 @@
 //! Errors of a berth reading.
 
-/// Standard deviations of a berth reading. The magnetometer's gain is not among
-/// them: an error of its scale is an error of λ, share for share.
+/// Standard deviations of a berth reading, except for the magnetometer's gain: a relative
+/// error of its scale is an equal relative error of λ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReadingErrors {
-    /// Of each horizontal part, nT: the magnetometer's noise together with what
-    /// the earth's field at the berth is not known to (crust, quay). More than 0.
+    /// Error of each horizontal part, nT: magnetometer noise and unknown local field
+    /// (crust, quay). More than 0.
     pub field_sd_nt: f64,
-    /// Of the magnetic heading, degrees: that of the true heading together with
-    /// the variation's.
+    /// Error of the magnetic heading, degrees: true heading and variation together.
     pub heading_sd_deg: f64,
-    /// Of the magnetometer's alignment, degrees.
+    /// Error of the magnetometer's alignment, degrees.
     pub alignment_sd_deg: f64,
-    /// Of the magnetometer's tilt in roll and in pitch, degrees, ship's heel
-    /// and trim included: tilt brings vertical field into the horizontal.
+    /// Error of the magnetometer's tilt in roll and in pitch, degrees, including the ship's
+    /// heel and trim: tilt mixes vertical field into the horizontal.
     pub tilt_sd_deg: f64,
 }

@@ -3,17 +3,17 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Which way magnets lie.
+/// Axis of magnets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Axis {
     /// Along the keel.
     ForeAndAft,
-    /// Across it.
+    /// Across the keel.
     Athwartship,
 }
 
-/// Where the red, north-seeking end points.
+/// Direction of the red, north-seeking end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Red {
@@ -32,10 +32,11 @@ pub enum Red {
 }
 
 impl Axis {
-    /// Both, in the order in which they are set.
+    /// Both axes, in the order of setting.
     pub const BOTH: [Axis; 2] = [Axis::ForeAndAft, Axis::Athwartship];
 
-    /// Red forward or to starboard for 1, aft or to port for −1.
+    /// Returns the red end's direction: forward or to starboard if positive, else aft or to
+    /// port.
     pub fn red(self, positive: bool) -> Red {
         match (self, positive) {
             (Axis::ForeAndAft, true) => Red::Forward,
@@ -47,7 +48,7 @@ impl Axis {
 }
 
 impl Red {
-    /// Sign along the ship's axes: forward, starboard and down are positive.
+    /// Returns the sign along the ship's axes: forward, starboard and down are positive.
     pub fn sign(self) -> f64 {
         match self {
             Red::Forward | Red::Starboard | Red::Down => 1.0,
@@ -55,7 +56,7 @@ impl Red {
         }
     }
 
-    /// The other end.
+    /// Returns the opposite direction.
     pub fn reversed(self) -> Red {
         match self {
             Red::Forward => Red::Aft,

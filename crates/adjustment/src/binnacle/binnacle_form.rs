@@ -1,4 +1,4 @@
-//! The written form of a binnacle on board (docs/binnacle.md).
+//! Written form of a binnacle on board (docs/binnacle.md).
 
 use super::axis::Axis;
 use super::calibration::Calibrated;
@@ -8,45 +8,45 @@ use super::nearly_equal::nearly_equal;
 use super::setting::Setting;
 use serde::{Deserialize, Serialize};
 
-/// A binnacle as it is written; [`Binnacle`] is one that was checked.
+/// Written form of a binnacle; [`Binnacle`] is a valid one.
 ///
 /// [`Binnacle`]: super::Binnacle
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BinnacleForm {
-    /// Version of this form.
+    /// Version of the form.
     pub version: u32,
-    /// The maker's number of this one.
+    /// Maker's serial number.
     pub serial: String,
-    /// What kind it is.
+    /// Design of its kind.
     #[serde(rename = "type")]
     pub design: Design,
-    /// All its correctors, in use and spare.
+    /// All correctors on board, in use and spare.
     #[serde(rename = "aboard")]
     pub inventory: Inventory,
-    /// How they stand.
+    /// Setting of the correctors.
     pub setting: Setting,
-    /// What was measured of them; it wins over the formulas.
+    /// Measured effects, which take precedence over the formulas.
     #[serde(default)]
     pub calibration: Vec<Calibrated>,
 }
 
-/// Of a tested moment, relative.
+/// Default relative standard deviation of a tested moment.
 const USUAL_TESTED_SD: f64 = 0.02;
 
-/// A kind of magnets as it counts on board.
+/// Effective moment of a kind of magnets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Moment {
     /// From end to end, mm.
     pub(crate) length_mm: f64,
-    /// A·m².
+    /// Moment, A·m².
     pub(crate) am2: f64,
-    /// Relative.
+    /// Relative standard deviation of the moment.
     pub(crate) sd: f64,
 }
 
 impl BinnacleForm {
-    /// The lot of a kind.
+    /// Finds the lot of a kind.
     pub fn lot(&self, magnet: &str) -> Option<&Lot> {
         self.inventory
             .magnets
@@ -54,12 +54,12 @@ impl BinnacleForm {
             .find(|lot| lot.magnet == magnet)
     }
 
-    /// How many magnets of a kind there are on board.
+    /// Counts the magnets of a kind on board.
     pub fn magnet_count(&self, magnet: &str) -> u16 {
         self.lot(magnet).map_or(0, |lot| lot.count)
     }
 
-    /// The moment that counts: the tested one, else the nominal one.
+    /// Returns the tested moment, else the nominal one.
     pub(crate) fn moment(&self, kind: &MagnetKind) -> Moment {
         let tested = self.lot(&kind.name);
         let tested = tested.and_then(|lot| Some((lot.tested_moment_am2?, lot.tested_sd)));
@@ -73,8 +73,8 @@ impl BinnacleForm {
         }
     }
 
-    /// Every length that the bar can be made, with its pieces, shortest first; of
-    /// equal lengths that with the fewest pieces.
+    /// Lists every possible length of the bar with its pieces, shortest first; of equal
+    /// lengths, the one with the fewest pieces.
     pub fn bar_lengths(&self) -> Vec<(f64, Vec<f64>)> {
         let longest_mm = self
             .design

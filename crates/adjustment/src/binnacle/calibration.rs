@@ -1,54 +1,54 @@
-//! What was measured of a binnacle's correctors; it wins over the formulas.
+//! Measured effects of a binnacle's correctors.
 
 use super::axis::Axis;
 use super::nearly_equal::nearly_equal;
 use serde::{Deserialize, Serialize};
 
-/// The effect of one corrector at one position, as it was measured.
+/// Measured effect of one corrector at one position; it takes precedence over the formulas.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "corrector", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Calibrated {
     /// One magnet in a hole.
     Magnet {
-        /// Which way it lies.
+        /// Axis of the magnet.
         axis: Axis,
-        /// Its kind.
+        /// Kind of the magnet.
         magnet: String,
-        /// The hole's number.
+        /// Number of the hole.
         hole: u16,
-        /// Size of its field at the card, nT.
+        /// Magnitude of its field at the card, nT.
         field_nt: f64,
-        /// Relative standard deviation of that.
+        /// Relative standard deviation of the field.
         #[serde(default = "usual_sd")]
         sd: f64,
     },
-    /// A pair at a mark: q of docs/science.md, eq. 20.
+    /// A pair at a mark.
     Quadrantal {
         /// Name of the size.
         size: String,
         /// Position on the scale, mm.
         mark_mm: f64,
-        /// A third of what the pair takes off λD.
+        /// Effect q of the pair, a third of its reduction of λD (docs/science.md, eq. 20).
         q: f64,
-        /// Relative standard deviation of that.
+        /// Relative standard deviation of q.
         #[serde(default = "usual_sd")]
         sd: f64,
     },
-    /// A bar of a length: its χ13 when it stands forward.
+    /// A Flinders bar of a length.
     Flinders {
-        /// Length of its pieces, mm.
+        /// Total length of its pieces, mm.
         length_mm: f64,
-        /// χ13.
+        /// χ13 of the bar in its forward position.
         c: f64,
-        /// Relative standard deviation of that.
+        /// Relative standard deviation of χ13.
         #[serde(default = "usual_sd")]
         sd: f64,
     },
     /// One magnet in the bucket.
     Heeling {
-        /// The position's number.
+        /// Number of the position.
         position: u16,
-        /// Size of its field at the card, nT.
+        /// Magnitude of its field at the card, nT.
         field_nt: f64,
     },
 }
@@ -58,7 +58,7 @@ fn usual_sd() -> f64 {
 }
 
 impl Calibrated {
-    /// Whether both are of one corrector at one position.
+    /// Returns true when both are for one corrector at one position.
     pub(crate) fn same_place(&self, other: &Calibrated) -> bool {
         use Calibrated::{Flinders, Heeling, Magnet, Quadrantal};
         match (self, other) {

@@ -2,16 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The correctors on board, those in use included.
+/// Correctors on board, including those in use.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Inventory {
     /// Magnets by their kind.
     pub magnets: Vec<Lot>,
-    /// Names of the sizes of which there is a pair.
+    /// Names of the sizes with a pair on board.
     #[serde(default)]
     pub quadrantal: Vec<String>,
-    /// Lengths of the Flinders bar's pieces, mm, each as often as there is one.
+    /// Length of each piece of the Flinders bar, mm.
     #[serde(default)]
     pub flinders_pieces_mm: Vec<f64>,
 }
@@ -20,14 +20,14 @@ pub struct Inventory {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lot {
-    /// Their kind.
+    /// Kind of the magnets.
     pub magnet: String,
-    /// How many there are.
+    /// Number of magnets.
     pub count: u16,
-    /// Their moment as it was tested, A·m²; the nominal one counts otherwise.
+    /// Tested moment, A·m²; without it the nominal moment applies.
     #[serde(default)]
     pub tested_moment_am2: Option<f64>,
-    /// Relative standard deviation of the tested moment; 0.02 where it is not said.
+    /// Relative standard deviation of the tested moment; the default is 0.02.
     #[serde(default)]
     pub tested_sd: Option<f64>,
 }

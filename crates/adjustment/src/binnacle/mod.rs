@@ -1,11 +1,10 @@
-//! Binnacles: which correctors a design has, which of them are on board, and
-//! how they stand.
+//! Binnacles: design, correctors on board, and their setting.
 //!
-//! What always holds: a [`Design`] or [`Binnacle`] that exists was checked, so that
-//! every hole, scale mark and magnet that it or its setting names is there, holes are
-//! numbered from the bottom, and nothing is nearer the card than it can be. The
-//! written form (docs/binnacle.md) is the value itself: both read as the form they
-//! were made from, and cannot be changed but by making another.
+//! Invariants: a [`Design`] or [`Binnacle`] is always valid. Every hole, scale mark and
+//! magnet that it or its setting names exists, holes are numbered from the bottom, and
+//! nothing is closer to the card than physically possible. The written form
+//! (docs/binnacle.md) is the value itself: both types read as the form they were made from,
+//! and cannot be changed except by making another.
 
 mod axis;
 
@@ -40,28 +39,26 @@ pub use value_checks::VERSION;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
-/// One binnacle on board: its design, serial, the correctors there are, how they
-/// stand, and what was measured of them.
+/// One binnacle on board: its design, serial number, correctors, setting, and calibration.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "BinnacleForm", into = "BinnacleForm")]
 pub struct Binnacle(BinnacleForm);
 
 impl Binnacle {
-    /// The same binnacle with its correctors standing otherwise.
+    /// Returns the binnacle with another setting.
     ///
     /// # Errors
-    /// Names what is not there, or not on board.
+    /// When the setting names something that does not exist or is not on board.
     pub fn with_setting(&self, setting: Setting) -> Result<Binnacle, BinnacleError> {
         let mut form = self.0.clone();
         form.setting = setting;
         Binnacle::try_from(form)
     }
 
-    /// The same binnacle with another moment for a lot of magnets, as it was found
-    /// out on the way.
+    /// Returns the binnacle with another tested moment for a lot of magnets.
     ///
     /// # Errors
-    /// When there is no such lot, or the moment is none.
+    /// When there is no such lot, or the moment is invalid.
     pub fn with_moment(
         &self,
         magnet: &str,
@@ -83,10 +80,10 @@ impl Binnacle {
         Binnacle::try_from(form)
     }
 
-    /// Refuses to have written what no magnet of its kind can have.
+    /// Checks that tested moments are plausible for magnets of their kind.
     ///
     /// # Errors
-    /// Names the lot whose tested moment it is, A·m².
+    /// Names the lot with an implausible tested moment.
     pub fn check_tested_moments(&self) -> Result<(), BinnacleError> {
         checks::check_tested_moments(&self.0)
     }

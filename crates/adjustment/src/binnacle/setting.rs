@@ -1,26 +1,26 @@
-//! How the correctors stand, and whether they can stand so.
+//! Setting of all correctors.
 
 use super::axis::{Axis, Red};
 use super::design::Side;
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// Where every corrector stands; an empty list or null is none.
+/// Setting of all correctors; an empty list or null is none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Setting {
-    /// Fore-and-aft magnets, a hole each.
+    /// Fore-and-aft magnets by hole.
     #[serde(default)]
     pub fore_and_aft: Vec<Tray>,
-    /// Athwartship magnets, a hole each.
+    /// Athwartship magnets by hole.
     #[serde(default)]
     pub athwartship: Vec<Tray>,
     /// Spheres, boxes or plates.
     #[serde(default)]
     pub quadrantal: Option<PairSetting>,
-    /// The Flinders bar.
+    /// Flinders bar.
     #[serde(default)]
     pub flinders: Option<BarSetting>,
-    /// The vertical magnets.
+    /// Vertical magnets.
     #[serde(default)]
     pub heeling: Option<HeelingSetting>,
 }
@@ -32,11 +32,11 @@ pub struct Tray {
     /// Number of the hole, from the bottom.
     #[serde(deserialize_with = "numbered")]
     pub hole: u16,
-    /// Their kind.
+    /// Kind of the magnets.
     pub magnet: String,
-    /// How many.
+    /// Number of magnets.
     pub count: u8,
-    /// Where their red ends point.
+    /// Direction of the red ends.
     pub red: Red,
 }
 
@@ -48,48 +48,48 @@ pub struct PairSetting {
     pub size: String,
     /// Position on the scale, mm.
     pub mark_mm: f64,
-    /// Degrees clockwise from athwartships, seen from above.
+    /// Slew, degrees clockwise from athwartships, seen from above.
     #[serde(default)]
     pub slew_deg: f64,
 }
 
-/// A Flinders bar.
+/// Setting of a Flinders bar.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BarSetting {
-    /// Length of all its pieces, mm.
+    /// Total length of its pieces, mm.
     pub length_mm: f64,
-    /// On which side of the card.
+    /// Side of the card.
     pub side: Side,
-    /// Degrees clockwise from there, seen from above.
+    /// Slew, degrees clockwise from there, seen from above.
     #[serde(default)]
     pub slew_deg: f64,
 }
 
-/// Magnets in the bucket.
+/// Setting of the heeling magnets in the bucket.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HeelingSetting {
-    /// Number of its position, from the bottom.
+    /// Number of the bucket's position, from the bottom.
     #[serde(deserialize_with = "numbered")]
     pub position: u16,
-    /// How many magnets.
+    /// Number of magnets.
     pub count: u8,
-    /// Where their red ends point: up or down.
+    /// Direction of the red ends: up or down.
     pub red: Red,
 }
 
-/// The soft iron of a setting: what is set before the magnets.
+/// Soft iron of a setting, set before the magnets.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Soft {
     /// Spheres, boxes or plates.
     pub quadrantal: Option<PairSetting>,
-    /// The Flinders bar.
+    /// Flinders bar.
     pub flinders: Option<BarSetting>,
 }
 
 impl Setting {
-    /// The magnets of an axis.
+    /// Returns the magnets of an axis.
     pub fn trays(&self, axis: Axis) -> &Vec<Tray> {
         match axis {
             Axis::ForeAndAft => &self.fore_and_aft,
@@ -97,7 +97,7 @@ impl Setting {
         }
     }
 
-    /// The magnets of an axis, to change.
+    /// Returns the magnets of an axis for modification.
     pub fn trays_mut(&mut self, axis: Axis) -> &mut Vec<Tray> {
         match axis {
             Axis::ForeAndAft => &mut self.fore_and_aft,
@@ -105,7 +105,7 @@ impl Setting {
         }
     }
 
-    /// Its soft iron.
+    /// Returns the soft iron.
     pub fn soft(&self) -> Soft {
         Soft {
             quadrantal: self.quadrantal.clone(),
@@ -114,7 +114,7 @@ impl Setting {
     }
 }
 
-/// A number of a hole or position; what cannot be one is said in an adjuster's words.
+/// Reads the number of a hole or position.
 fn numbered<'de, D: Deserializer<'de>>(from: D) -> Result<u16, D::Error> {
     let number = i64::deserialize(from)?;
     u16::try_from(number).map_err(|_| {

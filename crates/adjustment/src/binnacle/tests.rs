@@ -1,6 +1,6 @@
 use super::*;
 
-/// The larger of the designs shipped, well stocked, with something of everything set.
+/// The larger shipped design, well stocked, with every kind of corrector set.
 pub(crate) fn class_a() -> Binnacle {
     let design: Design = serde_json::from_str(SHIPPED[0].1).unwrap();
     Binnacle::try_from(form(design)).unwrap()

@@ -2,12 +2,12 @@
 
 use super::error::BinnacleError;
 
-/// The version of the written forms of this module.
+/// Version of the written forms of binnacles and designs.
 pub const VERSION: u32 = 1;
 
 pub(super) type Checked = Result<(), BinnacleError>;
 
-/// So that a search ends: more of a thing than this is a mistake in the file.
+/// Greatest length of a list; a longer one is a mistake in the file.
 const MOST: usize = 64;
 
 pub(super) fn version(found: u32) -> Checked {

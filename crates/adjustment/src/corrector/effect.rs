@@ -13,26 +13,26 @@ pub struct Effect {
     pub chi: [[f64; 3]; 3],
     /// Δb, nT.
     pub b_nt: Vector,
-    /// N, nT: what the needles magnetise in the spheres turns with the card, so that
-    /// it acts as soft iron that is stronger the weaker H is; on D and E alone, its
-    /// trace being nil: it turns the card, and adds nothing to the directive force.
+    /// N, nT: the field that the needles induce in the spheres turns with the card. It acts
+    /// as soft iron that is stronger the weaker H is, on D and E alone: its trace is zero,
+    /// so it turns the card without changing the directive force.
     pub needle_nt: [[f64; 2]; 2],
 }
 
 impl Effect {
-    /// Both together.
+    /// Adds another effect.
     pub fn plus(mut self, other: &Effect) -> Effect {
         self.add(other, 1.0);
         self
     }
 
-    /// This without the other.
+    /// Subtracts another effect.
     pub fn less(mut self, other: &Effect) -> Effect {
         self.add(other, -1.0);
         self
     }
 
-    /// This effect so many times.
+    /// Scales the effect.
     pub fn times(&self, factor: f64) -> Effect {
         let mut scaled = Effect::default();
         scaled.add(self, factor);
@@ -53,7 +53,7 @@ impl Effect {
         }
     }
 
-    /// Soft iron, the needles' share included, where the horizontal field is H.
+    /// Returns the soft iron at a horizontal field H, including the needles' share.
     pub fn chi_at(&self, h_nt: f64) -> [[f64; 3]; 3] {
         let mut chi = self.chi;
         for (chi, needle) in chi.iter_mut().zip(self.needle_nt) {
@@ -64,7 +64,7 @@ impl Effect {
         chi
     }
 
-    /// The same as a ship of its own, where the horizontal field is H.
+    /// Converts the effect to a ship's magnetism at a horizontal field H.
     pub fn as_ship(&self, h_nt: f64) -> ShipMagnetism {
         ShipMagnetism {
             chi: self.chi_at(h_nt),

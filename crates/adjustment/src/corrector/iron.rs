@@ -6,7 +6,7 @@ use super::magnet::BarMagnet;
 use super::sphere::Pair;
 use crate::binnacle::{BinnacleForm, Mark, Side, Soft, nearly_equal};
 
-/// The soft iron of a setting as it stands, ready to be magnetised.
+/// Soft iron of a setting.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Iron {
     /// Spheres.
@@ -16,8 +16,8 @@ pub struct Iron {
 }
 
 impl Iron {
-    /// The iron of a setting of this binnacle; what the binnacle does not have, and
-    /// what a checked setting thus cannot name, is left out.
+    /// Makes the iron of a setting of this binnacle; a corrector that the binnacle does not
+    /// have is ignored.
     pub fn new(binnacle: &BinnacleForm, soft: &Soft) -> Iron {
         Iron {
             pair: soft.quadrantal.as_ref().and_then(|set| {
@@ -47,7 +47,7 @@ impl Iron {
         }
     }
 
-    /// What it does in the earth's field, with needles of this moment, A·m².
+    /// Returns the effect in the earth's field, with needles of this moment, A·m².
     pub fn effect(&self, needle_am2: f64) -> Effect {
         let mut effect = Effect::default();
         if let Some(pair) = &self.pair {
@@ -59,7 +59,8 @@ impl Iron {
         effect
     }
 
-    /// What it adds to a magnet's field at the card, nT: the magnet magnetises it.
+    /// Returns the field added to a magnet's field at the card by its induction in the
+    /// iron, nT.
     pub fn reflected(&self, magnet: &BarMagnet) -> Vector {
         let mut sum = [0.0; 3];
         let parts = [

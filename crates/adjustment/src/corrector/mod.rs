@@ -1,9 +1,9 @@
-//! What correctors do at the card, as contributions to Poisson's equations.
+//! Effects of correctors at the card, as contributions to Poisson's equations.
 //!
-//! Ideal shapes by docs/science.md, §10, or what was measured of this binnacle
-//! (`calibration`), which wins. What always holds: effects are in ship axes and
-//! nT at the card's centre, the earth's field is that of no ship, and magnets add up
-//! linearly once the soft iron stands: their poles magnetise spheres and bar.
+//! Ideal shapes by docs/science.md, §10, or measured effects of this binnacle
+//! (`calibration`), which take precedence. Invariants: effects are in ship axes and nT at
+//! the card's centre, and the earth's field contains no ship. Magnets add up linearly once
+//! the soft iron is set: their poles magnetise spheres and bar.
 
 mod effect;
 

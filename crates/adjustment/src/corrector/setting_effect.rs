@@ -5,8 +5,9 @@ use super::iron::Iron;
 use super::magnet::BarMagnet;
 use crate::binnacle::{Axis, BinnacleForm, HeelingSetting, Setting, Tray};
 
-/// The field at the card, nT, of one magnet in a hole with its red end forward or to
-/// starboard, soft iron standing as given; `None` where there is no such hole or kind.
+/// Computes the field at the card, nT, of one magnet in a hole with its red end forward or
+/// to starboard, including the induction in the soft iron; `None` without such a hole or
+/// kind.
 pub fn magnet_field(
     binnacle: &BinnacleForm,
     iron: &Iron,
@@ -28,13 +29,13 @@ pub fn magnet_field(
         length_m: moment.length_mm / 1e3,
     };
     let measured = binnacle.calibrated_magnet(axis, kind, hole);
-    // Magnets stand on both sides of the middle in turn: one counts as the mean.
+    // Magnets are on both sides of the middle in turn: one counts as the mean.
     Some(half_sum([1.0, -1.0].map(|side| {
         seen(&magnet(side), iron, measured.map(|m| m.value))
     })))
 }
 
-/// The field at the card, nT, of one heeling magnet with its red end down.
+/// Computes the field at the card, nT, of one heeling magnet with its red end down.
 pub fn heeling_field(binnacle: &BinnacleForm, iron: &Iron, position: u16) -> Option<Vector> {
     let bucket = binnacle.design.heeling.as_ref()?;
     let moment = binnacle.moment(binnacle.design.magnet(&bucket.magnet)?);
@@ -47,7 +48,7 @@ pub fn heeling_field(binnacle: &BinnacleForm, iron: &Iron, position: u16) -> Opt
     Some(seen(&magnet, iron, binnacle.calibrated_heeling(position)))
 }
 
-/// A magnet's field with what the iron adds; its own part scaled to what was measured.
+/// Adds the iron's field to a magnet's field, scaled to the measured value.
 fn seen(magnet: &BarMagnet, iron: &Iron, measured_nt: Option<f64>) -> Vector {
     let direct = magnet.field_nt([0.0; 3]);
     let size = direct.iter().map(|part| part * part).sum::<f64>().sqrt();
@@ -60,7 +61,7 @@ fn half_sum([one, other]: [Vector; 2]) -> Vector {
     std::array::from_fn(|axis| f64::midpoint(one[axis], other[axis]))
 }
 
-/// Everything that a setting does.
+/// Computes the effect of all correctors of a setting.
 pub fn effect(binnacle: &BinnacleForm, setting: &Setting) -> Effect {
     let iron = Iron::new(binnacle, &setting.soft());
     let mut effect = iron.effect(binnacle.design.needle_moment_am2);
@@ -75,13 +76,13 @@ pub fn effect(binnacle: &BinnacleForm, setting: &Setting) -> Effect {
     effect
 }
 
-/// What the magnets of one hole or tray do.
+/// Computes the effect of the magnets of one hole or tray.
 pub fn tray_effect(binnacle: &BinnacleForm, iron: &Iron, axis: Axis, tray: &Tray) -> Effect {
     let one = magnet_field(binnacle, iron, axis, &tray.magnet, tray.hole);
     permanent(one, tray.red.sign() * f64::from(tray.count))
 }
 
-/// What the vertical magnets do.
+/// Computes the effect of the vertical magnets.
 pub fn heeling_effect(binnacle: &BinnacleForm, iron: &Iron, set: &HeelingSetting) -> Effect {
     let one = heeling_field(binnacle, iron, set.position);
     permanent(one, set.red.sign() * f64::from(set.count))

@@ -1,4 +1,4 @@
-//! Whether calibrated effects belong to the design.
+//! Validation of measured effects.
 
 use crate::binnacle::binnacle_form::BinnacleForm;
 use crate::binnacle::calibration::Calibrated;

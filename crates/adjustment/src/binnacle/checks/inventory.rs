@@ -1,15 +1,15 @@
-//! Whether what is said to be on board belongs to the design.
+//! Validation of the correctors on board.
 
 use crate::binnacle::binnacle_form::BinnacleForm;
 use crate::binnacle::error::BinnacleError;
 use crate::binnacle::value_checks::{count, number, text_given, version};
 
-/// Ways to set spheres and bar.
+/// Greatest number of settings of spheres and bar.
 const MOST_CHOICES: usize = 50_000;
-/// A tested moment is at least and at most so much of the nominal one.
+/// Least and greatest tested moment, as a share of the nominal one.
 const WEAKEST: f64 = 0.1;
 const STRONGEST: f64 = 2.0;
-/// 2¹⁰ combinations of pieces are gone through.
+/// Greatest number of pieces; the search goes through 2¹⁰ combinations.
 const MOST_PIECES: usize = 10;
 
 pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
@@ -39,9 +39,9 @@ pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
     choices(form)
 }
 
-/// Whether magnets can have what was tested of them. One loses strength with the years, and a
-/// bar of its size holds little more than a maker gives it: what is farther off was read or
-/// written wrongly.
+/// Checks that tested moments are plausible. A magnet loses strength over the years and
+/// holds little more than the maker's nominal moment, so anything else is a misreading or a
+/// typing error.
 pub(crate) fn check_tested_moments(form: &BinnacleForm) -> Result<(), BinnacleError> {
     for (index, lot) in form.inventory.magnets.iter().enumerate() {
         let nominal = form.design.magnet(&lot.magnet).map(|kind| kind.moment_am2);
@@ -61,7 +61,7 @@ pub(crate) fn check_tested_moments(form: &BinnacleForm) -> Result<(), BinnacleEr
     Ok(())
 }
 
-/// So that a search ends, and its memory is bounded.
+/// Limits the number of settings, so that a search ends in bounded memory.
 fn choices(form: &BinnacleForm) -> Result<(), BinnacleError> {
     let pairs = form.design.quadrantal.as_ref().map_or(0, |iron| {
         form.inventory.quadrantal.len() * iron.marks.len() * iron.slews_deg.len()

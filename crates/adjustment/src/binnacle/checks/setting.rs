@@ -1,4 +1,4 @@
-//! Whether the correctors can stand as a setting says.
+//! Validation of a setting.
 
 use crate::binnacle::axis::{Axis, Red};
 use crate::binnacle::binnacle_form::BinnacleForm;
@@ -7,7 +7,7 @@ use crate::binnacle::error::BinnacleError;
 use crate::binnacle::nearly_equal::nearly_equal;
 use crate::binnacle::setting::{BarSetting, HeelingSetting, PairSetting, Setting, Tray};
 
-/// Whether a setting is one of this binnacle, with what is on board.
+/// Checks that a setting is possible with this binnacle and the correctors on board.
 pub(super) fn check(form: &BinnacleForm, setting: &Setting) -> Result<(), BinnacleError> {
     for axis in Axis::BOTH {
         trays(form, axis, setting.trays(axis))?;
@@ -22,10 +22,10 @@ pub(super) fn check(form: &BinnacleForm, setting: &Setting) -> Result<(), Binnac
         check_heeling(&form.design, heeling)?;
     }
     for lot in &form.design.magnets {
-        let (used, aboard) = (used(form, setting, &lot.name), form.magnet_count(&lot.name));
-        if used > aboard {
+        let (used, available) = (used(form, setting, &lot.name), form.magnet_count(&lot.name));
+        if used > available {
             let what = format!(
-                "{used} magnets {:?} are set and {aboard} on board",
+                "{used} magnets {:?} are set and {available} on board",
                 lot.name
             );
             return Err(BinnacleError::new("aboard.magnets", what));
@@ -34,7 +34,7 @@ pub(super) fn check(form: &BinnacleForm, setting: &Setting) -> Result<(), Binnac
     Ok(())
 }
 
-/// How many magnets of a kind a setting uses.
+/// Counts the magnets of a kind that a setting uses.
 fn used(form: &BinnacleForm, setting: &Setting, kind: &str) -> u16 {
     let trays = setting.fore_and_aft.iter().chain(&setting.athwartship);
     let trays = trays.filter(|tray| tray.magnet == kind);

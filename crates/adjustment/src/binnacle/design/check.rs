@@ -1,17 +1,17 @@
-//! Whether a design can be one; each complaint names its field.
+//! Validation of a design; each error names its field.
 
 use super::form::{DesignForm, Flinders, Heeling, Hole, MagnetKind, Quadrantal, Rack};
 use crate::binnacle::error::BinnacleError;
 use crate::binnacle::nearly_equal::nearly_equal;
 use crate::binnacle::value_checks::{Checked, count, number, text_given, version};
 
-/// Nothing of a binnacle is farther from its card, mm.
+/// Greatest distance of any part from the card, mm.
 const FARTHEST_MM: f64 = 2_000.0;
-/// No corrector's error is described by more.
+/// Greatest relative tolerance of a corrector.
 const GREATEST_TOLERANCE: f64 = 0.5;
-/// Kinds of magnets.
+/// Greatest number of kinds of magnets.
 const MOST_KINDS: usize = 8;
-/// Trays of one axis, magnets in a tray or a bucket.
+/// Greatest number of trays of one axis, and of magnets in a tray or a bucket.
 const MOST_TRAYS: u8 = 4;
 const MOST_MAGNETS: u8 = 12;
 
@@ -93,7 +93,8 @@ fn small_count(field: &str, count: u8, most: u8) -> Checked {
     number(field, f64::from(count), 1.0, f64::from(most))
 }
 
-/// Numbered from the bottom, each nearer the card than the one below it.
+/// Checks that holes are numbered from the bottom, each closer to the card than the one
+/// below.
 fn holes(field: &str, holes: &[Hole], nearest_mm: f64) -> Checked {
     count(field, holes.len())?;
     for (index, hole) in holes.iter().enumerate() {
@@ -137,7 +138,7 @@ fn quadrantal(iron: &Quadrantal) -> Checked {
     for (index, mark) in iron.marks.iter().enumerate() {
         let field = |part: &str| format!("quadrantal.marks[{index}].{part}");
         number(&field("mark_mm"), mark.mark_mm, -FARTHEST_MM, FARTHEST_MM)?;
-        // Nearer than its diameter a sphere is no dipole any more, nor beside the bowl.
+        // Closer than its diameter, a sphere is neither a dipole nor beside the bowl.
         number(&field("centre_mm"), mark.centre_mm, widest_mm, FARTHEST_MM)?;
         let earlier = &iron.marks[..index];
         if earlier

@@ -1,34 +1,34 @@
-//! The written form of a binnacle's design (docs/binnacle.md).
+//! Written form of a binnacle's design (docs/binnacle.md).
 
 use crate::binnacle::axis::Axis;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A design as it is written; [`Design`] is one that was checked.
+/// Written form of a design; [`Design`] is a valid one.
 ///
 /// [`Design`]: super::Design
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DesignForm {
-    /// Version of this form.
+    /// Version of the form.
     pub version: u32,
-    /// Who makes it.
+    /// Name of the maker.
     pub maker: String,
-    /// What the maker calls it.
+    /// Maker's name of the model.
     pub model: String,
-    /// Where its figures come from.
+    /// Source of the figures.
     pub provenance: String,
-    /// What kind of compass stands in it.
+    /// Class of its compass.
     pub compass: CompassKind,
-    /// Magnetic moment of the needles, A·m²: they magnetise the spheres.
+    /// Magnetic moment of the compass needles, A·m², which magnetise the spheres.
     pub needle_moment_am2: f64,
-    /// Kinds of magnets that fit somewhere in it.
+    /// Kinds of magnets that fit it.
     pub magnets: Vec<MagnetKind>,
-    /// For the fore-and-aft magnets, against B.
+    /// Holes or trays of the fore-and-aft magnets, against B.
     pub fore_and_aft: Rack,
-    /// For the athwartship magnets, against C.
+    /// Holes or trays of the athwartship magnets, against C.
     pub athwartship: Rack,
-    /// Spheres, boxes or plates, against D (and E where their brackets slew).
+    /// Spheres, boxes or plates, against D (and against E on slewing brackets).
     #[serde(default)]
     pub quadrantal: Option<Quadrantal>,
     /// Flinders bar, against χ13.
@@ -39,7 +39,7 @@ pub struct DesignForm {
     pub heeling: Option<Heeling>,
 }
 
-/// Classes of ISO 25862, and what is in neither.
+/// Class of a compass by ISO 25862.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CompassKind {
@@ -47,17 +47,17 @@ pub enum CompassKind {
     ClassA,
     /// Class B.
     ClassB,
-    /// Neither.
+    /// Neither class A nor class B.
     Other,
 }
 
-/// Magnets of one kind.
+/// A kind of magnets.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MagnetKind {
-    /// What they are called.
+    /// Name of the kind.
     pub name: String,
-    /// From end to end, mm.
+    /// Length from end to end, mm.
     pub length_mm: f64,
     /// Nominal magnetic moment, A·m².
     pub moment_am2: f64,
@@ -65,25 +65,25 @@ pub struct MagnetKind {
     pub moment_tolerance: f64,
 }
 
-/// What magnets are put into.
+/// Carrier of magnets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Carrier {
-    /// Straight into a hole.
+    /// A hole in the binnacle.
     Hole,
-    /// Into a tray that hangs at one of the holes or marks.
+    /// A tray that hangs at one of the holes or marks.
     Tray,
 }
 
-/// Where the magnets of one axis may stand.
+/// Places for the magnets of one axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rack {
-    /// What magnets are put into.
+    /// Carrier of the magnets.
     pub carrier: Carrier,
-    /// How many trays there are, or how many holes may hold magnets at once.
+    /// Number of trays, or of holes that may hold magnets at once.
     pub at_once: u8,
-    /// How many magnets each takes; all of one kind, red ends the same way.
+    /// Greatest number of magnets in each: all of one kind, red ends in the same direction.
     pub magnets_each: u8,
     /// Sideways distance of each magnet from the binnacle's middle plane, mm.
     #[serde(default)]
@@ -93,21 +93,21 @@ pub struct Rack {
     pub position_sd_mm: f64,
     /// Names of the kinds that fit.
     pub magnets: Vec<String>,
-    /// The holes, numbered from the bottom.
+    /// Holes, numbered from the bottom.
     pub holes: Vec<Hole>,
 }
 
-/// A numbered height below the card.
+/// A numbered hole or position below the card.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hole {
-    /// From 1, at the bottom, upwards (ISO 25862).
+    /// Number, from 1 at the bottom upwards (ISO 25862).
     pub number: u16,
-    /// From the card's centre down to the magnets' centre, mm.
+    /// Vertical distance from the card's centre down to the magnets' centre, mm.
     pub below_card_mm: f64,
 }
 
-/// Soft iron in pairs at the card's height.
+/// Quadrantal correctors: soft iron in pairs at the card's height.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Quadrantal {
@@ -115,8 +115,8 @@ pub struct Quadrantal {
     pub sizes: Vec<IronSize>,
     /// Positions on the brackets' scale.
     pub marks: Vec<Mark>,
-    /// Angles to which the brackets turn from athwartships, degrees clockwise seen
-    /// from above: positive brings the starboard one aft. 90 is fore and aft.
+    /// Slew angles of the brackets, degrees clockwise from athwartships seen from above:
+    /// positive moves the starboard one aft, 90 is fore and aft.
     #[serde(default = "not_slewed")]
     pub slews_deg: Vec<f64>,
 }
@@ -125,22 +125,21 @@ fn not_slewed() -> Vec<f64> {
     vec![0.0]
 }
 
-/// One size of a pair.
+/// A size of quadrantal correctors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IronSize {
-    /// What it is called.
+    /// Name of the size.
     pub name: String,
-    /// What it looks like.
+    /// Shape of the correctors.
     pub shape: Shape,
-    /// Diameter of the sphere; of boxes and plates, that of the spheres that do
-    /// the same.
+    /// Diameter of the sphere; for boxes and plates, of the equivalent spheres, mm.
     pub diameter_mm: f64,
-    /// Relative standard deviation of its effect about the formula's.
+    /// Relative standard deviation of the effect about the formula's.
     pub tolerance: f64,
 }
 
-/// Shapes of quadrantal correctors.
+/// Shape of quadrantal correctors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
@@ -152,13 +151,13 @@ pub enum Shape {
     Plate,
 }
 
-/// A position of the pair.
+/// A position of the pair on the brackets.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mark {
-    /// What the scale says, mm.
+    /// Mark on the scale, mm.
     pub mark_mm: f64,
-    /// From the card's centre to the centre of either, mm.
+    /// Distance from the card's centre to the centre of either corrector, mm.
     pub centre_mm: f64,
 }
 
@@ -168,48 +167,48 @@ pub struct Mark {
 pub struct Flinders {
     /// Diameter of the bar, mm.
     pub diameter_mm: f64,
-    /// From the card's centre to the bar's axis, mm.
+    /// Distance from the card's centre to the bar's axis, mm.
     pub axis_mm: f64,
-    /// The longest bar that the holder takes, mm.
+    /// Greatest length of the bar, mm.
     pub longest_mm: f64,
-    /// On which sides of the card it can stand.
+    /// Possible sides of the card.
     pub sides: Vec<Side>,
-    /// Angles by which the holder turns from there, degrees clockwise from above.
+    /// Slew angles of the holder from there, degrees clockwise seen from above.
     #[serde(default = "not_slewed")]
     pub slews_deg: Vec<f64>,
-    /// Relative standard deviation of its effect about the formula's.
+    /// Relative standard deviation of the effect about the formula's.
     pub tolerance: f64,
 }
 
-/// Before or abaft the card.
+/// Side of the card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
-    /// Before the card.
+    /// Forward of the card.
     Forward,
-    /// Abaft it.
+    /// Abaft the card.
     Aft,
 }
 
-/// The bucket under the card.
+/// Bucket of the heeling magnets under the card.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Heeling {
-    /// The kind of magnets that fits, upright.
+    /// Kind of magnets that fits, upright.
     pub magnet: String,
-    /// How many it takes.
+    /// Greatest number of magnets.
     pub at_most: u8,
-    /// Its positions, numbered from the bottom.
+    /// Positions, numbered from the bottom.
     pub positions: Vec<Hole>,
 }
 
 impl DesignForm {
-    /// The kind of magnets of this name.
+    /// Finds the kind of magnets of this name.
     pub fn magnet(&self, name: &str) -> Option<&MagnetKind> {
         self.magnets.iter().find(|kind| kind.name == name)
     }
 
-    /// The rack of an axis.
+    /// Returns the rack of an axis.
     pub fn rack(&self, axis: Axis) -> &Rack {
         match axis {
             Axis::ForeAndAft => &self.fore_and_aft,
@@ -219,7 +218,7 @@ impl DesignForm {
 }
 
 impl Rack {
-    /// The hole of this number.
+    /// Finds the hole of this number.
     pub fn hole(&self, number: u16) -> Option<Hole> {
         self.holes.iter().copied().find(|h| h.number == number)
     }

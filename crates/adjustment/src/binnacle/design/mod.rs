@@ -1,4 +1,4 @@
-//! A checked design of a binnacle.
+//! Design of a binnacle.
 
 mod check;
 mod form;
@@ -12,7 +12,7 @@ use super::error::BinnacleError;
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
-/// A maker's binnacle, as all of its kind are: where correctors may stand.
+/// Design of a maker's binnacles: possible positions of all correctors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "DesignForm", into = "DesignForm")]
 pub struct Design(DesignForm);
