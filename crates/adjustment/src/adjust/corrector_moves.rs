@@ -1,8 +1,8 @@
-//! How many movements of hand it takes from one setting to another.
+//! Number of moves from one setting to another.
 
 use crate::binnacle::{BarSetting, HeelingSetting, PairSetting, Tray, nearly_equal};
 
-/// Magnets of one axis, each tray taken for whichever costs least.
+/// Counts the moves of the magnets of one axis, with the cheapest pairing of trays.
 pub(crate) fn tray_moves(from: &[Tray], to: &[Tray]) -> u32 {
     match_trays(from, to)
         .iter()
@@ -10,7 +10,7 @@ pub(crate) fn tray_moves(from: &[Tray], to: &[Tray]) -> u32 {
         .sum()
 }
 
-/// Which trays of before become which of after: the pairing with the fewest moves.
+/// Pairs the trays before and after with the fewest moves.
 pub(crate) fn match_trays<'t>(
     from: &'t [Tray],
     to: &'t [Tray],

@@ -1,7 +1,9 @@
-//! The heeling magnets: set only where the vertical force aboard was read, and can be.
+//! Heeling magnets, set only where the vertical field at the compass was measured
+//! plausibly.
 //!
-//! The card does not err in heel while the vertical force aboard is λ(1 − D) Z: what
-//! the athwartship force would be in a field as strong (docs/science.md, eq. 23).
+//! The card has no heeling error when the vertical field at the compass is λ(1 − D) Z,
+//! equal to the athwartship field in an earth's field of the same strength
+//! (docs/science.md, eq. 23).
 
 use super::inputs::Adjustment;
 use super::state::{MagneticState, errors_between};
@@ -10,30 +12,30 @@ use crate::corrector::{Effect, Iron, effect, heeling_effect};
 use binnacle_compass::deviation::NORMAL_99;
 use serde::{Deserialize, Serialize};
 
-/// Heeling error that is left alone, degrees for each degree of heel.
+/// Acceptable heeling error, degrees per degree of heel.
 const GOOD_ENOUGH: f64 = 0.05;
 
-/// What becomes of the heeling magnets.
+/// Plan for the heeling magnets.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeelingPlan {
-    /// Degrees of heeling error for each degree of heel on north, at the berth, as it
-    /// is; none where the vertical force was not read, or not so that it can be believed.
+    /// Present heeling error on north at the berth, degrees per degree of heel; none
+    /// without a plausible vertical reading.
     pub before_deg_per_deg: Option<f64>,
-    /// The same afterwards.
+    /// Heeling error after the plan, degrees per degree of heel.
     pub after_deg_per_deg: Option<f64>,
-    /// Whether they are left as found for want of a vertical reading to be believed.
+    /// Left as found for want of a plausible vertical reading.
     pub left_as_found: bool,
 }
 
-/// What the magnetometer would read down with correctors of this effect, nT.
+/// Predicts the magnetometer's vertical reading with correctors of this effect, nT.
 fn down_nt(adjustment: &Adjustment<'_>, state: &MagneticState<'_>, effect: &Effect) -> Option<f64> {
     let read_nt = state.vertical?.down_nt;
     let z_nt = adjustment.earth.z_nt;
     Some(read_nt + state.chi33_change(effect) * z_nt + state.bz_change(effect))
 }
 
-/// How a step with heeling magnets is verified, which no compass on an even keel shows;
-/// none where the vertical force was not read.
+/// Describes the check of a step with heeling magnets, which no compass on an even keel
+/// shows; none without a vertical reading.
 pub(crate) fn check_instruction(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,
@@ -46,7 +48,7 @@ pub(crate) fn check_instruction(
     let (was_nt, will_nt) = (was_nt?, will_nt?);
     let errors = adjustment.reading.errors();
     let tilted_nt = adjustment.earth.h_nt * errors.tilt_sd_deg.to_radians();
-    // Read twice with the same instrument: noise and tilt differ, its scale does not.
+    // Both readings use the same instrument: noise and tilt differ, its scale does not.
     let instrument_nt = std::f64::consts::SQRT_2 * errors.field_sd_nt.hypot(tilted_nt);
     let scale_nt = adjustment.scale_sd * (will_nt - state.vertical?.down_nt);
     let of_correctors = errors_between(binnacle, &binnacle.setting, after);
@@ -65,7 +67,7 @@ pub(crate) fn check_instruction(
     ))
 }
 
-/// J with correctors of this effect, degrees per degree.
+/// Predicts J with correctors of this effect, degrees per degree.
 fn heeling_error(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,
@@ -78,8 +80,8 @@ fn heeling_error(
     Some(((1.0 + ship.chi[1][1]) * z_nt - aboard_nt) / (ship.lambda() * h_nt))
 }
 
-/// The magnets that leave the least heeling error with this iron; those that stand
-/// where it was not read, or where they are good enough.
+/// Chooses the magnets with the least heeling error for this iron; keeps the present ones
+/// without a vertical reading, or where they are good enough.
 pub(crate) fn choose_magnets(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,

@@ -1,11 +1,11 @@
-//! Adjusting at the berth, without a swing: from the model, one magnetometer reading
-//! and the binnacle's correctors to settings, predictions and instructions.
+//! Adjustment at the berth without a swing: from the model, one magnetometer reading and
+//! the binnacle's correctors to settings, predictions and instructions.
 //!
-//! The ship herself is what was measured less what the correctors did then; any other
-//! setting is put to her with all its interactions (docs/science.md, §11). What always
-//! holds: a plan uses only what is on board, its predictions carry the errors of model,
-//! λ and correctors together, and where that is not good enough there is no plan but a
-//! refusal that says what would cure it. Nothing here is a certificate.
+//! The ship without correctors is the measured ship less the effect of its correctors. Any
+//! other setting is then applied to it with all interactions (docs/science.md, §11).
+//! Invariants: a plan uses only correctors on board. Its predictions carry the joint errors
+//! of model, λ and correctors. Where these are too large, the result is a refusal with
+//! possible cures instead of a plan. Nothing here is a certificate.
 
 mod inputs;
 

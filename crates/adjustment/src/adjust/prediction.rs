@@ -1,4 +1,4 @@
-//! Deviations foretold for a setting, with their bands.
+//! Predicted deviations for a setting, with their bands.
 
 use super::inputs::{AdjustError, Adjustment, Water};
 use super::state::MagneticState;
@@ -9,45 +9,44 @@ use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
 
-/// One compass heading.
+/// Prediction on one compass heading.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PredictedRow {
-    /// What the compass reads, degrees.
+    /// Compass heading, degrees.
     pub compass_deg: f64,
     /// Deviation, degrees, east positive.
     pub deviation_deg: f64,
-    /// Half the width of its 95 % band, degrees.
+    /// Half the width of the 95 % band, degrees.
     pub band95_deg: Option<f64>,
 }
 
-/// All headings at one place.
+/// Predictions on all headings at one place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PredictedTable {
-    /// `berth`, or the name of a water.
+    /// Name of the place: `berth`, or the name of a water.
     pub place: String,
     /// Horizontal field, nT.
     pub h_nt: f64,
     /// Vertical field, nT, down positive.
     pub z_nt: f64,
-    /// Every 15° of compass heading; empty where headings are ambiguous.
+    /// Predictions every 15° of compass heading; empty where headings are ambiguous.
     pub rows: Vec<PredictedRow>,
-    /// The greatest deviation on any heading, degrees; none where headings are
-    /// ambiguous.
+    /// Greatest deviation on any heading, degrees; none where headings are ambiguous.
     pub worst_deg: Option<f64>,
-    /// The compass heading of that.
+    /// Compass heading of the greatest deviation.
     pub worst_compass_deg: Option<f64>,
-    /// The greatest deviation with its band, on any heading, degrees.
+    /// Greatest deviation with its band on any heading, degrees.
     pub reach_deg: Option<f64>,
-    /// The widest band on any heading, degrees.
+    /// Widest band on any heading, degrees.
     pub widest_band_deg: Option<f64>,
 }
 
-/// How many headings are looked at: every 3°.
+/// Number of evaluated headings: every 3°.
 const HEADINGS: u16 = 120;
-/// Every fifth of them is a row: 15°.
+/// Evaluated headings per row: 15°.
 const ROW: usize = 5;
 
-/// At the berth and in each water.
+/// Predicts the deviations at the berth and in each water.
 pub(crate) fn tables(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,
@@ -57,7 +56,7 @@ pub(crate) fn tables(
     tables_by(adjustment, |earth| state.model_at(&model, setting, earth))
 }
 
-/// The same by a model that may be another in each field.
+/// Predicts the deviations with a model that may depend on the field.
 pub(crate) fn tables_by(
     adjustment: &Adjustment<'_>,
     model_at: impl Fn(EarthField) -> Result<Model, DeviationError>,
@@ -113,12 +112,13 @@ fn table(water: &Water, rows: &[PredictedRow]) -> PredictedTable {
     }
 }
 
-/// The tables that limits hold for.
+/// Selects the tables to which limits apply.
 pub(crate) fn counted<'a>(
     after: &'a [PredictedTable],
     waters: &'a [Water],
 ) -> impl Iterator<Item = &'a PredictedTable> {
-    // The berth stands first, and always counts; a water without weight does not.
+    // The first table is for the berth, which always counts; a water without weight does
+    // not.
     let weights = waters.iter().map(|water| water.weight);
     let counts = std::iter::once(true).chain(weights.map(|weight| weight > 0.0));
     after

@@ -1,11 +1,11 @@
-//! Headings at sea after an adjustment, held against what was foretold.
+//! Verification of an adjustment by headings at sea.
 //!
-//! What always holds: an alarm is given where a heading is off by more than three
-//! standard errors, or by more than 2° as all headings together have it. The plan passes
-//! only by what the headings say: whatever a slip of the hand may have done to B, C, D
-//! and E is left open at first, and they must leave less than 2° of it with their band, on
-//! every heading, until there is no other heading to sail. Samples within 15° of each
-//! other share the errors of one reference and count as one heading.
+//! Invariants: a heading raises an alarm when it is off by more than three standard errors,
+//! or by more than 2° in the fit of all headings. The plan passes by the headings alone: at
+//! first, B, C, D and E are as uncertain as a slip of the hand would make them. Their
+//! residual with its band must fall below 2° on every heading, until no other heading is
+//! left to sail. Samples within 15° of each other share the errors of one reference and
+//! count as one heading.
 
 use binnacle_compass::angle::{CompassHeading, wrap_180};
 use binnacle_compass::deviation::{DeviationError, NORMAL_95, linearised_at_compass};
@@ -13,62 +13,62 @@ use binnacle_compass::model::{Covariance, Model};
 use binnacle_compass::ship::{EarthField, PARAMETERS};
 use serde::{Deserialize, Serialize};
 
-/// Off by more is an alarm, degrees; and with the band it is no pass.
+/// Residual that raises an alarm, and that no band of a passed plan may reach, degrees.
 const ALARM_DEG: f64 = 2.0;
-/// Off by more standard errors is an alarm too.
+/// Residual that raises an alarm, in standard errors.
 const ALARM_SD: f64 = 3.0;
-/// What a slip may have done, standard deviation, degrees: magnets to B and C, spheres to
-/// D and E.
+/// Standard deviation of a slip's effect, degrees: by magnets on B and C, by spheres on D
+/// and E.
 const SLIP_DEG: [f64; 2] = [3.0, 1.5];
-/// Sectors that the headings fall into.
+/// Number of sectors of headings.
 const SECTORS: usize = 24;
-/// A passed plan is known to this by the headings, 95 %, degrees.
+/// Greatest 95 % band of a passed plan by the headings, degrees.
 const PASSED_BAND_DEG: f64 = 1.25;
-/// In so many quadrants there must have been headings.
+/// Number of quadrants with at least one heading.
 const QUADRANTS: usize = 4;
-/// What a heading yet to come will be good for, degrees.
+/// Assumed standard deviation of a future heading, degrees.
 const USUAL_SD_DEG: f64 = 0.7;
 
 /// A settled heading at sea.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SettledHeading {
-    /// What the compass read.
+    /// Compass heading.
     pub compass: CompassHeading,
     /// Reference less variation less compass, degrees.
     pub deviation_deg: f64,
-    /// Standard deviation of that, degrees.
+    /// Standard deviation of the deviation, degrees.
     pub sd_deg: f64,
-    /// The earth's field there.
+    /// Earth's field at the place.
     pub earth: EarthField,
 }
 
-/// What the headings say of the plan.
+/// Verification of the plan by the headings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "verdict", rename_all = "snake_case")]
 pub enum Verification {
-    /// They agree, and are enough.
+    /// The headings agree and suffice.
     Passed {
-        /// Headings that counted.
+        /// Number of headings that counted.
         headings: usize,
-        /// The widest 95 % band that is left, degrees.
+        /// Widest remaining 95 % band, degrees.
         band95_deg: f64,
-        /// Root mean square of what they are off, degrees.
+        /// Root mean square of the residuals, degrees.
         rms_deg: f64,
     },
-    /// They agree so far.
+    /// The headings agree so far.
     MoreNeeded {
-        /// Headings that counted.
+        /// Number of headings that counted.
         headings: usize,
-        /// Which others are needed.
+        /// Headings that are still needed.
         needed: NeededHeadings,
     },
-    /// One is off by too much.
+    /// A heading is off by too much.
     Alarm {
-        /// Its compass heading, degrees.
+        /// Compass heading of it, degrees.
         compass_deg: f64,
-        /// By how much it is off, degrees.
+        /// Residual, degrees.
         off_deg: f64,
-        /// The standard error of that, degrees.
+        /// Standard error of the residual, degrees.
         standard_error_deg: f64,
     },
 }
@@ -76,17 +76,16 @@ pub enum Verification {
 /// Headings that are still needed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NeededHeadings {
-    /// How many.
+    /// Number of headings.
     pub count: usize,
-    /// Compass headings that would do, degrees, the best first.
+    /// Suitable compass headings, degrees, the best first.
     pub compass_deg: Vec<f64>,
 }
 
-/// Holds headings at sea against the model of a plan.
+/// Verifies the model of a plan by headings at sea.
 ///
 /// # Errors
-/// When the model's headings are ambiguous, it came without a covariance or there is no
-/// field to steer by.
+/// When the model's headings are ambiguous, it has no covariance, or the field is invalid.
 pub fn verify(
     model_after: &Model,
     settled: &[SettledHeading],
@@ -130,19 +129,19 @@ pub fn verify(
     })
 }
 
-/// A sector in which there were headings.
+/// Mean of the headings in a sector.
 struct SectorMean {
     sector: usize,
     compass_deg: f64,
     off_deg: f64,
-    /// Of the heading and of what was foretold for it.
+    /// Standard error of the mean and its prediction together.
     standard_error_deg: f64,
     slope: Slope,
 }
 
 type Slope = [f64; PARAMETERS + 1];
 
-/// The worst of what is off by too much.
+/// Finds the worst heading that raises an alarm.
 fn alarm(posterior: &Posterior, means: &[SectorMean]) -> Option<Verification> {
     let too_far = means.iter().filter_map(|mean| {
         let together_deg = posterior.off_deg(&mean.slope);
@@ -161,15 +160,15 @@ fn alarm(posterior: &Posterior, means: &[SectorMean]) -> Option<Verification> {
     })
 }
 
-/// What the headings say of the difference to what was foretold.
+/// Posterior of the correction to the prediction.
 struct Posterior {
-    /// Of the model's parameters and constant.
+    /// Correction of the model's parameters and constant.
     correction: Slope,
     covariance: Covariance,
 }
 
 impl Posterior {
-    /// Nothing yet: what was foretold, and what slips may have done.
+    /// Starts from the prediction and the possible slips.
     fn new(predicted: &Covariance, here: EarthField) -> Posterior {
         let [magnets, spheres] = SLIP_DEG.map(f64::to_radians);
         let mut covariance = *predicted;
@@ -187,7 +186,7 @@ impl Posterior {
         }
     }
 
-    /// By how much a heading is off, degrees, as all of them have it.
+    /// Returns the residual of a heading in the fit of all headings, degrees.
     fn off_deg(&self, slope: &Slope) -> f64 {
         dot(&self.correction, slope)
     }
@@ -196,7 +195,7 @@ impl Posterior {
         NORMAL_95 * quadratic(&self.covariance, slope).sqrt()
     }
 
-    /// Takes in that a heading was off by so much.
+    /// Updates the posterior by the residual of a heading.
     fn observe(&mut self, slope: &Slope, off_deg: f64, variance: f64) {
         let with = times(&self.covariance, slope);
         let whole = quadratic(&self.covariance, slope) + variance;
@@ -210,7 +209,7 @@ impl Posterior {
     }
 }
 
-/// The mean of what is off within a sector, and its last heading.
+/// Returns the last heading of a sector with the sector's mean residual.
 fn mean_of(
     model: &Model,
     settled: &[SettledHeading],
@@ -264,14 +263,14 @@ fn quadratic(covariance: &Covariance, slope: &Slope) -> f64 {
     dot(&times(covariance, slope), slope).max(0.0)
 }
 
-/// Slopes in the middle of every sector.
+/// Returns the slopes in the middle of every sector.
 fn sector_slopes(model: &Model, here: EarthField) -> Result<Vec<Slope>, DeviationError> {
     let middles = (0..SECTORS).filter_map(|sector| CompassHeading::new(compass_of(sector)));
     middles.map(|compass| slope(model, compass, here)).collect()
 }
 
-/// Goes on as if the heading that may be off most were sailed next and were off by as much
-/// as is thought, until all is well.
+/// Plans the further headings: always the one that may be off most, with its expected
+/// residual, until the plan would pass.
 fn needed(
     sector_slopes: &[Slope],
     mut posterior: Posterior,
@@ -279,7 +278,7 @@ fn needed(
 ) -> NeededHeadings {
     let quadrant = |sector: usize| sector * QUADRANTS / SECTORS;
     let mut compass_deg = Vec::new();
-    // No heading is worth sailing twice, as it errs by the same reference.
+    // No sector is worth sailing twice, as its error is that of the same reference.
     while counted.len() < SECTORS {
         let band = |sector: usize| posterior.band_deg(&sector_slopes[sector]);
         let reach = |sector: usize| posterior.off_deg(&sector_slopes[sector]).abs() + band(sector);

@@ -8,14 +8,14 @@ use crate::adjust::inputs::{AdjustError, Adjustment, Unit};
 use crate::berth::BerthError;
 
 impl Adjustment<'_> {
-    /// The vertical field held against the earth's.
+    /// Compares the vertical field with the earth's.
     pub(crate) fn vertical_check(&self) -> Option<VerticalCheck> {
         let judged = |read| VerticalCheck::new(read, self.earth, self.binnacle);
         self.vertical.map(judged)
     }
 
-    /// The compass held against the field, while the correctors stand as they did when
-    /// both were read.
+    /// Compares the compass with the measured field, while the correctors are in the
+    /// setting of both readings.
     pub(crate) fn card(&self) -> Option<CardCheck> {
         if *self.standing() != self.binnacle.setting {
             return None;
@@ -34,7 +34,7 @@ impl Adjustment<'_> {
     }
 }
 
-/// What is known to be wrong before anything is calculated.
+/// Collects the refusals that need no calculation.
 pub(crate) fn check_preconditions(adjustment: &Adjustment<'_>) -> Vec<Refusal> {
     let mut refusals = Vec::new();
     if adjustment.model.covariance.is_none() {
@@ -52,7 +52,7 @@ pub(crate) fn check_preconditions(adjustment: &Adjustment<'_>) -> Vec<Refusal> {
     refusals
 }
 
-/// A berth that fails its check is refused; one that cannot be is an error.
+/// Converts a failed check of the berth to a refusal; invalid input stays an error.
 pub(crate) fn refuse_berth(
     adjustment: &Adjustment<'_>,
     error: BerthError,

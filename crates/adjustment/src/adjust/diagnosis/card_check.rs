@@ -1,8 +1,8 @@
-//! The card held against the field that turns it.
+//! Comparison of the compass card with the measured field.
 //!
-//! With the bowl out the magnetometer reads what the card stood in, but for what the
-//! needles magnetise in the spheres. So the field alone says what the compass must have
-//! read, whatever the model and the heading given are.
+//! With the bowl out, the magnetometer measures the card's field except for the induction
+//! of the needles in the spheres. The field alone therefore determines the compass heading,
+//! independent of model and given heading.
 
 use super::card_precision::heading_sd_deg;
 use crate::berth::{Alignment, BerthReading};
@@ -14,26 +14,26 @@ use binnacle_compass::ship::{EarthField, compass_rad};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Up to here a card is never called wrong, degrees.
+/// Least difference that is refused, degrees.
 const LEAST_REFUSED_DEG: f64 = 4.0;
-/// Nor up to so many times what right readings differ by once in a hundred.
+/// Least difference that is refused, in tolerances.
 const REFUSED_TOLERANCES: f64 = 1.5;
 
-/// What the compass read, and what the field read says it must.
+/// Compass heading compared with the heading implied by the measured field.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CardCheck {
-    /// What it read, degrees.
+    /// Compass heading read, degrees.
     pub read_deg: f64,
-    /// What a card in the field read points to, degrees.
+    /// Compass heading implied by the measured field, degrees.
     pub implied_deg: f64,
-    /// Read less implied, degrees, less what the model's constant would explain.
+    /// Read less implied, degrees, without the part that the model's constant explains.
     pub off_deg: f64,
-    /// Right readings differ by more once in a hundred, degrees.
+    /// Tolerance, degrees: exceeded by one correct reading in a hundred.
     pub tolerance_deg: f64,
 }
 
 impl CardCheck {
-    /// A compass reading, its correctors as they stood for the magnetometer.
+    /// Compares a compass reading, with the correctors in the magnetometer's setting.
     pub(crate) fn new(
         read_deg: f64,
         reading: &BerthReading,
@@ -45,8 +45,8 @@ impl CardCheck {
         let [x, y] = with_needles(reading.field_nt(), magnetic, earth, binnacle);
         let implied_deg = wrap_360(compass_rad(x, y).to_degrees());
         let off_deg = wrap_180(read_deg - implied_deg);
-        // The magnetometer lies along the keel, the card is read at the lubber line: the
-        // constant may be between them, or be the reference's.
+        // The magnetometer is aligned with the keel, the card is read at the lubber line:
+        // the constant may be between them, or belong to the reference.
         let between_deg = match reading.alignment() {
             Alignment::Keel => -constant_deg,
             Alignment::AsFitted => 0.0,
@@ -66,18 +66,18 @@ impl CardCheck {
         }
     }
 
-    /// Whether errors explain it.
+    /// Returns true when the errors explain the difference.
     pub fn agrees(&self) -> bool {
         self.off_deg.abs() <= self.tolerance_deg
     }
 
-    /// Whether nothing can be built on both.
+    /// Returns true when the readings contradict each other.
     pub fn is_refused(&self) -> bool {
         let most_deg = LEAST_REFUSED_DEG.max(REFUSED_TOLERANCES * self.tolerance_deg);
         self.off_deg.abs() > most_deg
     }
 
-    /// What it is.
+    /// Summarises the difference.
     pub fn summary(&self) -> String {
         format!(
             "the compass read {:.1} degrees where the field read would turn it to {:.1} (to {:.1})",
@@ -85,7 +85,7 @@ impl CardCheck {
         )
     }
 
-    /// What could be wrong.
+    /// Lists the possible errors.
     pub fn suspects(&self) -> Vec<String> {
         let off_deg = self.off_deg.abs();
         let mut suspects = Vec::new();
@@ -120,7 +120,7 @@ impl fmt::Display for CardCheck {
     }
 }
 
-/// The field that the card was in: the magnetometer meets no needles.
+/// Returns the card's field: the magnetometer does not measure the needles' induction.
 fn with_needles(
     [x, y]: [f64; 2],
     magnetic: MagneticHeading,

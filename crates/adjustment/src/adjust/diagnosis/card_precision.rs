@@ -1,28 +1,28 @@
-//! How well a compass card is read, which friction limits where the field is weak.
+//! Reading precision of a compass card, limited by friction in a weak field.
 
-/// A class A compass's friction, degrees where the horizontal field is 1 µT (ISO 25862).
+/// Friction of a class A compass in a horizontal field of 1 µT, degrees (ISO 25862).
 const FRICTION_DEG_UT: f64 = 3.0;
-/// How well two readings of a card tell its turn where friction is little, degrees.
+/// Standard deviation of the turn between two readings with little friction, degrees.
 const TURN_SD_DEG: f64 = 0.3;
-/// Of a card's heading where friction is little, degrees.
+/// Standard deviation of a heading with little friction, degrees.
 const HEADING_SD_DEG: f64 = 0.5;
 
-/// How far off a card may hang by friction, degrees, in a horizontal field of so many nT.
+/// Returns the greatest offset by friction in a horizontal field, degrees.
 pub(crate) fn friction_deg(h_nt: f64) -> f64 {
     FRICTION_DEG_UT / (h_nt / 1e3)
 }
 
-/// How well two readings of the card tell its turn, one standard deviation, degrees.
+/// Returns the standard deviation of the turn between two readings, degrees.
 pub(crate) fn turn_sd_deg(h_nt: f64) -> f64 {
     TURN_SD_DEG.max(2.0_f64.sqrt() * friction_sd_deg(h_nt))
 }
 
-/// How well the card tells the heading, one standard deviation, degrees.
+/// Returns the standard deviation of a heading, degrees.
 pub(crate) fn heading_sd_deg(h_nt: f64) -> f64 {
     HEADING_SD_DEG.max(friction_sd_deg(h_nt))
 }
 
-/// A card that came to rest anywhere within its friction.
+/// Returns the standard deviation of a card at rest anywhere within its friction.
 fn friction_sd_deg(h_nt: f64) -> f64 {
     friction_deg(h_nt) / 3.0_f64.sqrt()
 }
@@ -31,7 +31,8 @@ fn friction_sd_deg(h_nt: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// 3° within which a card may hang in 1 µT: 1.7° of standard deviation, 2.4° for two.
+    /// With 3° of friction in 1 µT, the standard deviation is 1.7°, and 2.4° for two
+    /// readings.
     #[test]
     fn friction_counts_where_the_field_is_weak_and_only_there() {
         assert!((friction_deg(1_000.0) - 3.0).abs() < 1e-12);

@@ -3,39 +3,39 @@
 use super::refusal::{Coefficient, Refusal};
 use serde::{Deserialize, Serialize};
 
-/// A refusal with what would cure it.
+/// A refusal with its cures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Refused {
-    /// What is wrong.
+    /// Reason for the refusal.
     #[serde(flatten)]
     pub refusal: Refusal,
-    /// The same in words.
+    /// Description of the refusal.
     pub words: String,
-    /// What would cure it, the easiest first.
+    /// Cures, the easiest first.
     pub cures: Vec<Cure>,
 }
 
-/// What would cure a refusal.
+/// Cure of a refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cure {
-    /// Read again: heading, axes, unit, away from steel.
+    /// Another reading: check heading, axes and unit, away from steel.
     ReadAgain,
-    /// A few settled headings at sea, so that the model is of today.
+    /// A few settled headings at sea, for an up-to-date model.
     HeadingsAtSea,
     /// Headings in waters with another dip.
     OtherWaters,
-    /// Wait until the cargo is ashore.
+    /// Waiting until the cargo is discharged.
     AfterDischarge,
     /// A magnetometer with less error.
     BetterMagnetometer,
-    /// Another berth, or farther from steel.
+    /// Another berth, or a larger distance from steel.
     AnotherBerth,
     /// Magnets, spheres or pieces of bar that are not on board.
     OtherCorrectors,
-    /// Look after the lubber line and how the reference stands.
+    /// A check of the lubber line and of the reference's alignment.
     Alignment,
-    /// Swing the ship.
+    /// A swing of the vessel.
     Swing,
 }
 
@@ -78,7 +78,7 @@ impl Refusal {
                 dominant: Coefficient::A,
                 ..
             } => vec![Cure::Alignment, Cure::HeadingsAtSea, Cure::Swing],
-            // Known better it would be as large.
+            // A narrower band would not make the residual smaller.
             Refusal::ResidualTooLarge {
                 worst_deg,
                 limit_deg,
@@ -87,7 +87,7 @@ impl Refusal {
             Refusal::ResidualTooLarge { .. } => {
                 vec![Cure::OtherCorrectors, Cure::HeadingsAtSea, Cure::Swing]
             }
-            // A heeled ship's magnetometer is a poor one too.
+            // Heel also makes a magnetometer imprecise.
             Refusal::MagnetometerTooPoor { .. } => {
                 vec![Cure::BetterMagnetometer, Cure::ReadAgain, Cure::Swing]
             }

@@ -3,20 +3,20 @@
 use crate::adjust::inputs::EarlierLambda;
 use serde::{Deserialize, Serialize};
 
-/// λ beside an earlier one.
+/// λ compared with that of an earlier berth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LambdaComparison {
-    /// As it was told before.
+    /// Earlier λ.
     pub earlier: EarlierLambda,
-    /// How much more it is now.
+    /// Present less earlier λ.
     #[serde(rename = "off")]
     pub difference: f64,
-    /// Of that.
+    /// Standard error of the difference.
     pub standard_error: f64,
 }
 
 impl LambdaComparison {
-    /// How far they are apart, in words.
+    /// Summarises the difference.
     pub(crate) fn summary(&self, lambda: f64) -> String {
         format!(
             "lambda is {lambda:.3}, {:.3} {} than this compass's berth of {} told (standard error \

@@ -1,4 +1,4 @@
-//! Mistakes at the berth that would explain a reading that does not fit.
+//! Misreadings at the berth that explain an inconsistent reading.
 
 use crate::adjust::inputs::{Unit, VerticalReading};
 use crate::berth::{Alignment, BerthReading, ReadingErrors, lambda_at_berth};
@@ -8,40 +8,40 @@ use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// One thing that, done otherwise, makes a reading fit the model.
+/// A single misreading that makes a reading fit the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Misreading {
-    /// Figures in nT where another unit was named.
+    /// Figures in nT, entered with another unit.
     Nanotesla,
-    /// Figures in µT.
+    /// Figures in µT, entered with another unit.
     Microtesla,
-    /// Figures in gauss.
+    /// Figures in gauss, entered with another unit.
     Gauss,
-    /// Figures in milligauss.
+    /// Figures in milligauss, entered with another unit.
     Milligauss,
-    /// Forward and starboard have changed places.
+    /// Forward and starboard swapped.
     SwappedAxes,
-    /// Port was taken for positive.
+    /// Port counted as positive.
     StarboardReversed,
-    /// Aft was taken for positive.
+    /// Aft counted as positive.
     ForwardReversed,
-    /// The heading is that of the stern, or the magnetometer lies the wrong way round.
+    /// Heading of the stern, or reversed magnetometer.
     HeadingReversed,
-    /// Up was taken for positive.
+    /// Up counted as positive.
     DownReversed,
-    /// The vertical figure is in another unit than the other two.
+    /// Vertical part in another unit than the other two.
     DownInAnotherUnit,
-    /// Forward and down have changed places.
+    /// Forward and down swapped.
     ForwardDownSwapped,
-    /// Starboard and down have changed places.
+    /// Starboard and down swapped.
     StarboardDownSwapped,
 }
 
 impl Misreading {
-    /// Those that the horizontal field tells.
+    /// Misreadings of the horizontal field.
     pub(crate) const ALL: [Misreading; 8] = [
-        // The commonest first: so they are told.
+        // The commonest comes first and is reported first.
         Misreading::HeadingReversed,
         Misreading::Nanotesla,
         Misreading::Microtesla,
@@ -52,7 +52,7 @@ impl Misreading {
         Misreading::ForwardReversed,
     ];
 
-    /// The field of the form that it stands in.
+    /// Returns the affected field of the form.
     pub fn field(self) -> &'static str {
         match self {
             Misreading::Nanotesla
@@ -69,7 +69,7 @@ impl Misreading {
         }
     }
 
-    /// The unit that the figures are in, if that is the mistake.
+    /// Returns the actual unit of the figures, for a misread unit.
     fn unit(self) -> Option<Unit> {
         match self {
             Misreading::Nanotesla => Some(Unit::Nanotesla),
@@ -80,7 +80,7 @@ impl Misreading {
         }
     }
 
-    /// What was read if this was done wrong, `named` being the unit that was named.
+    /// Returns the corrected heading and field; `named` is the entered unit.
     fn undone(self, degrees: f64, [x, y]: [f64; 2], named: Unit) -> (f64, [f64; 2]) {
         match self {
             Misreading::SwappedAxes => (degrees, [y, x]),
@@ -94,12 +94,12 @@ impl Misreading {
         }
     }
 
-    /// How many times what was said in another unit is.
+    /// Returns the ratio of the actual to the entered unit.
     fn times(self, named: Unit) -> f64 {
         self.unit().map_or(1.0, |unit| unit.nt() / named.nt())
     }
 
-    /// A whole reading if this was done wrong; none when no ship has such a field.
+    /// Corrects a complete reading; `None` when no ship has such a field.
     pub(crate) fn undone_reading(
         self,
         reading: &BerthReading,
@@ -117,8 +117,8 @@ impl Misreading {
     }
 }
 
-/// The mistakes each of which alone explains this reading, whose figures were said to be
-/// in a unit; none where it fits as it is.
+/// Finds the misreadings that each explain this reading alone; none where it fits already.
+/// `named` is the entered unit.
 pub fn find_misreadings(
     model: &Model,
     earth: EarthField,
@@ -146,8 +146,8 @@ pub fn find_misreadings(
     Misreading::ALL.into_iter().filter(explains).collect()
 }
 
-/// Mistakes with the axes that this heading would not show: the reading fits the model
-/// with and without them.
+/// Finds misreadings of the axes that this heading cannot reveal: the reading fits the
+/// model with and without them.
 pub(crate) fn undetectable_misreadings(
     model: &Model,
     earth: EarthField,

@@ -13,11 +13,11 @@ use binnacle_compass::model::Model;
 use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
 
 impl ReadingForm {
-    /// λ and the berth's consistency, or why the reading is not taken; its correctors
-    /// stood as the binnacle says.
+    /// Checks the reading against the model and determines λ, with the correctors in the
+    /// binnacle's setting.
     ///
     /// # Errors
-    /// The refusal, with what alone would explain it.
+    /// The refusal, with single misreadings that explain it.
     pub fn check(
         &self,
         model: &Model,
@@ -75,7 +75,7 @@ impl ReadingForm {
 }
 
 impl BerthForm {
-    /// The mistakes each of which alone makes the reading fit the model, if there are any.
+    /// Finds the misreadings that each make the reading fit the model.
     pub fn explain_misreadings(&self, model: &Model, binnacle: &Binnacle) -> Option<FormError> {
         self.reading.check_ranges().ok()?;
         let (earth, variation) = self.field().ok()?;

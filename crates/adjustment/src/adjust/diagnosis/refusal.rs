@@ -1,4 +1,4 @@
-//! Why there is no plan, and what would cure it.
+//! Refusals of a plan or a reading.
 
 use super::card_check::CardCheck;
 use super::lambda_comparison::LambdaComparison;
@@ -7,110 +7,110 @@ use crate::berth::{BerthError, Consistency};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What keeps a plan from being given.
+/// Reason for the absence of a plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "refusal", rename_all = "snake_case")]
 pub enum Refusal {
-    /// The model has no covariance, so that no band can be given.
+    /// The model has no covariance, so there is no band.
     NoCovariance,
     /// The model's last sample is too old.
     ModelTooOld {
-        /// Its age.
+        /// Age of the last sample, days.
         days: f64,
-        /// The oldest that is taken.
+        /// Greatest accepted age, days.
         limit_days: f64,
     },
-    /// There is magnetic cargo on board that the model does not know.
+    /// Magnetic cargo is on board that the model does not include.
     CargoOnBoard,
-    /// The field at the berth is not where the model says.
+    /// The field's direction at the berth contradicts the model.
     InconsistentBerth {
-        /// By how much.
+        /// Size of the contradiction.
         consistency: Consistency,
-        /// Mistakes that alone would explain it.
+        /// Single misreadings that explain it.
         #[serde(rename = "mistakes")]
         misreadings: Vec<Misreading>,
     },
-    /// The field at the berth is not as strong as any ship's.
+    /// The field's strength at the berth is implausible.
     ImplausibleLambda {
-        /// What it would make λ.
+        /// Resulting λ.
         lambda: f64,
-        /// Mistakes that alone would explain it.
+        /// Single misreadings that explain it.
         #[serde(rename = "mistakes")]
         misreadings: Vec<Misreading>,
     },
-    /// What was read is no field that a ship lies in.
+    /// The reading is not a possible field.
     NoSuchField {
-        /// What it would be.
+        /// Description of the reading.
         what: String,
-        /// Mistakes that alone would explain it.
+        /// Single misreadings that explain it.
         #[serde(rename = "mistakes")]
         misreadings: Vec<Misreading>,
     },
-    /// The compass did not read what the field read would turn it to.
+    /// The compass heading contradicts the measured field.
     CardDisagrees(CardCheck),
-    /// The earth's field at the berth is too weak to steer by.
+    /// The earth's field at the berth is too weak for a compass.
     FieldTooWeak {
-        /// Its horizontal part, nT.
+        /// Horizontal field, nT.
         h_nt: f64,
     },
-    /// As she is, some compass headings stand for several magnetic ones.
+    /// Some compass headings stand for several magnetic ones with the present magnetism.
     AmbiguousHeadings {
-        /// What the model says.
+        /// Description from the model.
         what: String,
     },
-    /// λ is not what an earlier berth of the compass told.
+    /// λ contradicts that of an earlier berth.
     OtherLambda {
-        /// What it would be now.
+        /// Present λ.
         lambda: f64,
-        /// What changes of the ship along the needle would do that, nT.
+        /// Change of the ship along the needle that would explain it, nT.
         along_nt: f64,
-        /// Beside the earlier one.
+        /// Comparison with the earlier λ.
         #[serde(rename = "compared")]
         comparison: LambdaComparison,
     },
-    /// The berth has not shown whether the ship's magnetism is still the model's, and what that
-    /// leaves open is too much.
+    /// The berth could not verify that the ship's magnetism is still the model's, and the
+    /// resulting band is too wide.
     UncheckedBerth {
-        /// What it is, in words.
+        /// Description of the uncertainty.
         what: String,
     },
-    /// The residual is known too badly.
+    /// The band is too wide.
     BandTooWide {
-        /// Where.
+        /// Name of the place.
         place: String,
-        /// Half the widest 95 % band there.
+        /// Half the widest 95 % band there, degrees.
         band_deg: f64,
-        /// The widest that is taken.
+        /// Greatest accepted band, degrees.
         limit_deg: f64,
     },
-    /// The correctors there are do not bring the residual down far enough.
+    /// The correctors on board cannot reduce the residual enough.
     ResidualTooLarge {
-        /// Where.
+        /// Name of the place.
         place: String,
-        /// The greatest residual there, band included.
+        /// Greatest residual there with its band, degrees.
         reach_deg: f64,
-        /// The greatest residual alone.
+        /// Greatest residual alone, degrees.
         worst_deg: f64,
-        /// The greatest that is taken, band included.
+        /// Greatest accepted residual with its band, degrees.
         limit_deg: f64,
-        /// The coefficient that most of it is.
+        /// Largest coefficient of the residual.
         #[serde(rename = "mostly")]
         dominant: Coefficient,
     },
-    /// Spheres would have to be moved, and λ is too unsure to tell how far.
+    /// Spheres would have to move, but λ is too uncertain.
     MagnetometerTooPoor {
-        /// Standard error of λ as a share of it.
+        /// Relative standard error of λ.
         lambda_sd: f64,
-        /// The greatest with which soft iron is moved.
+        /// Greatest relative standard error for moving soft iron.
         limit: f64,
     },
 }
 
-/// A coefficient of the deviation, and so what would correct it.
+/// Coefficient of the deviation, and its corrector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Coefficient {
-    /// The same on all headings: lubber line and reference, which no corrector cures.
+    /// Constant part: lubber line and reference, without a corrector.
     A,
     /// Fore-and-aft magnets and Flinders bar.
     B,
@@ -123,7 +123,7 @@ pub enum Coefficient {
 }
 
 impl Refusal {
-    /// Why a reading is not taken, and what alone would explain it.
+    /// Converts a refused reading, with single misreadings that explain it.
     pub(crate) fn from_berth_error(error: &BerthError, misreadings: Vec<Misreading>) -> Refusal {
         let what = error.to_string();
         match error {
@@ -151,7 +151,7 @@ impl Refusal {
         }
     }
 
-    /// The mistakes each of which alone would explain it.
+    /// Returns the single misreadings that explain the refusal.
     pub fn misreadings(&self) -> &[Misreading] {
         match self {
             Refusal::InconsistentBerth { misreadings, .. }
@@ -162,7 +162,7 @@ impl Refusal {
     }
 }
 
-/// A part of the field that cannot be, as a person calls it.
+/// Describes an impossible part of the field.
 fn too_strong(name: &str, value_nt: f64, greatest_nt: f64) -> Option<String> {
     let part = match name {
         "forward_nt" => "forward",

@@ -5,11 +5,11 @@ use super::refusal::Refusal;
 use std::fmt;
 
 impl Refusal {
-    /// What alone would explain it, in words, mistakes first.
+    /// Describes the single explanations, misreadings first.
     pub fn explanations(&self) -> Vec<String> {
         let misreadings = self.misreadings().iter().map(ToString::to_string);
         let suspects = match self {
-            // A mistake that explains all of it leaves nothing to suspect the steel of.
+            // A misreading that explains everything leaves no reason to suspect steel.
             Refusal::InconsistentBerth {
                 consistency,
                 misreadings,
@@ -24,7 +24,7 @@ impl Refusal {
         misreadings.chain(suspects).collect()
     }
 
-    /// What is wrong, without what could explain it.
+    /// Summarises the refusal without its explanations.
     pub fn summary(&self) -> String {
         match self {
             Refusal::InconsistentBerth { consistency, .. } => {
@@ -40,7 +40,7 @@ impl Refusal {
     }
 }
 
-/// A place in a sentence: the berth has no name of its own.
+/// Returns the text for a place: the berth has no name of its own.
 pub(crate) fn place_text(place: &str) -> &str {
     match place {
         "berth" => "the berth",

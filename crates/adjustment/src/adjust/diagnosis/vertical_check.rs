@@ -1,9 +1,9 @@
-//! The vertical field read, held against the earth's with the correctors as they stood.
+//! Comparison of the measured vertical field with the earth's and the correctors'.
 //!
-//! Nothing else at the berth tells its sign or its unit: the compass on an even keel does
-//! not show it, and heeling magnets set by it the wrong way are found in the first swell.
-//! What always holds: a reading that no ship makes is refused; one that few ships make, and
-//! a mistake would make usual, sets no magnets.
+//! Nothing else at the berth verifies its sign or its unit: a compass on an even keel does
+//! not show it, and heeling magnets set in the wrong direction are noticed only in a swell.
+//! Invariants: a reading that no ship produces is refused. A reading that few ships produce
+//! and a misreading would explain sets no magnets.
 
 use super::misreadings::Misreading;
 use super::refusal::Refusal;
@@ -14,18 +14,18 @@ use crate::corrector::effect;
 use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
 
-/// What most ships add to the vertical field for good, nT: half a degree for each degree
+/// Usual permanent vertical field of a ship, nT: half a degree of heeling error per degree
 /// of heel, and more.
 const USUAL_NT: f64 = 12_000.0;
-/// What hardly any ship adds for good, nT.
+/// Greatest permanent vertical field of a ship, nT.
 const GREATEST_NT: f64 = 25_000.0;
-/// What a ship adds by induction, as a share of the earth's.
+/// Induced vertical field of a ship, as a share of the earth's.
 const INDUCED_SHARE: f64 = 0.15;
 
-/// What a vertical reading makes of the ship.
+/// Vertical reading compared with earth and correctors.
 pub(crate) struct VerticalCheck {
     read_nt: f64,
-    /// The earth's and the correctors' alone, nT.
+    /// Field of earth and correctors alone, nT.
     without_ship_nt: f64,
     induced_nt: f64,
     misreadings: Vec<Misreading>,
@@ -46,12 +46,12 @@ impl VerticalCheck {
         vertical
     }
 
-    /// Whether most ships make it so.
+    /// Returns true when most ships produce such a field.
     fn is_usual(&self, down_nt: f64) -> bool {
         self.added_nt(down_nt).abs() <= USUAL_NT + self.induced_nt
     }
 
-    /// What the ship adds, nT.
+    /// Returns the ship's part of the field, nT.
     fn added_nt(&self, down_nt: f64) -> f64 {
         down_nt - self.without_ship_nt
     }
@@ -70,12 +70,12 @@ impl VerticalCheck {
         misreadings
     }
 
-    /// Whether heeling magnets may be set by it.
+    /// Returns true when heeling magnets may be set by the reading.
     pub(crate) fn is_credible(&self) -> bool {
         self.refusal().is_none() && self.misreadings.is_empty()
     }
 
-    /// Why no plan rests on it.
+    /// Returns the refusal of an impossible reading.
     pub(crate) fn refusal(&self) -> Option<Refusal> {
         let added_nt = self.added_nt(self.read_nt);
         if added_nt.abs() <= GREATEST_NT + self.induced_nt {
@@ -98,7 +98,7 @@ impl VerticalCheck {
         )
     }
 
-    /// Why heeling magnets are not set by it, though the rest is planned.
+    /// Explains heeling magnets that are left, though the rest is planned.
     pub(crate) fn note(&self) -> Option<String> {
         if self.misreadings.is_empty() {
             return None;
@@ -113,7 +113,7 @@ impl VerticalCheck {
     }
 }
 
-/// Which of forward and starboard, with down in its place, makes a reading that fits.
+/// Finds swaps of forward or starboard with down that make the reading fit.
 pub(crate) fn find_swapped_axes(
     model: &Model,
     earth: EarthField,

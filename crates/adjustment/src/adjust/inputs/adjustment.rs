@@ -9,80 +9,81 @@ use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// Everything that a plan rests on.
+/// Complete input of a plan.
 #[derive(Clone, Debug)]
 pub struct Adjustment<'a> {
-    /// The ship's model, fitted while the correctors stood as `binnacle` says.
+    /// Model of the ship, fitted with the correctors in the setting of `binnacle`.
     pub model: &'a Model,
-    /// The earth's field at the berth.
+    /// Earth's field at the berth.
     pub earth: EarthField,
-    /// What the magnetometer read in the bowl's place, correctors as they were.
+    /// Magnetometer reading in the bowl's place, with the correctors in that setting.
     pub reading: &'a BerthReading,
     /// Relative standard deviation of the magnetometer's scale.
     pub scale_sd: f64,
-    /// What the compass reads at the berth with the correctors as they stand now, degrees.
+    /// Compass heading at the berth with the present setting of the correctors, degrees.
     pub compass_deg: Option<f64>,
-    /// Vertical field there, if it was read.
+    /// Vertical field at the berth, if measured.
     pub vertical: Option<VerticalReading>,
-    /// The binnacle with its correctors as they stood for model and reading.
+    /// Binnacle with its setting at the time of model and reading.
     pub binnacle: &'a Binnacle,
-    /// How they stand now, where they were moved since.
+    /// Present setting, where correctors were moved since.
     pub now: Option<&'a Setting>,
-    /// Where the vessel trades: what the search makes small. Limits hold at the berth as well.
+    /// Trading waters, over which the search minimises; limits also hold at the berth.
     pub waters: &'a [Water],
-    /// What the model and the ship are like.
+    /// Circumstances of model and vessel.
     pub circumstances: Circumstances,
-    /// What a plan must keep to.
+    /// Limits of a plan.
     pub limits: Limits,
 }
 
-/// A place where the vessel trades.
+/// A water where the vessel trades.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Water {
-    /// What it is called.
+    /// Name of the water.
     pub name: String,
     /// Horizontal field, nT.
     pub h_nt: f64,
     /// Vertical field, nT, down positive.
     pub z_nt: f64,
-    /// How much of her time she is there; only ratios count.
+    /// Relative time spent there; only ratios count.
     pub weight: f64,
 }
 
-/// What the model and the ship are like at the berth.
+/// Circumstances of model and vessel at the berth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Circumstances {
     /// Days since the model's last sample.
     pub model_age_days: Option<f64>,
-    /// Whether magnetic cargo is on board that the model does not know.
+    /// Magnetic cargo on board that the model does not include.
     pub cargo_on_board: bool,
-    /// λ as an earlier berth of the same compass told it.
+    /// λ of an earlier berth of the same compass.
     pub earlier_lambda: Option<EarlierLambda>,
-    /// Whether the model has learnt from a reading at this berth: then its covariance has what
-    /// may have become of the ship before it.
+    /// Model updated by a reading at this berth: its covariance then includes possible
+    /// changes of the ship before the berth.
     pub is_updated_here: bool,
 }
 
-/// λ as an earlier berth of the same compass told it.
+/// λ of an earlier berth of the same compass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EarlierLambda {
-    /// When that berth was read.
+    /// Time of the reading at that berth.
     pub at: Timestamp,
-    /// λ with the correctors set in one way: as they were, or as they are now.
+    /// λ for one setting of the correctors: the earlier or the present one.
     pub lambda: f64,
-    /// Its standard error, the magnetometer's scale and the ship's drift until then in it.
+    /// Standard error of λ, including the magnetometer's scale and the ship's drift until
+    /// then.
     pub standard_error: f64,
 }
 
 impl Adjustment<'_> {
-    /// How the correctors stand now.
+    /// Returns the present setting of the correctors.
     pub fn standing(&self) -> &Setting {
         self.now.unwrap_or(&self.binnacle.setting)
     }
 }
 
 impl Water {
-    /// Its field.
+    /// Returns the earth's field in this water.
     pub fn earth(&self) -> EarthField {
         EarthField {
             h_nt: self.h_nt,

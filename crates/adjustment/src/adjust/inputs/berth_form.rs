@@ -1,8 +1,8 @@
-//! The written form of a berth, for the command line (docs/plan.md): the reading, as the
-//! API takes it too, and what a server would know by itself.
+//! Written form of a berth for the command line (docs/plan.md): the reading, in the same
+//! form as in the API, and the data that a server has by itself.
 //!
-//! What always holds: a form that was read gives a field at the berth, a reading with
-//! all its errors, and waters; else the complaint names the field.
+//! Invariants: a valid form gives a field at the berth, a reading with all its errors, and
+//! waters. Otherwise the error names the field of the form.
 
 use super::adjustment::{Adjustment, Circumstances, Water};
 use super::limits::Limits;
@@ -19,27 +19,27 @@ use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// What is found at the berth, as it is written.
+/// Written form of a berth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BerthForm {
-    /// What was read.
+    /// Magnetometer reading.
     pub reading: ReadingForm,
-    /// The earth's field there, where it is known better than by the IGRF.
+    /// Earth's field at the berth, where known better than from the IGRF.
     #[serde(default)]
     pub field: Option<FieldForm>,
-    /// When the model's last sample was taken.
+    /// Time of the model's last sample.
     #[serde(default)]
     pub model_until: Option<Timestamp>,
-    /// Where the vessel trades; the berth alone where it is not said.
+    /// Trading waters; the berth alone by default.
     #[serde(default)]
     pub waters: Vec<WaterForm>,
-    /// What a plan must keep to.
+    /// Limits of a plan.
     #[serde(default)]
     pub limits: Limits,
 }
 
-/// The earth's field at a berth.
+/// Earth's field at a berth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FieldForm {
@@ -51,11 +51,11 @@ pub struct FieldForm {
     pub variation_deg: f64,
 }
 
-/// A place where the vessel trades, by its field or by its position.
+/// A trading water, by field or by position.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WaterForm {
-    /// What it is called.
+    /// Name of the water.
     pub name: String,
     /// Horizontal field, nT.
     #[serde(default)]
@@ -69,22 +69,22 @@ pub struct WaterForm {
     /// Longitude, degrees east.
     #[serde(default)]
     pub lon: Option<f64>,
-    /// How much of her time she is there.
+    /// Relative time spent there.
     pub weight: f64,
 }
 
-/// What was done at the berth after a plan, and what the magnetometer read then.
+/// Completed steps of a plan, with the magnetometer reading afterwards.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PostCheckForm {
-    /// Which of the plans was followed, from 1.
+    /// Number of the plan that was followed, from 1.
     #[serde(default = "recommended")]
     pub plan: usize,
-    /// By how much the compass turned at each of its steps, degrees; none where it was not
-    /// read, or was too little to be told.
+    /// Turn of the compass at each step, degrees; none where it was not read or too small
+    /// to read.
     #[serde(default)]
     pub turned_deg: Vec<Option<f64>>,
-    /// What was read.
+    /// Magnetometer reading after the steps.
     pub reading: SecondReadingForm,
 }
 
@@ -92,13 +92,13 @@ fn recommended() -> usize {
     1
 }
 
-/// Names the field of the form, and what is wrong with it.
+/// Error of an invalid form, with the field.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{field}: {what}")]
 pub struct FormError {
-    /// The field, as in JSON.
+    /// Path of the field, as in JSON.
     pub field: String,
-    /// What is wrong.
+    /// Description of the error.
     pub what: String,
 }
 
@@ -111,29 +111,29 @@ impl FormError {
     }
 }
 
-/// What is found at the berth, checked.
+/// Valid data of a berth.
 #[derive(Clone, Debug)]
 pub struct Berth {
-    /// The earth's field.
+    /// Earth's field.
     pub earth: EarthField,
-    /// What the magnetometer read.
+    /// Magnetometer reading.
     pub reading: BerthReading,
-    /// Of its scale.
+    /// Relative standard deviation of the magnetometer's scale.
     pub scale_sd: f64,
-    /// What the compass read before.
+    /// Compass heading before the steps, degrees.
     pub compass_deg: Option<f64>,
-    /// The vertical part, if it was read.
+    /// Vertical field, if measured.
     pub vertical: Option<VerticalReading>,
-    /// Where the vessel trades.
+    /// Trading waters.
     pub waters: Vec<Water>,
-    /// What the model and the ship are like.
+    /// Circumstances of model and vessel.
     pub circumstances: Circumstances,
-    /// What a plan must keep to.
+    /// Limits of a plan.
     pub limits: Limits,
 }
 
 impl Berth {
-    /// All that a plan rests on.
+    /// Makes the complete input of a plan.
     pub fn adjustment<'a>(&'a self, model: &'a Model, binnacle: &'a Binnacle) -> Adjustment<'a> {
         Adjustment {
             model,
@@ -152,10 +152,10 @@ impl Berth {
 }
 
 impl BerthForm {
-    /// The berth that is meant.
+    /// Validates the form.
     ///
     /// # Errors
-    /// Names the field that cannot be, or is missing.
+    /// Names the invalid or missing field.
     pub fn parse(&self) -> Result<Berth, FormError> {
         let given = &self.reading;
         given
@@ -202,10 +202,10 @@ impl BerthForm {
         })
     }
 
-    /// The second reading that is meant, all else as at this berth.
+    /// Validates the second reading, with everything else as at this berth.
     ///
     /// # Errors
-    /// Names the field of it that cannot be.
+    /// Names the invalid field.
     pub fn parse_after(&self, after: &PostCheckForm) -> Result<Berth, FormError> {
         let reading = after.reading.as_reading(&self.reading);
         let reading = reading
@@ -272,7 +272,7 @@ impl WaterForm {
     }
 }
 
-/// A figure as it was given, unless that would fill the page.
+/// Formats a figure as given, or with an exponent where it would be long.
 fn figure(value: f64) -> String {
     if value.abs() < 1e12 {
         value.to_string()

@@ -4,45 +4,45 @@ use crate::berth::BerthError;
 use crate::binnacle::BinnacleError;
 use binnacle_compass::deviation::DeviationError;
 
-/// Why there is nothing to plan with.
+/// Error of invalid input.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AdjustError {
-    /// Of the reading, the model or the field at the berth.
+    /// Invalid reading, model or field at the berth.
     #[error(transparent)]
     Berth(#[from] BerthError),
-    /// Of a place where the vessel trades.
+    /// Invalid number of a water.
     #[error("waters[{index}].{field} is {value}, not a number between {least} and {greatest}")]
     Water {
-        /// Which.
+        /// Index of the water.
         index: usize,
-        /// Its field.
+        /// Name of the field.
         field: &'static str,
-        /// What it was.
+        /// Given value.
         value: f64,
-        /// The least accepted.
+        /// Least accepted value.
         least: f64,
-        /// The greatest accepted.
+        /// Greatest accepted value.
         greatest: f64,
     },
-    /// There are none, or none with a weight.
+    /// No water, or none with a weight.
     #[error("waters: there are none with a weight")]
     NoWaters,
-    /// A limit, or another number, that cannot be.
+    /// Invalid limit or other number.
     #[error("{field} is {value}, not a number between {least} and {greatest}")]
     Value {
-        /// Which.
+        /// Name of the field.
         field: &'static str,
-        /// What it was.
+        /// Given value.
         value: f64,
-        /// The least accepted.
+        /// Least accepted value.
         least: f64,
-        /// The greatest accepted.
+        /// Greatest accepted value.
         greatest: f64,
     },
-    /// The correctors cannot stand as they are said to.
+    /// Impossible setting of the correctors.
     #[error(transparent)]
     Binnacle(#[from] BinnacleError),
-    /// The ship cannot be foretold.
+    /// Failed prediction of the ship's deviation.
     #[error(transparent)]
     Deviation(#[from] DeviationError),
 }

@@ -1,22 +1,22 @@
-//! What a plan must keep to, and which of it may be asked for.
+//! Limits of a plan, and their accepted ranges.
 
 use super::number_error::NumberError;
 use serde::{Deserialize, Serialize};
 
-/// What a plan must keep to.
+/// Limits of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Limits {
-    /// The greatest residual that may be foretold, band included, degrees.
+    /// Greatest predicted residual, including its band, degrees.
     pub residual_deg: f64,
-    /// The widest 95 % band, degrees.
+    /// Greatest 95 % band, degrees.
     pub band_deg: f64,
-    /// Settings within this are as good as each other, and the one with the fewest
-    /// moves is taken, degrees.
+    /// Difference below which settings count as equal, degrees; the one with the fewest
+    /// moves is chosen.
     pub near_equal_deg: f64,
-    /// The oldest model, days.
+    /// Greatest age of the model, days.
     pub model_age_days: f64,
-    /// With a λ less sure than this share the soft iron is left as it is.
+    /// Greatest relative standard error of λ for moving soft iron.
     pub lambda_sd: f64,
 }
 
@@ -33,11 +33,11 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Whether somebody who answers for a compass may ask for this: no residual that flags
-    /// want adjusted again (5°), no band that tells nothing, no model of last season.
+    /// Checks that the limits are reasonable: no residual that calls for another adjustment
+    /// (5°), no meaningless band, no model of last season.
     ///
     /// # Errors
-    /// Names the limit.
+    /// Names the limit outside its range.
     pub fn check_ranges(&self) -> Result<(), NumberError> {
         for (field, value, least, greatest) in [
             ("residual_deg", self.residual_deg, 0.5, 5.0),

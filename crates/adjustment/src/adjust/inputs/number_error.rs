@@ -1,11 +1,11 @@
 //! Error of a number outside its range.
 
-/// A field of the form, and what is wrong with it.
+/// Error of a number outside its range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{field}: {what}")]
 pub struct NumberError {
-    /// The field, as in JSON.
+    /// Name of the field, as in JSON.
     pub field: &'static str,
-    /// What is wrong.
+    /// Description of the error.
     pub what: String,
 }

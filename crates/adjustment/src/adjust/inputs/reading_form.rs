@@ -1,9 +1,8 @@
-//! What a magnetometer read at the berth, as it is written: in a file for `plan` and in
-//! the API alike (docs/plan.md).
+//! Written form of a magnetometer reading at the berth, in a file for `plan` and in the API
+//! alike (docs/plan.md).
 //!
-//! What always holds: the unit is named, never guessed; a form is taken with all its
-//! errors, or the complaint names the field, or the mistakes each of which alone would
-//! explain what was read.
+//! Invariants: the unit is always named, never guessed. A form is accepted with all its
+//! errors, or the error names the field or the single misreadings that explain the reading.
 
 use super::number_error::NumberError;
 use super::unit::Unit;
@@ -13,93 +12,94 @@ use binnacle_compass::angle::{MagneticHeading, TrueHeading, Variation};
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// What was read at the berth.
+/// Magnetometer reading at the berth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReadingForm {
-    /// When it was read.
+    /// Time of the reading.
     pub at: Timestamp,
-    /// The berth, degrees north.
+    /// Latitude of the berth, degrees north.
     pub lat: f64,
-    /// The berth, degrees east.
+    /// Longitude of the berth, degrees east.
     pub lon: f64,
-    /// The true heading of the bow.
+    /// True heading of the vessel, degrees.
     pub heading_true_deg: f64,
-    /// What that heading is from.
+    /// Source of that heading.
     pub heading_from: HeadingFrom,
-    /// Its standard deviation, variation included, degrees.
+    /// Standard deviation of the heading, including variation, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub heading_sd_deg: Option<f64>,
     /// Horizontal field at the card's centre, bowl out, forward positive.
     pub forward: f64,
-    /// The same, starboard positive.
+    /// Horizontal field there, starboard positive.
     pub starboard: f64,
-    /// Vertical field there, down positive, if it was read.
+    /// Vertical field there, down positive, if measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub down: Option<f64>,
-    /// What all three are in.
+    /// Unit of all three parts.
     pub unit: Unit,
-    /// What they were read with.
+    /// Kind of magnetometer.
     pub magnetometer: Magnetometer,
-    /// Its maker, type and number.
+    /// Maker, type and serial number of the magnetometer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub magnetometer_serial: Option<String>,
-    /// Standard deviation of each part, nT; its kind's where it is not said, and so on.
+    /// Standard deviation of each part, nT; by default that of the kind, as for the other
+    /// errors.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field_sd_nt: Option<f64>,
-    /// Relative standard deviation of its scale.
+    /// Relative standard deviation of the magnetometer's scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale_sd: Option<f64>,
-    /// Standard deviation of how it lies to its line, degrees.
+    /// Standard deviation of the magnetometer's alignment, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alignment_sd_deg: Option<f64>,
-    /// Standard deviation of its tilt in roll and in pitch, degrees.
+    /// Standard deviation of the magnetometer's tilt in roll and in pitch, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tilt_sd_deg: Option<f64>,
-    /// Standard deviation of what steel may add to each part, nT.
+    /// Standard deviation of the field of nearby steel in each part, nT.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steel_sd_nt: Option<f64>,
-    /// What the compass read before the bowl was taken out, degrees.
+    /// Compass heading before the bowl was taken out, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compass_deg: Option<f64>,
-    /// The ship's heel, degrees to starboard.
+    /// Heel of the vessel, degrees to starboard.
     #[serde(default)]
     pub heel_deg: f64,
-    /// Whether there is steel near: a crane, a ship alongside, a quay of steel piles.
+    /// Steel nearby: a crane, a ship alongside, a quay of steel piles.
     #[serde(default)]
     pub steel_nearby: bool,
-    /// Whether magnetic cargo is on board that the model does not know.
+    /// Magnetic cargo on board that the model does not include.
     #[serde(default)]
     pub cargo_on_board: bool,
 }
 
-/// Where a heading at the berth comes from.
+/// Source of a heading at the berth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HeadingFrom {
-    /// From the very reference that the model was fitted with; and the magnetometer lies
-    /// along the compass's lubber line.
+    /// The reference of the model's fit, with the magnetometer along the compass's lubber
+    /// line.
     ModelReference,
-    /// From outside the ship: a surveyed quay, leading marks, the sun; and the
-    /// magnetometer lies along the keel.
+    /// A source outside the vessel (a surveyed quay, leading marks, the sun), with the
+    /// magnetometer along the keel.
     Ashore,
 }
 
-/// Kinds of magnetometer, by how well they read.
+/// Kind of magnetometer, by precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Magnetometer {
-    /// A fluxgate or a proton magnetometer made for it.
+    /// A purpose-made fluxgate or proton magnetometer.
     Fluxgate,
     /// An instrument with a magnetoresistive sensor.
     Magnetoresistive,
-    /// A telephone: enough for magnets, too poor for spheres.
+    /// A telephone: precise enough for magnets, too poor for spheres.
     Phone,
-    /// Another.
+    /// Another instrument.
     Other,
 }
 
-/// What is usual for a kind: standard deviations.
+/// Usual standard deviations of a kind.
 struct Usual {
     field_sd_nt: f64,
     scale_sd: f64,
@@ -107,13 +107,13 @@ struct Usual {
     tilt_sd_deg: f64,
 }
 
-/// No telephone reads so many times better than is usual.
+/// Greatest credible improvement of a telephone over the usual errors.
 const PHONE_TIMES: f64 = 3.0;
 /// Steel of an ordinary quay, nT.
 const USUAL_STEEL_NT: f64 = 100.0;
-/// Where there is steel near, nT.
+/// Steel nearby, nT.
 const NEARBY_STEEL_NT: f64 = 500.0;
-/// A heading from ashore or from the ship's own reference, degrees.
+/// Heading from ashore or from the vessel's own reference, degrees.
 const USUAL_HEADING_SD_DEG: f64 = 0.5;
 
 impl Magnetometer {
@@ -134,15 +134,14 @@ impl Magnetometer {
 }
 
 impl ReadingForm {
-    /// Refuses what cannot be a number of its kind; what only cannot be true is
-    /// [`ReadingForm::check`]'s.
+    /// Checks the ranges of all numbers; plausibility is checked by [`ReadingForm::check`].
     ///
     /// # Errors
-    /// Names the field.
+    /// Names the field outside its range.
     pub fn check_ranges(&self) -> Result<(), NumberError> {
         let or_nil = |value: Option<f64>| value.unwrap_or(0.0);
         let usual = self.magnetometer.usual();
-        // Whatever is claimed for it.
+        // The limit holds for any claimed error.
         let best = |usual: f64| match self.magnetometer {
             Magnetometer::Phone => usual / PHONE_TIMES,
             _ => 0.0,
@@ -175,18 +174,18 @@ impl ReadingForm {
         Ok(())
     }
 
-    /// Relative standard deviation of the magnetometer's scale.
+    /// Returns the relative standard deviation of the magnetometer's scale.
     pub fn scale_sd(&self) -> f64 {
         self.scale_sd.unwrap_or(self.magnetometer.usual().scale_sd)
     }
 
-    /// The vertical field, if it was read.
+    /// Returns the vertical field, if measured.
     pub fn vertical(&self) -> Option<VerticalReading> {
         let down_nt = self.down? * self.unit.nt();
         Some(VerticalReading { down_nt })
     }
 
-    /// The reading as the science takes it.
+    /// Converts the form to a berth reading.
     ///
     /// # Errors
     /// When no ship has such a field.
@@ -230,7 +229,7 @@ impl ReadingForm {
             field_sd_nt: noise_nt.hypot(self.steel_sd_nt.unwrap_or(usual_steel_nt)),
             heading_sd_deg: self.heading_sd_deg.unwrap_or(USUAL_HEADING_SD_DEG),
             alignment_sd_deg: self.alignment_sd_deg.unwrap_or(usual.alignment_sd_deg),
-            // A heeled ship's magnetometer is levelled by no better than its heel.
+            // Levelling is limited by the vessel's heel.
             tilt_sd_deg: tilt_sd_deg.hypot(self.heel_deg / 2.0),
         }
     }

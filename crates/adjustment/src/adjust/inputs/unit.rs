@@ -6,18 +6,18 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Unit {
-    /// nT.
+    /// Nanotesla, nT.
     Nanotesla,
-    /// µT.
+    /// Microtesla, µT.
     Microtesla,
-    /// G.
+    /// Gauss, G.
     Gauss,
-    /// mG.
+    /// Milligauss, mG.
     Milligauss,
 }
 
 impl Unit {
-    /// All of them.
+    /// All units.
     pub const ALL: [Unit; 4] = [
         Unit::Nanotesla,
         Unit::Microtesla,
@@ -25,7 +25,7 @@ impl Unit {
         Unit::Milligauss,
     ];
 
-    /// One of it, nT.
+    /// Returns the size of the unit, nT.
     pub fn nt(self) -> f64 {
         match self {
             Unit::Nanotesla => 1.0,

@@ -1,16 +1,15 @@
-//! What is given for a plan, before anything is calculated from it.
+//! Validation of a plan's input before any calculation.
 
 use super::adjustment::{Adjustment, Water};
 use super::error::AdjustError;
 
-/// More places do not say more of where a vessel trades.
+/// Greatest number of waters.
 const MOST_WATERS: usize = 24;
 
-/// Whether everything given can be: numbers within what they may be, waters that tell
-/// where she trades, correctors that can stand as they are said to.
+/// Validates numbers, waters and the present setting.
 ///
 /// # Errors
-/// Names the first that cannot.
+/// Names the first invalid value.
 pub(crate) fn validate(adjustment: &Adjustment<'_>) -> Result<(), AdjustError> {
     numbers(adjustment)?;
     if let Some(vertical) = &adjustment.vertical {

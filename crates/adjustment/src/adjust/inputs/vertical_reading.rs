@@ -3,10 +3,10 @@
 use crate::berth::BerthError;
 use serde::{Deserialize, Serialize};
 
-/// The vertical field at the card's place, correctors as they stood.
+/// Vertical field at the card's place, with the correctors in their setting.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VerticalReading {
-    /// nT, down positive.
+    /// Field, nT, down positive.
     pub down_nt: f64,
 }
 

@@ -9,10 +9,10 @@ use crate::corrector::{Effect, effect};
 use binnacle_compass::angle::{wrap_180, wrap_360};
 use binnacle_compass::deviation::NORMAL_99;
 
-/// No step is held to less, degrees.
+/// Least tolerance of a step, degrees.
 const LEAST_TOLERANCE_DEG: f64 = 0.5;
 
-/// What the compass reads at the berth with correctors of this effect, degrees.
+/// Predicts the compass heading at the berth with correctors of this effect, degrees.
 pub(crate) fn compass_at_berth(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,
@@ -61,8 +61,7 @@ pub(crate) fn compass_turn(
     }
 }
 
-/// How far off a turn may be that is known to so much, degrees, in a horizontal field
-/// of so many nT.
+/// Returns the tolerance of a turn with this standard error in a horizontal field, degrees.
 pub(crate) fn tolerance_deg(sd_deg: f64, h_nt: f64) -> f64 {
     let tolerance_deg = NORMAL_99 * sd_deg.hypot(turn_sd_deg(h_nt));
     tolerance_deg.max(LEAST_TOLERANCE_DEG)

@@ -1,10 +1,9 @@
-//! A plan as steps at the binnacle, each with what the compass will then show.
+//! Steps of a plan, each with the predicted compass heading.
 //!
 //! The order is an adjuster's: Flinders bar, spheres, heeling magnets, fore-and-aft
-//! magnets, athwartship magnets. What always holds: after every step the correctors
-//! stand in a way that the binnacle and what is on board allow, and after the last as
-//! the plan says. A step that finds its hole taken waits for the other tray, or takes
-//! its own out first.
+//! magnets, athwartship magnets. Invariants: after every step, the setting is possible with
+//! the binnacle and the correctors on board, and after the last it is the plan's. A step
+//! whose hole is occupied waits for the other tray, or takes its own out first.
 
 mod step;
 

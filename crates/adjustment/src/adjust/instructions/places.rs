@@ -1,9 +1,9 @@
-//! Where a corrector stands in a setting, and where else it could.
+//! Places of correctors in a setting.
 
 use super::step::{Corrector, Place, Step};
 use crate::binnacle::{Axis, Setting, Tray};
 
-/// With the other end; none of what has no ends.
+/// Returns the place with the red end reversed; `None` for correctors without ends.
 pub(crate) fn reversed(place: &Place) -> Option<Place> {
     match place {
         Place::Magnets(tray) => {
@@ -20,7 +20,7 @@ pub(crate) fn reversed(place: &Place) -> Option<Place> {
     }
 }
 
-/// So many holes higher, with the hole's number.
+/// Returns the place moved up by some holes, with the new hole's number.
 pub(crate) fn moved(place: &Place, by: i32) -> Option<(Place, u16)> {
     let other = |hole: u16| u16::try_from(i32::from(hole) + by).ok();
     match place {
@@ -59,7 +59,7 @@ pub(crate) fn stands(setting: &Setting, corrector: Corrector, place: &Place) -> 
     }
 }
 
-/// Where in a setting stands what could be this one, and did not stand in another setting.
+/// Finds the place of a similar corrector in a setting that is not in the other setting.
 pub(crate) fn elsewhere(
     setting: &Setting,
     corrector: Corrector,
@@ -80,7 +80,7 @@ pub(crate) fn elsewhere(
     }
 }
 
-/// The setting with one place otherwise.
+/// Returns the setting with one place replaced.
 pub(crate) fn replaced(
     setting: &Setting,
     corrector: Corrector,
@@ -125,7 +125,8 @@ pub(crate) fn replaced(
 }
 
 impl Step {
-    /// Whether what it moved is where it was to be by one setting, and not by another.
+    /// Returns true when the moved corrector is in its intended place by the setting
+    /// `taken`, but not by the setting `said`.
     pub fn is_contradicted(&self, taken: &Setting, said: &Setting) -> bool {
         let is_done = |setting: &Setting| match (&self.to, &self.from) {
             (Some(to), _) => stands(setting, self.corrector, to),

@@ -4,15 +4,15 @@ use crate::binnacle::{BarSetting, HeelingSetting, PairSetting, Setting, Tray};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What is moved.
+/// Kind of corrector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Corrector {
-    /// The Flinders bar.
+    /// Flinders bar.
     Flinders,
     /// Spheres, boxes or plates.
     Quadrantal,
-    /// The vertical magnets.
+    /// Vertical magnets.
     Heeling,
     /// Fore-and-aft magnets.
     ForeAndAft,
@@ -20,21 +20,21 @@ pub enum Corrector {
     Athwartship,
 }
 
-/// What is done with it.
+/// Action of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Action {
-    /// It comes in.
+    /// Fitted.
     Fit,
-    /// It comes out.
+    /// Taken out.
     TakeOut,
-    /// It comes to another place as it is.
+    /// Moved to another place unchanged.
     Move,
-    /// It, or its magnets, are turned or exchanged, perhaps also moved.
+    /// Turned or exchanged, perhaps also moved.
     Change,
 }
 
-/// Where something stands.
+/// Place of a corrector.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "place", rename_all = "snake_case")]
 pub enum Place {
@@ -42,40 +42,40 @@ pub enum Place {
     Magnets(Tray),
     /// Spheres, boxes or plates.
     Pair(PairSetting),
-    /// A Flinders bar.
+    /// Flinders bar.
     Bar(BarSetting),
     /// Vertical magnets.
     Bucket(HeelingSetting),
 }
 
-/// One movement, to be checked on the spot.
+/// One movement with its check on the spot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step {
-    /// From 1.
+    /// Number, from 1.
     pub number: u32,
-    /// What is moved.
+    /// Kind of corrector.
     pub corrector: Corrector,
-    /// What is done with it.
+    /// Action.
     pub action: Action,
-    /// Where it was; none when it comes in.
+    /// Place before; none when it is fitted.
     pub from: Option<Place>,
-    /// Where it will be; none when it comes out.
+    /// Place afterwards; none when it is taken out.
     pub to: Option<Place>,
-    /// All of it in a sentence.
+    /// Instruction in a sentence.
     pub words: String,
-    /// What to see to before.
+    /// Check before the step.
     pub check: Option<String>,
-    /// What the compass will then read at the berth, degrees.
+    /// Predicted compass heading at the berth afterwards, degrees.
     pub expected_compass_deg: f64,
-    /// By how much it will have turned, degrees, clockwise positive.
+    /// Predicted turn of the compass, degrees, clockwise positive.
     pub change_deg: f64,
-    /// How far off it may be, degrees.
+    /// Tolerance of the turn, degrees.
     pub tolerance_deg: f64,
-    /// Whether on this heading the compass shows the step at all.
+    /// Visible: the compass shows the step on this heading.
     pub seen: bool,
-    /// How the correctors stood before.
+    /// Setting before.
     pub setting_before: Setting,
-    /// How they stand then.
+    /// Setting afterwards.
     pub setting_after: Setting,
 }
 

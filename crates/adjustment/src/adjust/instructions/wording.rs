@@ -73,7 +73,7 @@ fn describe_place(state: &MagneticState<'_>, corrector: Corrector, place: &Place
                 Side::Forward => "forward of",
                 Side::Aft => "abaft",
             };
-            // Clockwise from abaft is to port.
+            // Clockwise from aft is to port.
             let to_starboard = match bar.side {
                 Side::Forward => bar.slew_deg,
                 Side::Aft => -bar.slew_deg,

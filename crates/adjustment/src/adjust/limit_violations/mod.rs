@@ -1,8 +1,7 @@
-//! What of a plan, or of what a second reading leaves, is beyond the limits.
+//! Violations of the limits by a plan or an updated prediction.
 //!
-//! What always holds: the berth and every water where she trades are judged, each heading by
-//! its residual with the band; where it is too large, the coefficient that it mostly is, is
-//! named.
+//! Invariants: the berth and every trading water are checked, each heading by its residual
+//! with its band. For an excessive residual, the largest coefficient is named.
 
 mod spheres;
 
@@ -14,7 +13,7 @@ use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
 
-/// What is wrong with residuals foretold by a model.
+/// Finds the violations of predicted residuals, with their likely reasons.
 pub(crate) fn find_violations(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,
@@ -65,7 +64,7 @@ pub(crate) fn first_violation(
             dominant: dominant_coefficient(model, table),
         };
         if worst_deg > limits.residual_deg {
-            // No band is narrow enough for that.
+            // No band can be narrow enough for that.
             return Some(too_large(place));
         }
         if band_deg > limits.band_deg {
@@ -81,7 +80,7 @@ pub(crate) fn first_violation(
     worst
 }
 
-/// The greatest of the exact coefficients, the model's constant with A.
+/// Returns the largest of the exact coefficients, with the model's constant in A.
 fn dominant_coefficient(model: &Model, table: &PredictedTable) -> Coefficient {
     let earth = EarthField {
         h_nt: table.h_nt,

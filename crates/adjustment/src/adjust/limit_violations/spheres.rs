@@ -1,4 +1,4 @@
-//! Spheres that have to stay where they are, because λ is too unsure.
+//! Spheres that cannot move because λ is too uncertain.
 
 use crate::adjust::diagnosis::Refusal;
 use crate::adjust::inputs::Adjustment;
@@ -6,11 +6,11 @@ use crate::adjust::prediction::{self, PredictedTable};
 use crate::adjust::search;
 use crate::adjust::state::MagneticState;
 
-/// What the search takes a water for where headings are ambiguous, degrees.
+/// Assumed residual of a water with ambiguous headings, degrees.
 const AMBIGUOUS_DEG: f64 = 90.0;
 
-/// Why the residual is too large: where spheres on board would lessen it, had they not to
-/// stay because λ is too unsure, that is the magnetometer's and no corrector's.
+/// Explains an excessive residual: where movable spheres would reduce it, the magnetometer
+/// is too poor, and no corrector is missing.
 pub(crate) fn explain_large_residual(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,
@@ -33,7 +33,8 @@ pub(crate) fn explain_large_residual(
         lambda_sd: state.lambda_sd_share(),
         limit: limits.lambda_sd,
     };
-    // The band is wide by λ, which a better magnetometer tells: the residual alone counts.
+    // The band includes the uncertain λ, which a better magnetometer cures: only the
+    // residual counts.
     let within = |table: &PredictedTable| {
         table
             .worst_deg
@@ -47,9 +48,9 @@ pub(crate) fn explain_large_residual(
     vec![poor, too_large]
 }
 
-/// The worst residual, weighted over the waters as the search does, degrees.
+/// Returns the worst residual, weighted over the waters as in the search, degrees.
 fn weighted_worst_deg(adjustment: &Adjustment<'_>, after: &[PredictedTable]) -> f64 {
-    // The berth stands first.
+    // The first table is for the berth.
     let in_waters = adjustment.waters.iter().zip(after.iter().skip(1));
     let (weights, sum) = in_waters.fold((0.0, 0.0), |(weights, sum), (water, table)| {
         let worst_deg = table.worst_deg.unwrap_or(AMBIGUOUS_DEG);
@@ -63,8 +64,8 @@ mod tests {
     use super::*;
     use crate::adjust::tests::case;
 
-    /// What the search makes small is the mean over the waters; what the limit holds for is
-    /// the worst of them.
+    /// The search minimises the mean over the waters; the limit applies to the worst of
+    /// them.
     #[test]
     fn the_mean_over_the_waters_is_not_the_worst_of_them() {
         let case = case(60.0);
@@ -73,8 +74,8 @@ mod tests {
         for (table, worst_deg) in after.iter_mut().zip([9.0, 1.0, 4.0]) {
             table.worst_deg = Some(worst_deg);
         }
-        // Two parts of her time in the first water, one in the second; the berth counts for
-        // nothing.
+        // Two parts of the time in the first water, one in the second; the berth has no
+        // weight.
         let mean_deg = weighted_worst_deg(&adjustment, &after);
         assert!((mean_deg - 2.0).abs() < 1e-12, "{mean_deg}");
         after[2].worst_deg = None;

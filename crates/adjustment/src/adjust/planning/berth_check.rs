@@ -1,37 +1,37 @@
-//! What the berth told, and what can be seen on its heading.
+//! Check of the berth, and visibility of the coefficients on its heading.
 
 use crate::adjust::inputs::Adjustment;
 use crate::adjust::state::MagneticState;
 use crate::berth::{Consistency, Estimated, USUAL_LAMBDA, Verdict};
 use serde::{Deserialize, Serialize};
 
-/// Less than this share of a coefficient is not seen on a heading.
+/// Share of a coefficient below which it is hardly visible on a heading.
 const HARDLY: f64 = 0.25;
 
-/// The berth's check.
+/// Check of the berth.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BerthCheck {
-    /// λ, which every heading tells equally well.
+    /// λ, determined equally well on every heading.
     pub lambda: Estimated,
-    /// Its standard error with the magnetometer's scale, as a share of it.
+    /// Relative standard error of λ, including the magnetometer's scale.
     pub lambda_sd: f64,
-    /// How well the field's direction agrees with the model.
+    /// Agreement of the field's direction with the model.
     pub consistency: Consistency,
-    /// What part of each coefficient's deviation the compass shows on this heading: how
-    /// well a step can be checked on the spot.
+    /// Visible part of each coefficient's deviation on this heading: precision of a step's
+    /// check on the spot.
     pub seen: HeadingVisibility,
 }
 
-/// Parts of the coefficients' deviations that a heading shows, 0 to 1.
+/// Visible parts of the coefficients' deviations on a heading, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeadingVisibility {
-    /// Of B: fore-and-aft magnets and the Flinders bar.
+    /// Visible part of B: fore-and-aft magnets and the Flinders bar.
     pub b: f64,
-    /// Of C: athwartship magnets.
+    /// Visible part of C: athwartship magnets.
     pub c: f64,
-    /// Of D: spheres.
+    /// Visible part of D: spheres.
     pub d: f64,
-    /// Of E: slewed spheres.
+    /// Visible part of E: slewed spheres.
     pub e: f64,
 }
 
@@ -51,7 +51,7 @@ impl BerthCheck {
         }
     }
 
-    /// What the adjuster should know of it.
+    /// Lists notes for the adjuster.
     pub(crate) fn notes(&self) -> Vec<String> {
         let mut words = Vec::new();
         if self.consistency.verdict == Verdict::Loose {

@@ -17,11 +17,11 @@ use super::search::{self, BestSetting, ParetoFront};
 use super::state::MagneticState;
 use crate::binnacle::Setting;
 
-/// The best few ways to set the correctors, or why there is none.
+/// Finds the best few settings of the correctors, or the reasons for their absence.
 ///
 /// # Errors
-/// When something given cannot be. An inconsistent berth, a model too old and the like
-/// are no errors but refusals.
+/// When the input is invalid. An inconsistent berth, an old model and the like are
+/// refusals, not errors.
 pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
     inputs::validate(adjustment)?;
     let mut refusals = check_preconditions(adjustment);
@@ -55,11 +55,11 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
         {
             plans.push(plan);
         } else if refusals.is_empty() {
-            // Of the plan that would be recommended.
+            // The refusals apply to the plan that would be recommended.
             refusals = find_violations(adjustment, &state, &plan.after, &plan.model_after);
         }
     }
-    // What is beyond the limits is no alternative either.
+    // A plan that violates the limits is no alternative either.
     if plans.is_empty() {
         return Ok(Outcome {
             notes: notes::left_out(&front.optimality).into_iter().collect(),
@@ -86,11 +86,11 @@ fn refused_outcome(berth: Option<BerthCheck>, refusals: Vec<Refusal>) -> Outcome
     }
 }
 
-/// How many plans are shown.
+/// Greatest number of plans.
 const PLANS: usize = 5;
 
-/// The fewest moves among near-equals first, then what is better for more moves, then
-/// what is cheaper.
+/// Chooses the setting with the fewest moves among near-equals, then a better one with more
+/// moves, then cheaper ones.
 fn choose_plans(front: &ParetoFront, near_equal_deg: f64) -> Vec<&BestSetting> {
     let found = front.undominated();
     let Some(best) = found.last() else {

@@ -1,4 +1,4 @@
-//! What an adjuster should know of the plans that are given.
+//! Notes for the adjuster on the plans.
 
 use super::berth_check::BerthCheck;
 use super::outcome::Plan;
@@ -8,7 +8,7 @@ use crate::adjust::search::Optimality;
 use crate::adjust::state::MagneticState;
 use binnacle_compass::ship::CAUTION_H_NT;
 
-/// All of it, the gravest first.
+/// Lists all notes, the most serious first.
 pub(crate) fn notes(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,
@@ -72,7 +72,7 @@ pub(crate) fn notes(
     notes
 }
 
-/// What a search that did not prove its best leaves open.
+/// Describes possible improvements after an incomplete search.
 pub(crate) fn left_out(optimality: &Optimality) -> Option<String> {
     (!optimality.proven).then(|| {
         format!(
@@ -83,8 +83,8 @@ pub(crate) fn left_out(optimality: &Optimality) -> Option<String> {
     })
 }
 
-/// More heeling error than this is said, degrees for each degree of heel: two degrees in a
-/// roll of ten.
+/// Heeling error that is reported, degrees per degree of heel: two degrees in a roll of
+/// ten.
 const MOST_HEELING_ERROR: f64 = 0.2;
 
 fn heeling_left(plans: &[Plan]) -> Option<String> {
@@ -99,15 +99,15 @@ fn heeling_left(plans: &[Plan]) -> Option<String> {
     })
 }
 
-/// Waters whose dips differ by less, as tangents, are one to a compass.
+/// Difference of dips, as tangents, below which waters count as one.
 const ONE_DIP: f64 = 0.3;
-/// So many standard errors from nil a parameter is known.
+/// Significance of a parameter, in standard errors.
 const KNOWN_SD: f64 = 3.0;
-/// What magnets do against the vertical field's share is no matter below this, degrees.
+/// Least induced share of B that matters, degrees.
 const LEAST_SHARE_DEG: f64 = 1.0;
 
-/// What the vertical field induces and magnets are to cure, because nothing says that
-/// she leaves these waters.
+/// Describes magnets that correct an induced field, for a vessel that may leave these
+/// waters.
 fn only_here(adjustment: &Adjustment<'_>, plans: &[Plan]) -> Option<String> {
     let after = &plans.first()?.model_after;
     let covariance = after.covariance?;

@@ -12,50 +12,50 @@ use crate::binnacle::Setting;
 use binnacle_compass::model::Model;
 use serde::{Deserialize, Serialize};
 
-/// What came of it.
+/// Result of planning.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// What the berth told; none when its reading was refused.
+    /// Check of the berth; none when its reading was refused.
     pub berth: Option<BerthCheck>,
-    /// Why there is no plan; empty when there is one.
+    /// Reasons for the absence of a plan; empty when there is one.
     pub refusals: Vec<Refused>,
-    /// What the adjuster should know of it.
+    /// Notes for the adjuster.
     pub notes: Vec<String>,
-    /// The recommended plan first, then others that cost more or less.
+    /// Recommended plan first, then others with more or fewer moves.
     pub plans: Vec<Plan>,
-    /// How well the search knows that nothing is better.
+    /// Optimality of the search.
     pub optimality: Option<Optimality>,
 }
 
-/// One way to set the correctors.
+/// A possible setting of the correctors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// How they will stand.
+    /// Planned setting.
     pub setting: Setting,
-    /// Movements of hand that it takes.
+    /// Number of moves.
     pub moves: u32,
-    /// Worst foretold residual on any heading, weighted over the waters, degrees.
+    /// Worst predicted residual on any heading, weighted over the waters, degrees.
     pub worst_residual_deg: f64,
-    /// The widest 95 % band in any of them, degrees.
+    /// Widest 95 % band in any of them, degrees.
     pub widest_band_deg: f64,
     /// λ with this setting.
     pub lambda: f64,
-    /// Deviations as they are, at the berth and in the waters.
+    /// Present deviations at the berth and in the waters.
     pub before: Vec<PredictedTable>,
-    /// Residuals as they will be.
+    /// Predicted residuals.
     pub after: Vec<PredictedTable>,
-    /// What becomes of the heeling magnets.
+    /// Plan for the heeling magnets.
     pub heeling: HeelingPlan,
-    /// What to do, in order.
+    /// Steps in order.
     pub steps: Vec<Step>,
-    /// The model that holds from the last step on, its covariance with the errors of λ
-    /// and of the correctors that were moved.
+    /// Model that applies after the last step; its covariance includes the errors of λ and
+    /// of the moved correctors.
     pub model_after: Model,
 }
 
 impl Plan {
-    /// Which of these limits it breaks in these waters, with what would cure that; nothing
-    /// that [`crate::adjust::plan`] offers breaks those it was asked for.
+    /// Checks the plan against limits in these waters; a plan offered by
+    /// [`crate::adjust::plan`] keeps to its own limits.
     #[must_use]
     pub fn limit_violation(&self, limits: &Limits, waters: &[Water]) -> Option<Refused> {
         first_violation(&self.after, &self.model_after, limits, waters).map(Refusal::with_cures)

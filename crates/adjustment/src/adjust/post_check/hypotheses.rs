@@ -1,9 +1,9 @@
-//! What else than the plan could stand: slips of the hand that a step may have had, magnets
-//! of another moment, and whatever else is not what was taken.
+//! Hypotheses about the actual setting: slips of the hand in a step, magnets of another
+//! moment, and any other difference from the plan.
 //!
-//! What always holds: each doubt has a share of belief beforehand; the compass's turn at
-//! its step, where it was read, and the magnetometer afterwards raise or lower it. A place
-//! that something was moved to again later raises no doubt any more.
+//! Invariants: each hypothesis has a prior probability. The compass's turn at its step, if
+//! read, and the later magnetometer reading raise or lower it. A place with a later
+//! movement raises no hypothesis.
 
 use super::innovation::{FieldVector, Innovation, MODEL_SIZE, ModelVector, Perturbation};
 use super::result::{CompletedStep, Slip};
@@ -18,55 +18,55 @@ use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::NORMAL_99;
 use nalgebra::SMatrix;
 
-/// Belief beforehand that the magnets of a step went in with the wrong end.
+/// Prior probability of magnets with the wrong end in a step.
 const WRONG_END: f64 = 0.01;
-/// That they are one, two or three holes off, one way.
+/// Prior probabilities of one, two or three holes off, in one direction.
 const HOLES_OFF: [f64; 3] = [0.004, 0.002, 0.002];
-/// That a step was not done at all.
+/// Prior probability of a step that was not done.
 const NOT_DONE: f64 = 0.004;
-/// That all magnets of a kind have another moment than is said.
+/// Prior probability of another moment of all magnets of a kind.
 const OTHER_MOMENT: f64 = 0.2;
-/// By so much, as a share of it.
+/// Standard deviation of that moment, as a share of it.
 const MOMENT_SD: f64 = 0.2;
-/// That there is something else.
+/// Prior probability of another field.
 const OTHER_FIELD: f64 = 0.01;
-/// Of this size along each axis, nT.
+/// Standard deviation of that field along each axis, nT.
 const OTHER_FIELD_NT: f64 = 2_000.0;
 
-/// One way in which the ship may be other than planned, or none.
+/// A possible difference of the ship from the plan.
 pub(crate) struct Hypothesis {
     pub(crate) kind: HypothesisKind,
-    /// Logarithm of the belief beforehand.
+    /// Logarithm of the prior probability.
     log_prior: f64,
     shift: Option<Perturbation>,
     extra_errors: Vec<Perturbation>,
 }
 
-/// What is doubted.
+/// Kind of hypothesis.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum HypothesisKind {
-    /// Nothing.
+    /// No difference.
     AsPlanned,
-    /// A step, and how the correctors would stand.
+    /// Another setting in a step, with the resulting setting.
     Step(u32, Slip, Setting),
-    /// The moment of a kind of magnet.
+    /// Another moment of a kind of magnets.
     Moment(String),
-    /// Something that none of the others is.
+    /// A field outside the other hypotheses.
     OtherField,
 }
 
-/// What is left of a doubt after the reading, and what the model then is.
+/// Posterior of a hypothesis after the reading, and the resulting model.
 pub(crate) struct Posterior {
     pub(crate) kind: HypothesisKind,
-    /// Share of belief.
+    /// Posterior probability.
     pub(crate) share: f64,
     pub(crate) correction: ModelVector,
     pub(crate) covariance: SMatrix<f64, MODEL_SIZE, MODEL_SIZE>,
-    /// How far the reading is off even so, in squared standard errors.
+    /// Squared residual of the reading under the hypothesis, in standard errors.
     pub(crate) squared: f64,
 }
 
-/// All doubts as the compass alone leaves them, but for what no step has to do with.
+/// Weighs the hypotheses by the compass alone, without those unrelated to a step.
 pub(crate) fn weigh_by_compass(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,
@@ -84,7 +84,7 @@ pub(crate) fn weigh_by_compass(
     )
 }
 
-/// All doubts as the reading leaves them; shares add up to one.
+/// Weighs the hypotheses by the reading; probabilities sum to one.
 pub(crate) fn weigh_hypotheses(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,
@@ -101,13 +101,13 @@ pub(crate) fn weigh_hypotheses(
     normalise(found)
 }
 
-/// Of what is foretold.
+/// Returns the covariance of the prediction.
 fn covariance(known: &StateWithSetting<'_>) -> SMatrix<f64, MODEL_SIZE, MODEL_SIZE> {
     let covariance = known.model.covariance.unwrap_or_default();
     SMatrix::from_fn(|r, c| covariance[r][c])
 }
 
-/// Shares of belief by its logarithms.
+/// Converts log-probabilities to probabilities.
 fn normalise(found: Vec<(f64, Posterior)>) -> Vec<Posterior> {
     let likeliest = found
         .iter()
@@ -122,7 +122,7 @@ fn normalise(found: Vec<(f64, Posterior)>) -> Vec<Posterior> {
 }
 
 impl Hypothesis {
-    /// The same where the field was not read.
+    /// Returns the log-probability and the posterior without a reading.
     fn without_reading(
         self,
         covariance: &SMatrix<f64, MODEL_SIZE, MODEL_SIZE>,
@@ -143,7 +143,7 @@ impl Hypothesis {
         (self.log_prior, posterior)
     }
 
-    /// Its belief as a logarithm, and what it makes of the model.
+    /// Returns the log-probability and the posterior by the reading.
     fn posterior(
         self,
         innovation: &Innovation,
@@ -222,9 +222,8 @@ fn hypotheses(
     hypotheses
 }
 
-/// What the compass showed of another moment of a kind at the steps with it: the share by
-/// which it is off and the standard deviation of that, and the logarithm of how much better
-/// that explains the turns than the moment that is said.
+/// Estimates another moment of a kind from the turns of its steps: the relative difference,
+/// its standard deviation, and the log-likelihood ratio to the assumed moment.
 fn moment_shown(done: &[CompletedStep], kind: &str) -> (f64, f64, f64) {
     let of_kind = |place: &Option<Place>| match place {
         Some(Place::Magnets(tray)) => tray.magnet == kind,
@@ -242,7 +241,7 @@ fn moment_shown(done: &[CompletedStep], kind: &str) -> (f64, f64, f64) {
         if !magnets || !of_kind(&step.from) || !of_kind(&step.to) {
             continue;
         }
-        // All of the turn is theirs, and grows with their moment.
+        // The whole turn comes from them and is proportional to their moment.
         let by_share = step.change_deg;
         let off_deg = wrap_180(turned_deg - step.change_deg);
         let sd_deg = step.tolerance_deg / NORMAL_99;
@@ -265,7 +264,7 @@ impl Hypothesis {
     }
 }
 
-/// What may have gone wrong with one step.
+/// Lists the possible slips of one step.
 fn step_hypotheses(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,
@@ -311,7 +310,7 @@ fn step_hypotheses(
     others.into_iter().filter_map(hypothesis).collect()
 }
 
-/// Kinds of magnets that stand otherwise than when she was measured.
+/// Lists the kinds of magnets whose setting changed since the first reading.
 fn moved_kinds(state: &MagneticState<'_>, known: &StateWithSetting<'_>) -> Vec<String> {
     let was = &state.binnacle.setting;
     let mut kinds = Vec::new();
@@ -329,7 +328,7 @@ fn moved_kinds(state: &MagneticState<'_>, known: &StateWithSetting<'_>) -> Vec<S
     kinds
 }
 
-/// What the magnets of one kind do in a setting.
+/// Returns the effect of the magnets of one kind in a setting.
 fn magnets(state: &MagneticState<'_>, setting: &Setting, kind: &str) -> Effect {
     let iron = Iron::new(state.binnacle, &setting.soft());
     let mut sum = Effect::default();

@@ -1,10 +1,10 @@
-//! What a second reading differs by from what the plan foretells, and what that difference
-//! has to do with the errors of the plan's model (docs/science.md, §11).
+//! Innovation of a second reading, and its covariance with the errors of the plan's model
+//! (docs/science.md, §11).
 //!
-//! What always holds: every error has one place here, an independent one of one standard
-//! deviation, with what it adds to the reading and what it makes of the model. The scale
-//! of the magnetometer is the same for both readings, so that it spoils only what the
-//! correctors have changed; how it lay and how it was levelled is new each time.
+//! Invariants: every independent error of one standard deviation occurs once, with its
+//! effect on the reading and on the model. The magnetometer's scale is common to both
+//! readings, so it affects only the change by the correctors. Its alignment and levelling
+//! are new each time.
 
 use crate::adjust::inputs::{Adjustment, VerticalReading};
 use crate::adjust::state::{MagneticState, StateWithSetting, setting_errors};
@@ -13,34 +13,34 @@ use crate::corrector::Effect;
 use binnacle_compass::ship::PARAMETERS;
 use nalgebra::{SMatrix, SVector};
 
-/// Seven parameters and the constant.
+/// Number of parameters with the constant.
 pub(crate) const MODEL_SIZE: usize = PARAMETERS + 1;
-/// With λ.
+/// Number of unknowns with λ.
 const JOINT_SIZE: usize = MODEL_SIZE + 1;
 
-/// A field, `[forward, starboard, down]`, nT.
+/// Field, `[forward, starboard, down]`, nT.
 pub(crate) type FieldVector = SVector<f64, 3>;
 pub(crate) type ModelVector = SVector<f64, MODEL_SIZE>;
 
-/// What one cause adds to the reading and to the model.
+/// Effect of one error on the reading and on the model.
 #[derive(Clone, Copy)]
 pub(crate) struct Perturbation {
     pub(crate) of_reading: FieldVector,
     pub(crate) of_model: ModelVector,
 }
 
-/// A second reading beside what was foretold for it.
+/// Second reading with its prediction.
 pub(crate) struct Innovation {
     pub(crate) expected: FieldVector,
     pub(crate) read: FieldVector,
-    /// Whether the vertical part was read both times.
+    /// Vertical part measured both times.
     pub(crate) is_vertical_known: bool,
-    /// The earth's field in ship axes.
+    /// Earth's field in ship axes.
     earth: [f64; 3],
-    /// Of read less expected; what was not read counts as one and has nothing to do with
-    /// the rest.
+    /// Covariance of read less expected; an unmeasured part has variance one and no
+    /// correlation.
     pub(crate) spread: SMatrix<f64, 3, 3>,
-    /// Of the model's eight with it.
+    /// Covariance of the model's unknowns with the innovation.
     pub(crate) cross_covariance: SMatrix<f64, MODEL_SIZE, 3>,
 }
 
@@ -87,7 +87,7 @@ impl Innovation {
         innovation
     }
 
-    /// What an effect that comes on top adds.
+    /// Returns the perturbation by an additional effect.
     pub(crate) fn perturbation(
         &self,
         known: &StateWithSetting<'_>,
@@ -119,7 +119,7 @@ impl Innovation {
         self.cross_covariance += perturbation.of_model * perturbation.of_reading.transpose();
     }
 
-    /// The model's own errors and λ's, but for the magnetometer's scale.
+    /// Adds the errors of model and λ, without the magnetometer's scale.
     fn add_model(
         &mut self,
         adjustment: &Adjustment<'_>,
@@ -152,7 +152,7 @@ impl Innovation {
         self.cross_covariance += slopes * joint * by_nine.transpose();
     }
 
-    /// Everything else that errs.
+    /// Lists all other errors.
     fn perturbations(
         &self,
         adjustment: &Adjustment<'_>,
@@ -170,7 +170,7 @@ impl Innovation {
             .map(|effect| self.perturbation(known, &effect))
             .collect();
 
-        // λ is too great by what the scale is, and what was foretold with it.
+        // λ is too great by the scale's error, and so is its prediction.
         let by_lambda = known.slopes().map(|row| row[MODEL_SIZE]);
         let scale = adjustment.scale_sd;
         perturbations.push(Perturbation {
@@ -186,7 +186,8 @@ impl Innovation {
         let [x, y, z] = [self.expected[0], self.expected[1], self.expected[2]];
         let alignment = errors.alignment_sd_deg.to_radians();
         perturbations.push(of_reading(y * alignment, -x * alignment, 0.0));
-        // What is down aboard is not known without a reading of it; the earth's is most.
+        // Without a vertical reading, the vertical field at the compass is approximately
+        // the earth's.
         let down = if self.is_vertical_known {
             z
         } else {
@@ -196,7 +197,7 @@ impl Innovation {
         perturbations.push(of_reading(down * tilt, 0.0, -x * tilt));
         perturbations.push(of_reading(0.0, down * tilt, -y * tilt));
 
-        // The heading that was told is the same as before.
+        // The given heading is the same as before.
         let heading = errors.heading_sd_deg.to_radians();
         let [hx, hy, _] = self.earth;
         let ahead = state.field(
@@ -205,7 +206,7 @@ impl Innovation {
         );
         perturbations.push(of_reading(ahead[0] - x, ahead[1] - y, 0.0));
 
-        // Of the vertical part the first reading's errors are met again.
+        // The vertical part repeats the first reading's errors.
         let first = adjustment.reading.errors();
         let tilt = first.tilt_sd_deg.to_radians();
         let of_first = [first.field_sd_nt, was[0] * tilt, was[1] * tilt];

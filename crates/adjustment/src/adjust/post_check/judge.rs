@@ -12,12 +12,12 @@ use crate::adjust::state::{MagneticState, StateWithSetting};
 use crate::berth::BerthReading;
 use crate::binnacle::Setting;
 
-/// Of a hundred right readings one is read again: χ² of two parts, and of three.
+/// 99 % quantiles of χ² with two and three degrees of freedom.
 const CHI_SQUARED_99: [f64; 2] = [9.210, 11.345];
-/// With more belief than this a slip is named.
+/// Posterior probability above which a slip is named.
 const LIKELY: f64 = 0.5;
 
-/// All that a verdict leans on.
+/// Complete input of a verdict.
 pub(crate) struct Judge<'a> {
     pub(crate) adjustment: &'a Adjustment<'a>,
     pub(crate) state: &'a MagneticState<'a>,
@@ -29,7 +29,7 @@ pub(crate) struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// The compass, where it was read, held against such a reading.
+    /// Compares the compass, if read, with such a reading.
     pub(crate) fn card(&self, reading: &BerthReading) -> Result<Option<CardCheck>, AdjustError> {
         let Some(read_deg) = self.compass_deg else {
             return Ok(None);
@@ -86,7 +86,8 @@ impl Judge<'_> {
             vertical: self.vertical,
             binnacle: &binnacle,
             now: None,
-            // That was read before the steps, and the first reading was held against this.
+            // This heading was read before the steps, and the first reading was checked
+            // against it.
             compass_deg: None,
             circumstances: Circumstances {
                 earlier_lambda: None,
@@ -103,7 +104,7 @@ impl Judge<'_> {
         })
     }
 
-    /// The step that is doubted most, and the likeliest way in which it was done.
+    /// Names the most probable step, and its most probable slip.
     fn slip(&self, posterior: &[Posterior]) -> Result<Verdict, AdjustError> {
         let share_of = |wanted: u32| {
             let those = posterior.iter().filter(
@@ -140,11 +141,11 @@ impl Judge<'_> {
         })
     }
 
-    /// What done otherwise with the magnetometer would make it as planned, and the compass
-    /// agree with it.
+    /// Finds misreadings of the magnetometer that make the reading as planned and
+    /// consistent with the compass.
     pub(crate) fn misreadings(&self) -> Vec<Misreading> {
         if self.adjustment.model.covariance.is_none() {
-            // Nothing is known of what differences there may be.
+            // Without a covariance, the possible differences are unknown.
             return Vec::new();
         }
         let explains = |misreading: &Misreading| {
@@ -155,7 +156,7 @@ impl Judge<'_> {
         whole.chain(self.misreadings_with_down()).collect()
     }
 
-    /// Those that only a vertical part tells.
+    /// Finds misreadings that only a vertical part reveals.
     fn misreadings_with_down(&self) -> Vec<Misreading> {
         let (Some(_), Some(vertical)) = (self.adjustment.vertical, self.vertical) else {
             return Vec::new();
@@ -180,7 +181,7 @@ impl Judge<'_> {
         explaining.map(|(misreading, _)| misreading).collect()
     }
 
-    /// Whether such a reading is as planned, and turns the compass to what it read.
+    /// Returns true when such a reading is as planned and consistent with the compass.
     fn fits(&self, reading: &BerthReading, vertical: Option<VerticalReading>) -> bool {
         let card = self.card(reading).ok().flatten();
         if card.is_some_and(|card| card.is_refused()) {

@@ -1,12 +1,11 @@
-//! The magnetometer read once more, after the steps: what the compass on one heading cannot
-//! show, the field can.
+//! Second reading of the magnetometer after the steps, which shows errors that the compass
+//! on one heading cannot.
 //!
-//! With the bowl out again the same magnetometer lies in the same place. What it reads less
-//! what was foretold is told apart into errors that were to be expected, which sharpen the
-//! model, and slips of the hand, which are named. What always holds: a reading that fits
-//! makes the band no narrower than all that may still be wrong together leaves it; one that
-//! a slip explains better names the step; one that nothing explains confirms nothing
-//! (docs/science.md, §11).
+//! With the bowl out again, the same magnetometer is in the same place. The innovation is
+//! attributed to expected errors, which update the model, or to slips of the hand, which
+//! are named. Invariants: a fitting reading narrows the band no further than the remaining
+//! hypotheses allow. A reading better explained by a slip names the step. An unexplained
+//! reading confirms nothing (docs/science.md, §11).
 
 mod result;
 
@@ -26,12 +25,12 @@ use innovation::Innovation;
 use judge::Judge;
 use update::update_prediction;
 
-/// Judges a second reading by the same magnetometer, the correctors standing as
-/// `adjustment.now` says after these steps. `named` is the unit that its figures were said
-/// to be in, `compass_deg` what the compass read before the bowl was taken out.
+/// Judges a second reading by the same magnetometer, with the correctors in the setting
+/// `adjustment.now` after these steps. `named` is the entered unit of its figures,
+/// `compass_deg` the compass heading before the bowl was taken out.
 ///
 /// # Errors
-/// When the adjustment itself cannot be.
+/// When the input of the adjustment is invalid.
 pub fn check_second_reading(
     adjustment: &Adjustment<'_>,
     done: &[CompletedStep],
@@ -72,12 +71,11 @@ pub fn check_second_reading(
     })
 }
 
-/// What is foretold of correctors that stand as `adjustment.now` says after these steps,
-/// where the field was not read again: what the compass leaves open of slips and of
-/// magnets' moments is in the band.
+/// Predicts the deviation for the setting `adjustment.now` after these steps, without a
+/// second reading: slips and moments that the compass leaves open widen the band.
 ///
 /// # Errors
-/// When the adjustment itself cannot be.
+/// When the input of the adjustment is invalid.
 pub fn predict_by_compass(
     adjustment: &Adjustment<'_>,
     done: &[CompletedStep],

@@ -10,112 +10,113 @@ use crate::binnacle::{Binnacle, Setting};
 use binnacle_compass::model::Model;
 use serde::{Deserialize, Serialize};
 
-/// A step that was done.
+/// A completed step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompletedStep {
-    /// The step.
+    /// Step of the plan.
     pub step: Step,
-    /// By how much the compass turned, degrees, where it was read.
+    /// Observed turn of the compass, degrees, if read.
     pub turned_deg: Option<f64>,
 }
 
-/// What the second reading came to.
+/// Result of a second reading.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PostCheck {
-    /// Forward, to starboard and, where it was read both times, down.
+    /// Parts forward, to starboard and, if measured both times, down.
     pub parts: Vec<FieldComponent>,
-    /// The compass held against the field, where it was read.
+    /// Comparison of the compass with the field, if read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub card: Option<CardCheck>,
-    /// What to make of it.
+    /// Verdict on the reading.
     #[serde(flatten)]
     pub verdict: Verdict,
 }
 
-/// One part of the field.
+/// One component of the field.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FieldComponent {
-    /// What was foretold, nT.
+    /// Predicted field, nT.
     pub expected_nt: f64,
-    /// What was read, nT.
+    /// Measured field, nT.
     pub read_nt: f64,
     /// Standard error of the difference, nT.
     pub standard_error_nt: f64,
 }
 
-/// What to make of a second reading.
+/// Verdict on a second reading.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "verdict", rename_all = "snake_case")]
 pub enum Verdict {
-    /// The correctors do what they were to do.
+    /// The correctors have the planned effect.
     AsPlanned {
-        /// What is foretold now.
+        /// Updated prediction.
         #[serde(rename = "learnt")]
         updated: Box<UpdatedPrediction>,
     },
-    /// They do, but what is foretold now is beyond the limits: there is a plan from here.
+    /// The correctors have the planned effect, but the updated prediction violates the
+    /// limits: there is a plan from there.
     Replan {
-        /// What is foretold now.
+        /// Updated prediction.
         #[serde(rename = "learnt")]
         updated: Box<UpdatedPrediction>,
-        /// What of it is beyond the limits.
+        /// Violations of the limits.
         refusals: Vec<Refused>,
-        /// The binnacle with its correctors as they stand.
+        /// Binnacle with the present setting.
         binnacle: Box<Binnacle>,
-        /// A plan from there.
+        /// Plan from there.
         outcome: Box<Outcome>,
     },
-    /// A step was done otherwise: look at it.
+    /// A step was probably done differently: check it.
     Slip {
-        /// Its place among those that were done, from 1.
+        /// Number of the step among the completed ones, from 1.
         step: u32,
-        /// What is suspected.
+        /// Suspected slip.
         slip: Slip,
-        /// Belief in that step's slip, 0 to 1.
+        /// Posterior probability of a slip in that step, 0 to 1.
         share: f64,
-        /// How the correctors would stand.
+        /// Resulting setting.
         setting: Setting,
-        /// A plan from there.
+        /// Plan from there.
         outcome: Box<Outcome>,
     },
-    /// Nothing explains it: read again.
+    /// Nothing explains the reading: read again.
     Unexplained {
-        /// Mistakes each of which alone would explain it.
+        /// Single misreadings that explain it.
         #[serde(rename = "mistakes")]
         misreadings: Vec<Misreading>,
     },
 }
 
-/// How a step was done instead.
+/// Slip of the hand in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "slip", rename_all = "snake_case")]
 pub enum Slip {
-    /// The magnets went in with the wrong end.
+    /// Magnets with the wrong end.
     WrongEnd,
-    /// They went into another hole or position.
+    /// Another hole or position.
     OtherHole {
-        /// Its number.
+        /// Number of the hole or position.
         hole: u16,
     },
-    /// It was not done.
+    /// Step not done.
     NotDone,
 }
 
-/// What is foretold after the second reading, or after the steps without one.
+/// Prediction after the second reading, or after the steps without one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UpdatedPrediction {
-    /// The model that holds from now on, with covariance.
+    /// Model that applies from now on, with covariance.
     pub model_after: Model,
     /// Residuals at the berth and in the waters.
     pub after: Vec<PredictedTable>,
-    /// The greatest residual in any of them, degrees.
+    /// Greatest residual in any of them, degrees.
     pub worst_residual_deg: f64,
-    /// The widest 95 % band in any of them, degrees.
+    /// Widest 95 % band in any of them, degrees.
     pub widest_band_deg: f64,
 }
 
 impl UpdatedPrediction {
-    /// Which of these limits it breaks in these waters, with what would cure that.
+    /// Checks the prediction against limits in these waters.
     #[must_use]
     pub fn limit_violation(&self, limits: &Limits, waters: &[Water]) -> Option<Refused> {
         first_violation(&self.after, &self.model_after, limits, waters).map(Refusal::with_cures)

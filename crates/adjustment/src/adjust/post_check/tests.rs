@@ -1,4 +1,4 @@
-//! The magnetometer read again: what fits, what a slip explains, and what nothing does.
+//! Second readings: fitting ones, slips, and unexplained ones.
 
 use super::super::state::{MagneticState, setting_errors};
 use super::super::tests::{BISCAY, Case, bare, sum};
@@ -11,7 +11,7 @@ use crate::corrector::effect;
 use binnacle_compass::ship::ShipMagnetism;
 use nalgebra::SMatrix;
 
-/// What is read at the card's place with a setting, and of a ship, nT.
+/// Returns the field at the card's place of a ship with a setting, nT.
 fn field(
     ship: &ShipMagnetism,
     binnacle: &Binnacle,
@@ -66,7 +66,7 @@ impl Adjusted {
             .collect()
     }
 
-    /// What comes of it when the correctors truly stand so and what is read is off so much.
+    /// Judges a reading of the actual setting with an error.
     fn read(&self, truly: &Setting, off_nt: [f64; 3]) -> PostCheck {
         let [x, y, z] = field(&ship(), &self.case.binnacle, truly, self.magnetic_deg);
         self.judge(
@@ -122,7 +122,8 @@ fn what_is_read_as_foretold_confirms_the_plan_and_its_band() {
     }
 }
 
-/// The four quadrants of both signs: each part that is read moves what is foretold its way.
+/// In all four quadrants of signs, an error of each part moves the prediction in its
+/// direction.
 #[test]
 fn what_is_read_off_moves_bx_and_by_towards_it() {
     let adjusted = Adjusted::new(45.0);
@@ -152,7 +153,7 @@ fn what_is_read_off_moves_bx_and_by_towards_it() {
     }
 }
 
-/// On any heading: the compass shows half of these hardly or not at all.
+/// On any heading: the compass shows half of these slips hardly or not at all.
 #[test]
 fn magnets_with_the_wrong_end_are_named_whatever_the_heading() {
     for magnetic_deg in [0.0, 5.0, 90.0, 180.0, 225.0, 270.0] {
@@ -184,7 +185,7 @@ fn magnets_with_the_wrong_end_are_named_whatever_the_heading() {
             assert_eq!((step as usize, slip), (index + 1, Slip::WrongEnd));
             assert!(share > 0.8, "{share}");
             assert_eq!(setting, truly);
-            // From there the plan is to turn them, or as good as that.
+            // The plan from there reverses them, or is as good.
             assert!(!outcome.plans.is_empty());
             assert!(outcome.plans[0].worst_residual_deg < adjusted.plan.worst_residual_deg + 0.3);
         }
@@ -242,7 +243,7 @@ fn swapped_axes_and_another_unit_are_named() {
     assert_eq!(misreadings, [Misreading::Microtesla]);
 }
 
-/// The compass tells them apart from a field that is right and a card that sticks.
+/// The compass distinguishes them from a correct field with a sticking card.
 #[test]
 fn swapped_axes_are_named_where_the_compass_was_read_too() {
     let adjusted = Adjusted::new(70.0);
@@ -262,7 +263,7 @@ fn swapped_axes_are_named_where_the_compass_was_read_too() {
     assert!(judged([x, y, z], stuck_deg).is_empty());
 }
 
-/// The errors that were put together anew are those that the plan's model carries.
+/// The errors of innovation and model sum to the covariance of the plan's model.
 #[test]
 fn causes_and_model_add_up_to_the_covariance_of_the_plan() {
     let adjusted = Adjusted::new(45.0);
@@ -284,7 +285,7 @@ fn causes_and_model_add_up_to_the_covariance_of_the_plan() {
     }
 }
 
-/// What each step turned the compass by, of what it should have.
+/// Completed steps with a share of the expected turn of the compass.
 fn turned(adjusted: &Adjusted, share: f64) -> Vec<CompletedStep> {
     let steps = adjusted.plan.steps.iter();
     steps
@@ -299,8 +300,8 @@ fn turned(adjusted: &Adjusted, share: f64) -> Vec<CompletedStep> {
         .collect()
 }
 
-/// Steps within their tolerance leave more open than the plan says, and weak magnets are
-/// known by what all of them showed.
+/// Steps within their tolerance leave more uncertainty than the plan, and all of them
+/// together reveal weak magnets.
 #[test]
 fn what_the_compass_leaves_open_of_the_steps_is_in_the_band() {
     let adjusted = Adjusted::new(45.0);
@@ -313,7 +314,7 @@ fn what_the_compass_leaves_open_of_the_steps_is_in_the_band() {
     assert!((0.0..0.8).contains(&wider_deg), "{wider_deg}");
     let weak = by(0.8);
     assert!(weak.widest_band_deg > planned.widest_band_deg);
-    // Magnets that do less leave more of what they were to take away.
+    // Weaker magnets leave more of the field that they should correct.
     let left = |learnt: &UpdatedPrediction| {
         let after = learnt.model_after.parameters_over_lambda;
         let before = adjusted.case.model.parameters_over_lambda;
@@ -371,7 +372,7 @@ fn a_compass_that_does_not_point_along_the_field_read_again_is_not_explained() {
     assert_eq!(card(None).card, None);
 }
 
-/// The second reading of docs/plan.md is one at the berth beside it.
+/// The second reading of docs/plan.md is valid together with its berth.
 #[test]
 fn the_second_reading_in_the_documentation_reads() {
     let page = include_str!("../../../../../docs/plan.md");
@@ -382,7 +383,7 @@ fn the_second_reading_in_the_documentation_reads() {
     let berth: BerthForm = serde_json::from_str(block(1)).unwrap();
     let after: PostCheckForm = serde_json::from_str(block(2)).unwrap();
     let (first, there) = (berth.parse().unwrap(), berth.parse_after(&after).unwrap());
-    // Variation is that of its own time.
+    // Variation is for the reading's own time.
     let [one, other] = [&there, &first].map(|berth| berth.reading.magnetic().degrees());
     assert!((one - other).abs() < 1e-3);
     assert_eq!(there.reading.errors(), first.reading.errors());

@@ -11,7 +11,7 @@ use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::ship::PARAMETERS;
 use nalgebra::SMatrix;
 
-/// The mean of all that may be, and its spread.
+/// Combines the posteriors of all hypotheses to a mean and its covariance.
 pub(crate) fn update_prediction(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,

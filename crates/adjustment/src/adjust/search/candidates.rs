@@ -1,4 +1,4 @@
-//! Every setting there is to choose from.
+//! Possible magnet settings of an axis.
 
 use super::magnet_use::{MagnetUse, stock, used_by};
 use super::tray_pruning::{self, PruningCandidate};
@@ -7,37 +7,37 @@ use crate::binnacle::{Axis, Binnacle, Setting, Tray};
 use crate::corrector::{Iron, Vector, magnet_field};
 use std::ops::RangeInclusive;
 
-/// More settings of one axis than this are not all gone through: of those with more trays,
-/// one of each few nT is then taken.
+/// Greatest number of settings of one axis; beyond it, settings with more trays are pruned
+/// to one per few nT.
 const MOST_SETTINGS: usize = 40_000;
-/// Magnets that one hole can hold, red end forward or to starboard.
+/// Magnets in one hole, red end forward or to starboard.
 struct TrayCandidate {
     tray: Tray,
     used: MagnetUse,
-    /// Index of hole and kind among the fields of one magnet.
+    /// Index of hole and kind among the fields of single magnets.
     field: usize,
 }
 
-/// What a rack can take, by the fields of single magnets.
+/// Capacity of a rack, by the fields of single magnets.
 struct Capacity {
     at_once: usize,
     magnets_each: f64,
-    /// Of each kind that fits, how many are on board.
+    /// Number on board of each kind that fits.
     aboard: Vec<f64>,
 }
 
-/// One way to set the magnets of an axis.
+/// A setting of the magnets of an axis.
 #[derive(Clone, Debug)]
 pub(crate) struct AxisSetting {
     pub(crate) trays: Vec<Tray>,
     pub(crate) used: MagnetUse,
     pub(crate) moves: u32,
-    /// Fields of single magnets, with how often each counts.
+    /// Fields of single magnets with their multiplicity.
     parts: Vec<(usize, f64)>,
 }
 
 impl AxisSetting {
-    /// Their field at the card, nT: forward and starboard.
+    /// Returns the field at the card, nT: forward and starboard.
     pub(crate) fn field_nt(&self, single: &[Vector]) -> [f64; 2] {
         let parts = self.parts.iter();
         parts.fold([0.0; 2], |sum, (index, count)| {
@@ -46,22 +46,22 @@ impl AxisSetting {
     }
 }
 
-/// All ways to set the magnets of an axis.
+/// All settings of the magnets of an axis.
 pub(crate) struct AxisCandidates {
     axis: Axis,
     /// Holes and kinds in the order of the fields of single magnets.
     singles: Vec<(u16, String)>,
     pub(crate) settings: Vec<AxisSetting>,
-    /// Most trays or holes in use at once.
+    /// Greatest number of trays or holes in use at once.
     pub(crate) trays: u8,
-    /// Whether every setting is among them.
+    /// Complete: every setting is included.
     pub(crate) is_complete: bool,
     capacity: Capacity,
 }
 
 impl AxisCandidates {
-    /// All that are within stock, the standing ones first; none with red ends against
-    /// each other, which only weakens magnets that are there to be strong.
+    /// Lists all settings within stock, the present one first; magnets with opposing red
+    /// ends are excluded, because they only weaken each other.
     pub(crate) fn new(binnacle: &Binnacle, axis: Axis, standing: &Setting) -> AxisCandidates {
         let rack = binnacle.design.rack(axis);
         let stock = stock(binnacle);
@@ -127,7 +127,7 @@ impl AxisCandidates {
         candidates
     }
 
-    /// Of the settings with so many trays one of each few nT.
+    /// Adds the settings with so many trays, pruned to one per few nT.
     fn add_pruned(
         &mut self,
         trays: &RangeInclusive<u8>,
@@ -167,8 +167,8 @@ impl AxisCandidates {
         }
     }
 
-    /// No setting of the rack, gone through or not, makes a stronger field than this, nT:
-    /// forward and to starboard, either way.
+    /// Bounds the field of any setting of the rack, nT: forward and to starboard, in either
+    /// direction.
     pub(crate) fn reach_nt(&self, single: &[Vector]) -> [f64; 2] {
         let Capacity {
             at_once,
@@ -178,14 +178,14 @@ impl AxisCandidates {
         let kinds = aboard.len().max(1);
         [0, 1].map(|part| {
             let of = |index: usize| single[index][part].abs();
-            // Each hole with its strongest kind, however few of it there are.
+            // Each hole holds its strongest kind, regardless of stock.
             let holes = (0..single.len()).step_by(kinds);
             let mut strongest: Vec<f64> = holes
                 .map(|first| (first..first + kinds).map(of).fold(0.0, f64::max))
                 .collect();
             strongest.sort_by(|a, b| b.total_cmp(a));
             let with_holes = magnets_each * strongest.iter().take(*at_once).sum::<f64>();
-            // Each kind with the whole rack for itself, as many of it as there are.
+            // Each kind has the whole rack, up to its stock.
             let with_stock = (0..kinds).map(|kind| {
                 let mut of_kind: Vec<f64> = (kind..single.len()).step_by(kinds).map(of).collect();
                 of_kind.sort_by(|a, b| b.total_cmp(a));
@@ -234,7 +234,7 @@ impl AxisCandidates {
         };
         let trays: Vec<Tray> = held().map(with_red).collect();
         let moves = corrector_moves::tray_moves(standing, &trays);
-        // What stands so already is there, and nothing has no other end.
+        // The present setting is already included, and no magnets have no other end.
         if moves > 0 && (positive || !trays.is_empty()) {
             let parts = held().map(|h| (h.field, red.sign() * f64::from(h.tray.count)));
             self.settings.push(AxisSetting {
@@ -263,7 +263,7 @@ impl AxisCandidates {
         }
     }
 
-    /// Fields of single magnets, soft iron standing so.
+    /// Returns the fields of single magnets with this soft iron.
     pub(crate) fn fields(&self, binnacle: &Binnacle, iron: &Iron) -> Vec<Vector> {
         let of = |(hole, magnet): &(u16, String)| {
             magnet_field(binnacle, iron, self.axis, magnet, *hole).unwrap_or_default()
@@ -272,7 +272,7 @@ impl AxisCandidates {
     }
 }
 
-/// All choices of so many holdings in holes that differ.
+/// Lists all combinations of candidates in different holes.
 fn combinations(candidates_in_holes: &[TrayCandidate], many: usize) -> Vec<Vec<usize>> {
     let mut all = Vec::new();
     let mut chosen = Vec::new();
@@ -295,7 +295,7 @@ fn extend(
         let last = chosen
             .last()
             .map(|last| candidates_in_holes[*last].tray.hole);
-        // So that four trays of twelve magnets do not fill the memory first.
+        // The limit keeps four trays of twelve magnets from filling the memory.
         if last == Some(candidates_in_holes[index].tray.hole) || all.len() > MOST_SETTINGS {
             continue;
         }

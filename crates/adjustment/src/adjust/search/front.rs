@@ -3,28 +3,29 @@
 use crate::binnacle::Setting;
 use serde::{Deserialize, Serialize};
 
-/// Better by less is not looked for, degrees.
+/// Least improvement that the search looks for, degrees.
 pub(crate) const SLACK_DEG: f64 = 0.005;
 
-/// No setting takes more moves.
+/// Greatest number of moves of a setting.
 const MOST_MOVES: usize = 32;
 
-/// How well the search knows that nothing is better.
+/// Optimality of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Optimality {
-    /// Whether every setting of the catalogue was gone through or excluded: none is better
-    /// by more than a gap that no card shows.
+    /// Proven: every setting was tried or excluded, and none is better by more than a gap
+    /// that no card shows.
     pub proven: bool,
-    /// No setting's worst residual, weighted over the waters, is better than the best
-    /// plan's by more than this, degrees.
+    /// Greatest possible improvement over the best plan's worst residual, weighted over the
+    /// waters, degrees.
     pub gap_deg: f64,
-    /// Boxes of settings that were looked at.
+    /// Number of boxes of settings in the search.
     pub nodes: u64,
-    /// Most trays or holes of fore-and-aft and athwartship magnets in use at once.
+    /// Greatest number of trays or holes of fore-and-aft and athwartship magnets in use at
+    /// once.
     pub trays_in_use: [u8; 2],
 }
 
-/// The best for a number of moves.
+/// Best setting for a number of moves.
 #[derive(Clone, Debug)]
 pub(crate) struct BestSetting {
     pub(crate) setting: Setting,
@@ -32,11 +33,11 @@ pub(crate) struct BestSetting {
     pub(crate) worst_deg: f64,
 }
 
-/// For every number of moves the best found with no more of them.
+/// Best setting for each number of moves.
 pub(crate) struct ParetoFront {
     best: Vec<Option<BestSetting>>,
     pub(crate) optimality: Optimality,
-    /// The least bound of what was not looked at.
+    /// Least bound of the untried settings.
     pub(crate) left_out_deg: f64,
 }
 
@@ -54,7 +55,7 @@ impl ParetoFront {
         }
     }
 
-    /// What is to be beaten with so many moves.
+    /// Returns the best residual with at most so many moves.
     pub(crate) fn at(&self, moves: u32) -> f64 {
         let known = self.best[..=(moves as usize).min(MOST_MOVES - 1)]
             .iter()
@@ -74,7 +75,8 @@ impl ParetoFront {
         }
     }
 
-    /// Each better than all with fewer moves, fewest moves first.
+    /// Lists the settings that are each better than all with fewer moves, fewest moves
+    /// first.
     pub(crate) fn undominated(&self) -> Vec<&BestSetting> {
         let mut found: Vec<&BestSetting> = Vec::new();
         for next in self.best.iter().flatten() {

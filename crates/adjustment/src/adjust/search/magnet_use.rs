@@ -2,10 +2,10 @@
 
 use crate::binnacle::Binnacle;
 
-/// Kinds of magnets are counted in a byte each.
+/// Number of kinds of magnets, a byte each.
 const KINDS: usize = 8;
 
-/// How many magnets of each kind are used, a byte each.
+/// Number of magnets in use of each kind, a byte each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct MagnetUse(u64);
 
@@ -14,7 +14,7 @@ impl MagnetUse {
         MagnetUse(self.0 + other.0)
     }
 
-    /// Whether no kind is used more often than there are magnets.
+    /// Returns true when no kind exceeds the stock.
     pub(crate) fn within(self, stock: MagnetUse) -> bool {
         (0..KINDS).all(|kind| self.of(kind) <= stock.of(kind))
     }
@@ -28,11 +28,11 @@ impl MagnetUse {
     }
 }
 
-/// What is on board.
+/// Counts the magnets on board.
 pub(crate) fn stock(binnacle: &Binnacle) -> MagnetUse {
     let kinds = binnacle.design.magnets.iter().take(KINDS).enumerate();
     kinds.fold(MagnetUse::default(), |sum, (index, kind)| {
-        // Half a byte's range is left for the sum of two axes.
+        // Half of a byte's range is reserved for the sum of two axes.
         let count = binnacle.magnet_count(&kind.name).min(100);
         sum.plus(MagnetUse::some(index, u64::from(count)))
     })

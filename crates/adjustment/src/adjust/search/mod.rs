@@ -1,13 +1,11 @@
-//! The search over all settings: soft iron first, and for each the magnets of both
-//! axes by branch and bound.
+//! Search over all settings: soft iron first, and for each the magnets of both axes by
+//! branch and bound.
 //!
-//! What always holds: of every number of moves the best setting found is kept, and a
-//! family of settings is left out only where a bound says that none of it beats what is
-//! known for its moves by more than `SLACK_DEG`. So the result is the best of the whole
-//! catalogue for every number of moves, unless `MOST_NODES` ended the search, or a rack has
-//! more settings than can be gone through. Then the gap says how much better than the best
-//! something could be that was not looked at: the racks' reach is taken for a continuum
-//! that magnets can be set to at will, and bounded as everything else.
+//! Invariants: the best setting is kept for every number of moves. A family of settings is
+//! skipped only when a bound excludes any improvement beyond `SLACK_DEG` for its moves. The
+//! result is therefore the best of the whole catalogue for every number of moves, unless
+//! `MOST_NODES` ended the search, or a rack has too many settings. In these cases a gap
+//! bounds the possible improvement: it treats the racks' reach as a continuum.
 
 pub(crate) mod candidates;
 mod magnet_use;
@@ -36,12 +34,11 @@ use relaxation::relaxed_within;
 use soft_iron::iron;
 use tree::{Group, Pair};
 
-/// About ten seconds of one core.
+/// Greatest number of nodes: about ten seconds of one core.
 const MOST_NODES: u64 = 6_000_000;
-/// A search that can leave out nothing better than this has proven its best, degrees: no
-/// card is read as well.
+/// Gap of a search with a proven optimum, degrees: finer than any reading of a card.
 const PROVEN_DEG: f64 = 0.05;
-/// One choice of soft iron with the heeling magnets that go with it.
+/// A choice of soft iron with its heeling magnets.
 struct IronChoice {
     soft: Soft,
     heeling: Option<HeelingSetting>,
@@ -52,7 +49,7 @@ struct IronChoice {
     bound_deg: f64,
 }
 
-/// What all choices are judged by.
+/// Common data of all choices.
 struct Search<'s> {
     adjustment: &'s Adjustment<'s>,
     state: &'s MagneticState<'s>,
@@ -79,7 +76,7 @@ pub(crate) fn search(adjustment: &Adjustment<'_>, state: &MagneticState<'_>) -> 
     let irons = iron(state, standing);
     let mut choices: Vec<IronChoice> = irons
         .into_iter()
-        // What is known of few moves makes the bounds of more moves bite.
+        // Settings with few moves tighten the bounds of those with more.
         .map(|(soft, moves)| search.with_present_magnets(soft, moves, &mut front))
         .collect();
     choices.sort_by(|a, b| {
@@ -106,7 +103,7 @@ impl Search<'_> {
         })
     }
 
-    /// A choice with its bound; with the magnets as they stand it is offered at once.
+    /// Evaluates a choice with its bound, and offers it with the present magnets.
     fn with_present_magnets(&self, soft: Soft, moves: u32, front: &mut ParetoFront) -> IronChoice {
         let binnacle = self.state.binnacle;
         let iron = Iron::new(binnacle, &soft);
@@ -151,7 +148,7 @@ fn setting(choice: &IronChoice, fore_and_aft: &AxisSetting, athwartship: &AxisSe
 }
 
 impl Search<'_> {
-    /// Looks through the magnets of one choice of iron.
+    /// Searches the magnets of one choice of iron.
     fn magnets(&self, choice: &IronChoice, front: &mut ParetoFront) {
         let mut known = None;
         let mut trees = [0, 1].map(|a| vec![None; self.groups[a].len()]);
@@ -180,7 +177,7 @@ impl Search<'_> {
         }
     }
 
-    /// Bounds what settings that were not gone through could do.
+    /// Bounds the improvement by untried settings.
     fn bound_unsearched(&self, choices: &[IronChoice], front: &mut ParetoFront) {
         let mut left_deg = front.left_out_deg.min(front.at(u32::MAX) - SLACK_DEG);
         let mut nodes = 0;
@@ -205,7 +202,7 @@ impl Search<'_> {
         front.left_out_deg = left_deg;
     }
 
-    /// Goes down both trees at once, the better half first.
+    /// Descends both trees together, the better half first.
     fn descend(
         &self,
         choice: &IronChoice,
@@ -245,7 +242,7 @@ impl Search<'_> {
                 child[split] = 2 * node[split] + which;
                 (child, bound(child))
             });
-            // The last one in is the first out.
+            // The stack's last entry comes first.
             if children[0].1 < children[1].1 {
                 children.swap(0, 1);
             }

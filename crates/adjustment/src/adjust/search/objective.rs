@@ -1,18 +1,18 @@
-//! What a search makes small: the worst residual on any heading, weighted over the
-//! waters; and two bounds on it that hold for whole families of settings.
+//! Objective of the search: the worst residual on any heading, weighted over the waters,
+//! with two bounds for whole families of settings.
 //!
-//! On one heading the residual is the angle of a vector that is linear in the magnets'
-//! field b, so that over a rectangle of b it is least at a corner, or nil within. And
-//! whatever b is, on two opposite headings the residuals together are no better than
-//! the soft iron's alone: the two vectors add up to twice it, and what lies within an
-//! angle of north, with its sum, is a convex cone (docs/science.md, §11).
+//! On one heading, the residual is the angle of a vector that is linear in the magnets'
+//! field b. Over a rectangle of b, it is least at a corner, or zero within. For any b, the
+//! residuals on two opposite headings together are no better than the soft iron's alone:
+//! the two vectors sum to twice it, and the vectors within an angle of north form a convex
+//! cone (docs/science.md, §11).
 
 use crate::adjust::inputs::Water;
 use binnacle_compass::ship::ShipMagnetism;
 
-/// Headings on which a setting is judged: every 5°.
+/// Number of evaluated headings: every 5°.
 const HEADINGS: usize = 72;
-/// Every third counts for the bound of a box.
+/// Stride of headings in the bound of a box.
 const STRIDE: usize = 3;
 
 /// A rectangle of horizontal fields, nT.
@@ -23,21 +23,21 @@ pub(crate) struct FieldBox {
 }
 
 impl FieldBox {
-    /// The longer side, nT.
+    /// Returns the longer side, nT.
     pub(crate) fn extent(self) -> f64 {
         (self.x[1] - self.x[0]).max(self.y[1] - self.y[0])
     }
 }
 
-/// The headings and their directions, with the model's constant.
+/// Headings and their directions, with the model's constant.
 pub(crate) struct HeadingGrid {
-    /// (sin, cos) of the magnetic heading.
+    /// Sine and cosine of the magnetic heading.
     heading: Vec<(f64, f64)>,
-    /// The same of heading plus constant: the constant turns what is read.
+    /// Sine and cosine of the heading plus the constant, which turns the reading.
     read: Vec<(f64, f64)>,
 }
 
-/// One choice of soft iron in all the waters: what magnets are added to.
+/// A choice of soft iron in all the waters, to which magnets are added.
 pub(crate) struct Objective<'a> {
     compass: &'a HeadingGrid,
     waters: Vec<WaterField>,
@@ -45,7 +45,7 @@ pub(crate) struct Objective<'a> {
 
 struct WaterField {
     weight: f64,
-    /// East and north of the field over all headings, without the magnets, nT.
+    /// East and north parts of the field on all headings, without the magnets, nT.
     fixed: Vec<(f64, f64)>,
 }
 
@@ -65,8 +65,8 @@ impl HeadingGrid {
 }
 
 impl<'a> Objective<'a> {
-    /// `aboard` gives the ship, this soft iron included and the magnets not, where the
-    /// horizontal field is as given.
+    /// Prepares a choice; `ship_at` gives the ship with this soft iron and without magnets
+    /// at a horizontal field.
     pub(crate) fn new(
         compass: &'a HeadingGrid,
         waters: &[Water],
@@ -96,22 +96,23 @@ impl<'a> Objective<'a> {
         }
     }
 
-    /// No magnets make the worst residual better than this, degrees.
+    /// Bounds the worst residual with any magnets, degrees.
     pub(crate) fn bound_for_iron(&self) -> f64 {
         self.weighted(|water| {
             let half = HEADINGS / 2;
             (0..half)
                 .map(|i| {
                     let (one, other) = (water.fixed[i], water.fixed[i + half]);
-                    // In the other heading's axes north is turned by half a circle, and
-                    // so is what the earth's field induces; b is not, and drops out.
+                    // In the other heading's axes, north and the induced field are turned
+                    // by half a circle; b is not, and drops out.
                     tangent((one.0 + other.0, one.1 + other.1))
                 })
                 .fold(0.0, f64::max)
         })
     }
 
-    /// The worst residual with magnets of this field, weighted over the waters, degrees.
+    /// Returns the worst residual with magnets of this field, weighted over the waters,
+    /// degrees.
     pub(crate) fn worst_deg(&self, b: [f64; 2]) -> f64 {
         self.weighted(|water| {
             let each = water.fixed.iter().zip(&self.compass.read);
@@ -120,12 +121,12 @@ impl<'a> Objective<'a> {
         })
     }
 
-    /// No magnets within the box make it better than this, degrees.
+    /// Bounds the worst residual with magnets within the box, degrees.
     pub(crate) fn bound_deg(&self, within: &FieldBox) -> f64 {
         self.bound_by(STRIDE, within)
     }
 
-    /// The same by every heading, for boxes that are small.
+    /// Bounds it by every heading, for small boxes.
     pub(crate) fn fine_bound_deg(&self, within: &FieldBox) -> f64 {
         self.bound_by(1, within)
     }
@@ -144,7 +145,7 @@ impl<'a> Objective<'a> {
     }
 }
 
-/// East and north parts on a heading of a field in ship axes.
+/// Rotates a field in ship axes to its east and north parts on a heading.
 fn east_north((sin, cos): (f64, f64), x: f64, y: f64) -> (f64, f64) {
     (x * sin + y * cos, x * cos - y * sin)
 }
@@ -154,7 +155,7 @@ fn with(fixed: (f64, f64), read: (f64, f64), [x, y]: [f64; 2]) -> (f64, f64) {
     (fixed.0 + east, fixed.1 + north)
 }
 
-/// Tangent of the residual; without bound where the card would turn round.
+/// Returns the tangent of the residual; infinite where the card would turn round.
 fn tangent((east, north): (f64, f64)) -> f64 {
     if north > 0.0 {
         east.abs() / north

@@ -1,16 +1,16 @@
-//! Bounds of settings that were not gone through.
+//! Bounds of untried settings.
 
 use super::objective::{FieldBox, Objective};
 
-/// About a second of one core.
+/// Greatest number of nodes: about a second of one core.
 const MOST_RELAXED: u64 = 200_000;
-/// A smaller box of the continuum is not divided, nT.
+/// Smallest box of the continuum that is divided, nT.
 const SMALLEST_NT: f64 = 2.0;
-/// A smaller box is bounded on every heading, nT.
+/// Size below which a box is bounded on every heading, nT.
 const SMALL_NT: f64 = 300.0;
 
-/// The lesser of what is known to be left and what magnets of any field within a box would
-/// leave, degrees: a bound from below.
+/// Bounds the residual with magnets of any field within a box, at most the known bound,
+/// degrees.
 pub(crate) fn relaxed_within(
     objective: &Objective<'_>,
     within: FieldBox,
@@ -35,7 +35,7 @@ pub(crate) fn relaxed_within(
             continue;
         }
         let mut halves = halved(within).map(|half| (half, bound(&half)));
-        // The last one in is the first out.
+        // The stack's last entry comes first.
         if halves[0].1 < halves[1].1 {
             halves.swap(0, 1);
         }

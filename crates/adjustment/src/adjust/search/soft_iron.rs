@@ -4,7 +4,7 @@ use crate::adjust::corrector_moves;
 use crate::adjust::state::MagneticState;
 use crate::binnacle::{BarSetting, Binnacle, PairSetting, Setting, Soft};
 
-/// All choices of soft iron, with the moves from how it stands.
+/// Lists all choices of soft iron, with the moves from the present one.
 pub(crate) fn iron(state: &MagneticState<'_>, standing: &Setting) -> Vec<(Soft, u32)> {
     let binnacle = state.binnacle;
     let pairs = pairs(binnacle, standing, state.may_move_pair);
@@ -44,9 +44,9 @@ fn pairs(binnacle: &Binnacle, standing: &Setting, may_move: bool) -> Vec<Option<
     all
 }
 
-/// A bar cures what the vertical field induces and nothing else: one that leaves more of
-/// it than the standing one would trade a permanent field for one that changes sign with
-/// the hemisphere, however well it may look in the waters that are known.
+/// Lists the bars. A bar corrects only the induced field: one that leaves more of it than
+/// the present one would exchange a permanent field for one that changes sign with the
+/// hemisphere, however good it looks in the known waters.
 fn bars(state: &MagneticState<'_>, standing: &Setting) -> Vec<Option<BarSetting>> {
     let binnacle = state.binnacle;
     let may_move = state.may_move_bar;

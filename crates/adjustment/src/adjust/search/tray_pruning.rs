@@ -1,30 +1,30 @@
-//! Ways to fill a rack with more trays than all of them could be gone through: of those
-//! that do nearly the same, one.
+//! Pruning of tray combinations in a rack with too many: one of those with nearly the same
+//! field.
 //!
-//! The fields of trays add up. So the sets of one tray more are those of one tray fewer
-//! with any holding beside, and of all whose fields fall into one cell, and that keep as
-//! many trays where they stand, the one with the fewest movements of hand stays. What is
-//! left out thereby is not lost: the search bounds what it could do (`Search::relaxed`).
+//! The fields of trays add up. Sets with one more tray are those with one fewer and any
+//! other candidate. Of all sets with a field in the same cell and the same number of
+//! unmoved trays, the one with the fewest moves is kept. The pruned sets are not lost: the
+//! search bounds their possible improvement (`Search::bound_unsearched`).
 
 use super::magnet_use::MagnetUse;
 use std::ops::RangeInclusive;
 
-/// Cells between no field and the strongest: a few nT each.
+/// Number of cells up to the strongest field: a few nT each.
 const CELLS: usize = 6_000;
 
-/// What one hole may hold.
+/// Magnets in one hole.
 pub(crate) struct PruningCandidate {
     pub(crate) hole: u16,
-    /// Its field where no iron stands, nT.
+    /// Field without soft iron, nT.
     pub(crate) field_nt: f64,
     pub(crate) used: MagnetUse,
-    /// Whether it stands there already.
+    /// Already in place.
     pub(crate) stands: bool,
-    /// Movements of hand and magnets that it takes by itself, for choosing among equals.
+    /// Moves and magnets of this hole alone, for choosing among equals.
     pub(crate) cost: u32,
 }
 
-/// Some items in holes that differ.
+/// Candidates in different holes.
 #[derive(Clone)]
 struct TraySet {
     items: Vec<usize>,
@@ -34,7 +34,7 @@ struct TraySet {
     cost: u32,
 }
 
-/// Sets of as many items as are asked for, by their indices.
+/// Returns pruned sets of each requested size, by their indices.
 pub(crate) fn prune(
     items: &[PruningCandidate],
     many: &RangeInclusive<u8>,

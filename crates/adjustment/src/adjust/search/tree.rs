@@ -5,11 +5,11 @@ use super::objective::FieldBox;
 use crate::adjust::state::MagneticState;
 use crate::corrector::{Iron, Vector};
 
-/// Magnets of one axis that take the same number of moves, as a tree whose node i has
-/// the children 2i and 2i + 1, and whose leaves are the second half.
+/// Magnets of one axis with the same number of moves, as a tree whose node i has the
+/// children 2i and 2i + 1, and whose leaves are the second half.
 pub(crate) struct Group {
     pub(crate) moves: u32,
-    /// Indices of settings, by their field where no iron stands.
+    /// Indices of settings, sorted by their field without soft iron.
     members: Vec<usize>,
 }
 
@@ -77,13 +77,13 @@ impl Pair<'_> {
         }
     }
 
-    /// The setting at a leaf of one axis.
+    /// Returns the setting at a leaf of one axis.
     pub(crate) fn leaf(&self, axis: usize, node: usize) -> Option<usize> {
         let members = &self.groups[axis].members;
         node.checked_sub(members.len()).map(|leaf| members[leaf])
     }
 
-    /// The axis whose node can and should be split.
+    /// Returns the axis whose node should be split.
     pub(crate) fn wider(&self, node: [usize; 2]) -> usize {
         let wide = |axis: usize| match self.leaf(axis, node[axis]) {
             Some(_) => -1.0,

@@ -1,18 +1,17 @@
-//! How far correctors are from what the formulas say of them.
+//! Errors of correctors relative to the formulas.
 //!
-//! Each error here is an effect of one standard deviation, independent of the others.
-//! Only what was moved counts: what a corrector that stays does is part of the ship as
-//! she was measured. A tray's magnets err together; moved from one hole to another they
-//! err by the difference.
+//! Each error is an effect of one standard deviation, independent of the others. Only moved
+//! correctors count: the effect of an unmoved one is part of the measured ship. The magnets
+//! of a tray have a common error; moved from one hole to another, they have the difference.
 
 use crate::adjust::corrector_moves::match_trays;
 use crate::binnacle::{Axis, Binnacle, Setting, Soft, Tray};
 use crate::corrector::{Effect, Iron, heeling_effect, tray_effect};
 
-/// Of the needles' moment, relative: no catalogue says it.
+/// Relative standard deviation of the needles' moment, which no catalogue gives.
 const NEEDLE_SD: f64 = 0.1;
 
-/// The errors of going from the binnacle's own setting to another.
+/// Returns the errors of a change from the binnacle's own setting to another.
 pub(crate) fn setting_errors(binnacle: &Binnacle, to: &Setting) -> Vec<Effect> {
     errors_between(binnacle, &binnacle.setting, to)
 }
@@ -72,7 +71,7 @@ fn magnets(
     errors
 }
 
-/// Relative standard deviations from the moment and from the place of a tray.
+/// Returns the relative standard deviations of a tray's moment and position.
 fn tray_sd(binnacle: &Binnacle, axis: Axis, tray: &Tray) -> (f64, f64) {
     if let Some(measured) = binnacle.calibrated_magnet(axis, &tray.magnet, tray.hole) {
         return (measured.sd, 0.0);
@@ -123,7 +122,7 @@ fn pair(binnacle: &Binnacle, from: &Setting, to: &Setting) -> Vec<Effect> {
     };
     let (old, new) = (one(from), one(to));
     let own = |of: &Option<(String, Effect, Effect)>| of.clone().map(|(name, own, _)| (name, own));
-    // The needles are the same ones, whatever iron stands beside them.
+    // The needles stay the same with any soft iron.
     let needles = [&new, &old].map(|of| of.as_ref().map(|(_, _, needles)| *needles));
     let [new_needles, old_needles] = needles.map(Option::unwrap_or_default);
     let mut errors = differing(own(&old), own(&new));
@@ -149,7 +148,8 @@ fn bar(binnacle: &Binnacle, from: &Setting, to: &Setting) -> Vec<Effect> {
     differing(one(from), one(to))
 }
 
-/// The same piece of iron errs by the difference, another by itself.
+/// Combines the errors: the difference for the same piece of iron, both for different
+/// pieces.
 fn differing<T: PartialEq>(old: Option<(T, Effect)>, new: Option<(T, Effect)>) -> Vec<Effect> {
     match (old, new) {
         (Some((old, old_error)), Some((new, new_error))) if old == new => {

@@ -9,10 +9,10 @@ use crate::corrector::{Effect, effect};
 use binnacle_compass::time::Timestamp;
 
 impl EarlierLambda {
-    /// As a berth tells it, its correctors as its binnacle has them.
+    /// Determines λ from a berth, with the setting of its binnacle.
     ///
     /// # Errors
-    /// When its reading tells none.
+    /// When its reading gives no λ.
     pub fn from_berth(
         at: Timestamp,
         adjustment: &Adjustment<'_>,
@@ -21,7 +21,7 @@ impl EarlierLambda {
         let lambda = state.lambda();
         let [forward, starboard] = adjustment.reading.field_nt();
         let drift = drift_nt(adjustment) / forward.hypot(starboard);
-        // Without the model's covariance nothing is known of its error.
+        // Without the model's covariance, the error of λ is unknown.
         let told = adjustment.model.covariance.map(|_| EarlierLambda {
             at,
             lambda,
@@ -30,8 +30,9 @@ impl EarlierLambda {
         Ok(told)
     }
 
-    /// The same with the correctors as this binnacle has them, where they stood so when it was
-    /// told; what was moved errs by its tolerance. None where the binnacle cannot be set so.
+    /// Converts λ from the setting `stood` to the setting of this binnacle, with the
+    /// tolerance of the moved correctors as an error. `None` where the binnacle does not
+    /// allow `stood`.
     #[must_use]
     pub fn adapted_to(self, binnacle: &Binnacle, stood: &Setting) -> Option<EarlierLambda> {
         binnacle.with_setting(stood.clone()).ok()?;

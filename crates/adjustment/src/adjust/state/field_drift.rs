@@ -1,11 +1,11 @@
-//! What may have become of the ship's permanent field between the model's last heading and
-//! the berth, and how much of it the berth's reading cannot have shown.
+//! Possible changes of the ship's permanent field between the model's last heading and the
+//! berth, as far as the berth's reading cannot show them.
 //!
-//! One reading on one heading gives two numbers. A change across the needle turns the field
-//! that is read, and the berth's angle shows it as well as heading and magnetometer are known;
-//! a change along the needle makes it stronger or weaker, as another λ would. What always
-//! holds: whatever of either has not been shown is in the covariance that a plan carries, so
-//! that a band too wide refuses it (docs/science.md, §11).
+//! One reading on one heading gives two numbers. A change across the needle turns the
+//! measured field, and the berth's angle shows it as precisely as heading and magnetometer
+//! are known. A change along the needle changes the strength, like another λ. Invariant:
+//! undetected changes are part of a plan's covariance, so that too wide a band refuses the
+//! plan (docs/science.md, §11).
 
 use crate::adjust::diagnosis::{LambdaComparison, Refusal};
 use crate::adjust::inputs::Adjustment;
@@ -14,16 +14,17 @@ use binnacle_compass::deviation::NORMAL_99;
 use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::ship::PARAMETERS;
 
-/// The days in which bx and by wander by their typical drift.
+/// Period of the typical drift of bx and by, days.
 const DRIFT_DAYS: f64 = 30.0;
-/// An angle's check that lets more than this pass has not shown much, degrees.
+/// Detectable turn above which the angle's check is weak, degrees.
 const SHOWS_LITTLE_DEG: f64 = 4.0;
-/// Where bx, by and λ stand among the nine.
+/// Indices of bx, by and λ among the nine unknowns.
 const BX: usize = 0;
 const BY: usize = 2;
 const LAMBDA: usize = PARAMETERS + 1;
 
-/// What bx and by may have wandered since the model's last heading, one standard deviation.
+/// Returns the drift of bx and by since the model's last heading, one standard deviation,
+/// nT.
 pub(crate) fn drift_nt(adjustment: &Adjustment<'_>) -> f64 {
     let circumstances = &adjustment.circumstances;
     let days = circumstances.model_age_days.unwrap_or(0.0);
@@ -34,23 +35,23 @@ pub(crate) fn drift_nt(adjustment: &Adjustment<'_>) -> f64 {
     }
 }
 
-/// What the permanent field may have changed by, one standard deviation, nT.
+/// Possible changes of the permanent field, one standard deviation, nT.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FieldDrift {
-    /// The way the needle points aboard, `[forward, starboard]`.
+    /// Direction of the needle in ship axes, `[forward, starboard]`.
     along: [f64; 2],
-    /// What was read, nT.
+    /// Measured field, nT.
     field_nt: f64,
-    /// Any way, by drift.
+    /// Drift in any direction, nT.
     drift_nt: f64,
-    /// Across the needle, as far as the berth's check has not shown it.
+    /// Change across the needle that the berth's check has not excluded, nT.
     across_nt: f64,
     lambda: f64,
     comparison: Option<LambdaComparison>,
 }
 
 impl FieldDrift {
-    /// λ's variance with the magnetometer's scale.
+    /// Estimates the possible changes; `lambda_variance` includes the magnetometer's scale.
     pub(crate) fn new(
         adjustment: &Adjustment<'_>,
         estimate: &BerthEstimate,
@@ -85,9 +86,9 @@ impl FieldDrift {
         }
     }
 
-    /// Adds it to the covariance of the seven ratios, the constant and λ: with Δ along the
-    /// needle bx and by are more by it than the model has, and λ is less than it was read by
-    /// Δ over the field over λ.
+    /// Adds the changes to the covariance of the seven ratios, the constant and λ. A change
+    /// Δ along the needle adds to bx and by of the model, and reduces the measured λ by Δ
+    /// over the field over λ.
     pub(crate) fn widen(&self, joint: &mut JointCovariance) {
         let [forward, starboard] = self.along;
         let across_nt = self.drift_nt.hypot(self.across_nt);
@@ -110,7 +111,8 @@ impl FieldDrift {
         }
     }
 
-    /// What of a band the berth's check leaves open, in words; none at a good berth.
+    /// Describes the part of the band that the berth's check leaves open; `None` at a good
+    /// berth.
     pub(crate) fn unchecked_note(&self) -> Option<String> {
         let unchecked_deg = (self.across_nt / self.field_nt).to_degrees();
         (unchecked_deg > 0.0).then(|| {
@@ -122,7 +124,7 @@ impl FieldDrift {
         })
     }
 
-    /// Whether the earlier λ is contradicted beyond the errors of both.
+    /// Returns a refusal when λ contradicts the earlier one beyond the errors of both.
     pub(crate) fn refusal(&self) -> Option<Refusal> {
         let found = self.comparison?;
         let is_other = found.difference.abs() > NORMAL_99 * found.standard_error;
@@ -133,7 +135,7 @@ impl FieldDrift {
         })
     }
 
-    /// What the berth cannot have shown, for the adjuster.
+    /// Lists notes on changes that the berth could not show.
     pub(crate) fn notes(&self, detectable_turn_deg: Option<f64>) -> Vec<String> {
         let mut words: Vec<String> = self.unchecked_note().into_iter().collect();
         if let Some(deg) = detectable_turn_deg.filter(|deg| *deg > SHOWS_LITTLE_DEG) {
@@ -147,7 +149,7 @@ impl FieldDrift {
         words
     }
 
-    /// What no reading on one heading shows.
+    /// Describes the change that no reading on one heading shows.
     fn needle_note(&self) -> String {
         let (least, greatest) = (USUAL_LAMBDA.start(), USUAL_LAMBDA.end());
         let room = (self.lambda - least).max(greatest - self.lambda);

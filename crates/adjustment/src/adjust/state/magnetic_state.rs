@@ -1,7 +1,7 @@
-//! The ship as she is known at the berth, and with any other setting.
+//! State of the ship's magnetism at the berth, and with any other setting.
 //!
-//! `base` is she without correctors: what was measured less the effect of the setting
-//! then. The needles' part of that effect was fitted at a mean H of her waters.
+//! `base` is the ship without correctors: the measured ship less the effect of its setting
+//! then. The needles' part of that effect was fitted at a mean H of the vessel's waters.
 
 use super::corrector_errors::setting_errors;
 use super::field_drift::FieldDrift;
@@ -26,13 +26,13 @@ pub(crate) struct MagneticState<'a> {
     pub(crate) drift: FieldDrift,
     lambda: f64,
     base: ShipMagnetism,
-    /// What the correctors did while the ship was measured.
+    /// Effect of the correctors at the time of the reading.
     measured_effect: Effect,
-    /// The horizontal field at which the needles' part was fitted, nT.
+    /// Horizontal field at which the needles' part was fitted, nT.
     reference_h_nt: f64,
     pub(crate) may_move_pair: bool,
     pub(crate) may_move_bar: bool,
-    /// The vertical field at the berth, if it was read so that it can be believed.
+    /// Vertical field at the berth, if measured plausibly.
     pub(crate) vertical: Option<VerticalReading>,
 }
 
@@ -47,8 +47,8 @@ impl<'a> MagneticState<'a> {
         let mut lambda = 0.9;
         let mut estimate;
         let mut rounds = 0;
-        // The magnetometer meets no needles; what they take off D is known but for λ,
-        // to which they add nothing.
+        // The magnetometer does not measure the needles; their reduction of D is known
+        // except for λ, to which they add nothing.
         loop {
             let without = minus(&ShipMagnetism::from_parameters(p, lambda), &needle);
             let parameters = without.parameters_over_lambda();
@@ -90,7 +90,7 @@ impl<'a> MagneticState<'a> {
         Ok(state)
     }
 
-    /// As if λ were sure enough for spheres to be moved.
+    /// Returns the state as if λ were precise enough to move spheres.
     pub(crate) fn with_free_spheres(&self) -> MagneticState<'a> {
         MagneticState {
             may_move_pair: true,
@@ -102,12 +102,12 @@ impl<'a> MagneticState<'a> {
         self.model.constant_deg
     }
 
-    /// Standard error of λ, as a share of it.
+    /// Returns the relative standard error of λ.
     pub(crate) fn lambda_sd_share(&self) -> f64 {
         self.joint[LAMBDA][LAMBDA].sqrt() / self.lambda
     }
 
-    /// The whole ship with correctors of this effect, where the horizontal field is H.
+    /// Returns the whole ship with correctors of this effect at a horizontal field H.
     pub(crate) fn with_effect(&self, effect: &Effect, h_nt: f64) -> ShipMagnetism {
         let chi = effect.chi_at(h_nt);
         ShipMagnetism {
@@ -118,8 +118,8 @@ impl<'a> MagneticState<'a> {
         }
     }
 
-    /// What of a unit of vertical field is induced across the card with a bar: the size
-    /// of χ13 and χ23 together.
+    /// Returns the field induced across the card per unit of vertical field with a bar: the
+    /// magnitude of χ13 and χ23 together.
     pub(crate) fn left_to_induction(&self, bar: Option<&BarSetting>) -> f64 {
         let soft = Soft {
             quadrantal: None,
@@ -135,18 +135,18 @@ impl<'a> MagneticState<'a> {
         self.with_effect(&effect, self.reference_h_nt).lambda()
     }
 
-    /// How far the vertical field per earth's vertical field is from what it was.
+    /// Returns the change of the vertical field per unit of the earth's vertical field.
     pub(crate) fn chi33_change(&self, effect: &Effect) -> f64 {
         effect.chi[2][2] - self.measured_effect.chi[2][2]
     }
 
-    /// How far the permanent vertical field is from what it was, nT.
+    /// Returns the change of the permanent vertical field, nT.
     pub(crate) fn bz_change(&self, effect: &Effect) -> f64 {
         effect.b_nt[2] - self.measured_effect.b_nt[2]
     }
 
-    /// The model that holds with a setting: its covariance carries the errors of the
-    /// old model, of λ, and of every corrector that was moved (docs/science.md, eq. 24).
+    /// Returns the model with a setting; its covariance includes the errors of the old
+    /// model, of λ, and of every moved corrector (docs/science.md, eq. 24).
     pub(crate) fn model_with(&self, setting: &Setting) -> Result<Model, DeviationError> {
         let effect = effect(self.binnacle, setting);
         let ship = self.with_effect(&effect, self.reference_h_nt);
@@ -163,7 +163,7 @@ impl<'a> MagneticState<'a> {
         })
     }
 
-    /// The same for another horizontal field, where the needles count differently.
+    /// Returns the model for another horizontal field, where the needles count differently.
     pub(crate) fn model_at(
         &self,
         model: &Model,
@@ -204,7 +204,7 @@ impl<'a> MagneticState<'a> {
         covariance
     }
 
-    /// Rows of the slopes of the eight that hold then by the nine that were measured.
+    /// Returns the slopes of the new model's eight unknowns by the nine measured ones.
     fn slopes(&self, after: &[f64; PARAMETERS], new_lambda: f64) -> [JointRow; LAMBDA] {
         let before = self.model.parameters_over_lambda.to_array();
         let mut slopes = [[0.0; LAMBDA + 1]; LAMBDA];
@@ -216,7 +216,7 @@ impl<'a> MagneticState<'a> {
         slopes
     }
 
-    /// What an effect that comes on top makes of the eight.
+    /// Returns the change of the eight unknowns by an additional effect.
     fn sensitivity(
         &self,
         effect: &Effect,
@@ -232,7 +232,7 @@ impl<'a> MagneticState<'a> {
         })
     }
 
-    /// All that is known of the ship with a setting, for what is read then.
+    /// Returns the ship's state with a setting, for later readings.
     pub(crate) fn with_setting(
         &self,
         setting: &Setting,
@@ -254,7 +254,7 @@ impl<'a> MagneticState<'a> {
     }
 }
 
-/// The ship with a setting, as she is known before anything is read of her then.
+/// State of the ship with a setting, before any later reading.
 pub(crate) struct StateWithSetting<'c> {
     state: &'c MagneticState<'c>,
     pub(crate) setting: Setting,
@@ -266,12 +266,13 @@ pub(crate) struct StateWithSetting<'c> {
 }
 
 impl StateWithSetting<'_> {
-    /// What an effect that comes on top makes of the model's eight.
+    /// Returns the change of the model's eight unknowns by an additional effect.
     pub(crate) fn sensitivity(&self, effect: &Effect) -> [f64; LAMBDA] {
         self.state.sensitivity(effect, &self.after, self.new_lambda)
     }
 
-    /// Slopes of the model's eight by the eight that were measured and, last, by λ.
+    /// Returns the slopes of the model's eight unknowns by the eight measured ones and,
+    /// last, by λ.
     pub(crate) fn slopes(&self) -> &[JointRow; LAMBDA] {
         &self.slopes
     }
@@ -282,18 +283,19 @@ impl MagneticState<'_> {
         self.lambda
     }
 
-    /// Of the eight that were measured and, last, λ, the magnetometer's scale included.
+    /// Returns the covariance of the eight measured unknowns and, last, λ, including the
+    /// magnetometer's scale.
     pub(crate) fn joint(&self) -> &JointCovariance {
         &self.joint
     }
 
-    /// What the correctors did while the ship was measured.
+    /// Returns the effect of the correctors at the time of the reading.
     pub(crate) fn measured_effect(&self) -> &Effect {
         &self.measured_effect
     }
 
-    /// The horizontal field at the card without bowl and needles, nT, with correctors of
-    /// this effect in a field of the earth in ship axes.
+    /// Returns the horizontal field at the card without bowl and needles, nT, with
+    /// correctors of this effect, for an earth's field in ship axes.
     pub(crate) fn field(&self, effect: &Effect, earth: [f64; 3]) -> [f64; 2] {
         let [x, y, _] = self
             .with_effect(effect, f64::INFINITY)
@@ -302,7 +304,7 @@ impl MagneticState<'_> {
     }
 }
 
-/// The seven of an effect, not over λ, in the order of the parameters.
+/// Returns the seven parameters of an effect, not over λ, in the order of the parameters.
 fn seven(ship: &ShipMagnetism) -> [f64; PARAMETERS] {
     let chi = &ship.chi;
     [
@@ -338,7 +340,8 @@ fn needle_only(effect: &Effect, h_nt: f64) -> ShipMagnetism {
     .as_ship(h_nt)
 }
 
-/// What the needles did to the fitted D is their mean over where it was fitted.
+/// Averages the horizontal field over the waters of the fit, as the needles' part of the
+/// fitted D is averaged.
 fn harmonic_mean_h(adjustment: &Adjustment<'_>) -> f64 {
     let (weights, inverse) = adjustment.waters.iter().fold((0.0, 0.0), |sum, w| {
         (sum.0 + w.weight, sum.1 + w.weight / w.h_nt)

@@ -1,9 +1,8 @@
-//! How strong a corrector must be for what the compass showed of it.
+//! Scale of a corrector's effect that explains the observed turn of the compass.
 //!
-//! What always holds: a strength belongs to the thing and not to where it stood: to all
-//! magnets of a kind in every hole, to a pair at every mark, to the bar's pieces at every
-//! length, whether formulas or a calibration said what they do there. A strength that a
-//! corrector of its kind cannot have is none.
+//! Invariants: a scale belongs to the corrector and not to its place: to all magnets of a
+//! kind in every hole, to a pair at every mark, to the bar's pieces at every length, for
+//! formulas and calibrations alike. An implausible scale is rejected.
 
 use crate::adjust::diagnosis::turn_sd_deg;
 use crate::adjust::inputs::{AdjustError, Adjustment};
@@ -15,34 +14,34 @@ use crate::binnacle::{
 use crate::corrector::Iron;
 use std::ops::RangeInclusive;
 
-/// Within these, as shares of what was taken, the search for a strength keeps.
+/// Range of the search for a scale.
 const SEARCH_RANGE: RangeInclusive<f64> = 0.1..=5.0;
-/// Magnets lose strength, down to this share.
+/// Least scale of magnets, which lose strength with time.
 const MIN_MAGNET_SCALE: f64 = 0.3;
-/// Magnets gain none: those that were measured are as much stronger as that is unsure, but
-/// always up to this.
+/// Greatest gain of measured magnets, or more for a larger measurement error; magnets gain
+/// no strength.
 const MAX_GAIN_MEASURED: f64 = 0.25;
-/// Those of which only a catalogue says what they have may be of another make.
+/// Greatest gain of magnets with only a catalogue's moment, which may be of another make.
 const MAX_GAIN_NOMINAL: f64 = 1.0;
-/// Iron neither gains nor loses; it differs as its kind does, but always up to this.
+/// Least accepted change of soft iron, or more for a larger tolerance of its kind.
 const MIN_IRON_SPREAD: f64 = 0.2;
-/// So many standard deviations of its kind a corrector may differ.
+/// Greatest plausible difference of a corrector, in standard deviations of its kind.
 const PLAUSIBLE_SD: f64 = 5.0;
-/// How well a turn is known that is weighed for a strength, degrees: twice read, and turned
-/// by neighbours that are not quite as taken.
+/// Least standard deviation of a turn used for a scale, degrees: two readings, and errors
+/// of neighbouring correctors.
 const MIN_TURN_SD_DEG: f64 = 0.5;
-/// An effect that is found to this is found, degrees.
+/// Convergence of the search, degrees.
 const CONVERGED_DEG: f64 = 0.02;
 
-/// The share with its standard error and the binnacle that has the corrector so.
+/// Scale with its standard error, and the binnacle with the scaled corrector.
 pub(crate) struct CorrectorScale {
     pub(crate) share: f64,
     pub(crate) share_sd: f64,
     pub(crate) binnacle: Binnacle,
 }
 
-/// How strong the step's corrector must be for what was read; none where no strength that
-/// it can have explains that.
+/// Finds the scale of the step's corrector that explains the turn; none where no plausible
+/// scale does.
 pub(crate) fn find_scale(
     adjustment: &Adjustment<'_>,
     step: &Step,
@@ -94,7 +93,7 @@ pub(crate) fn find_scale(
     Ok(None)
 }
 
-/// The shares of what was taken that a corrector of this kind can have.
+/// Returns the plausible scales of a corrector.
 fn plausible_scales(binnacle: &Binnacle, place: &Place) -> Option<RangeInclusive<f64>> {
     let design = &binnacle.design;
     match place {
@@ -138,7 +137,7 @@ fn iron_scales(sd: f64) -> RangeInclusive<f64> {
     1.0 - more.min(1.0 - MIN_MAGNET_SCALE)..=1.0 + more
 }
 
-/// The binnacle with what stands there so many times as strong, wherever it is put.
+/// Scales a corrector at all its places.
 fn scale_corrector(binnacle: &Binnacle, place: &Place, share: f64, sd: f64) -> Option<Binnacle> {
     match place {
         Place::Magnets(tray) => scale_magnets(binnacle, tray, share, sd),
@@ -214,7 +213,7 @@ fn scale_bars(binnacle: &Binnacle, share: f64, sd: f64) -> Option<Binnacle> {
     with_calibration(binnacle, of_lengths.collect())
 }
 
-/// The binnacle with these in the place of what was known of them.
+/// Replaces the calibration of these correctors.
 fn with_calibration(binnacle: &Binnacle, entries: Vec<Calibrated>) -> Option<Binnacle> {
     let mut form: BinnacleForm = binnacle.clone().into();
     form.calibration

@@ -1,5 +1,4 @@
-//! What the compass showed after a step, held against what was expected; and a new
-//! plan from there where it was otherwise.
+//! Check of a step by the observed turn of the compass, with a new plan where it differs.
 
 mod corrector_scale;
 mod result;
@@ -15,15 +14,15 @@ use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::NORMAL_99;
 use corrector_scale::find_scale;
 
-/// A card that turned by less may not have turned at all, degrees.
+/// Turn below which the card may not have moved, degrees.
 const UNMOVED_DEG: f64 = 0.5;
-/// Holes are miscounted by no more.
+/// Greatest miscount of holes.
 const MISCOUNTED: i32 = 3;
-/// Holds the compass, read now, against what it read with the magnetometer: small errors
-/// of steps, each within its own tolerance, add up.
+/// Compares the present compass heading with that at the magnetometer reading: small errors
+/// of the steps, each within its own tolerance, add up.
 ///
 /// # Errors
-/// When the adjustment itself cannot be.
+/// When the input of the adjustment is invalid.
 pub fn check_total_turn(
     adjustment: &Adjustment<'_>,
     first_deg: f64,
@@ -42,10 +41,10 @@ pub fn check_total_turn(
     })
 }
 
-/// Judges a step by the compass at the berth before and after it, degrees.
+/// Judges a step by the compass headings before and after it, degrees.
 ///
 /// # Errors
-/// When the adjustment itself cannot be, or the headings are not finite.
+/// When the input of the adjustment is invalid, or the headings are not finite.
 pub fn check_step(
     adjustment: &Adjustment<'_>,
     step: &Step,
@@ -108,12 +107,12 @@ pub fn check_step(
     })
 }
 
-/// What a step came to whose corrector, it turns out, stands as `setting` says: the step as
-/// it was done, and the binnacle, its corrector as strong as the compass shows where that
-/// was read since. `adjustment` is that of before the step.
+/// Judges a step whose corrector turns out to be in the place of `setting`: returns the
+/// completed step, and the binnacle with the scale that the compass shows, if it was read
+/// since. `adjustment` is that before the step.
 ///
 /// # Errors
-/// When the adjustment itself cannot be.
+/// When the input of the adjustment is invalid.
 pub fn check_step_with_setting(
     adjustment: &Adjustment<'_>,
     step: &Step,
@@ -150,8 +149,7 @@ pub fn check_step_with_setting(
     Ok((done, binnacle))
 }
 
-/// The hole near the step's own in which its magnets, as strong as was taken, would turn the
-/// compass by what was read.
+/// Finds a nearby hole in which unscaled magnets would explain the turn.
 fn other_hole(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,
@@ -173,7 +171,7 @@ fn other_hole(
     nearest.map(|(_, hole)| hole)
 }
 
-/// The setting with the step's magnets turned end for end, if that is what was read.
+/// Returns the setting with the step's magnets reversed, if that explains the turn.
 fn wrong_end(
     adjustment: &Adjustment<'_>,
     state: &MagneticState<'_>,

@@ -7,81 +7,79 @@ use binnacle_compass::deviation::NORMAL_95;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What tells an effect no better, 95 %, is said to prove little.
+/// Relative precision above which an effect counts as hardly proven, 95 %.
 const PROVES_LITTLE: f64 = 0.3;
 
-/// What a step came to.
+/// Result of a step's check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "verdict", rename_all = "snake_case")]
 pub enum StepCheck {
-    /// It did what was expected: the next one may follow.
+    /// The step had the expected effect: the next one may follow.
     Confirmed {
-        /// By how much it turned less than, or beyond, what was expected, degrees.
+        /// Observed less expected turn, degrees.
         off_deg: f64,
-        /// What that tells of the corrector, which may be little.
+        /// Evidence for the corrector's effect, which may be weak.
         proven: ProvenEffect,
     },
-    /// On this heading the compass does not show it, and showed nothing.
+    /// The compass does not show the step on this heading, and showed nothing.
     NotSeen {
-        /// What it would have turned by, degrees.
+        /// Expected turn, degrees.
         expected_deg: f64,
     },
-    /// The magnets are in with the wrong end: turn them.
+    /// The magnets have the wrong end: they must be reversed.
     WrongEnd {
-        /// What the compass turned by, degrees.
+        /// Observed turn, degrees.
         turned_deg: f64,
-        /// How the correctors stand.
+        /// Actual setting.
         setting: Setting,
-        /// A plan from there.
+        /// Plan from there.
         outcome: Box<Outcome>,
     },
-    /// The corrector is of another strength than was taken: the plan is a new one.
+    /// The corrector has another strength than assumed: there is a new plan.
     OtherStrength {
-        /// Its strength as a share of what was taken.
+        /// Strength as a share of the assumed one.
         share: f64,
-        /// Standard error of that.
+        /// Standard error of the share.
         share_sd: f64,
-        /// The hole near by in which one as strong as was taken would show the same.
+        /// Nearby hole in which the assumed strength would have the same effect.
         other_hole: Option<u16>,
-        /// The binnacle as it is now believed to be.
+        /// Binnacle with the found strength.
         binnacle: Box<Binnacle>,
-        /// How the correctors stand.
+        /// Actual setting.
         setting: Setting,
-        /// A plan from there.
+        /// Plan from there.
         outcome: Box<Outcome>,
     },
-    /// No strength that it can have explains it: read again, see whether the ship moved, look for
-    /// magnetism of its own in the iron.
+    /// No plausible strength explains the turn: read again, check whether the vessel moved,
+    /// look for retentive magnetism in the iron.
     Unexplained {
-        /// By how much it is off, degrees.
+        /// Observed less expected turn, degrees.
         off_deg: f64,
-        /// Whether the card stands as it stood: the step was perhaps not done, or the
-        /// card sticks.
+        /// Unmoved card: the step was perhaps not done, or the card sticks.
         unmoved: bool,
     },
 }
 
-/// What two readings of the card tell of what a corrector does.
+/// Evidence for a corrector's effect from two readings of the card.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProvenEffect {
-    /// Its effect as a share of what was taken.
+    /// Effect as a share of the assumed one.
     pub share: f64,
-    /// How well the two readings tell that, 95 %, as a share of what was taken.
+    /// Precision of the share from the two readings, 95 %.
     #[serde(rename = "to")]
     pub precision: f64,
 }
 
-/// What all steps together have done to the compass, which is read no worse for it than
-/// after one.
+/// Total turn by all steps, read as precisely as a single one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TotalTurn {
-    /// By how much it turned since the berth was read, degrees.
+    /// Observed turn since the berth was read, degrees.
     pub turned_deg: f64,
-    /// By how much it should have, degrees.
+    /// Expected turn, degrees.
     pub expected_deg: f64,
-    /// The difference, degrees.
+    /// Difference, degrees.
     pub off_deg: f64,
-    /// Right steps differ by more once in a hundred, degrees.
+    /// Tolerance, degrees: exceeded by correct steps once in a hundred.
     pub tolerance_deg: f64,
 }
 
@@ -113,7 +111,7 @@ impl fmt::Display for ProvenEffect {
 }
 
 impl TotalTurn {
-    /// Whether errors explain it.
+    /// Returns true when the errors explain the difference.
     pub fn agrees(&self) -> bool {
         self.off_deg.abs() <= self.tolerance_deg
     }

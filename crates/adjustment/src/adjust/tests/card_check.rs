@@ -1,9 +1,9 @@
-//! The compass held against the field.
+//! Comparison of the compass with the field.
 
 use super::super::*;
 use super::*;
 
-/// What the card truly shows, by the ship herself.
+/// Returns the true compass heading from the ship herself.
 fn shown(case: &Case, magnetic_deg: f64) -> f64 {
     let there = effect(&case.binnacle, &case.binnacle.setting).as_ship(BISCAY.h_nt);
     let ship = sum(&case.bare, &there);

@@ -1,11 +1,11 @@
-//! Correctors of another strength than was taken.
+//! Correctors of another strength than assumed.
 
 use super::super::*;
 use super::*;
 use crate::binnacle::{Calibrated, Rack, Soft};
 use crate::corrector::{Iron, magnet_field};
 
-/// A ship without soft iron and magnets fitted, which she wants.
+/// A ship without correctors fitted, which needs soft iron and magnets.
 fn wanting() -> Case {
     let mut ship = bare();
     ship.b_nt = [4_000.0, 3_500.0, 0.0];
@@ -23,7 +23,7 @@ fn step_of(adjustment: &Adjustment<'_>, corrector: Corrector) -> Step {
     largest.unwrap().clone()
 }
 
-/// What is made of a step that turned the compass by so many times what it should.
+/// Judges a step with this multiple of the expected turn.
 fn read(adjustment: &Adjustment<'_>, step: &Step, times: f64) -> StepCheck {
     let after_deg = binnacle_compass::angle::wrap_360(50.0 + times * step.change_deg);
     check_step(adjustment, step, 50.0, after_deg).unwrap()
@@ -37,7 +37,7 @@ fn a_pair_found_stronger_is_so_at_every_mark() {
     let Some(Place::Pair(pair)) = &step.to else {
         panic!("{step:?}")
     };
-    // Far beyond what the compass errs by, and yet what a pair can have.
+    // Far beyond the compass's errors, but plausible for a pair.
     let mut step = step.clone();
     step.tolerance_deg = 0.2;
     let StepCheck::OtherStrength {
@@ -100,8 +100,8 @@ fn a_bar_found_weaker_is_so_at_every_length() {
     }
 }
 
-/// Iron of three times its strength, a magnet of twice: the ship has moved, the iron has
-/// magnetism of its own, or the wrong thing was moved.
+/// With iron of three times its strength, or a magnet of twice, the ship has moved, the
+/// iron has retentive magnetism, or the wrong corrector was moved.
 #[test]
 fn a_strength_that_no_corrector_of_its_kind_has_explains_nothing() {
     let case = wanting();
@@ -123,7 +123,7 @@ fn a_strength_that_no_corrector_of_its_kind_has_explains_nothing() {
     }
 }
 
-/// The catalogue's moment may be that of another make; a moment that was tested is not.
+/// A catalogue's moment may be of another make; a tested moment is not.
 #[test]
 fn magnets_that_were_tested_are_not_much_stronger() {
     let mut case = wanting();
@@ -139,7 +139,7 @@ fn magnets_that_were_tested_are_not_much_stronger() {
     }
 }
 
-/// With every hole measured, which wins over the formulas.
+/// Every hole is measured, which takes precedence over the formulas.
 #[test]
 fn weak_magnets_are_found_in_holes_that_were_measured() {
     let mut case = wanting();
@@ -184,7 +184,7 @@ fn weak_magnets_are_found_in_holes_that_were_measured() {
     }
 }
 
-/// The step with its tray so many holes off, and by how much that turns the compass.
+/// Returns the step with its tray some holes off, and the resulting turn of the compass.
 fn miscounted(adjustment: &Adjustment<'_>, step: &Step, by: i32) -> (u16, Setting, f64) {
     let mut setting = step.setting_after.clone();
     let Some(Place::Magnets(to)) = &step.to else {
@@ -213,7 +213,7 @@ fn magnets_that_seem_of_another_strength_may_stand_in_another_hole() {
         };
         assert_eq!(other_hole, Some(hole), "{by}");
     }
-    // No hole so near makes that of it.
+    // No nearby hole has that effect.
     let found = read(&adjustment, &step, 0.35);
     let StepCheck::OtherStrength { other_hole, .. } = found else {
         panic!("{found:?}")
@@ -231,15 +231,15 @@ fn a_strength_is_learnt_anew_from_where_the_magnets_stand() {
         let compass_deg = turned_deg.map(|turned| binnacle_compass::angle::wrap_360(50.0 + turned));
         check_step_with_setting(&adjustment, &step, 50.0, &setting, compass_deg).unwrap()
     };
-    // What the compass shows is what magnets as strong as was taken do there; and of what it
-    // was not read for nothing is learnt.
+    // The compass shows the effect of unscaled magnets there; an unread step changes
+    // nothing.
     for turned_deg in [Some(change_deg), None] {
         let (done, binnacle) = anew(turned_deg);
         assert_eq!(binnacle, case.binnacle);
         assert!(matches!(&done.to, Some(Place::Magnets(tray)) if tray.hole == hole));
         assert!(done.is_contradicted(&setting, &step.setting_after));
     }
-    // Magnets of 0.6 of their moment in that hole.
+    // Magnets with 0.6 of their moment in that hole.
     let weaker = case.binnacle.with_moment("200 mm", 0.6, 0.02).unwrap();
     let weak = Adjustment {
         binnacle: &weaker,

@@ -1,11 +1,11 @@
-//! What a berth cannot have shown of the ship's magnetism since the model.
+//! Changes of the ship's magnetism since the model that a berth cannot show.
 
 use super::super::*;
 use super::*;
 use binnacle_compass::time::Timestamp;
 
-/// The berth read on this heading of a ship whose permanent field is more by so much along
-/// the needle and across it, nT, by somebody who says so of his heading.
+/// A berth on this heading of a ship whose permanent field changed along and across the
+/// needle, nT, with this error of the heading.
 fn changed([along_nt, across_nt]: [f64; 2], heading_sd_deg: f64) -> Case {
     let mut case = case(60.0);
     let [x, y] = case.reading.field_nt();
@@ -59,7 +59,8 @@ fn what_the_check_leaves_open_is_across_the_needle_in_the_model_after() {
     let after = state.model_with(&case.binnacle.setting).unwrap();
     let (old, new) = (case.model.covariance.unwrap(), after.covariance.unwrap());
     let more = |row: usize, column: usize| new[row][column] - old[row][column];
-    // Nothing along the needle; across it the angle beyond 2.58° and the heading beyond 2°.
+    // Nothing along the needle; across it the angle beyond 2.58° and the heading's error
+    // beyond 2°.
     let (north, east) = (x / field_nt, y / field_nt);
     let along = north * north * more(0, 0) + 2.0 * north * east * more(0, 2);
     let along = along + east * east * more(2, 2);
@@ -112,7 +113,7 @@ fn a_change_along_the_needle_contradicts_an_earlier_lambda() {
         let case = changed([along_nt, 0.0], 0.5);
         let mut adjustment = usual(&case);
         adjustment.limits.residual_deg = 10.0;
-        // Nothing else shows it: on its own the berth is taken, with a word of that.
+        // Nothing else shows it: without an earlier λ the berth is accepted with a note.
         let alone = plan(&adjustment).unwrap();
         assert!(!alone.plans.is_empty(), "{:?}", alone.refusals);
         assert!(alone.notes.iter().any(|n| n.contains("along the needle")));
@@ -139,7 +140,7 @@ fn a_change_along_the_needle_contradicts_an_earlier_lambda() {
     }
 }
 
-/// Spheres add to λ: one that was told with others is compared with what it would be now.
+/// Spheres add to λ: an earlier λ with other spheres is converted before the comparison.
 #[test]
 fn an_earlier_lambda_follows_the_spheres() {
     let now = case(60.0);
@@ -160,7 +161,7 @@ fn an_earlier_lambda_follows_the_spheres() {
     assert!(carried.standard_error > told.standard_error);
 }
 
-/// bx and by wander by 60 nT in thirty days, any way.
+/// bx and by drift by 60 nT in thirty days, in any direction.
 #[test]
 fn an_older_model_has_a_wider_band() {
     let case = case(60.0);

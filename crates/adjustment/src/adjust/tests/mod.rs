@@ -25,7 +25,7 @@ pub(crate) const BISCAY: EarthField = EarthField {
     z_nt: 38_500.0,
 };
 
-/// A ship without correctors, and what is read and known of her with those of a binnacle.
+/// A ship without correctors, with its reading and model for the correctors of a binnacle.
 pub(crate) struct Case {
     pub(crate) model: Model,
     pub(crate) reading: BerthReading,
@@ -75,7 +75,7 @@ impl Case {
             samples_rejected: 0,
             quality: None,
         };
-        // The magnetometer meets no needles.
+        // The magnetometer does not measure the needles.
         let there = sum(&bare, &there.as_ship(f64::INFINITY));
         let [x, y, _] = there.field_at_compass(BISCAY.in_ship_axes(magnetic_deg.to_radians()));
         let errors = ReadingErrors {
@@ -139,7 +139,7 @@ pub(crate) fn case(magnetic_deg: f64) -> Case {
     Case::new(bare(), class_a(), magnetic_deg)
 }
 
-/// A binnacle with so little in it that every setting can be tried.
+/// A binnacle with so few settings that all can be tried.
 pub(crate) fn little() -> Binnacle {
     let mut form: BinnacleForm = class_a().into();
     let mut design: DesignForm = form.design.into();
@@ -170,7 +170,7 @@ fn an_outcome_comes_back_from_json_as_it_went() {
 
 #[test]
 fn the_parameters_before_are_those_of_the_model() {
-    // With nothing moved the model after is the model, and no corrector errs.
+    // With nothing moved, the model after is the model, and no corrector has an error.
     let case = case(60.0);
     let adjustment = case.adjustment();
     let state = MagneticState::new(&adjustment).unwrap();

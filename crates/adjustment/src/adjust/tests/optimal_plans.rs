@@ -1,11 +1,10 @@
-//! What the search finds, and that nothing is better.
+//! Results of the search, and their optimality.
 
 use super::super::search::{candidates, objective, soft_iron};
 use super::super::*;
 use super::*;
 
-/// Catalogues with so little in them that every setting can be tried, for ships of all
-/// signs.
+/// Catalogues with so few settings that all can be tried, for ships of all signs.
 #[test]
 fn the_search_finds_what_trying_everything_finds() {
     use rand::{RngExt, SeedableRng};
@@ -19,7 +18,7 @@ fn the_search_finds_what_trying_everything_finds() {
         ship.chi[1][1] = rng.random_range(-0.25..-0.05);
         ship.chi[0][2] = rng.random_range(-0.05..0.05);
         let heading = rng.random_range(0.0..360.0);
-        // The first is the whole of what can be tried, the others draw from it.
+        // The first round has the whole catalogue, the others draw from it.
         let mut form: BinnacleForm = little().into();
         if round > 0 {
             let mut design: DesignForm = form.design.into();
@@ -119,8 +118,8 @@ fn every_setting(state: &MagneticState<'_>, mut visit: impl FnMut(&Setting)) {
     }
 }
 
-/// Without the vertical field's share there is nothing for a bar to cure, though in one
-/// water it would do as well as a magnet.
+/// Without an induced field a bar has nothing to correct, though in one water it would work
+/// as well as a magnet.
 #[test]
 fn a_bar_is_no_cure_for_what_is_permanent() {
     let plans = |chi13: f64, waters: usize| {
@@ -138,7 +137,7 @@ fn a_bar_is_no_cure_for_what_is_permanent() {
     for plan in plans(0.0, 1) {
         assert_eq!(plan.setting.flinders, None);
     }
-    // In two hemispheres no magnet does what a bar does.
+    // In two hemispheres no magnet replaces a bar.
     let induced = &plans(-0.05, 2)[0];
     assert!(induced.setting.flinders.is_some());
     let left = induced.model_after.parameters_over_lambda.chi13;
@@ -173,8 +172,8 @@ fn a_bound_is_never_above_what_it_bounds() {
     }
 }
 
-/// Whatever the quadrant of the ship's field, magnets go in with the right ends, and
-/// what is left is small.
+/// In every quadrant of the ship's field, magnets are fitted with the right ends, and the
+/// residual is small.
 #[test]
 fn magnets_cure_every_quadrant_of_signs() {
     for (bx, by) in [
@@ -283,7 +282,7 @@ fn no_plan_uses_what_is_not_on_board() {
     }
 }
 
-/// Port for starboard: the plan leaves as much, with as many moves.
+/// With port and starboard exchanged, the plan has the same residual and moves.
 #[test]
 fn the_mirror_image_of_a_ship_gets_as_good_a_plan() {
     let mut ship = bare();
@@ -348,7 +347,8 @@ fn four_trays(magnets: u16, each: u8) -> Binnacle {
     Binnacle::try_from(form).unwrap()
 }
 
-/// What only four trays together reach is found, though they are too many to go through.
+/// A residual that only four trays together reach is found, though the settings are too
+/// many to go through.
 #[test]
 fn every_tray_of_a_rack_is_used_where_it_takes_them() {
     let mut ship = bare();
@@ -367,8 +367,7 @@ fn every_tray_of_a_rack_is_used_where_it_takes_them() {
     );
 }
 
-/// A ship beyond what the racks reach: no setting that was not gone through would do, and
-/// that is known.
+/// For a ship beyond the racks' reach, no untried setting suffices, and that is proven.
 #[test]
 fn a_ship_beyond_all_trays_is_refused_and_that_is_proven() {
     let mut ship = bare();
@@ -384,8 +383,8 @@ fn a_ship_beyond_all_trays_is_refused_and_that_is_proven() {
     assert!(outcome.notes.is_empty(), "{:?}", outcome.notes);
 }
 
-/// No magnets that a rack takes are beyond its reach, whatever iron stands and however few
-/// magnets are on board.
+/// No magnets of a rack exceed its stated reach, with any iron and any number of magnets on
+/// board.
 #[test]
 fn nothing_is_beyond_the_reach_that_a_rack_is_said_to_have() {
     for (magnets, each) in [(40, 2), (5, 4), (3, 1), (12, 3)] {

@@ -1,4 +1,4 @@
-//! What is refused, and what cannot be.
+//! Refusals and invalid input.
 
 use super::super::*;
 use super::*;
@@ -23,7 +23,7 @@ fn what_is_refused_says_why_and_what_would_cure_it() {
     assert_eq!(refused.cures[0], Cure::HeadingsAtSea);
     let refused = refusal_of(|a| a.limits.band_deg = 0.2);
     assert!(matches!(refused.refusal, Refusal::BandTooWide { .. }));
-    // What is left is mostly the model's constant, which no corrector cures.
+    // The residual is mostly the model's constant, which no corrector cures.
     let refused = refusal_of(|a| a.limits.residual_deg = 0.5);
     assert!(
         matches!(refused.refusal, Refusal::ResidualTooLarge { .. }),
@@ -70,7 +70,7 @@ fn with_a_poor_magnetometer_spheres_stay_and_where_they_must_move_that_is_said()
     );
     assert_eq!(refused.cures[0], Cure::BetterMagnetometer);
     assert!(refused.cures.contains(&Cure::ReadAgain));
-    // No other correctors: those on board would do.
+    // Correctors on board would suffice, so none are asked for.
     assert_eq!(outcome.refusals.len(), 1, "{:?}", outcome.refusals);
     adjustment.limits.residual_deg = 20.0;
     adjustment.limits.band_deg = 20.0;
@@ -218,7 +218,7 @@ fn an_age_that_nobody_said_is_said_not_to_be_checked() {
     assert!(said(None) && !said(Some(3.0)));
 }
 
-/// A ship with hardly any deviation, so that several explanations fit.
+/// A ship with hardly any deviation, for which several explanations fit.
 fn nearly_nil() -> Case {
     let mut case = case(45.0);
     let magnitude = 0.9 * BISCAY.h_nt;
@@ -280,9 +280,9 @@ fn what_the_correctors_cannot_reach_no_heading_at_sea_and_no_swing_cures() {
         assert_eq!(refusals.len(), 1, "{refusals:?}");
         refusals.remove(0)
     };
-    // D is negative, and spheres stand athwart only.
+    // D is negative, and spheres fit athwartships only.
     let negative_d = refused(|ship| (ship.chi[0][0], ship.chi[1][1]) = (-0.25, 0.0), 12);
-    // More than the few magnets on board.
+    // The ship's field exceeds the few magnets on board.
     let strong = refused(|ship| ship.b_nt = [12_000.0, -9_000.0, 0.0], 4);
     for refused in [negative_d, strong] {
         assert!(

@@ -1,4 +1,4 @@
-//! Steps, and what the compass shows after them.
+//! Steps, and the compass headings after them.
 
 use super::super::*;
 use super::*;
@@ -104,7 +104,7 @@ fn heeling_magnets_are_left_without_a_vertical_reading_and_nulled_with_one() {
         after.abs() < 0.06 && after.abs() <= before.abs(),
         "{before} {after}"
     );
-    // J itself, from the ship as she then is.
+    // J itself, from the ship after the plan.
     let there = effect(&case.binnacle, &plan.setting);
     let ship = sum(&case.bare, &there.as_ship(BISCAY.h_nt));
     let j = ((ship.chi[1][1] - ship.chi[2][2]) * BISCAY.z_nt - ship.b_nt[2])
@@ -112,7 +112,7 @@ fn heeling_magnets_are_left_without_a_vertical_reading_and_nulled_with_one() {
     assert!((j - after).abs() < 1e-6, "{j} {after}");
 }
 
-/// Steps that read as they should, with a wrong end, and with a weaker magnet.
+/// Steps with the expected turn, with a wrong end, and with a weaker magnet.
 #[test]
 fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
     let mut ship = bare();
@@ -155,14 +155,14 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
         panic!("{change:?}")
     };
     assert_eq!(setting, reversed);
-    // The new plan goes on from what was read.
+    // The new plan continues from the observed heading.
     let first = &outcome.plans[0].steps[0];
     let read_deg = wrap(50.0 + change.change_deg);
     let next_deg = wrap(read_deg + first.change_deg);
     assert!((first.expected_compass_deg - next_deg).abs() < 1e-9);
     assert!(outcome.plans[0].moves > 0);
 
-    // Magnets of 0.6 of their moment, then as when she was measured.
+    // Magnets with 0.6 of their moment, then as at the first reading.
     let weaker = case.binnacle.with_moment("200 mm", 0.6, 0.02).unwrap();
     let weak = Adjustment {
         binnacle: &weaker,
@@ -195,7 +195,7 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
 
 #[test]
 fn a_step_that_the_heading_does_not_show_is_said_to_be_so() {
-    // On north fore-and-aft magnets only weaken or strengthen the field.
+    // On north, fore-and-aft magnets only weaken or strengthen the field.
     let mut ship = bare();
     ship.b_nt = [5_000.0, 0.0, 0.0];
     let case = Case::new(ship, class_a(), 0.0);
@@ -218,8 +218,8 @@ fn a_step_that_the_heading_does_not_show_is_said_to_be_so() {
     assert!(seen.b < 1e-9 && seen.c > 0.99 && seen.d < 1e-9 && seen.e > 0.99);
 }
 
-/// Magnets of 0.59 of their moment, told by 1.5 degrees: within what readings err, and
-/// no proof that they are right.
+/// Magnets with 0.59 of their moment, shown by 1.5 degrees: within the reading errors, and
+/// no proof of their strength.
 #[test]
 fn a_small_turn_is_confirmed_with_how_little_it_proves() {
     let case = case(60.0);
@@ -245,7 +245,7 @@ fn a_small_turn_is_confirmed_with_how_little_it_proves() {
     assert!(!proven.to_string().contains("only"), "{proven:?}");
 }
 
-/// Each step a little less than it should, all the same way: each within its tolerance.
+/// Each step is a little small in the same direction, within its own tolerance.
 #[test]
 fn what_each_step_hides_all_of_them_show() {
     let mut ship = bare();
@@ -268,7 +268,7 @@ fn what_each_step_hides_all_of_them_show() {
     assert!(found.to_string().starts_with("in all the compass turned"));
 }
 
-/// What comes out needs no trial for magnetism of its own, and no place in the tube.
+/// Iron that comes out needs no check of its retentive magnetism, and no place in the tube.
 #[test]
 fn iron_is_tried_where_it_goes_in_and_a_bar_stands_at_the_cards_height() {
     let case = case(60.0);
@@ -292,7 +292,7 @@ fn iron_is_tried_where_it_goes_in_and_a_bar_stands_at_the_cards_height() {
     );
 }
 
-/// The compass on an even keel shows nothing of them, the vertical field all.
+/// The compass on an even keel shows nothing of them, the vertical field everything.
 #[test]
 fn heeling_magnets_are_verified_by_the_vertical_field() {
     let case = case(60.0);

@@ -1,9 +1,9 @@
-//! The vertical field, which nothing at the berth shows but itself.
+//! The vertical field, which nothing else at the berth verifies.
 
 use super::super::*;
 use super::*;
 
-/// What is read down with the correctors as they stand.
+/// Returns the vertical reading with the present setting.
 fn down_nt(case: &Case) -> f64 {
     let there = effect(&case.binnacle, &case.binnacle.setting).as_ship(f64::INFINITY);
     sum(&case.bare, &there).field_at_compass([0.0, 0.0, BISCAY.z_nt])[2]
@@ -47,13 +47,13 @@ fn an_upward_axis_or_another_unit_is_named_and_sets_no_heeling_magnets() {
             refused.words
         );
     }
-    // Stronger than anything on a ship, whatever the unit.
+    // Stronger than any ship, in every unit.
     let refused = planned(&case, 95_000.0).refusals.remove(0);
     assert_eq!(refused.refusal.misreadings(), []);
     assert!(refused.words.contains("stay as found"), "{}", refused.words);
 }
 
-/// Where the earth's vertical field is weak an upward axis makes a ship that might be.
+/// Where the earth's vertical field is weak, an upward axis still gives a plausible ship.
 #[test]
 fn a_reading_that_few_ships_make_and_an_upward_axis_explains_leaves_the_magnets() {
     let mut case = without_magnets();
