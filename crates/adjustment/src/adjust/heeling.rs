@@ -73,11 +73,11 @@ fn heeling_error(
     state: &MagneticState<'_>,
     effect: &Effect,
 ) -> Option<f64> {
-    let aboard_nt = down_nt(adjustment, state, effect)?;
+    let at_card_nt = down_nt(adjustment, state, effect)?;
     let z_nt = adjustment.earth.z_nt;
     let h_nt = adjustment.earth.h_nt;
     let ship = state.with_effect(effect, h_nt);
-    Some(((1.0 + ship.chi[1][1]) * z_nt - aboard_nt) / (ship.lambda() * h_nt))
+    Some(((1.0 + ship.chi[1][1]) * z_nt - at_card_nt) / (ship.lambda() * h_nt))
 }
 
 /// Chooses the magnets with the least heeling error for this iron; keeps the present ones
@@ -101,11 +101,11 @@ pub(crate) fn choose_magnets(
     if now <= GOOD_ENOUGH {
         return standing;
     }
-    let aboard = binnacle.magnet_count(&bucket.magnet);
+    let available = binnacle.magnet_count(&bucket.magnet);
     let mut best = (now, standing);
     let mut all = vec![None];
     for place in &bucket.positions {
-        for count in (1..=bucket.at_most).filter(|count| u16::from(*count) <= aboard) {
+        for count in (1..=bucket.at_most).filter(|count| u16::from(*count) <= available) {
             for red in [Red::Up, Red::Down] {
                 all.push(Some(HeelingSetting {
                     position: place.number,

@@ -23,7 +23,7 @@ struct Capacity {
     at_once: usize,
     magnets_each: f64,
     /// Number on board of each kind that fits.
-    aboard: Vec<f64>,
+    in_stock: Vec<f64>,
 }
 
 /// A setting of the magnets of an axis.
@@ -98,7 +98,7 @@ impl AxisCandidates {
             capacity: Capacity {
                 at_once: usize::from(rack.at_once),
                 magnets_each: f64::from(rack.magnets_each),
-                aboard: rack
+                in_stock: rack
                     .magnets
                     .iter()
                     .map(|magnet| f64::from(binnacle.magnet_count(magnet)))
@@ -173,9 +173,9 @@ impl AxisCandidates {
         let Capacity {
             at_once,
             magnets_each,
-            aboard,
+            in_stock,
         } = &self.capacity;
-        let kinds = aboard.len().max(1);
+        let kinds = in_stock.len().max(1);
         [0, 1].map(|part| {
             let of = |index: usize| single[index][part].abs();
             // Each hole holds its strongest kind, regardless of stock.
@@ -189,7 +189,7 @@ impl AxisCandidates {
             let with_stock = (0..kinds).map(|kind| {
                 let mut of_kind: Vec<f64> = (kind..single.len()).step_by(kinds).map(of).collect();
                 of_kind.sort_by(|a, b| b.total_cmp(a));
-                let mut left = aboard.get(kind).copied().unwrap_or(0.0);
+                let mut left = in_stock.get(kind).copied().unwrap_or(0.0);
                 let mut sum = 0.0;
                 for one in of_kind.into_iter().take(*at_once) {
                     let count = magnets_each.min(left);

@@ -29,8 +29,8 @@ fn pairs(binnacle: &Binnacle, standing: &Setting, may_move: bool) -> Vec<Option<
         return vec![standing.quadrantal.clone()];
     };
     let mut all = vec![None];
-    let aboard = |name: &String| binnacle.inventory.quadrantal.contains(name);
-    for size in iron.sizes.iter().filter(|size| aboard(&size.name)) {
+    let is_on_board = |name: &String| binnacle.inventory.quadrantal.contains(name);
+    for size in iron.sizes.iter().filter(|size| is_on_board(&size.name)) {
         for mark in &iron.marks {
             for slew_deg in &iron.slews_deg {
                 all.push(Some(PairSetting {

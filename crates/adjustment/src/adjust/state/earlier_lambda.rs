@@ -22,12 +22,12 @@ impl EarlierLambda {
         let [forward, starboard] = adjustment.reading.field_nt();
         let drift = drift_nt(adjustment) / forward.hypot(starboard);
         // Without the model's covariance, the error of λ is unknown.
-        let told = adjustment.model.covariance.map(|_| EarlierLambda {
+        let earlier = adjustment.model.covariance.map(|_| EarlierLambda {
             at,
             lambda,
             standard_error: lambda * state.lambda_sd_share().hypot(drift),
         });
-        Ok(told)
+        Ok(earlier)
     }
 
     /// Converts λ from the setting `stood` to the setting of this binnacle, with the

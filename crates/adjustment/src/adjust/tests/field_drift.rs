@@ -147,18 +147,22 @@ fn an_earlier_lambda_follows_the_spheres() {
     let mut form: BinnacleForm = now.binnacle.clone().into();
     form.setting.quadrantal.as_mut().unwrap().mark_mm -= 40.0;
     let before = Case::new(bare(), form.try_into().unwrap(), 200.0);
-    let told = earlier(&before);
-    let carried = told
+    let original = earlier(&before);
+    let carried = original
         .adapted_to(&now.binnacle, &before.binnacle.setting)
         .unwrap();
     let lambda = MagneticState::new(&now.adjustment()).unwrap().lambda();
-    assert!((told.lambda - lambda).abs() > 0.01, "{}", told.lambda);
+    assert!(
+        (original.lambda - lambda).abs() > 0.01,
+        "{}",
+        original.lambda
+    );
     assert!(
         (carried.lambda - lambda).abs() < 1e-3,
         "{} {lambda}",
         carried.lambda
     );
-    assert!(carried.standard_error > told.standard_error);
+    assert!(carried.standard_error > original.standard_error);
 }
 
 /// bx and by drift by 60 nT in thirty days, in any direction.

@@ -5,10 +5,10 @@ use super::*;
 
 fn settled(model: &Model, compass_deg: f64, off_deg: f64) -> SettledHeading {
     let compass = binnacle_compass::angle::CompassHeading::new(compass_deg).unwrap();
-    let foretold = model.deviation(compass, BISCAY).unwrap().deviation;
+    let predicted = model.deviation(compass, BISCAY).unwrap().deviation;
     SettledHeading {
         compass,
-        deviation_deg: foretold.degrees_east() + off_deg,
+        deviation_deg: predicted.degrees_east() + off_deg,
         sd_deg: 0.6,
         earth: BISCAY,
     }
@@ -55,10 +55,13 @@ fn a_heading_that_is_off_raises_the_alarm_on_either_side() {
     let model = &case(60.0).plan().plans[0].model_after;
     for (compass_deg, off_deg) in [(359.0, 2.3), (1.0, -2.3), (180.0, 2.3)] {
         let found = verify(model, &[settled(model, compass_deg, off_deg)], BISCAY).unwrap();
-        let Verification::Alarm { off_deg: told, .. } = found else {
+        let Verification::Alarm {
+            off_deg: found_deg, ..
+        } = found
+        else {
             panic!("{found:?}")
         };
-        assert!((told - off_deg).abs() < 1e-9);
+        assert!((found_deg - off_deg).abs() < 1e-9);
     }
     let mut sure = settled(model, 90.0, 1.8);
     sure.sd_deg = 0.1;

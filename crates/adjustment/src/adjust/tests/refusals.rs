@@ -312,7 +312,7 @@ fn a_telephone_is_not_believed_to_be_a_fluxgate() {
 
 #[test]
 fn a_weak_horizontal_field_is_said() {
-    let told = |h_nt: f64| {
+    let note_in = |h_nt: f64| {
         let mut ship = bare();
         ship.b_nt = [0.0; 3];
         let mut form: BinnacleForm = class_a().into();
@@ -336,8 +336,8 @@ fn a_weak_horizontal_field_is_said() {
         let mut notes = outcome.notes.into_iter();
         notes.find(|note| note.contains("horizontal field here is only"))
     };
-    assert_eq!(told(6_100.0), None);
-    let note = told(5_000.0).unwrap();
+    assert_eq!(note_in(6_100.0), None);
+    let note = note_in(5_000.0).unwrap();
     assert!(
         note.contains("5.0 microtesla") && note.contains("0.6 degrees"),
         "{note}"

@@ -53,7 +53,7 @@ fn an_upward_axis_or_another_unit_is_named_and_sets_no_heeling_magnets() {
     assert!(refused.words.contains("stay as found"), "{}", refused.words);
 }
 
-/// Where the earth's vertical field is weak, an upward axis still gives a plausible ship.
+/// In a weak vertical field of the earth, an upward axis still gives a plausible ship.
 #[test]
 fn a_reading_that_few_ships_make_and_an_upward_axis_explains_leaves_the_magnets() {
     let mut case = without_magnets();
@@ -74,11 +74,15 @@ fn a_reading_that_few_ships_make_and_an_upward_axis_explains_leaves_the_magnets(
     };
     let left = |outcome: &Outcome| outcome.plans[0].heeling.left_as_found;
     assert!(!left(&of(down_nt)));
-    let doubted = of(-down_nt);
-    assert!(left(&doubted), "{:?}", doubted.plans[0].heeling);
-    assert_eq!(doubted.plans[0].setting.heeling, None);
+    let implausible = of(-down_nt);
+    assert!(left(&implausible), "{:?}", implausible.plans[0].heeling);
+    assert_eq!(implausible.plans[0].setting.heeling, None);
     let named = |note: &String| note.contains("vertical axis points up");
-    assert!(doubted.notes.iter().any(named), "{:?}", doubted.notes);
+    assert!(
+        implausible.notes.iter().any(named),
+        "{:?}",
+        implausible.notes
+    );
 }
 
 #[test]
