@@ -33,8 +33,8 @@ fn model(array: [f64; 7], constant_deg: f64, covariance: Option<&Covariance>) ->
 }
 
 /// Solves the published system (Basterretxea-Iribar, Sotés & Uriarte 2016, eq. 12), from
-/// (4): the model gives v, the ship's addition beyond χ11 Hx and χ22 Hy, over λ. With λ = 1
-/// + (χ11 + χ22)/2 the measured field is
+/// (4): the model gives v, the ship's addition beyond χ11 Hx and χ22 Hy, over λ. With
+/// λ = 1 + (χ11 + χ22)/2 the measured field is
 ///
 ///     Bx = Hx + χ11 Hx + (1 + (χ11 + χ22)/2) vx
 ///     By = Hy + χ22 Hy + (1 + (χ11 + χ22)/2) vy

@@ -105,7 +105,7 @@ impl AxisCandidates {
                     .collect(),
             },
         };
-        let as_it_stands = candidates.from_trays(binnacle, standing);
+        let as_it_stands = candidates.axis_setting(binnacle, standing);
         candidates.settings.push(as_it_stands);
         candidates.add(&[], &candidates_in_holes, standing, stock);
         for trays in 1..=rack.at_once {
@@ -246,7 +246,7 @@ impl AxisCandidates {
         }
     }
 
-    fn from_trays(&self, binnacle: &Binnacle, trays: &[Tray]) -> AxisSetting {
+    fn axis_setting(&self, binnacle: &Binnacle, trays: &[Tray]) -> AxisSetting {
         let single = |tray: &Tray| {
             let found = self
                 .singles
