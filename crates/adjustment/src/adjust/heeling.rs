@@ -59,8 +59,9 @@ pub(crate) fn check_instruction(
     let correctors_nt = squares.sum::<f64>().sqrt();
     let sd_nt = instrument_nt.hypot(scale_nt).hypot(correctors_nt);
     Some(format!(
-        "on an even keel the compass does not show these: with the bowl out and the magnetometer \
-         as before, it must now read {:.1} microtesla down, to {:.1}; before this step {:.1}",
+        "on an even keel the compass does not show these: with the bowl out, the magnetometer in \
+         its previous place must now read {:.1} microtesla down, within {:.1}; before this step \
+         {:.1}",
         will_nt / 1e3,
         NORMAL_99 * sd_nt / 1e3,
         was_nt / 1e3

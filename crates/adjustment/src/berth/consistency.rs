@@ -120,7 +120,7 @@ impl Consistency {
             .standard_error_deg
             .map_or("unknown".to_owned(), |error| format!("{error:.1} degrees"));
         format!(
-            "the field read is {:.1} degrees from the model's (standard error {error})",
+            "the measured field is {:.1} degrees from the model's (standard error {error})",
             self.angle_deg.abs()
         )
     }

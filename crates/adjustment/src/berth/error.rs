@@ -24,7 +24,7 @@ pub enum BerthError {
     #[error("the magnetometer read no horizontal field at all")]
     NothingRead,
     /// The model's numbers are invalid.
-    #[error("the model is none: {0}")]
+    #[error("invalid model: {0}")]
     Model(#[from] ModelError),
     /// The earth's field at the berth is invalid.
     #[error(transparent)]
@@ -47,7 +47,7 @@ pub enum BerthError {
     /// The direction is right, but the strength is not.
     #[error(
         "lambda is {0:.4}, outside {LEAST_LAMBDA} to {GREATEST_LAMBDA}: the magnetometer's unit or \
-         scale, or the earth's field given, is not right"
+         scale, or the given earth's field, is wrong"
     )]
     Implausible(f64),
 }

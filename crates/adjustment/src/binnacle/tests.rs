@@ -194,7 +194,7 @@ fn a_setting_with_what_is_not_on_board_is_named() {
     assert!(
         error
             .what
-            .starts_with("4 magnets \"200 mm\" are set and 3 on board"),
+            .starts_with("4 magnets \"200 mm\" are set, but 3 are on board"),
         "{error}"
     );
     assert_eq!(
@@ -204,7 +204,7 @@ fn a_setting_with_what_is_not_on_board_is_named() {
     let error = refused(|f| f.inventory.flinders_pieces_mm.clear());
     assert_eq!(error.field, "setting.flinders.length_mm");
     let error = refused(|f| f.setting.fore_and_aft[0].red = Red::Port);
-    assert_eq!(error.what, "port where it is forward or aft");
+    assert_eq!(error.what, "port instead of forward or aft");
     let error = refused(|f| f.setting.heeling.as_mut().unwrap().red = Red::Aft);
     assert_eq!(error.field, "setting.heeling.red");
     let error = refused(|f| f.setting.quadrantal.as_mut().unwrap().slew_deg = 7.0);

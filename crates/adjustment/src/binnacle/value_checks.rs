@@ -37,7 +37,7 @@ pub(super) fn count(field: &str, length: usize) -> Checked {
     match length {
         0 => Err(BinnacleError::new(field, "is empty: name at least one")),
         _ if length > MOST => {
-            let what = format!("{length} of them; at most {MOST} are taken");
+            let what = format!("{length} of them; at most {MOST} are accepted");
             Err(BinnacleError::new(field, what))
         }
         _ => Ok(()),

@@ -80,7 +80,7 @@ impl CardCheck {
     /// Summarises the difference.
     pub fn summary(&self) -> String {
         format!(
-            "the compass read {:.1} degrees where the field read would turn it to {:.1} (to {:.1})",
+            "the compass reads {:.1} degrees, but the measured field implies {:.1} (within {:.1})",
             self.read_deg, self.implied_deg, self.tolerance_deg
         )
     }
@@ -90,7 +90,7 @@ impl CardCheck {
         let off_deg = self.off_deg.abs();
         let mut suspects = Vec::new();
         if off_deg > 150.0 {
-            suspects.push("the card was read at the wrong side of the bowl".to_owned());
+            suspects.push("the card was read on the wrong side of the bowl".to_owned());
         }
         let side = if self.off_deg < 0.0 {
             "starboard"

@@ -19,7 +19,7 @@ impl LambdaComparison {
     /// Summarises the difference.
     pub(crate) fn summary(&self, lambda: f64) -> String {
         format!(
-            "lambda is {lambda:.3}, {:.3} {} than this compass's berth of {} told (standard error \
+            "lambda is {lambda:.3}, {:.3} {} than at this compass's berth of {} (standard error \
              {:.3})",
             self.difference.abs(),
             if self.difference > 0.0 {

@@ -178,18 +178,18 @@ fn too_strong(name: &str, value_nt: f64, greatest_nt: f64) -> Option<String> {
     };
     let greatest_ut = greatest_nt / 1e3;
     Some(format!(
-        "{value} microtesla {part}, where more than {greatest_ut:.0} cannot be"
+        "{value} microtesla {part}, more than the possible {greatest_ut:.0}"
     ))
 }
 
 impl fmt::Display for Coefficient {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Coefficient::A => "A, which is alignment and no corrector's",
-            Coefficient::B => "B, of fore-and-aft magnets and Flinders bar",
-            Coefficient::C => "C, of athwartship magnets",
-            Coefficient::D => "D, of spheres",
-            Coefficient::E => "E, of slewed spheres",
+            Coefficient::A => "A (alignment, without a corrector)",
+            Coefficient::B => "B (fore-and-aft magnets and Flinders bar)",
+            Coefficient::C => "C (athwartship magnets)",
+            Coefficient::D => "D (spheres)",
+            Coefficient::E => "E (slewed spheres)",
         })
     }
 }

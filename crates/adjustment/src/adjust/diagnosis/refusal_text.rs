@@ -31,10 +31,10 @@ impl Refusal {
                 format!("the berth is inconsistent: {}", consistency.angle_summary())
             }
             Refusal::ImplausibleLambda { lambda, .. } => {
-                format!("the field read would make lambda {lambda:.3}")
+                format!("the measured field implies lambda {lambda:.3}")
             }
             Refusal::CardDisagrees(card) => card.summary(),
-            Refusal::NoSuchField { what, .. } => format!("no ship lies in such a field: {what}"),
+            Refusal::NoSuchField { what, .. } => format!("impossible field for a ship: {what}"),
             other => other.to_string(),
         }
     }
@@ -57,14 +57,15 @@ impl fmt::Display for Refusal {
         };
         match self {
             Refusal::NoCovariance => {
-                f.write_str("the model came without a covariance: nothing is known of the band")
+                f.write_str("the model has no covariance, so its band is unknown")
             }
             Refusal::ModelTooOld { days, limit_days } => write!(
                 f,
-                "the model's last sample is {days:.0} days old, of {limit_days:.0} at most"
+                "the model's last sample is {days:.0} days old, more than the limit of \
+                 {limit_days:.0}"
             ),
             Refusal::CargoOnBoard => {
-                f.write_str("magnetic cargo is on board that the model does not know")
+                f.write_str("magnetic cargo is on board that the model does not include")
             }
             Refusal::InconsistentBerth {
                 consistency,
@@ -98,9 +99,8 @@ impl fmt::Display for Refusal {
             } => write!(
                 f,
                 "{}: the ship's magnetism has changed by {:.1} microtesla along the needle since \
-                 the model, or a magnetometer's scale or place was another, or iron near the \
-                 compass was altered: an entry of repair in the logbook since then, that says \
-                 so, ends the comparison",
+                 the model, the scale or place of a magnetometer differed, or iron near the \
+                 compass was altered; a repair entry in the logbook since then ends the comparison",
                 comparison.summary(*lambda),
                 along_nt / 1e3
             ),
@@ -110,8 +110,8 @@ impl fmt::Display for Refusal {
                 limit_deg,
             } => write!(
                 f,
-                "at {} the residual is known to {band_deg:.1} degrees only, of \
-                 {limit_deg:.1} at most",
+                "at {} the residual is uncertain by {band_deg:.1} degrees, more than the limit of \
+                 {limit_deg:.1}",
                 place_text(place)
             ),
             Refusal::ResidualTooLarge {
@@ -122,14 +122,15 @@ impl fmt::Display for Refusal {
                 dominant,
             } => write!(
                 f,
-                "at {} the best setting found of the correctors on board leaves {worst_deg:.1} \
-                 degrees, {reach_deg:.1} with the band, of {limit_deg:.1} at most; most of it is {dominant}",
+                "at {} the best setting found for the correctors on board leaves {worst_deg:.1} \
+                 degrees, {reach_deg:.1} with the band, more than the limit of {limit_deg:.1}; the \
+                 largest part is {dominant}",
                 place_text(place)
             ),
             Refusal::MagnetometerTooPoor { lambda_sd, limit } => write!(
                 f,
-                "lambda is sure only to {:.1} per cent, of {:.1} at most, and spheres would have \
-                 to be moved",
+                "lambda is uncertain by {:.1} per cent, more than the limit of {:.1}, and spheres \
+                 would have to be moved",
                 100.0 * lambda_sd,
                 100.0 * limit
             ),

@@ -82,8 +82,8 @@ impl VerticalCheck {
             return None;
         }
         let what = format!(
-            "{}; without a vertical part (down) the heeling magnets stay as found, and the rest \
-             is planned",
+            "{}; omit the vertical part (down) to leave the heeling magnets as found and plan the \
+             rest",
             self.summary()
         );
         let misreadings = self.misreadings.clone();
@@ -92,7 +92,7 @@ impl VerticalCheck {
 
     fn summary(&self) -> String {
         format!(
-            "{:.1} microtesla down, where the earth and the correctors make {:.1}",
+            "{:.1} microtesla down, while the earth and the correctors produce {:.1}",
             self.read_nt / 1e3,
             self.without_ship_nt / 1e3
         )
@@ -105,8 +105,9 @@ impl VerticalCheck {
         }
         let each: Vec<String> = self.misreadings.iter().map(ToString::to_string).collect();
         Some(format!(
-            "the heeling magnets are left as found: the magnetometer read {}, which few ships \
-             add to; it could be that {}: read again, or set them with a heeling-error instrument",
+            "the heeling magnets are left as found: the magnetometer read {}, a difference that \
+             few ships have; it could be that {}: read again, or set them with a heeling-error \
+             instrument",
             self.summary(),
             each.join(", or that ")
         ))

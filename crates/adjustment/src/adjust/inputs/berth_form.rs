@@ -240,7 +240,7 @@ impl BerthForm {
     fn waters(&self, berth: EarthField) -> Result<Vec<Water>, FormError> {
         if self.waters.is_empty() {
             return Ok(vec![Water {
-                name: "the waters of her berth".to_owned(),
+                name: "the waters of the berth".to_owned(),
                 h_nt: berth.h_nt,
                 z_nt: berth.z_nt,
                 weight: 1.0,

@@ -25,7 +25,7 @@ pub enum AdjustError {
         greatest: f64,
     },
     /// No water, or none with a weight.
-    #[error("waters: there are none with a weight")]
+    #[error("waters: at least one entry needs a weight above 0")]
     NoWaters,
     /// Invalid limit or other number.
     #[error("{field} is {value}, not a number between {least} and {greatest}")]

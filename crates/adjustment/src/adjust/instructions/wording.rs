@@ -8,13 +8,13 @@ pub(crate) fn retentive_check(corrector: Corrector) -> Option<String> {
     let words = match corrector {
         Corrector::Flinders => {
             "before it goes in, hold each piece upright beside the card, then the other end up: \
-             the card must come to rest where it did; a piece that turns it by more than 1 degree \
-             holds magnetism of its own and is exchanged or annealed"
+             the card must come to rest on the same heading; exchange or anneal a piece that turns \
+             it by more than 1 degree, because it is permanently magnetised"
         }
         Corrector::Quadrantal => {
-            "when they stand, turn each by a quarter and by half about its own axis: a card that \
-             moves by more than 1 degree shows magnetism of its own, and that one is exchanged or \
-             annealed before a magnet is touched"
+            "when they are fitted, turn each by a quarter and a half turn about its own axis: if \
+             the card moves by more than 1 degree, that one is permanently magnetised; exchange or \
+             anneal it before any magnet is touched"
         }
         _ => return None,
     };

@@ -56,7 +56,7 @@ impl BerthCheck {
         let mut words = Vec::new();
         if self.consistency.verdict == Verdict::Loose {
             words.push(format!(
-                "the berth has checked little: {}",
+                "the berth has verified little: {}",
                 self.consistency
             ));
         }
@@ -64,9 +64,9 @@ impl BerthCheck {
         if !USUAL_LAMBDA.contains(&lambda) {
             let (least, greatest) = (USUAL_LAMBDA.start(), USUAL_LAMBDA.end());
             words.push(format!(
-                "lambda is {lambda:.2}, where {least} to {greatest} is usual: a magnetometer whose \
-                 scale is wrong, or that was not where the card is, would do that, and the whole \
-                 plan errs in proportion; read again before anything is moved"
+                "lambda is {lambda:.2}, while {least} to {greatest} is usual: the magnetometer may \
+                 have a wrong scale or may not have been where the card is, and the whole plan \
+                 errs in proportion; read again before anything is moved"
             ));
         }
         let HeadingVisibility { b, c, d, e } = self.seen;

@@ -23,22 +23,22 @@ pub(crate) fn notes(
     let unseen = undetectable_misreadings(adjustment.model, adjustment.earth, adjustment.reading);
     notes.extend(unseen.iter().map(|misreading| {
         format!(
-            "this heading cannot show whether {misreading}: the reading fits either way, and lambda \
-             hardly differs"
+            "this heading cannot show whether {misreading}: the reading fits either way, and \
+             lambda hardly differs"
         )
     }));
     if adjustment.circumstances.model_age_days.is_none() {
         notes.push(
-            "how old the model is was not said (model_until), and so not checked: cargo, work on \
-             the hull or a season may lie between it and this berth"
+            "the age of the model is not given (model_until) and not checked: cargo, work on the \
+             hull or a season may lie between it and this berth"
                 .to_owned(),
         );
     }
     let h_nt = adjustment.earth.h_nt;
     if h_nt < CAUTION_H_NT {
         notes.push(format!(
-            "the horizontal field here is only {:.1} microtesla: the card may hang {:.1} degrees \
-             off by friction alone, and small errors of the reading turn it far",
+            "the horizontal field here is only {:.1} microtesla: friction alone may hold the card \
+             {:.1} degrees off, and small errors of the reading have a large effect",
             h_nt / 1e3,
             friction_deg(h_nt)
         ));
@@ -47,13 +47,14 @@ pub(crate) fn notes(
     notes.extend(card.map(|card| card.to_string()));
     if !state.may_move_pair && adjustment.binnacle.design.quadrantal.is_some() {
         notes.push(format!(
-            "spheres are left as found: lambda is sure only to {:.1} per cent",
+            "spheres are left as found: lambda is uncertain by {:.1} per cent",
             100.0 * state.lambda_sd_share()
         ));
     }
     if !state.may_move_bar && adjustment.binnacle.design.flinders.is_some() {
         notes.push(
-            "the Flinders bar is left as found: the model does not tell chi13 from bx".to_owned(),
+            "the Flinders bar is left as found: the model does not separate chi13 from bx"
+                .to_owned(),
         );
     }
     if adjustment.vertical.is_none() && adjustment.binnacle.design.heeling.is_some() {
@@ -76,7 +77,7 @@ pub(crate) fn notes(
 pub(crate) fn left_out(optimality: &Optimality) -> Option<String> {
     (!optimality.proven).then(|| {
         format!(
-            "not every setting of the correctors on board was gone through: another may leave up \
+            "not every setting of the correctors on board was tried: another may leave up \
              to {:.2} degrees less than the best one found",
             optimality.gap_deg
         )
@@ -92,9 +93,9 @@ fn heeling_left(plans: &[Plan]) -> Option<String> {
     let left = heeling.after_deg_per_deg?.abs();
     (left > MOST_HEELING_ERROR).then(|| {
         format!(
-            "on north and south {left:.2} degrees of heeling error are left for each degree of \
-             heel, more than {MOST_HEELING_ERROR}: the heeling magnets on board do no better with \
-             this iron; the compass will swing when she rolls"
+            "on north and south {left:.2} degrees of heeling error are left per degree of heel, \
+             more than {MOST_HEELING_ERROR}: the heeling magnets on board can do no better with \
+             this iron; the compass will swing when the vessel rolls"
         )
     })
 }
@@ -122,15 +123,15 @@ fn only_here(adjustment: &Adjustment<'_>, plans: &[Plan]) -> Option<String> {
         return None;
     }
     let bar = if adjustment.binnacle.design.flinders.is_some() {
-        "; a Flinders bar would follow the field: give the waters where she trades"
+        "; a Flinders bar would follow the field: give the vessel's trading waters"
     } else {
         ""
     };
     let share_deg = share_deg.abs();
     Some(format!(
-        "this plan is for waters of one dip only: of B {share_deg:.1} degrees are induced by the \
-         vertical field (chi13), and magnets are set against them; at the magnetic equator she \
-         will have {share_deg:.1} degrees of B again, and in the other hemisphere {:.1}{bar}",
+        "this plan is for waters of one dip only: {share_deg:.1} degrees of B are induced by the \
+         vertical field (chi13) and corrected by magnets; at the magnetic equator the vessel will \
+         have {share_deg:.1} degrees of B again, and in the other hemisphere {:.1}{bar}",
         2.0 * share_deg
     ))
 }

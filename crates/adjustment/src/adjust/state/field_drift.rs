@@ -118,8 +118,8 @@ impl FieldDrift {
         (unchecked_deg > 0.0).then(|| {
             format!(
                 "the ship's own field may have turned since the model, by {unchecked_deg:.1} \
-                 degrees one standard deviation: with the errors that were given for heading and \
-                 magnetometer the berth does not tell that from them, and it is in the band"
+                 degrees (one standard deviation): the berth cannot separate that from the given \
+                 errors of heading and magnetometer, so it is included in the band"
             )
         })
     }
@@ -153,17 +153,17 @@ impl FieldDrift {
     fn needle_note(&self) -> String {
         let (least, greatest) = (USUAL_LAMBDA.start(), USUAL_LAMBDA.end());
         let room = (self.lambda - least).max(greatest - self.lambda);
-        let usual = (room.max(0.0), "leave lambda usual");
+        let usual = (room.max(0.0), "keep lambda in its usual range");
         let (could_be, why) = self.comparison.map_or(usual, |found| {
             let within = NORMAL_99 * found.standard_error;
             (within, "be within the errors of both berths")
         });
         let share = could_be / self.lambda;
         format!(
-            "one heading does not tell a change of the ship's magnetism along the needle from \
+            "one heading cannot separate a change of the ship's magnetism along the needle from \
              lambda: up to {:.1} microtesla of it would {why}, and turn the compass by {:.0} \
-             degrees on headings across this one; a reading on another heading would show it, \
-             and so do headings at sea",
+             degrees on headings across this one; a reading on another heading would show it, and \
+             so would headings at sea",
             share * self.field_nt / 1e3,
             share.atan().to_degrees()
         )

@@ -99,13 +99,13 @@ impl fmt::Display for ProvenEffect {
         if self.precision > PROVES_LITTLE {
             return write!(
                 f,
-                "{share:.0} per cent of what was expected; on this heading the card tells that \
+                "{share:.0} per cent of the expected turn; on this heading the card shows that \
                  only to within {to:.0} per cent, which proves little"
             );
         }
         write!(
             f,
-            "{share:.0} per cent of what was expected, to within {to:.0} per cent"
+            "{share:.0} per cent of the expected turn, to within {to:.0} per cent"
         )
     }
 }
@@ -121,8 +121,8 @@ impl fmt::Display for TotalTurn {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "in all the compass turned by {:.1} degrees since the berth was read, where {:.1} \
-             were expected (to {:.1})",
+            "in all, the compass turned by {:.1} degrees since the berth was read, while {:.1} \
+             were expected (within {:.1})",
             self.turned_deg, self.expected_deg, self.tolerance_deg
         )
     }

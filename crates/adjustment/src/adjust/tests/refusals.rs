@@ -156,7 +156,7 @@ fn what_cannot_be_is_named() {
         change(&mut adjustment);
         plan(&adjustment).unwrap_err().to_string()
     };
-    assert!(named(&|a| a.waters = &[]).starts_with("waters: there are none"));
+    assert!(named(&|a| a.waters = &[]).starts_with("waters: at least one"));
     assert!(named(&|a| a.scale_sd = -1.0).starts_with("scale_sd is -1"));
     assert!(named(&|a| a.compass_deg = Some(f64::NAN)).starts_with("compass_deg is NaN"));
     let error = named(&|a| a.vertical = Some(VerticalReading { down_nt: 1e9 }));
@@ -213,7 +213,7 @@ fn an_age_that_nobody_said_is_said_not_to_be_checked() {
         let notes = plan(&adjustment).unwrap().notes;
         notes
             .iter()
-            .any(|note| note.starts_with("how old the model is"))
+            .any(|note| note.starts_with("the age of the model is"))
     };
     assert!(said(None) && !said(Some(3.0)));
 }

@@ -265,7 +265,7 @@ fn what_each_step_hides_all_of_them_show() {
     assert!(steps.len() > 2 && hidden > found.tolerance_deg, "{found:?}");
     let found = in_all(hidden);
     assert!(!found.agrees(), "{found:?}");
-    assert!(found.to_string().starts_with("in all the compass turned"));
+    assert!(found.to_string().starts_with("in all, the compass turned"));
 }
 
 /// Iron that comes out needs no check of its retentive magnetism, and no place in the tube.

@@ -50,7 +50,11 @@ fn an_upward_axis_or_another_unit_is_named_and_sets_no_heeling_magnets() {
     // Stronger than any ship, in every unit.
     let refused = planned(&case, 95_000.0).refusals.remove(0);
     assert_eq!(refused.refusal.misreadings(), []);
-    assert!(refused.words.contains("stay as found"), "{}", refused.words);
+    assert!(
+        refused.words.contains("magnets as found"),
+        "{}",
+        refused.words
+    );
 }
 
 /// In a weak vertical field of the earth, an upward axis still gives a plausible ship.

@@ -23,7 +23,7 @@ pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
                     return absent("hole", format!("there is no hole {hole}"));
                 }
                 if !rack.magnets.contains(magnet) {
-                    return absent("magnet", format!("no magnets {magnet:?} fit there"));
+                    return absent("magnet", format!("magnets {magnet:?} do not fit there"));
                 }
                 number(&field("field_nt"), *field_nt, 0.0, 200_000.0)?;
                 number(&field("sd"), *sd, 0.0, 0.5)?;
@@ -66,7 +66,7 @@ pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
             .iter()
             .any(|other| other.same_place(entry));
         if twice {
-            let what = "the same corrector at the same position stands there twice";
+            let what = "the same corrector at the same position is listed twice";
             return Err(BinnacleError::new(format!("calibration[{index}]"), what));
         }
     }

@@ -24,7 +24,7 @@ pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
         }
         let earlier = &form.inventory.magnets[..index];
         if earlier.iter().any(|other| other.magnet == lot.magnet) {
-            let what = format!("{:?} stands there twice", lot.magnet);
+            let what = format!("{:?} is listed twice", lot.magnet);
             return Err(BinnacleError::new(field("magnet"), what));
         }
         if let Some(moment) = lot.tested_moment_am2 {
@@ -51,8 +51,8 @@ pub(crate) fn check_tested_moments(form: &BinnacleForm) -> Result<(), BinnacleEr
         let (least, most) = (WEAKEST * nominal, STRONGEST * nominal);
         if !(least..=most).contains(&moment) {
             let what = format!(
-                "{moment} A·m² is no test of a magnet of {nominal} A·m²: between {least:.3} and \
-                 {most:.3} is taken"
+                "{moment} A·m² is implausible for a magnet of {nominal} A·m²: accepted are \
+                 {least:.3} to {most:.3}"
             );
             let field = format!("aboard.magnets[{index}].tested_moment_am2");
             return Err(BinnacleError::new(field, what));
@@ -71,7 +71,7 @@ fn choices(form: &BinnacleForm) -> Result<(), BinnacleError> {
     });
     let all = (pairs + 1) * (bars + 1);
     if all > MOST_CHOICES {
-        let what = format!("{all} choices of soft iron, of {MOST_CHOICES} at most");
+        let what = format!("{all} choices of soft iron; at most {MOST_CHOICES} are accepted");
         return Err(BinnacleError::new("aboard", what));
     }
     Ok(())
@@ -95,7 +95,10 @@ fn pieces(form: &BinnacleForm) -> Result<(), BinnacleError> {
     let pieces = &form.inventory.flinders_pieces_mm;
     let field = "aboard.flinders_pieces_mm";
     if pieces.len() > MOST_PIECES {
-        let what = format!("{} pieces; at most {MOST_PIECES} are taken", pieces.len());
+        let what = format!(
+            "{} pieces; at most {MOST_PIECES} are accepted",
+            pieces.len()
+        );
         return Err(BinnacleError::new(field, what));
     }
     let Some(bar) = &form.design.flinders else {

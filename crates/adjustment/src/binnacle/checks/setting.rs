@@ -25,7 +25,7 @@ pub(super) fn check(form: &BinnacleForm, setting: &Setting) -> Result<(), Binnac
         let (used, available) = (used(form, setting, &lot.name), form.magnet_count(&lot.name));
         if used > available {
             let what = format!(
-                "{used} magnets {:?} are set and {available} on board",
+                "{used} magnets {:?} are set, but {available} are on board",
                 lot.name
             );
             return Err(BinnacleError::new("aboard.magnets", what));
@@ -47,26 +47,30 @@ fn trays(form: &BinnacleForm, axis: Axis, trays: &[Tray]) -> Result<(), Binnacle
     let rack = form.design.rack(axis);
     let field = |index: usize, part: &str| format!("setting.{axis}[{index}].{part}");
     if trays.len() > usize::from(rack.at_once) {
-        let what = format!("{} hold magnets, of {} at once", trays.len(), rack.at_once);
+        let what = format!(
+            "{} hold magnets; at most {} can at once",
+            trays.len(),
+            rack.at_once
+        );
         return Err(BinnacleError::new(format!("setting.{axis}"), what));
     }
     for (index, tray) in trays.iter().enumerate() {
         place_there(&field(index, "hole"), "hole", tray.hole, &rack.holes)?;
         if trays[..index].iter().any(|other| other.hole == tray.hole) {
-            let what = format!("hole {} holds magnets already", tray.hole);
+            let what = format!("hole {} already holds magnets", tray.hole);
             return Err(BinnacleError::new(field(index, "hole"), what));
         }
         if !rack.magnets.contains(&tray.magnet) {
-            let what = format!("no magnets {:?} fit there", tray.magnet);
+            let what = format!("magnets {:?} do not fit there", tray.magnet);
             return Err(BinnacleError::new(field(index, "magnet"), what));
         }
         if !(1..=rack.magnets_each).contains(&tray.count) {
-            let what = format!("{} where 1 to {} fit", tray.count, rack.magnets_each);
+            let what = format!("{}; 1 to {} fit", tray.count, rack.magnets_each);
             return Err(BinnacleError::new(field(index, "count"), what));
         }
         if ![axis.red(true), axis.red(false)].contains(&tray.red) {
             let [one, other] = [axis.red(true), axis.red(false)];
-            let what = format!("{} where it is {one} or {other}", tray.red);
+            let what = format!("{} instead of {one} or {other}", tray.red);
             return Err(BinnacleError::new(field(index, "red"), what));
         }
     }
@@ -126,7 +130,7 @@ fn check_bar(form: &BinnacleForm, bar: &BarSetting) -> Result<(), BinnacleError>
         .iter()
         .any(|(length, _)| nearly_equal(*length, bar.length_mm))
     {
-        let what = format!("no pieces on board make {} mm", bar.length_mm);
+        let what = format!("no pieces on board add up to {} mm", bar.length_mm);
         return Err(BinnacleError::new(field("length_mm"), what));
     }
     if !holder.sides.contains(&bar.side) {
@@ -151,11 +155,11 @@ fn check_heeling(design: &DesignForm, set: &HeelingSetting) -> Result<(), Binnac
         &bucket.positions,
     )?;
     if !(1..=bucket.at_most).contains(&set.count) {
-        let what = format!("{} where 1 to {} fit", set.count, bucket.at_most);
+        let what = format!("{}; 1 to {} fit", set.count, bucket.at_most);
         return Err(BinnacleError::new(field("count"), what));
     }
     if ![Red::Up, Red::Down].contains(&set.red) {
-        let what = format!("{} where it is up or down", set.red);
+        let what = format!("{} instead of up or down", set.red);
         return Err(BinnacleError::new(field("red"), what));
     }
     Ok(())

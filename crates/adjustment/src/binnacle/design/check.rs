@@ -40,14 +40,14 @@ pub(super) fn check(form: &DesignForm) -> Checked {
 fn magnets(kinds: &[MagnetKind]) -> Checked {
     count("magnets", kinds.len())?;
     if kinds.len() > MOST_KINDS {
-        let what = format!("{} kinds; at most {MOST_KINDS} are taken", kinds.len());
+        let what = format!("{} kinds; at most {MOST_KINDS} are accepted", kinds.len());
         return Err(BinnacleError::new("magnets", what));
     }
     for (index, kind) in kinds.iter().enumerate() {
         let field = |name: &str| format!("magnets[{index}].{name}");
         text_given(&field("name"), &kind.name)?;
         if kinds[..index].iter().any(|other| other.name == kind.name) {
-            let what = format!("{:?} stands there twice", kind.name);
+            let what = format!("{:?} is listed twice", kind.name);
             return Err(BinnacleError::new(field("name"), what));
         }
         number(&field("length_mm"), kind.length_mm, 5.0, 1_000.0)?;
@@ -74,7 +74,7 @@ fn rack(name: &str, rack: &Rack, form: &DesignForm) -> Checked {
         let field = format!("{name}.magnets[{index}]");
         known_magnet(&field, magnet, form)?;
         if rack.magnets[..index].contains(magnet) {
-            let what = format!("{magnet:?} stands there twice");
+            let what = format!("{magnet:?} is listed twice");
             return Err(BinnacleError::new(field, what));
         }
     }
@@ -103,7 +103,7 @@ fn holes(field: &str, holes: &[Hole], nearest_mm: f64) -> Checked {
         number(&path("below_card_mm"), depth, nearest_mm, FARTHEST_MM)?;
         if usize::from(hole.number) != index + 1 {
             let what = format!(
-                "{} where {} follows: holes are numbered from the bottom, from 1",
+                "{} instead of {}: holes are numbered from the bottom, starting at 1",
                 hole.number,
                 index + 1
             );
@@ -111,7 +111,7 @@ fn holes(field: &str, holes: &[Hole], nearest_mm: f64) -> Checked {
         }
         if index > 0 && depth >= holes[index - 1].below_card_mm {
             let what = format!(
-                "{depth} is not nearer the card than the hole below it, at {}",
+                "{depth} is not closer to the card than the hole below it, at {}",
                 holes[index - 1].below_card_mm
             );
             return Err(BinnacleError::new(path("below_card_mm"), what));
@@ -127,7 +127,7 @@ fn quadrantal(iron: &Quadrantal) -> Checked {
         let field = |part: &str| format!("quadrantal.sizes[{index}].{part}");
         text_given(&field("name"), &size.name)?;
         if iron.sizes[..index].iter().any(|s| s.name == size.name) {
-            let what = format!("{:?} stands there twice", size.name);
+            let what = format!("{:?} is listed twice", size.name);
             return Err(BinnacleError::new(field("name"), what));
         }
         number(&field("diameter_mm"), size.diameter_mm, 10.0, 600.0)?;
@@ -145,7 +145,7 @@ fn quadrantal(iron: &Quadrantal) -> Checked {
             .iter()
             .any(|m| nearly_equal(m.mark_mm, mark.mark_mm))
         {
-            let what = format!("{} stands there twice", mark.mark_mm);
+            let what = format!("{} is listed twice", mark.mark_mm);
             return Err(BinnacleError::new(field("mark_mm"), what));
         }
         if earlier
@@ -165,10 +165,7 @@ fn slews(field: &str, slews_deg: &[f64]) -> Checked {
         let path = format!("{field}[{index}]");
         number(&path, *slew, -90.0, 90.0)?;
         if slews_deg[..index].iter().any(|s| nearly_equal(*s, *slew)) {
-            return Err(BinnacleError::new(
-                path,
-                format!("{slew} stands there twice"),
-            ));
+            return Err(BinnacleError::new(path, format!("{slew} is listed twice")));
         }
     }
     Ok(())
@@ -190,7 +187,7 @@ fn flinders(bar: &Flinders) -> Checked {
     )?;
     count("flinders.sides", bar.sides.len())?;
     if bar.sides.len() > 1 && bar.sides[1..].contains(&bar.sides[0]) {
-        let what = format!("{} stands there twice", bar.sides[0]);
+        let what = format!("{} is listed twice", bar.sides[0]);
         return Err(BinnacleError::new("flinders.sides", what));
     }
     number("flinders.tolerance", bar.tolerance, 0.0, GREATEST_TOLERANCE)?;
