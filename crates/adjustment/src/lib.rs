@@ -11,6 +11,9 @@ pub mod berth;
 
 pub mod adjust;
 
+#[cfg(feature = "openapi")]
+pub mod openapi;
+
 #[cfg(test)]
 use binnacle_compass::ship::{EarthField, ShipMagnetism};
 #[cfg(test)]

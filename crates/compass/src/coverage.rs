@@ -28,6 +28,7 @@ pub struct Coverage {
 
 /// The range of fields in one band of magnetic latitude.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CoverageBand {
     /// The band's southern edge, degrees of magnetic latitude.
     pub magnetic_latitude_from_deg: i16,
@@ -45,6 +46,7 @@ pub struct CoverageBand {
 
 /// One sector of heading within one band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CoverageCell {
     /// The sector's first compass heading, degrees.
     pub heading_from_deg: u16,

@@ -28,3 +28,6 @@ pub mod logbook;
 pub mod settings;
 
 pub mod result;
+
+#[cfg(feature = "openapi")]
+pub mod openapi;

@@ -27,6 +27,7 @@ pub struct LogbookEntry {
 /// Kind of a logbook entry, the most disruptive first. The first kind names an epoch that
 /// several entries begin at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum LogbookKind {
     /// Adjustment of the compass: earlier knowledge no longer applies.
@@ -57,6 +58,8 @@ pub enum LogbookKind {
 
 /// Kind of magnetic cargo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = CargoKind))]
 #[serde(rename_all = "snake_case")]
 pub enum Cargo {
     /// Plates, coils, pipes, rails.

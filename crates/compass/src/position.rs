@@ -6,9 +6,12 @@ use serde::{Deserialize, Serialize};
 /// A geodetic position (WGS 84): latitude in [−90°, 90°], north positive, and
 /// longitude in [−180°, 180°), east positive.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(try_from = "RawPosition", into = "RawPosition")]
 pub struct Position {
+    #[cfg_attr(feature = "openapi", schema(rename = "lat"))]
     lat_deg: f64,
+    #[cfg_attr(feature = "openapi", schema(rename = "lon"))]
     lon_deg: f64,
 }
 

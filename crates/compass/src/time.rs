@@ -7,6 +7,11 @@ use std::fmt;
 /// An instant as microseconds since 1970-01-01T00:00:00Z, between the years
 /// 1 and 9999; RFC 3339 in JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(
+    feature = "openapi",
+    schema(as = Time, value_type = String, format = DateTime, example = "2026-11-21T07:00:00Z")
+)]
 #[serde(try_from = "String", into = "String")]
 pub struct Timestamp(i64);
 

@@ -17,11 +17,14 @@ const GOOD_ENOUGH: f64 = 0.05;
 
 /// Plan for the heeling magnets.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HeelingPlan {
     /// Present heeling error on north at the berth, degrees per degree of heel; none
     /// without a plausible vertical reading.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub before_deg_per_deg: Option<f64>,
     /// Heeling error after the plan, degrees per degree of heel.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub after_deg_per_deg: Option<f64>,
     /// Left as found for want of a plausible vertical reading.
     pub left_as_found: bool,

@@ -11,17 +11,20 @@ use serde::{Deserialize, Serialize};
 
 /// Prediction on one compass heading.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PredictedRow {
     /// Compass heading, degrees.
     pub compass_deg: f64,
     /// Deviation, degrees, east positive.
     pub deviation_deg: f64,
     /// Half the width of the 95 % band, degrees.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub band95_deg: Option<f64>,
 }
 
 /// Predictions on all headings at one place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct PredictedTable {
     /// Name of the place: `berth`, or the name of a water.
     pub place: String,
@@ -32,12 +35,16 @@ pub struct PredictedTable {
     /// Predictions every 15° of compass heading; empty where headings are ambiguous.
     pub rows: Vec<PredictedRow>,
     /// Greatest deviation on any heading, degrees; none where headings are ambiguous.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub worst_deg: Option<f64>,
     /// Compass heading of the greatest deviation.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub worst_compass_deg: Option<f64>,
     /// Greatest deviation with its band on any heading, degrees.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub reach_deg: Option<f64>,
     /// Widest band on any heading, degrees.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub widest_band_deg: Option<f64>,
 }
 

@@ -44,6 +44,8 @@ pub struct SettledHeading {
 
 /// Verification of the plan by the headings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = SeaVerdict))]
 #[serde(tag = "verdict", rename_all = "snake_case")]
 pub enum Verification {
     /// The headings agree and suffice.
@@ -75,6 +77,7 @@ pub enum Verification {
 
 /// Headings that are still needed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct NeededHeadings {
     /// Number of headings.
     pub count: usize,

@@ -15,6 +15,8 @@ pub enum Axis {
 
 /// Direction of the red, north-seeking end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = RedEnd))]
 #[serde(rename_all = "snake_case")]
 pub enum Red {
     /// To the bow.

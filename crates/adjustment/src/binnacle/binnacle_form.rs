@@ -12,6 +12,8 @@ use serde::{Deserialize, Serialize};
 ///
 /// [`Binnacle`]: super::Binnacle
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = Binnacle))]
 #[serde(deny_unknown_fields)]
 pub struct BinnacleForm {
     /// Version of the form.
@@ -20,6 +22,7 @@ pub struct BinnacleForm {
     pub serial: String,
     /// Design of its kind.
     #[serde(rename = "type")]
+    #[cfg_attr(feature = "openapi", schema(value_type = crate::binnacle::DesignForm))]
     pub design: Design,
     /// All correctors on board, in use and spare.
     #[serde(rename = "aboard")]
@@ -28,6 +31,7 @@ pub struct BinnacleForm {
     pub setting: Setting,
     /// Measured effects, which take precedence over the formulas.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(value_type = Vec<Object>))]
     pub calibration: Vec<Calibrated>,
 }
 

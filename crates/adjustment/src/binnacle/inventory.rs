@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// Correctors on board, including those in use.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = CorrectorsAboard))]
 #[serde(deny_unknown_fields)]
 pub struct Inventory {
     /// Magnets by their kind.
@@ -18,9 +20,12 @@ pub struct Inventory {
 
 /// Magnets of one kind on board.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = MagnetLot))]
 #[serde(deny_unknown_fields)]
 pub struct Lot {
     /// Kind of the magnets.
+    #[cfg_attr(feature = "openapi", schema(example = "200 mm"))]
     pub magnet: String,
     /// Number of magnets.
     pub count: u16,

@@ -6,6 +6,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 /// Setting of all correctors; an empty list or null is none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = CorrectorSetting))]
 #[serde(deny_unknown_fields)]
 pub struct Setting {
     /// Fore-and-aft magnets by hole.
@@ -27,12 +29,15 @@ pub struct Setting {
 
 /// Magnets in one hole or tray.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = MagnetsInHole))]
 #[serde(deny_unknown_fields)]
 pub struct Tray {
     /// Number of the hole, from the bottom.
     #[serde(deserialize_with = "numbered")]
     pub hole: u16,
     /// Kind of the magnets.
+    #[cfg_attr(feature = "openapi", schema(example = "200 mm"))]
     pub magnet: String,
     /// Number of magnets.
     pub count: u8,
@@ -42,9 +47,11 @@ pub struct Tray {
 
 /// A pair of spheres, boxes or plates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PairSetting {
     /// Name of the size.
+    #[cfg_attr(feature = "openapi", schema(example = "7 inch"))]
     pub size: String,
     /// Position on the scale, mm.
     pub mark_mm: f64,
@@ -55,6 +62,7 @@ pub struct PairSetting {
 
 /// Setting of a Flinders bar.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct BarSetting {
     /// Total length of its pieces, mm.
@@ -68,6 +76,7 @@ pub struct BarSetting {
 
 /// Setting of the heeling magnets in the bucket.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct HeelingSetting {
     /// Number of the bucket's position, from the bottom.

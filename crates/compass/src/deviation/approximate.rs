@@ -15,6 +15,8 @@ use serde::{Deserialize, Serialize};
 /// A of a fitted model includes the offsets that headings cannot separate from it: compass
 /// alignment, reference and variation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = HandbookCoefficients))]
 pub struct CoefficientsInDegrees {
     /// Constant part.
     #[serde(rename = "A")]

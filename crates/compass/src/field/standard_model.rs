@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 /// A standard model of the earth's field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum FieldModel {
     /// IGRF-14: 1900 to 2030, linear between its epochs

@@ -13,22 +13,31 @@ use serde::{Deserialize, Deserializer, Serialize};
 const VERSION: u32 = 1;
 
 #[derive(Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = Model))]
 #[serde(rename = "Model")]
 pub(super) struct Form {
     #[serde(default = "version", deserialize_with = "known_version")]
+    #[cfg_attr(feature = "openapi", schema(required))]
     version: u32,
     parameters_over_lambda: Parameters,
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
     constant_deg: f64,
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required, value_type = Option<Vec<Vec<f64>>>))]
     covariance: Option<Covariance>,
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
     identifiable: Option<Identifiable>,
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
     rms_deg: Option<f64>,
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
     samples_used: u64,
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
     samples_rejected: u64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     quality: Option<Quality>,
@@ -79,3 +88,6 @@ impl From<Model> for Form {
         }
     }
 }
+
+#[cfg(feature = "openapi")]
+crate::openapi::named_schema!(Model, "Model", Form);

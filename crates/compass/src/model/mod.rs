@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 /// Fields are in nanotesla, soft-iron coefficients dimensionless. Ship axes:
 /// x forward, y starboard, z down.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = ParametersOverLambda))]
 pub struct Parameters {
     /// Fore-and-aft permanent field over λ (P), nT, forward positive.
     pub bx_nt: f64,
@@ -33,6 +35,7 @@ pub type Covariance = [[f64; 8]; 8];
 
 /// Parameters determined by the data; a `false` one rests on the prior.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[allow(clippy::struct_excessive_bools)] // one for each parameter, by name
 pub struct Identifiable {
     /// bx separately from χ13 Z.
@@ -55,6 +58,7 @@ pub struct Identifiable {
 
 /// Evidence behind a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Quality {
     /// Effective sample size: the number of samples with independent errors that would
     /// determine the deviation, at the last position, as well as all samples together. A
@@ -63,6 +67,7 @@ pub struct Quality {
     /// Condition of the fit: standard error of the worst known combination of parameters
     /// over that of the best, by the data alone and in units of the prior; none where the
     /// data leave a combination undetermined.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub condition: Option<f64>,
     /// Share of each parameter's knowledge that comes from the data.
     pub from_data: FromData,
@@ -73,6 +78,7 @@ pub struct Quality {
 /// Share of the prior variance of each parameter and the constant that the data removed: 0
 /// rests on the prior alone, 1 on the data alone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[allow(missing_docs)] // the names are those of the parameters
 pub struct FromData {
     pub bx_nt: f64,
@@ -87,6 +93,7 @@ pub struct FromData {
 
 /// A limitation of a model that is otherwise the best available.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(tag = "caution", rename_all = "snake_case")]
 pub enum Caution {
     /// The range of magnetic latitudes is too narrow: only the sums bx + χ13 Z and by + χ23

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Headings and magnetic latitudes that would narrow the band most.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct SailNext {
     /// Length of a watch, hours.
     pub watch_hours: f64,
@@ -11,14 +12,17 @@ pub struct SailNext {
     /// from the reference's own constant error, degrees.
     pub floor_deg: f64,
     /// Headings to sail here, for the band here.
+    #[cfg_attr(feature = "openapi", schema(value_type = HeadingAdvice))]
     pub here: Advice<HeadingSuggestion>,
     /// Magnetic latitudes to visit, for the band elsewhere; none where the model holds
     /// nowhere else.
+    #[cfg_attr(feature = "openapi", schema(required, value_type = Option<LatitudeAdvice>))]
     pub elsewhere: Option<Advice<LatitudeSuggestion>>,
 }
 
 /// Band in some waters, with suggestions that narrow it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Advice<S> {
     /// Present band.
     pub band: Band,
@@ -30,6 +34,7 @@ pub struct Advice<S> {
 
 /// Half the width of the 95 % band over all headings in some waters, degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Band {
     /// Root mean square.
     pub rms_deg: f64,
@@ -40,6 +45,7 @@ pub struct Band {
 /// A range of compass headings, clockwise from first to last. It may pass north; 0 to 360
 /// is any heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HeadingRange {
     /// First heading, degrees, 0 to 345.
     pub heading_from_deg: u16,
@@ -49,9 +55,11 @@ pub struct HeadingRange {
 
 /// A range of headings on which a watch narrows the band.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HeadingSuggestion {
     /// Range of headings.
     #[serde(flatten)]
+    #[cfg_attr(feature = "openapi", schema(inline))]
     pub range: HeadingRange,
     /// Greatest band after one watch on any heading of the range.
     pub after_one: Band,
@@ -61,6 +69,7 @@ pub struct HeadingSuggestion {
 
 /// A range of magnetic latitudes in which a watch narrows the band.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct LatitudeSuggestion {
     /// Southern edge, degrees of magnetic latitude, north positive.
     pub magnetic_latitude_from_deg: i16,
@@ -73,3 +82,16 @@ pub struct LatitudeSuggestion {
     /// Greatest band after all three watches.
     pub after_three: Band,
 }
+
+/// Schema of the advice on headings.
+#[cfg(feature = "openapi")]
+enum HeadingAdvice {}
+
+/// Schema of the advice on magnetic latitudes.
+#[cfg(feature = "openapi")]
+enum LatitudeAdvice {}
+
+#[cfg(feature = "openapi")]
+crate::openapi::named_schema!(HeadingAdvice, "HeadingAdvice", Advice<HeadingSuggestion>);
+#[cfg(feature = "openapi")]
+crate::openapi::named_schema!(LatitudeAdvice, "LatitudeAdvice", Advice<LatitudeSuggestion>);

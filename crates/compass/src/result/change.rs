@@ -36,19 +36,26 @@ pub struct Change {
 
 /// A step of permanent magnetism over λ, nT, with its standard errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Step {
     /// Fore and aft, forward positive.
+    #[cfg_attr(feature = "openapi", schema(example = 1850.0))]
     pub bx_nt: f64,
     /// Athwartships, starboard positive.
+    #[cfg_attr(feature = "openapi", schema(example = -640.0))]
     pub by_nt: f64,
     /// Standard error of `bx_nt`.
+    #[cfg_attr(feature = "openapi", schema(example = 120.0))]
     pub bx_se_nt: f64,
     /// Standard error of `by_nt`.
+    #[cfg_attr(feature = "openapi", schema(example = 95.0))]
     pub by_se_nt: f64,
 }
 
 /// Cause of a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = ChangeCause))]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
     /// Lightning strike, or a heavy blow to the hull.
@@ -109,9 +116,11 @@ impl Change {
 
 /// A cause and its probability.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CauseProbability {
     /// Cause.
     pub cause: Cause,
     /// Probability, 0 to 1.
+    #[cfg_attr(feature = "openapi", schema(example = 0.93))]
     pub probability: f64,
 }

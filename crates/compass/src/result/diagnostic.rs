@@ -5,32 +5,43 @@ use serde::{Deserialize, Serialize};
 
 /// A sample with its diagnosis. Unavailable values are none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = Sample))]
 pub struct SampleDiagnostic {
     /// Original sample.
     #[serde(flatten)]
+    #[cfg_attr(feature = "openapi", schema(inline))]
     pub sample: Sample,
     /// Variation, degrees, east positive.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub variation_deg: Option<f64>,
     /// Horizontal field, nT.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub h_nt: Option<f64>,
     /// Vertical field, nT, down positive.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub z_nt: Option<f64>,
     /// Reference less variation less compass, degrees.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub deviation_deg: Option<f64>,
     /// Predicted deviation on this compass heading at this place, degrees.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub predicted_deg: Option<f64>,
     /// Measured less predicted, degrees.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub residual_deg: Option<f64>,
     /// Robust weight, 0 to 1.
     pub weight: f64,
     /// Used: it had weight in a model.
     pub used: bool,
     /// Reason for rejection or reduced weight; none at full weight.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub reason: Option<SampleReason>,
 }
 
 /// Reason for the rejection or reduced weight of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SampleReason {
     /// No gyro or satellite compass heading.

@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// Reason for a fit without a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = Refusal))]
 #[serde(tag = "reason", rename_all = "snake_case")]
 pub enum FitError {
     /// No reading has a reference heading.
@@ -28,9 +30,9 @@ pub enum FitError {
     },
     /// Too few headings.
     #[error(
-        "headings in {found} of 24 sectors of 15 degrees, the widest gap {widest_gap_deg:.0} degrees; \
-         at least {needed} sectors are needed and no gap over {allowed_gap_deg:.0} degrees; \
-         missing: {}", ranges(.missing_deg)
+        "headings in {found} of 24 sectors of 15 degrees, the widest gap {widest_gap_deg:.0} \
+         degrees; at least {needed} sectors are needed and no gap over {allowed_gap_deg:.0} \
+         degrees; missing: {}", ranges(.missing_deg)
     )]
     TooFewHeadings {
         /// Number of 15° sectors with at least one observation.
@@ -44,11 +46,13 @@ pub enum FitError {
         /// Headings without an observation: whole sectors of 15°, each range by its first
         /// degree and the one after its last, beyond 360 through north.
         #[serde(default)]
+        #[cfg_attr(feature = "openapi", schema(required, value_type = Vec<[u32; 2]>))]
         missing_deg: Vec<(u32, u32)>,
     },
     /// The earth's horizontal field is too weak for a compass.
     #[error(
-        "horizontal field of at most {strongest_nt:.0} nT; a compass needs at least {needed_nt:.0} nT"
+        "horizontal field of at most {strongest_nt:.0} nT; a compass needs at least \
+         {needed_nt:.0} nT"
     )]
     FieldTooWeak {
         /// Strongest horizontal field among the observations, nT.

@@ -17,6 +17,8 @@ pub struct Refused {
 
 /// Cure of a refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = AdjustmentCure))]
 #[serde(rename_all = "snake_case")]
 pub enum Cure {
     /// Another reading: check heading, axes and unit, away from steel.

@@ -5,18 +5,28 @@ use serde::{Deserialize, Serialize};
 
 /// Limits of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(
+    feature = "openapi",
+    schema(as = PlanLimits, example = json!({ "residual_deg": 3.0, "band_deg": 1.5 }))
+)]
 #[serde(default, deny_unknown_fields)]
 pub struct Limits {
-    /// Greatest predicted residual, including its band, degrees.
+    /// Greatest predicted residual, including its band, degrees; 3 by default.
+    #[cfg_attr(feature = "openapi", schema(minimum = 0.5, maximum = 5))]
     pub residual_deg: f64,
-    /// Greatest 95 % band, degrees.
+    /// Greatest 95 % band, degrees; 2.5 by default.
+    #[cfg_attr(feature = "openapi", schema(minimum = 0.2, maximum = 4))]
     pub band_deg: f64,
-    /// Difference below which settings count as equal, degrees; the one with the fewest
-    /// moves is chosen.
+    /// Difference below which settings count as equal, degrees; 0.1 by default. The one with
+    /// the fewest moves is chosen.
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 1))]
     pub near_equal_deg: f64,
-    /// Greatest age of the model, days.
+    /// Greatest age of the model, days; 60 by default.
+    #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 90))]
     pub model_age_days: f64,
-    /// Greatest relative standard error of λ for moving soft iron.
+    /// Greatest relative standard error of λ for moving soft iron; 0.03 by default.
+    #[cfg_attr(feature = "openapi", schema(minimum = 0.005, maximum = 0.1))]
     pub lambda_sd: f64,
 }
 

@@ -14,20 +14,31 @@ use serde::{Deserialize, Serialize};
 
 /// Magnetometer reading at the berth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = BerthReading, example = json!({
+    "at": "2026-11-22T08:20:00Z", "lat": 43.35, "lon": -3.04,
+    "heading_true_deg": 312.0, "heading_from": "model_reference",
+    "forward": 17.2, "starboard": 14.9, "unit": "microtesla",
+    "magnetometer": "fluxgate", "compass_deg": 310.5
+})))]
 #[serde(deny_unknown_fields)]
 pub struct ReadingForm {
     /// Time of the reading.
     pub at: Timestamp,
     /// Latitude of the berth, degrees north.
+    #[cfg_attr(feature = "openapi", schema(minimum = -90, maximum = 90))]
     pub lat: f64,
     /// Longitude of the berth, degrees east.
+    #[cfg_attr(feature = "openapi", schema(minimum = -180, maximum = 180))]
     pub lon: f64,
     /// True heading of the vessel, degrees.
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 360))]
     pub heading_true_deg: f64,
     /// Source of that heading.
     pub heading_from: HeadingFrom,
     /// Standard deviation of the heading, including variation, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 5))]
     pub heading_sd_deg: Option<f64>,
     /// Horizontal field at the card's centre, bowl out, forward positive.
     pub forward: f64,
@@ -42,28 +53,36 @@ pub struct ReadingForm {
     pub magnetometer: Magnetometer,
     /// Maker, type and serial number of the magnetometer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(max_length = 200))]
     pub magnetometer_serial: Option<String>,
     /// Standard deviation of each part, nT; by default that of the kind, as for the other
     /// errors.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(minimum = 1, maximum = 5000))]
     pub field_sd_nt: Option<f64>,
     /// Relative standard deviation of the magnetometer's scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 0.5))]
     pub scale_sd: Option<f64>,
     /// Standard deviation of the magnetometer's alignment, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 5))]
     pub alignment_sd_deg: Option<f64>,
     /// Standard deviation of the magnetometer's tilt in roll and in pitch, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 4))]
     pub tilt_sd_deg: Option<f64>,
     /// Standard deviation of the field of nearby steel in each part, nT.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 5000))]
     pub steel_sd_nt: Option<f64>,
     /// Compass heading before the bowl was taken out, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 360))]
     pub compass_deg: Option<f64>,
     /// Heel of the vessel, degrees to starboard.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(minimum = -5, maximum = 5))]
     pub heel_deg: f64,
     /// Steel nearby: a crane, a ship alongside, a quay of steel piles.
     #[serde(default)]
@@ -75,6 +94,7 @@ pub struct ReadingForm {
 
 /// Source of a heading at the berth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum HeadingFrom {
     /// The reference of the model's fit, with the magnetometer along the compass's lubber
@@ -87,6 +107,7 @@ pub enum HeadingFrom {
 
 /// Kind of magnetometer, by precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Magnetometer {
     /// A purpose-made fluxgate or proton magnetometer.

@@ -9,6 +9,10 @@ use serde::{Deserialize, Serialize};
 /// Second reading with the same magnetometer in the same place and alignment, after the
 /// steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = SecondReading, example = json!({
+    "at": "2026-11-22T10:05:00Z", "forward": 15.1, "starboard": 17.7, "unit": "microtesla"
+})))]
 #[serde(deny_unknown_fields)]
 pub struct SecondReadingForm {
     /// Time of the reading.
@@ -24,9 +28,11 @@ pub struct SecondReadingForm {
     pub unit: Unit,
     /// True heading of the vessel from the same source, if it changed, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 360))]
     pub heading_true_deg: Option<f64>,
     /// Compass heading before the bowl was taken out, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "openapi", schema(minimum = 0, maximum = 360))]
     pub compass_deg: Option<f64>,
 }
 

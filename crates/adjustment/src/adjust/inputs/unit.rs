@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// A unit of the magnetic field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = FieldUnit))]
 #[serde(rename_all = "snake_case")]
 pub enum Unit {
     /// Nanotesla, nT.

@@ -6,6 +6,8 @@ use std::fmt;
 
 /// Kind of corrector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = MovedCorrector))]
 #[serde(rename_all = "snake_case")]
 pub enum Corrector {
     /// Flinders bar.
@@ -22,6 +24,8 @@ pub enum Corrector {
 
 /// Action of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = StepAction))]
 #[serde(rename_all = "snake_case")]
 pub enum Action {
     /// Fitted.
@@ -36,6 +40,8 @@ pub enum Action {
 
 /// Place of a corrector.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = CorrectorPlace))]
 #[serde(tag = "place", rename_all = "snake_case")]
 pub enum Place {
     /// Magnets of an axis.
@@ -50,6 +56,8 @@ pub enum Place {
 
 /// One movement with its check on the spot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = PlanStep))]
 pub struct Step {
     /// Number, from 1.
     pub number: u32,
@@ -58,12 +66,15 @@ pub struct Step {
     /// Action.
     pub action: Action,
     /// Place before; none when it is fitted.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub from: Option<Place>,
     /// Place afterwards; none when it is taken out.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub to: Option<Place>,
     /// Instruction in a sentence.
     pub words: String,
     /// Check before the step.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub check: Option<String>,
     /// Predicted compass heading at the berth afterwards, degrees.
     pub expected_compass_deg: f64,

@@ -14,10 +14,14 @@ use serde::{Deserialize, Serialize};
 
 /// Result of planning.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = PlanOffer))]
 pub struct Outcome {
     /// Check of the berth; none when its reading was refused.
+    #[cfg_attr(feature = "openapi", schema(value_type = Option<Object>))]
     pub berth: Option<BerthCheck>,
     /// Reasons for the absence of a plan; empty when there is one.
+    #[cfg_attr(feature = "openapi", schema(value_type = Vec<Object>))]
     pub refusals: Vec<Refused>,
     /// Notes for the adjuster.
     pub notes: Vec<String>,
@@ -29,6 +33,8 @@ pub struct Outcome {
 
 /// A possible setting of the correctors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = CorrectorPlan))]
 pub struct Plan {
     /// Planned setting.
     pub setting: Setting,

@@ -34,6 +34,8 @@ pub struct PostCheck {
 
 /// One component of the field.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = SecondReadingPart))]
 pub struct FieldComponent {
     /// Predicted field, nT.
     pub expected_nt: f64,

@@ -11,6 +11,8 @@ const MOST_MOVES: usize = 32;
 
 /// Optimality of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = PlanOptimality))]
 pub struct Optimality {
     /// Proven: every setting was tried or excluded, and none is better by more than a gap
     /// that no card shows.

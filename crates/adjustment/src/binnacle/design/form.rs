@@ -8,6 +8,8 @@ use std::fmt;
 ///
 /// [`Design`]: super::Design
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = BinnacleDesign))]
 #[serde(deny_unknown_fields)]
 pub struct DesignForm {
     /// Version of the form.
@@ -41,6 +43,8 @@ pub struct DesignForm {
 
 /// Class of a compass by ISO 25862.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = CompassClass))]
 #[serde(rename_all = "snake_case")]
 pub enum CompassKind {
     /// Class A.
@@ -53,6 +57,7 @@ pub enum CompassKind {
 
 /// A kind of magnets.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MagnetKind {
     /// Name of the kind.
@@ -67,6 +72,8 @@ pub struct MagnetKind {
 
 /// Carrier of magnets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = MagnetCarrier))]
 #[serde(rename_all = "snake_case")]
 pub enum Carrier {
     /// A hole in the binnacle.
@@ -77,6 +84,8 @@ pub enum Carrier {
 
 /// Places for the magnets of one axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = MagnetRack))]
 #[serde(deny_unknown_fields)]
 pub struct Rack {
     /// Carrier of the magnets.
@@ -99,6 +108,8 @@ pub struct Rack {
 
 /// A numbered hole or position below the card.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = NumberedHeight))]
 #[serde(deny_unknown_fields)]
 pub struct Hole {
     /// Number, from 1 at the bottom upwards (ISO 25862).
@@ -109,6 +120,8 @@ pub struct Hole {
 
 /// Quadrantal correctors: soft iron in pairs at the card's height.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = QuadrantalBrackets))]
 #[serde(deny_unknown_fields)]
 pub struct Quadrantal {
     /// Sizes that fit the brackets.
@@ -127,6 +140,7 @@ fn not_slewed() -> Vec<f64> {
 
 /// A size of quadrantal correctors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct IronSize {
     /// Name of the size.
@@ -141,6 +155,8 @@ pub struct IronSize {
 
 /// Shape of quadrantal correctors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = IronShape))]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
     /// A solid or hollow sphere.
@@ -153,6 +169,8 @@ pub enum Shape {
 
 /// A position of the pair on the brackets.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = BracketMark))]
 #[serde(deny_unknown_fields)]
 pub struct Mark {
     /// Mark on the scale, mm.
@@ -163,6 +181,8 @@ pub struct Mark {
 
 /// The holder of the Flinders bar; its top pole is at the card's height.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = FlindersHolder))]
 #[serde(deny_unknown_fields)]
 pub struct Flinders {
     /// Diameter of the bar, mm.
@@ -182,6 +202,8 @@ pub struct Flinders {
 
 /// Side of the card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = BarSide))]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
     /// Forward of the card.
@@ -192,6 +214,8 @@ pub enum Side {
 
 /// Bucket of the heeling magnets under the card.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = HeelingBucket))]
 #[serde(deny_unknown_fields)]
 pub struct Heeling {
     /// Kind of magnets that fits, upright.
