@@ -8,7 +8,7 @@ use binnacle_analysis::fit::{
     readings_from_csv,
 };
 use binnacle_compass::coverage::coverage;
-use binnacle_compass::deviation::NAMES;
+use binnacle_compass::deviation::PARAMETER_NAMES;
 use binnacle_compass::model::{Model, Quality};
 use binnacle_compass::result::{FitError, HeadingRange, ReferenceCheck, SailNext};
 use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
@@ -104,7 +104,7 @@ fn describe(found: &Found) -> String {
             known.constant_deg,
         ]
     });
-    let rows: Vec<[String; 4]> = NAMES
+    let rows: Vec<[String; 4]> = PARAMETER_NAMES
         .iter()
         .zip(values.into_iter().chain([model.constant_deg]))
         .enumerate()

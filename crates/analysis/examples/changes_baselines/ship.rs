@@ -162,7 +162,7 @@ impl Ship {
 }
 
 pub(crate) fn is_alarm(change: &Change) -> bool {
-    change.confirmed && change.cause.is_the_ships()
+    change.confirmed && change.cause.changes_deviation()
 }
 
 fn variety(seed: u64) -> Variety {
@@ -179,7 +179,7 @@ fn observations(samples: &[Sample]) -> Vec<Observation> {
         .map(|sample| {
             let of = sample.time.micros().div_euclid(86_400_000_000);
             if std::mem::replace(&mut day, of) != of {
-                field = FieldAt::time(FieldModel::Igrf14, sample.time).ok();
+                field = FieldAt::from_time(FieldModel::Igrf14, sample.time).ok();
             }
             let here = field.as_ref().unwrap().at(sample.position, 0.0).unwrap();
             HeadingReading {

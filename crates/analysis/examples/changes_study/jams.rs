@@ -149,7 +149,7 @@ fn told(seed: u64, fault: Fault, hours: f64) -> [Told; 4] {
                 .any(|c| matches!(c.cause, Cause::CompassFault | Cause::Alignment)),
             a_strike: since
                 .iter()
-                .any(|c| c.cause.is_the_ships() && c.cause != Cause::Alignment),
+                .any(|c| c.cause.changes_deviation() && c.cause != Cause::Alignment),
         }
     })
 }

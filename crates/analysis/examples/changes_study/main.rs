@@ -130,7 +130,7 @@ fn run(samples: &[Sample]) -> Analysis {
 
 fn alarms(analysis: &Analysis) -> impl Iterator<Item = &Change> {
     let changes = analysis.changes.iter();
-    changes.filter(|c| c.confirmed && c.cause.is_the_ships())
+    changes.filter(|c| c.confirmed && c.cause.changes_deviation())
 }
 
 /// Whether a change can be this happening.
@@ -148,10 +148,10 @@ fn telling<'a>(analysis: &'a Analysis, h: &Happened) -> Option<&'a Change> {
     });
     let first = told.next()?;
     // A disturbance that was taken back for a change counts as the change.
-    Some(if first.cause.is_the_ships() {
+    Some(if first.cause.changes_deviation() {
         first
     } else {
-        told.find(|c| c.cause.is_the_ships()).unwrap_or(first)
+        told.find(|c| c.cause.changes_deviation()).unwrap_or(first)
     })
 }
 

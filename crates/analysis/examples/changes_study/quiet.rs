@@ -15,7 +15,7 @@ pub(crate) fn quiet(ships: u64) {
         // What was told and then withdrawn was told.
         let told = || {
             let changes = analysis.changes.iter();
-            changes.filter(|c| (c.confirmed || c.withdrawn) && c.cause.is_the_ships())
+            changes.filter(|c| (c.confirmed || c.withdrawn) && c.cause.changes_deviation())
         };
         for c in told() {
             println!(

@@ -101,7 +101,7 @@ pub(crate) fn references(ships: u64) {
             looks.len(),
             100.0 * held as f64 / (36 * with.count()) as f64,
             told(|c| *c == Cause::ReferenceFault),
-            told(|c| c.is_the_ships()),
+            told(|c| c.changes_deviation()),
         );
         if std::env::var("WORDS").is_ok() {
             for look in &looks {

@@ -147,7 +147,7 @@ impl Then {
             .analysis
             .changes
             .iter()
-            .filter(|c| c.cause.is_the_ships());
+            .filter(|c| c.cause.changes_deviation());
         of_ship
             .map(|c| {
                 format!(

@@ -67,12 +67,12 @@ pub(super) fn prior(
     before: Option<&Epoch>,
     reference_constant_sd_deg: f64,
 ) -> Prior {
-    let leaves_the_iron = match epoch.begun_by {
-        Some(kind) => kind.leaves_the_iron(),
+    let preserves_soft_iron = match epoch.begun_by {
+        Some(kind) => kind.preserves_soft_iron(),
         None => epoch.begun_by_change.is_some(),
     };
     before
-        .filter(|_| leaves_the_iron)
+        .filter(|_| preserves_soft_iron)
         .and_then(|before| {
             let reference_sd_deg = before.references.as_ref()?.constant_sd_deg;
             let model = before.model.as_ref()?;
@@ -232,7 +232,7 @@ impl FitInput<'_> {
     fn wider_prior(&self, model: &Model) -> Option<Prior> {
         let mut prior = self.prior.clone();
         if self.is_alignment_changed {
-            prior = prior.by_turned_compass(model.constant_deg - prior.mean[PARAMETERS]);
+            prior = prior.with_compass_turned(model.constant_deg - prior.mean[PARAMETERS]);
         }
         let now = model.parameters_over_lambda.to_array();
         let moved = |j: usize| now[j] - prior.mean[j];

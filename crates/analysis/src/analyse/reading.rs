@@ -161,7 +161,7 @@ impl DailyField {
             self.day = Some(day);
             self.at_noon = Timestamp::from_micros(day * DAY_MICROS + DAY_MICROS / 2)
                 .ok()
-                .and_then(|noon| FieldAt::time(self.model, noon).ok());
+                .and_then(|noon| FieldAt::from_time(self.model, noon).ok());
         }
         self.at_noon.as_ref()?.at(sample.position, 0.0).ok()
     }

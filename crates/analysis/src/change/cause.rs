@@ -267,7 +267,7 @@ fn discount_contradictions(
     let against = weights.iter_mut().filter(|(cause, _)| !agrees(*cause));
     for (cause, weight) in against {
         *weight *= share;
-        if cause.is_the_ships() != is_of_the_ship {
+        if cause.changes_deviation() != is_of_the_ship {
             // The detector decided whether an epoch begins: no contradicting cause may be
             // named first.
             *weight = weight.min(most);
@@ -308,14 +308,14 @@ impl CausePriors {
 /// Returns true if a cause agrees with the detector's decision.
 fn agrees(event_kind: EventKind, cause: Cause, one_reference: bool) -> bool {
     match event_kind {
-        EventKind::Step | EventKind::Return(_) => cause.is_the_ships(),
+        EventKind::Step | EventKind::Return(_) => cause.changes_deviation(),
         EventKind::Alignment => cause == Cause::Alignment,
         EventKind::Drift => cause == Cause::Drift,
         EventKind::ReferenceFault => {
             cause == Cause::ReferenceFault || (one_reference && cause == Cause::Alignment)
         }
         EventKind::Transient => {
-            !cause.is_the_ships() && (one_reference || cause != Cause::ReferenceFault)
+            !cause.changes_deviation() && (one_reference || cause != Cause::ReferenceFault)
         }
     }
 }

@@ -134,7 +134,7 @@ pub(crate) fn apply_alignment_step(now: &Filter, moved_deg: f64, size_deg: f64) 
 fn mean_of_turned_compass(now: &Filter, moved_deg: f64) -> [f64; STATES] {
     let own = |j: usize| now.mean[j] * POPULATION_SD[j];
     let mean_of_turned_compass = Parameters::from_array(std::array::from_fn(own))
-        .by_turned_compass(-moved_deg.to_radians())
+        .with_compass_turned(-moved_deg.to_radians())
         .to_array();
     let mut mean = now.mean;
     for j in 0..PARAMETERS {

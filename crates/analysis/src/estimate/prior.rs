@@ -82,11 +82,11 @@ impl Prior {
 
     /// Returns the prior after an alignment change by which the constant is larger by
     /// `moved_deg`.
-    pub(crate) fn by_turned_compass(&self, moved_deg: f64) -> Prior {
+    pub(crate) fn with_compass_turned(&self, moved_deg: f64) -> Prior {
         let mut mean = self.mean;
         let parameters = std::array::from_fn(|j| mean[j]);
         let turned = binnacle_compass::model::Parameters::from_array(parameters)
-            .by_turned_compass(-moved_deg.to_radians());
+            .with_compass_turned(-moved_deg.to_radians());
         mean[..PARAMETERS].copy_from_slice(&turned.to_array());
         mean[PARAMETERS] += moved_deg;
         Prior {

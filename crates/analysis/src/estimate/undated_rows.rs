@@ -44,7 +44,7 @@ pub(super) fn heading_cell(o: &Observation) -> i64 {
 /// each cell.
 pub(super) fn design_effect(cells: impl Iterator<Item = f64>) -> f64 {
     let usual = NoiseLevels::TYPICAL;
-    let in_common = 1.0 - usual.white_deg.powi(2) / usual.of_a_row();
+    let in_common = 1.0 - usual.white_deg.powi(2) / usual.row_variance();
     let (mut rows, mut beside) = (0.0, 0.0);
     for count in cells {
         rows += count;

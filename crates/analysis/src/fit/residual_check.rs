@@ -28,7 +28,7 @@ pub(super) fn check_residuals(
     if residuals.is_empty() {
         return Ok(None);
     }
-    let noise_deg = levels.of_a_row().sqrt();
+    let noise_deg = levels.row_variance().sqrt();
     // A reference that was wrong for days moves the constant away from all the rest, which
     // is still plausible.
     let spread_deg = robust_sd(&residuals, median(residuals.clone()));

@@ -27,7 +27,7 @@ fn lie_alongside(log: &mut Log, steel_deg: f64, ship: impl Fn(Timestamp) -> Trut
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     let (arrived, sailed) = call(log);
     let (first, last) = (log.samples[arrived], log.samples[sailed]);
-    let field = FieldAt::time(FieldModel::Igrf14, first.time).unwrap();
+    let field = FieldAt::from_time(FieldModel::Igrf14, first.time).unwrap();
     let here = field.at(first.position, 0.0).unwrap();
     let minutes = last.time.seconds_since(first.time) / 60.0;
     let lying = (3..(minutes / 10.0) as i32 - 3).map(|k| {

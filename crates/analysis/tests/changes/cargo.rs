@@ -130,7 +130,7 @@ fn cargo_that_is_noticed_days_after_a_disturbance_at_sea_came_on_board_at_the_ca
         let loaded = began(&log, Name::Cargo);
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let passed = |c: &&Change| c.confirmed && !c.cause.is_the_ships() && c.from > loaded;
+        let passed = |c: &&Change| c.confirmed && !c.cause.changes_deviation() && c.from > loaded;
         let passed = analysis.changes.iter().find(passed).unwrap();
         let found = of_the_ship(&analysis)[0];
         assert!(passed.from < found.detected_at, "seed {seed}");

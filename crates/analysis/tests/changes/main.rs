@@ -49,7 +49,7 @@ fn run(samples: &[Sample]) -> Analysis {
 fn of_the_ship(analysis: &Analysis) -> Vec<&Change> {
     let changes = analysis.changes.iter();
     changes
-        .filter(|c| c.confirmed && c.cause.is_the_ships())
+        .filter(|c| c.confirmed && c.cause.changes_deviation())
         .collect()
 }
 
@@ -144,7 +144,7 @@ fn what_later_samples_do_not_bear_out_is_withdrawn() {
     let analysis = run(&log.samples);
     is_sound(&analysis);
     let changes = &analysis.changes;
-    let was_one = |c: &&Change| c.withdrawn && c.cause.is_the_ships();
+    let was_one = |c: &&Change| c.withdrawn && c.cause.changes_deviation();
     let told = changes.iter().find(was_one).unwrap();
     assert!(!told.confirmed && told.ended > Some(told.detected_at));
     assert!(told.evidence.iter().any(|e| e.contains("is withdrawn")));
@@ -162,7 +162,7 @@ fn what_later_samples_do_not_bear_out_is_withdrawn() {
 fn on_a_quiet_voyage_nothing_changes() {
     for seed in 10..13 {
         let analysis = run(&sail_log(seed, &calm(Event::Nothing)).samples);
-        assert!(analysis.changes.iter().all(Change::is_faint));
+        assert!(analysis.changes.iter().all(Change::is_weak_transient));
         assert_eq!(analysis.epochs.len(), 1);
     }
 }

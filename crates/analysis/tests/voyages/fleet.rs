@@ -424,13 +424,13 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         growing: ([0.0; 2], 0),
         state: Stage::ToCome,
     };
-    let mut field = FieldAt::time(FieldModel::Igrf14, start).unwrap();
+    let mut field = FieldAt::from_time(FieldModel::Igrf14, start).unwrap();
     let mut kept = Kept::default();
     let mut turns = Vec::new();
     let mut at_sea_for = 0;
     for minute in 0..(plan.days * 1440.0) as i64 {
         if minute % 1440 == 0 {
-            field = FieldAt::time(FieldModel::Igrf14, world.time(minute + 720)).unwrap();
+            field = FieldAt::from_time(FieldModel::Igrf14, world.time(minute + 720)).unwrap();
         }
         let turned = passage.minute(&mut rng);
         if turned.abs() > 20.0 {

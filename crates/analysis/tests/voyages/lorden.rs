@@ -134,7 +134,7 @@ fn rows(
             let east = wrap_180(here.lon_deg() - last.lon_deg()) * lat.cos();
             60.0 * north.hypot(east)
         });
-        let field = FieldAt::time(FieldModel::Igrf14, sample.time).unwrap();
+        let field = FieldAt::from_time(FieldModel::Igrf14, sample.time).unwrap();
         let field = field.at(here, 0.0).unwrap();
         let (h, z) = (field.h_nt(), field.z_nt);
         // The generator breaks gyros only.

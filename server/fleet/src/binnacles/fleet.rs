@@ -4,7 +4,7 @@ use super::schema::AboardSchema;
 use super::store;
 use crate::compasses::Role;
 use axum::extract::{FromRef, State};
-use binnacle_adjustment::binnacle::{Aboard, Binnacle};
+use binnacle_adjustment::binnacle::{Binnacle, Inventory};
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Problem, Result};
@@ -53,7 +53,7 @@ struct BinnacleInShort {
     serial: String,
     /// All correctors on board, those in use included.
     #[schema(value_type = AboardSchema)]
-    aboard: Aboard,
+    aboard: Inventory,
     /// How many of its effects were measured.
     measured_effects: usize,
     /// Counts from 1.
@@ -119,7 +119,7 @@ impl BinnacleInShort {
             maker: binnacle.design.maker.clone(),
             model: binnacle.design.model.clone(),
             serial: binnacle.serial.clone(),
-            aboard: binnacle.aboard.clone(),
+            aboard: binnacle.inventory.clone(),
             measured_effects: binnacle.calibration.len(),
             revision: written.revision,
             at: written.at,

@@ -134,7 +134,7 @@ async fn put_binnacle(
     let request_hash = idempotency::request_hash(&format!("binnacle of {compass}"), &form)?;
     let reason = optional_text("reason", why.reason.as_deref())?;
     let binnacle = Binnacle::try_from(form).map_err(invalid_binnacle)?;
-    binnacle.must_be_credible().map_err(invalid_binnacle)?;
+    binnacle.check_tested_moments().map_err(invalid_binnacle)?;
     let now = app.clock.now().into();
     let wanted = BinnacleId::new();
     let mut tx = request.begin().await?;

@@ -73,7 +73,10 @@ pub(super) struct DesignSchema {
 /// Correctors on board, those in use included.
 #[derive(ToSchema)]
 #[schema(as = CorrectorsAboard)]
-#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Aboard")]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_adjustment::binnacle::Inventory"
+)]
 pub(super) struct AboardSchema {
     /// Magnets by their kind.
     magnets: Vec<LotSchema>,

@@ -8,7 +8,7 @@ use crate::compasses::Compass;
 use crate::deviation::{HandbookSchema, Row, Worst};
 use crate::ingest::CardWithdrawnSchema;
 use binnacle_adjustment::binnacle::{Setting, Shape};
-use binnacle_compass::handbook::Handbook;
+use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_platform::ids::{ModelId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_wire::messages::CardWithdrawn;
@@ -232,14 +232,14 @@ pub struct CardRow {
 pub struct Coefficients {
     /// The exact ones, × 57.3.
     #[schema(value_type = HandbookSchema)]
-    pub exact: Handbook,
+    pub exact: CoefficientsInDegrees,
     /// What the model adds on every heading: alignment, reference and variation
     /// offsets. The handbook's A includes it.
     #[schema(example = 0.2)]
     pub constant_deg: f64,
     /// What an adjuster would find who swung the ship.
     #[schema(value_type = HandbookSchema)]
-    pub handbook: Handbook,
+    pub handbook: CoefficientsInDegrees,
 }
 
 /// How a binnacle's correctors stand.

@@ -69,7 +69,7 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
     let coefficients = Coefficients {
         exact: Exact::new(&ship.parameters_over_lambda, earth)?.to_degrees(),
         constant_deg: ship.constant_deg,
-        handbook: ship.handbook(earth)?,
+        handbook: ship.approximate_coefficients(earth)?,
     };
     let at = place.at;
     let cargo = cargo_at(&basis.logbook, at);

@@ -61,7 +61,7 @@ impl Refusal {
                 ("band-too-wide", "The model is too uncertain for a card")
             }
             Refusal::NoHeadings(
-                DeviationError::FieldTooWeak { .. } | DeviationError::NoField { .. },
+                DeviationError::FieldTooWeak { .. } | DeviationError::InvalidField { .. },
             ) => ("field-too-weak", "The earth's field there is too weak"),
             Refusal::NoHeadings(_) => ("headings-ambiguous", "Headings are ambiguous"),
             Refusal::CompassSuspected { .. } => ("compass-suspected", "The compass is suspected"),

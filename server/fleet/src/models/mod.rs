@@ -17,7 +17,7 @@ use crate::compasses::{self, WhichCompass};
 use crate::deviation::{HandbookSchema, Worst};
 use crate::{analysis, vessels};
 use axum::extract::{FromRef, State};
-use binnacle_compass::handbook::Handbook;
+use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_compass::ship::EarthField;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
@@ -100,7 +100,7 @@ pub struct ModelVersion {
     pub z_nt: f64,
     /// The handbook's coefficients there; none where headings are ambiguous.
     #[schema(required, value_type = Option<HandbookSchema>)]
-    pub handbook: Option<Handbook>,
+    pub handbook: Option<CoefficientsInDegrees>,
     /// The fit.
     #[schema(value_type = ModelSchema)]
     pub model: ModelJson,

@@ -10,7 +10,7 @@ use super::entry::{Content, sha256_hex};
 use super::record::{self, Aboard};
 use super::standing::Standing;
 use super::store::{self, Whole};
-use binnacle_adjustment::adjust::Learnt;
+use binnacle_adjustment::adjust::UpdatedPrediction;
 use binnacle_adjustment::binnacle::Setting;
 use binnacle_compass::model::Model;
 use binnacle_fleet::binnacles;
@@ -195,7 +195,7 @@ pub(super) fn must_stand_as_planned(standing: &Standing) -> Result<&Setting> {
 pub(super) async fn complete(
     change: &mut Change<'_>,
     aboard: &Aboard,
-    learnt: Learnt,
+    learnt: UpdatedPrediction,
     word: Word,
     at: Time,
 ) -> Result<()> {

@@ -7,7 +7,7 @@ use super::completion::Word;
 use super::entry::{Content, canonical};
 use super::order::NOT_A_CERTIFICATE;
 use super::store::Whole;
-use binnacle_adjustment::adjust::{HeelingPlan, Learnt};
+use binnacle_adjustment::adjust::{HeelingPlan, UpdatedPrediction};
 use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_fleet::compasses::Compass;
 use binnacle_platform::error::Result;
@@ -27,7 +27,7 @@ pub(super) struct Aboard {
 pub(super) fn text(
     aboard: &Aboard,
     whole: &Whole,
-    learnt: &Learnt,
+    learnt: &UpdatedPrediction,
     word: &Word,
     account: &str,
     after: &Binnacle,

@@ -198,7 +198,7 @@ fn change(findings: &Findings, adjusted: Option<Time>) -> Option<Change> {
         let cause = change.cause;
         change.confirmed
             && change.ended.is_none()
-            && cause.is_the_ships()
+            && cause.changes_deviation()
             && !matches!(cause, Cause::MagneticCargo | Cause::AdjustmentOrRepair)
             && !found.expected
             && adjusted.is_none_or(|adjusted| change.from > adjusted.0)

@@ -100,7 +100,7 @@ impl EpochBuilder {
         let mut moved = model.clone();
         moved.parameters_over_lambda = moved
             .parameters_over_lambda
-            .by_turned_compass(-possible_alignment.moved_deg.to_radians());
+            .with_compass_turned(-possible_alignment.moved_deg.to_radians());
         moved.constant_deg += possible_alignment.moved_deg;
         if let Some(covariance) = &mut moved.covariance {
             covariance[PARAMETERS][PARAMETERS] += possible_alignment.variance;

@@ -23,7 +23,7 @@ impl Needle {
         let Direction { sin, cos } = heading;
         let (hx, hy) = (field.h_nt * cos, -field.h_nt * sin);
         let earth = [hx, hy, field.z_nt];
-        let [ux, uy] = p.of_ship_axes(earth);
+        let [ux, uy] = p.field_over_lambda_in_ship_axes(earth);
         // Without any force a needle has no direction: any small number keeps the
         // arithmetic finite.
         let squared = (ux * ux + uy * uy).max(1.0);

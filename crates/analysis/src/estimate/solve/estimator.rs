@@ -117,7 +117,7 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
         by_data: evaluated.by_data,
         independent: &evaluated.independent,
         weighed,
-        row_variance: (squares / weighed).max(levels.of_a_row()),
+        row_variance: (squares / weighed).max(levels.row_variance()),
         after: &evaluated.covariance,
         before: &solution.prior_covariance()?,
         parameters: &parameters,

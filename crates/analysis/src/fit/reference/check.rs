@@ -2,7 +2,7 @@
 
 use super::reading::{HeadingReading, Trust};
 use binnacle_compass::angle::{TrueHeading, wrap_180};
-use binnacle_compass::result::{FAILED_BEYOND_AT_MOST_DEG, ReferenceCheck};
+use binnacle_compass::result::{MAX_FAILURE_THRESHOLD_DEG, ReferenceCheck};
 
 /// Least number of pairs that show the difference.
 const NEEDED_PAIRS: usize = 12;
@@ -18,7 +18,7 @@ const SOUND_SHARE: f64 = 0.25;
 /// Departure from the usual difference from which one has failed: in standard deviations,
 /// and within these limits.
 const FAILED_SD: f64 = 6.0;
-const FAILED_DEG: (f64, f64) = (2.0, FAILED_BEYOND_AT_MOST_DEG);
+const FAILED_DEG: (f64, f64) = (2.0, MAX_FAILURE_THRESHOLD_DEG);
 /// Median of |x| of a Gaussian, as a part of its standard deviation.
 const MEDIAN_TO_SD: f64 = 0.674_489_8;
 

@@ -59,7 +59,7 @@ pub(super) fn outcome(cause: Cause, since: Time, findings: &Findings) -> Option<
     if own
         .iter()
         .filter(stays)
-        .any(|found| found.change.cause.is_the_ships())
+        .any(|found| found.change.cause.changes_deviation())
     {
         return Some(Outcome::Learned);
     }
@@ -122,7 +122,7 @@ pub(super) fn stage(detected: &DetectedChange<'_>) -> Stage {
     if !found.change.confirmed {
         return Stage::Unconfirmed;
     }
-    if !found.change.cause.is_the_ships() {
+    if !found.change.cause.changes_deviation() {
         return Stage::NotTheShips;
     }
     let Some(band_deg) = findings.widest_band95_deg else {
@@ -146,7 +146,7 @@ fn holds(detected: &DetectedChange<'_>, stage: Stage) -> bool {
     if change.ended.is_some() {
         return false;
     }
-    if !change.cause.is_the_ships() {
+    if !change.cause.changes_deviation() {
         return true;
     }
     let is_recent = findings
@@ -163,8 +163,12 @@ fn holds(detected: &DetectedChange<'_>, stage: Stage) -> bool {
 /// references, or the others.
 fn window(found: &FoundChange, findings: &Findings) -> EventWindow {
     let at = found.change.from;
-    let kind =
-        |cause: result::Cause| (cause.is_the_ships(), cause == result::Cause::ReferenceFault);
+    let kind = |cause: result::Cause| {
+        (
+            cause.changes_deviation(),
+            cause == result::Cause::ReferenceFault,
+        )
+    };
     let others = findings.changes.iter().map(|other| &other.change);
     let others = others.filter(|other| kind(other.cause) == kind(found.change.cause));
     let (before, after): (Vec<Timestamp>, Vec<Timestamp>) = others

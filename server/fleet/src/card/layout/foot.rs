@@ -4,7 +4,7 @@
 use super::{FAINT, LEFT, RIGHT, UNKNOWN, known, told};
 use crate::binnacles::in_words;
 use crate::card::contents::{Card, CargoAboard};
-use binnacle_compass::handbook::Handbook;
+use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_drawing::words::signed;
 use binnacle_drawing::{A4, Face, MARGIN, Sheet, Style, wrap};
 use binnacle_platform::time::Time;
@@ -29,7 +29,7 @@ fn coefficients(sheet: &mut Sheet, card: &Card, top: f32) {
     sheet.text((LEFT, top), Style::bold(8.0), "Coefficients");
     sheet.text((LEFT + 112.0, top), small.end(), "exact");
     sheet.text((LEFT + 168.0, top), small.end(), "handbook");
-    let of = |found: &Handbook| {
+    let of = |found: &CoefficientsInDegrees| {
         [
             found.a_deg,
             found.b_deg,
