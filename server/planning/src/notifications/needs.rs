@@ -81,7 +81,7 @@ async fn look_at(app: &App, operator: OperatorId) -> Result<usize> {
     Ok(told)
 }
 
-/// How a need stands, to be noted.
+/// Returns the state of a need for the record.
 fn noted(need: &Need) -> Result<Noted> {
     Ok(Noted {
         vessel_id: need.vessel_id,
@@ -92,7 +92,7 @@ fn noted(need: &Need) -> Result<Noted> {
     })
 }
 
-/// What is to be told of a need, if anything is; `known` is what was.
+/// Returns the kind of notification that a need calls for, if any, given its last record.
 fn kind(need: &Need, known: Option<&Noted>) -> Result<Option<Kind>> {
     let presses = need.urgency > Urgency::Routine;
     let Some(known) = known else {

@@ -74,7 +74,7 @@ async fn people(tx: &mut Tx, tenant: Tenant) -> Result<Vec<Person>> {
     found.into_iter().map(read).collect()
 }
 
-/// Who is on the operator's list gets a letter of each alert by that.
+/// Returns whether a user is on the operator's mailing list, which gets a letter of each alert.
 async fn is_on_the_mailing_list(tx: &mut Tx, user: UserId) -> Result<bool> {
     let found = row!(
         in tx,

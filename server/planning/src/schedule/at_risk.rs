@@ -10,7 +10,7 @@ use binnacle_schedule::plan::ChangeKind;
 use chrono::NaiveDate;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the solver says of a confirmed job that stands.
+/// Reason that the solver gives for a confirmed job that stays in place.
 const STANDS: &str = "confirmed";
 
 /// Those that the plan moves or gives up.
@@ -36,7 +36,8 @@ pub(super) fn at_risk(plan: &Plan, names: &Names) -> BTreeMap<(VesselId, Compass
     wanted
 }
 
-/// The same of orders beside the plan; those of whose alerts nothing can be told come back.
+/// Adds the jobs at risk among orders beside the plan; returns the compasses whose alerts stay as
+/// they are because nothing is known of them.
 pub(super) fn aside(
     plan: &Plan,
     gathered: &Gathered,

@@ -1,8 +1,7 @@
-//! What a schedule is made from, gathered out of the database.
+//! Loading of a schedule's input from the database.
 //!
-//! What always holds: what asked for a schedule is read before anything else, so that what
-//! changes while the rest is read asks again. Who is whose is known by ids, and sentences
-//! name people's names.
+//! What always holds: the requests for a schedule are read first, so that a change made while the
+//! rest is read leaves a new request. Records are linked by id; sentences use names.
 
 mod firms;
 mod former;
@@ -156,7 +155,7 @@ pub(super) async fn gather(
     })
 }
 
-/// The same schedule is asked for more than once within an hour.
+/// Returns the start of the current hour, so that repeated requests within it share one input.
 fn begun_hour(now: Time) -> Result<Time> {
     let micros = now.0.micros().div_euclid(HOUR_MICROS) * HOUR_MICROS;
     let begun = Timestamp::from_micros(micros).map_err(anyhow::Error::from)?;

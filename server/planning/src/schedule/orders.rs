@@ -29,7 +29,7 @@ pub(super) struct Order {
     /// In the operator's words, or as the schedule has it.
     port: String,
     pub(super) planned_at: Time,
-    /// Who is asked, or has accepted.
+    /// Firm that has been asked or has accepted.
     pub(super) firm_id: Option<FirmId>,
     /// At which call it is to be done, where that is known.
     pub(super) call_id: Option<CallId>,
@@ -43,11 +43,11 @@ pub(super) struct Aside {
     pub(super) order_id: OrderId,
     pub(super) firm_id: FirmId,
     pub(super) day: NaiveDate,
-    /// Why it does not fit any more, where that is known.
+    /// Reason why it no longer fits, where that is known.
     pub(super) unfit: Option<String>,
 }
 
-/// Why a firm can do nothing by the terms that were said of it, if so.
+/// Returns the reason why a firm's terms rule out any work, if they do.
 fn useless(firm: FirmId, left_out: &[LeftOut]) -> Option<String> {
     let mut told = left_out.iter().filter(|one| one.why != NO_TERMS);
     let one = told.find(|one| one.firm_id == firm)?;
@@ -105,7 +105,7 @@ pub(super) async fn declined(db: &Db, operator: OperatorId) -> Result<Vec<Order>
 }
 
 impl Order {
-    /// How far it is a job of the plan; none where it is beside the plan.
+    /// Returns its state as a job of the plan; `None` where it is beside the plan.
     pub(super) fn job_state(&self) -> Option<JobState> {
         match self.state {
             State::Offered | State::Proposed => Some(JobState::Offered),
@@ -150,7 +150,7 @@ impl Order {
         }))
     }
 
-    /// Why its time does not lie in its call, if so.
+    /// Returns the reason why its time lies outside its call, if it does.
     fn unfit(&self, there: &Alongside) -> Option<String> {
         let meant = port_meant(&self.port).map(|port| port.code.to_string());
         let port = meant.unwrap_or_else(|| there.port.clone());
@@ -165,7 +165,7 @@ impl Order {
         }
     }
 
-    /// Whether it was cancelled.
+    /// Returns whether the order was cancelled.
     pub(super) fn is_cancelled(&self) -> bool {
         self.state == State::Cancelled
     }

@@ -29,7 +29,7 @@ use std::time::Instant;
 use tracing::info;
 use uuid::Uuid;
 
-/// Who comes second so often gives up.
+/// Attempts to store a plan before giving up to concurrent solvers.
 const MOST_TRIES: usize = 5;
 
 /// Makes the operator's plan anew, or finds that nothing has changed. Whoever asks for it
@@ -44,7 +44,7 @@ pub(super) async fn solve(
     solve_locked(app, Some(request), slots, operator, Arc::new(lock)).await
 }
 
-/// The same, unless somebody is at it.
+/// Makes the operator's plan anew, unless another task is at it.
 pub(super) async fn solve_unless_busy(
     app: &App,
     slots: &PlanSlots,

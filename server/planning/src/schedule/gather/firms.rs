@@ -13,7 +13,7 @@ use binnacle_schedule::input::{Declined, Firm, Taken};
 use std::collections::BTreeMap;
 use uuid::Uuid;
 
-/// Why a firm is left out whose terms nobody has said: it may have work all the same.
+/// Reason for leaving out a firm without terms, which may hold orders all the same.
 pub(in crate::schedule) const NO_TERMS: &str = "nobody has said on what terms it works";
 
 /// The firms to plan with, and those that cannot be planned with.

@@ -24,7 +24,7 @@ pub(in crate::schedule) struct Names {
     pub(in crate::schedule) declined: BTreeMap<CompassId, OrderId>,
 }
 
-/// Where an order has a compass adjusted.
+/// Job that an order has agreed for a compass: firm, port call and day.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::schedule) struct Agreed {
     pub(in crate::schedule) vessel_id: VesselId,
