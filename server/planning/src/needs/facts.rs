@@ -1,7 +1,7 @@
 //! Facts about a compass that the adjustment rules use, assembled from stored data.
 
-use super::need::Ahead;
-use super::since::Since;
+use super::over_limit_since::Since;
+use super::prediction::Ahead;
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::position::Position;

@@ -1,7 +1,7 @@
 //! Loading of the facts for needs from the database: a few queries for a whole fleet.
 
 use super::facts::{Completed, Facts, Stored, Waypoint, Work, compass};
-use super::since::{self, Since};
+use super::over_limit_since::{self, Since};
 use crate::port_calls;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_fleet::alerts::AlertLimits;
@@ -86,7 +86,7 @@ impl Loaded {
             findings: findings(db, operator).await?,
             limits: limits(db, operator).await?,
             calls,
-            since: since::noted(db, operator).await?,
+            since: over_limit_since::noted(db, operator).await?,
         })
     }
 

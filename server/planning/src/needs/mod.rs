@@ -6,8 +6,9 @@
 mod facts;
 mod load;
 mod need;
+mod over_limit_since;
+mod prediction;
 mod schema;
-mod since;
 
 pub use facts::Facts;
 pub use load::of_fleet;
@@ -109,7 +110,7 @@ pub async fn note_since(app: &App, facts: &[Facts]) -> Result<()> {
     for facts in facts {
         if let Some(news) = &facts.since {
             let mut tx = app.db.begin().await?;
-            since::note(&mut tx, (facts.vessel_id, facts.compass_id), news).await?;
+            over_limit_since::note(&mut tx, (facts.vessel_id, facts.compass_id), news).await?;
             tx.commit().await?;
         }
     }

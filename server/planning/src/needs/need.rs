@@ -1,8 +1,9 @@
 //! A need, as it is shown.
 
-use super::schema::{CauseKindSchema, SideSchema, UrgencySchema};
+use super::prediction::Ahead;
+use super::schema::{CauseKindSchema, UrgencySchema};
 use binnacle_platform::ids::{CompassId, VesselId};
-use binnacle_schedule::needs::{CauseKind, Due, Side, Urgency};
+use binnacle_schedule::needs::{CauseKind, Due, Urgency};
 use binnacle_schedule::rules::{Rule, built_in_rules};
 use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
@@ -73,22 +74,6 @@ pub struct RuleCited {
     pub section: Option<String>,
     /// Whether the rule was read in a copy or a report rather than in the document itself.
     pub second_hand: bool,
-}
-
-/// The greatest deviation at a place and on a day.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-#[schema(as = DeviationAhead)]
-pub struct Ahead {
-    /// On which day.
-    pub on: NaiveDate,
-    /// Place: `here`, a port's name, or a canal's.
-    #[schema(example = "Rotterdam")]
-    pub place: String,
-    /// The largest deviation on any heading, either way, degrees.
-    pub worst_deviation_deg: f64,
-    /// Direction of the deviation.
-    #[schema(value_type = SideSchema)]
-    pub side: Side,
 }
 
 /// A page of needs.

@@ -8,17 +8,17 @@
 //!   waits for neither. Letters go through [`binnacle_platform::outbox`].
 //! - A notification is its person's own: nobody else finds it.
 
+mod create;
 mod digest;
 mod needs;
-mod news;
-mod post;
+mod send;
 mod settings;
 mod store;
 mod way;
 
+pub use create::create;
 pub use needs::look;
-pub use news::create;
-pub use post::{post, watch};
+pub use send::{post, watch};
 
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;

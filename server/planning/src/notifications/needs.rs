@@ -4,7 +4,7 @@
 //! sees it first; a date that is put off is noted and not told. What is noted is what
 //! calendars show.
 
-use super::news::tell;
+use super::create::tell;
 use super::store::{self, Noted};
 use crate::needs::{Need, need, note_since, of_fleet};
 use crate::schedule;

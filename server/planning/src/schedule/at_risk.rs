@@ -1,7 +1,6 @@
 //! Agreed adjustments that do not fit any more: what people must know of a plan.
 
-use super::gather::{Agreed, Gathered, Names};
-use super::orders::Aside;
+use super::input::{Agreed, Aside, Gathered, Names};
 use super::plan::Plan;
 use binnacle_fleet::alerts::JobAtRisk;
 use binnacle_platform::ids::{CompassId, FirmId, OrderId, VesselId};

@@ -10,9 +10,8 @@
 
 mod at_risk;
 mod concurrency;
-mod gather;
+mod input;
 mod offer;
-mod orders;
 mod pins;
 mod plan;
 mod schema;

@@ -12,6 +12,9 @@ use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+/// Reason for leaving out a firm without terms, which may hold orders all the same.
+pub(super) const NO_TERMS: &str = "nobody has said on what terms it works";
+
 /// Plan of a fleet: jobs, their quality, and the needs that could not be met.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = SchedulePlan)]

@@ -5,7 +5,7 @@
 
 use super::at_risk::{aside, at_risk};
 use super::concurrency::{PlanLock, PlanSlots};
-use super::gather::{Agreed, Gathered, Names, gather};
+use super::input::{Agreed, Gathered, Names, load_input};
 use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled};
 use super::store;
 use anyhow::Context;
@@ -66,7 +66,7 @@ async fn solve_locked(
     lock: Arc<PlanLock>,
 ) -> Result<Plan> {
     for _ in 0..MOST_TRIES {
-        let gathered = gather(app, operator, &BTreeSet::new()).await?;
+        let gathered = load_input(app, operator, &BTreeSet::new()).await?;
         if let Some(former) = &gathered.former
             && former.input_sha256 == gathered.sha256
         {
@@ -116,7 +116,7 @@ async fn settled(
             return Ok((schedule, gathered));
         }
         moved.extend(more);
-        gathered = gather(app, operator, &moved).await?;
+        gathered = load_input(app, operator, &moved).await?;
         let mut next = run(slots, gathered.text.clone(), lock).await?;
         // Why a job moved is what moved it first, not that its order is in its way now.
         for change in &mut next.changes {

@@ -5,7 +5,7 @@
 //! never older than a day.
 
 use super::concurrency::PlanSlots;
-use super::gather::gather;
+use super::input::load_input;
 use super::{solve, store};
 use binnacle_platform::app::App;
 use binnacle_platform::error::Error;
@@ -89,7 +89,7 @@ async fn make(
     slots: &PlanSlots,
     operator: OperatorId,
 ) -> binnacle_platform::error::Result<Made> {
-    let gathered = gather(app, operator, &BTreeSet::new()).await?;
+    let gathered = load_input(app, operator, &BTreeSet::new()).await?;
     if !gathered.has_firms && gathered.former.is_none() {
         solve::forget_asks(app.db.begin().await?, operator, &gathered).await?;
         return Ok(Made::Here);

@@ -1,9 +1,9 @@
 //! Everybody's names, and which orders are jobs of the plan.
 
 use super::former::Former;
+use super::orders::Order;
 use crate::needs::Facts;
 use crate::port_calls::Row;
-use crate::schedule::orders::Order;
 use crate::schedule::plan::{Compass, UnderWay};
 use binnacle_orders::work_orders::State;
 use binnacle_platform::ids::{CallId, CompassId, FirmId, OrderId, VesselId};

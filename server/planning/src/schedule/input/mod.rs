@@ -6,8 +6,8 @@
 mod firms;
 mod former;
 mod names;
+mod orders;
 
-use super::orders::{self, Aside};
 use super::plan::{LeftOut, Plan, UnderWay};
 use super::{pins, settings, store};
 use crate::needs::{self, Facts, Need};
@@ -19,7 +19,6 @@ use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_schedule::input::{self, Declined, Input, JobState, Vessel};
 use binnacle_schedule::time::Instant;
-pub(super) use firms::NO_TERMS;
 use firms::{book, declined, firms_of};
 use former::Former;
 use sha2::{Digest, Sha256};
@@ -28,6 +27,7 @@ use std::fmt::Write;
 use uuid::Uuid;
 
 pub(super) use names::{Agreed, Names};
+pub(super) use orders::Aside;
 
 const HOUR_MICROS: i64 = 3_600_000_000;
 
@@ -52,7 +52,7 @@ pub(super) struct Gathered {
 }
 
 /// Gathers it. Orders that the plan has moved their jobs away from hold their teams.
-pub(super) async fn gather(
+pub(super) async fn load_input(
     app: &App,
     operator: OperatorId,
     moved: &BTreeSet<OrderId>,
