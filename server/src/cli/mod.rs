@@ -9,7 +9,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use uuid::Uuid;
 
-/// The shore server: ingest, analysis, API and dashboard; and the science on the
+/// The server: ingest, analysis, API and dashboard; and the science on the
 /// command line.
 #[derive(Debug, Parser)]
 #[command(version, name = "binnacle-server")]

@@ -51,9 +51,9 @@ const PATIENCE: Duration = Duration::from_mins(2);
         (name = "session", description = "Signing in; one's sessions, second factor, API tokens"),
         (name = "people", description = "Who may sign in, and how"),
         (name = "platform", description = "Operators and firms, for platform admins"),
-        (name = "agents", description = "What the agents aboard talk to"),
+        (name = "agents", description = "What the agents on board talk to"),
         (name = "fleet", description = "Vessels, compasses, models"),
-        (name = "adjusting", description = "Binnacles, port calls and work orders. What is foretold here is \
+        (name = "adjusting", description = "Binnacles, port calls and work orders. What is predicted here is \
             a prediction, not a certificate"),
         (name = "alerts", description = "What people must know of, and how they are told"),
         (name = "notifications", description = "What you yourself are told, and in which ways"),

@@ -2,7 +2,7 @@
 //!
 //! What always holds: each keeps its UID, and its SEQUENCE grows with an order's log, a
 //! call's revisions or the versions of a due date; times are UTC, due dates days; the same
-//! make the same octets.
+//! make the same bytes.
 
 use super::store::{Appointment, Call, Due};
 use anyhow::Context;

@@ -210,7 +210,7 @@ async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Complet
         operator
     )?;
     let by = |(vessel, compass, at, state)| {
-        // What is closed without a word from the sea is never more than foretold.
+        // What is closed without a word from the sea is never more than predicted.
         let awaits_verification = matches!(state, State::Adjusted | State::ClosedUnverified);
         let completed = Completed {
             at,

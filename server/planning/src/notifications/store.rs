@@ -48,7 +48,7 @@ pub(super) async fn put_settings(
 pub(super) async fn insert(
     tx: &mut Tx,
     user: UserId,
-    news: &Notice,
+    notice: &Notice,
     mail_at: Option<Time>,
     now: Time,
 ) -> DbResult<()> {
@@ -59,14 +59,14 @@ pub(super) async fn insert(
          VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12)",
         user,
         NotificationId::new(),
-        news.kind,
-        news.urgent,
-        news.subject.as_str(),
-        news.text.as_str(),
-        news.path.as_str(),
-        news.vessel,
-        news.order,
-        news.alert,
+        notice.kind,
+        notice.urgent,
+        notice.subject.as_str(),
+        notice.text.as_str(),
+        notice.path.as_str(),
+        notice.vessel,
+        notice.order,
+        notice.alert,
         now,
         mail_at
     )?;
