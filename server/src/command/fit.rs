@@ -15,7 +15,7 @@ use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
 use binnacle_compass::ship::EarthField;
 use std::process::ExitCode;
 
-/// What was found.
+/// Result of a fit.
 struct Found {
     model: Model,
     check: ReferenceCheck,
@@ -65,7 +65,7 @@ fn find(arguments: &Fit) -> Result<Found, BadInput> {
     })
 }
 
-/// What would narrow the band where the ship was last.
+/// Advises on headings that would narrow the confidence band at the vessel's last position.
 fn what_to_sail(
     fit: &RobustFit,
     observations: &[Observation],
@@ -141,7 +141,7 @@ fn describe(found: &Found) -> String {
         + &found.sail_next.as_ref().map_or_else(String::new, band)
 }
 
-/// Which reference was not believed.
+/// Names the reference that was rejected.
 fn dropped(check: &ReferenceCheck) -> String {
     let line = |name: &str, count: u64| match count {
         0 => String::new(),
@@ -203,7 +203,7 @@ fn headings(range: HeadingRange) -> String {
     format!("headings {from:03} to {to:03}")
 }
 
-/// What the samples are worth, and what not to trust the model for.
+/// Describes the quality of the samples and the limits of the model.
 fn worth(quality: &Quality) -> String {
     let samples = quality.effective_samples;
     let condition = quality.condition.map_or_else(

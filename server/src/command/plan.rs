@@ -16,7 +16,7 @@ use serde::Serialize;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// What is printed.
+/// Printed result.
 #[derive(Serialize)]
 struct Planned {
     /// `planned` or `refused`.
@@ -64,7 +64,7 @@ fn find(arguments: &Plan) -> Result<String, BadInput> {
     }))
 }
 
-/// What the magnetometer says of the steps of a plan that were done.
+/// Checks the steps of a plan against the magnetometer reading after them.
 fn read_after(
     arguments: &Plan,
     file: &Path,

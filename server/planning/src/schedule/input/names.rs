@@ -1,9 +1,9 @@
 //! Everybody's names, and which orders are jobs of the plan.
 
 use super::former::Former;
+use super::orders::Order;
 use crate::needs::Facts;
 use crate::port_calls::Row;
-use crate::schedule::orders::Order;
 use crate::schedule::plan::{Compass, UnderWay};
 use binnacle_orders::work_orders::State;
 use binnacle_platform::ids::{CallId, CompassId, FirmId, OrderId, VesselId};
@@ -24,7 +24,7 @@ pub(in crate::schedule) struct Names {
     pub(in crate::schedule) declined: BTreeMap<CompassId, OrderId>,
 }
 
-/// Where an order has a compass adjusted.
+/// Job that an order has agreed for a compass: firm, port call and day.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::schedule) struct Agreed {
     pub(in crate::schedule) vessel_id: VesselId,

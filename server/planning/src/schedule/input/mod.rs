@@ -1,14 +1,13 @@
-//! What a schedule is made from, gathered out of the database.
+//! Loading of a schedule's input from the database.
 //!
-//! What always holds: what asked for a schedule is read before anything else, so that what
-//! changes while the rest is read asks again. Who is whose is known by ids, and sentences
-//! name people's names.
+//! What always holds: the requests for a schedule are read first, so that a change made while the
+//! rest is read leaves a new request. Records are linked by id; sentences use names.
 
 mod firms;
 mod former;
 mod names;
+mod orders;
 
-use super::orders::{self, Aside};
 use super::plan::{LeftOut, Plan, UnderWay};
 use super::{pins, settings, store};
 use crate::needs::{self, Facts, Need};
@@ -20,7 +19,6 @@ use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_schedule::input::{self, Declined, Input, JobState, Vessel};
 use binnacle_schedule::time::Instant;
-pub(super) use firms::NO_TERMS;
 use firms::{book, declined, firms_of};
 use former::Former;
 use sha2::{Digest, Sha256};
@@ -29,6 +27,7 @@ use std::fmt::Write;
 use uuid::Uuid;
 
 pub(super) use names::{Agreed, Names};
+pub(super) use orders::Aside;
 
 const HOUR_MICROS: i64 = 3_600_000_000;
 
@@ -53,7 +52,7 @@ pub(super) struct Gathered {
 }
 
 /// Gathers it. Orders that the plan has moved their jobs away from hold their teams.
-pub(super) async fn gather(
+pub(super) async fn load_input(
     app: &App,
     operator: OperatorId,
     moved: &BTreeSet<OrderId>,
@@ -156,7 +155,7 @@ pub(super) async fn gather(
     })
 }
 
-/// The same schedule is asked for more than once within an hour.
+/// Returns the start of the current hour, so that repeated requests within it share one input.
 fn begun_hour(now: Time) -> Result<Time> {
     let micros = now.0.micros().div_euclid(HOUR_MICROS) * HOUR_MICROS;
     let begun = Timestamp::from_micros(micros).map_err(anyhow::Error::from)?;

@@ -26,7 +26,7 @@ impl Former {
         }
     }
 
-    /// Whether a compass has a need, and a firm is planned with.
+    /// Returns whether the compass has a need and the firm is in the plan.
     pub(super) fn knows(&self, compass: &str, firm: &str) -> bool {
         let mut needs = self.needs.iter();
         needs.any(|need| need.to_string() == compass) && self.firms.contains(firm)

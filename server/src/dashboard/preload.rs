@@ -1,8 +1,8 @@
-//! What a browser will ask for once it has a page: named in the page's `Link` headers
-//! (RFC 8288), so that it asks at once.
+//! Preload links of a page, in its `Link` headers (RFC 8288), so that a browser requests them at
+//! once.
 //!
-//! What always holds: only who has a cookie of ours is told to ask for data, and of a vessel only
-//! who has a fleet; all that is named is asked for by the page itself, so that nothing is fetched
+//! What always holds: data is preloaded only with one of our cookies, and a vessel's data only
+//! for users with a fleet. The page itself requests everything named, so that nothing is fetched
 //! in vain.
 
 use super::Files;
@@ -13,10 +13,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 use uuid::Uuid;
 
-/// What the build says of its files, by their sources.
+/// Manifest of the built files, by their sources.
 const MANIFEST: &str = "files.json";
 const VESSEL: &str = "src/pages/Vessel.svelte";
-/// What the dashboard asks for of what comes in pages.
+/// Page size with which the dashboard requests lists.
 const LONGEST_PAGE: u32 = 10_000;
 
 #[derive(Deserialize)]
@@ -56,8 +56,8 @@ pub(super) fn vessel(path: &str) -> Option<Uuid> {
     Uuid::try_parse(id).ok()
 }
 
-/// What a vessel's page, or any other, is to come with, for who asked with these headers and has
-/// a fleet, or not.
+/// Returns the preload links of a vessel's page, or of any other, for a request with these
+/// headers.
 pub(super) fn links(
     vessel: Option<Uuid>,
     has_fleet: bool,

@@ -1,9 +1,9 @@
 //! The firms to plan with: their teams, and what they have said no to.
 
 use super::names::Names;
+use super::orders::Order;
 use crate::port_calls::Row;
-use crate::schedule::orders::Order;
-use crate::schedule::plan::LeftOut;
+use crate::schedule::plan::{LeftOut, NO_TERMS};
 use binnacle_orders::firms;
 use binnacle_platform::app::App;
 use binnacle_platform::error::Result;
@@ -12,9 +12,6 @@ use binnacle_platform::time::Time;
 use binnacle_schedule::input::{Declined, Firm, Taken};
 use std::collections::BTreeMap;
 use uuid::Uuid;
-
-/// Why a firm is left out whose terms nobody has said: it may have work all the same.
-pub(in crate::schedule) const NO_TERMS: &str = "nobody has said on what terms it works";
 
 /// The firms to plan with, and those that cannot be planned with.
 pub(super) async fn firms_of(

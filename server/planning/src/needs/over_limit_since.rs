@@ -1,8 +1,8 @@
-//! Since when a compass's deviation where the ship is has been as great as it is.
+//! Dates since which a compass's deviation at the vessel's position has exceeded each level.
 //!
-//! What always holds: one look lets a level stand, and with it its day, exactly if the
-//! deviation was at least so great at every look since. A model that is too unsure to tell
-//! is no look.
+//! What always holds: an observation keeps a level and its date exactly if the deviation was at
+//! least that large at every observation since. A prediction that is too uncertain is no
+//! observation.
 
 use binnacle_platform::db::{Db, Result, Tx, execute, rows};
 use binnacle_platform::ids::{CompassId, OperatorId, VesselId};
@@ -36,7 +36,7 @@ impl Since {
     }
 }
 
-/// What was noted of an operator's compasses.
+/// Returns the stored history of each of an operator's compasses.
 pub(super) async fn noted(
     db: &Db,
     operator: OperatorId,

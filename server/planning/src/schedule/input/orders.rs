@@ -4,9 +4,8 @@
 //! plan, at the call that it was offered for; one that is being done, or is offered to
 //! nobody, is beside the plan.
 
-use super::gather::NO_TERMS;
-use super::plan::LeftOut;
 use crate::port_calls::Row as Call;
+use crate::schedule::plan::{LeftOut, NO_TERMS};
 use binnacle_orders::firms::port_meant;
 use binnacle_orders::work_orders::{Alongside, CallFit, State};
 use binnacle_platform::db::{Db, rows};
@@ -21,33 +20,33 @@ use chrono::NaiveDate;
 
 /// An order that is under way.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub(super) struct Order {
-    pub(super) vessel_id: VesselId,
-    pub(super) id: OrderId,
-    pub(super) compass_id: CompassId,
-    pub(super) state: State,
+pub(in crate::schedule) struct Order {
+    pub(in crate::schedule) vessel_id: VesselId,
+    pub(in crate::schedule) id: OrderId,
+    pub(in crate::schedule) compass_id: CompassId,
+    pub(in crate::schedule) state: State,
     /// In the operator's words, or as the schedule has it.
     port: String,
-    pub(super) planned_at: Time,
-    /// Who is asked, or has accepted.
-    pub(super) firm_id: Option<FirmId>,
+    pub(in crate::schedule) planned_at: Time,
+    /// Firm that has been asked or has accepted.
+    pub(in crate::schedule) firm_id: Option<FirmId>,
     /// At which call it is to be done, where that is known.
-    pub(super) call_id: Option<CallId>,
+    pub(in crate::schedule) call_id: Option<CallId>,
 }
 
 /// An order that a firm has accepted, of which the plan cannot tell whether it is to be done.
 #[derive(Clone, Debug)]
-pub(super) struct Aside {
-    pub(super) vessel_id: VesselId,
-    pub(super) compass_id: CompassId,
-    pub(super) order_id: OrderId,
-    pub(super) firm_id: FirmId,
-    pub(super) day: NaiveDate,
-    /// Why it does not fit any more, where that is known.
-    pub(super) unfit: Option<String>,
+pub(in crate::schedule) struct Aside {
+    pub(in crate::schedule) vessel_id: VesselId,
+    pub(in crate::schedule) compass_id: CompassId,
+    pub(in crate::schedule) order_id: OrderId,
+    pub(in crate::schedule) firm_id: FirmId,
+    pub(in crate::schedule) day: NaiveDate,
+    /// Reason why it no longer fits, where that is known.
+    pub(in crate::schedule) unfit: Option<String>,
 }
 
-/// Why a firm can do nothing by the terms that were said of it, if so.
+/// Returns the reason why a firm's terms rule out any work, if they do.
 fn useless(firm: FirmId, left_out: &[LeftOut]) -> Option<String> {
     let mut told = left_out.iter().filter(|one| one.why != NO_TERMS);
     let one = told.find(|one| one.firm_id == firm)?;
@@ -58,7 +57,7 @@ fn useless(firm: FirmId, left_out: &[LeftOut]) -> Option<String> {
 }
 
 /// A fleet's orders that are under way; each once.
-pub(super) async fn under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
+pub(in crate::schedule) async fn under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
     let mut found = rows!(
         db,
         Order,
@@ -81,7 +80,7 @@ pub(super) async fn under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order
 
 /// Orders, each with a firm that has said no to it, or nothing in time; also of those that
 /// were cancelled since, for what they were is offered again. Who was asked anew says anew.
-pub(super) async fn declined(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
+pub(in crate::schedule) async fn declined(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
     Ok(rows!(
         db,
         Order,
@@ -105,8 +104,8 @@ pub(super) async fn declined(db: &Db, operator: OperatorId) -> Result<Vec<Order>
 }
 
 impl Order {
-    /// How far it is a job of the plan; none where it is beside the plan.
-    pub(super) fn job_state(&self) -> Option<JobState> {
+    /// Returns its state as a job of the plan; `None` where it is beside the plan.
+    pub(in crate::schedule) fn job_state(&self) -> Option<JobState> {
         match self.state {
             State::Offered | State::Proposed => Some(JobState::Offered),
             State::Accepted => Some(JobState::Confirmed),
@@ -116,7 +115,7 @@ impl Order {
 
     /// The call that it is to be done at: as was noted, or the one at its port that its time
     /// lies in; at any port where its words mean none.
-    pub(super) fn call(&self, calls: &[Call]) -> Option<CallId> {
+    pub(in crate::schedule) fn call(&self, calls: &[Call]) -> Option<CallId> {
         let hers = calls.iter().filter(|call| call.vessel_id == self.vessel_id);
         let meant = port_meant(&self.port).map(|port| port.code.to_string());
         let there = hers.filter(|call| meant.as_ref().is_none_or(|code| *code == call.port));
@@ -126,7 +125,11 @@ impl Order {
     }
 
     /// As an order beside the plan; none where no firm has it, or its work has begun.
-    pub(super) fn aside(&self, ahead: &[Call], left_out: &[LeftOut]) -> Result<Option<Aside>> {
+    pub(in crate::schedule) fn aside(
+        &self,
+        ahead: &[Call],
+        left_out: &[LeftOut],
+    ) -> Result<Option<Aside>> {
         let (Some(JobState::Confirmed), Some(firm_id)) = (self.job_state(), self.firm_id) else {
             return Ok(None);
         };
@@ -150,7 +153,7 @@ impl Order {
         }))
     }
 
-    /// Why its time does not lie in its call, if so.
+    /// Returns the reason why its time lies outside its call, if it does.
     fn unfit(&self, there: &Alongside) -> Option<String> {
         let meant = port_meant(&self.port).map(|port| port.code.to_string());
         let port = meant.unwrap_or_else(|| there.port.clone());
@@ -165,13 +168,13 @@ impl Order {
         }
     }
 
-    /// Whether it was cancelled.
-    pub(super) fn is_cancelled(&self) -> bool {
+    /// Returns whether the order was cancelled.
+    pub(in crate::schedule) fn is_cancelled(&self) -> bool {
         self.state == State::Cancelled
     }
 
     /// The day that it is to be done on, in a port's time.
-    pub(super) fn day(&self, port: Option<&str>) -> NaiveDate {
+    pub(in crate::schedule) fn day(&self, port: Option<&str>) -> NaiveDate {
         let port = port.and_then(|port| PortCode::parse(port).ok());
         let zone = port.map_or_else(Zone::utc, ports::zone);
         Instant(self.planned_at.0).date(zone)

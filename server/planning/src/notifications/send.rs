@@ -15,9 +15,9 @@ use binnacle_platform::time::Time;
 use std::time::Duration;
 use tracing::error;
 
-/// How often to look for letters that are due.
+/// Interval between looks for letters that are due.
 const LOOK_EVERY: Duration = Duration::from_secs(5);
-/// How often to look for needs that press, and for what is to be forgotten; in looks.
+/// Looks between checks of urgent needs and of expired notifications.
 const SELDOM: u32 = 180;
 
 /// Looks after notifications until the server stops.

@@ -15,14 +15,14 @@ use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 use futures_util::future::BoxFuture;
 
-/// Someone whom news may concern.
+/// Someone whom notice may concern.
 struct Person {
     id: UserId,
     role: Role,
     settings: Settings,
 }
 
-/// Tells a tenant's people, but not who made the news.
+/// Tells a tenant's people, but not who made the notice.
 pub(super) async fn tell(
     tx: &mut Tx,
     tenant: impl Into<Tenant>,
@@ -34,17 +34,18 @@ pub(super) async fn tell(
         return Ok(());
     }
     for person in people(tx, tenant.into()).await? {
-        let concerns = |news: &&Notice| news.kind.concerns(person.role) && by != Some(person.id);
-        for news in all.iter().filter(concerns) {
-            let way = person.settings.way(news.kind, person.role);
+        let concerns =
+            |notice: &&Notice| notice.kind.concerns(person.role) && by != Some(person.id);
+        for notice in all.iter().filter(concerns) {
+            let way = person.settings.way(notice.kind, person.role);
             if way == Way::Off {
                 continue;
             }
-            let mut mail_at = person.settings.mail_at(way, news.urgent, now);
-            if news.kind == Kind::Alert && is_on_the_mailing_list(tx, person.id).await? {
+            let mut mail_at = person.settings.mail_at(way, notice.urgent, now);
+            if notice.kind == Kind::Alert && is_on_the_mailing_list(tx, person.id).await? {
                 mail_at = None;
             }
-            store::insert(tx, person.id, news, mail_at, now).await?;
+            store::insert(tx, person.id, notice, mail_at, now).await?;
         }
     }
     Ok(())
@@ -74,7 +75,7 @@ async fn people(tx: &mut Tx, tenant: Tenant) -> Result<Vec<Person>> {
     found.into_iter().map(read).collect()
 }
 
-/// Who is on the operator's list gets a letter of each alert by that.
+/// Returns whether a user is on the operator's mailing list, which gets a letter of each alert.
 async fn is_on_the_mailing_list(tx: &mut Tx, user: UserId) -> Result<bool> {
     let found = row!(
         in tx,
