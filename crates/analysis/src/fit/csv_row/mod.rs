@@ -266,7 +266,7 @@ impl Column {
         match value {
             Some(number) if !(number >= 0.0 && number.is_finite()) => Err(self.invalid(
                 column,
-                &format!("{} is not a number from 0 up", Brief(number)),
+                &format!("{} is not a number of 0 or more", Brief(number)),
             )),
             _ => Ok(value),
         }
@@ -286,14 +286,15 @@ impl Column {
             if !(h_nt > 0.0 && h_nt <= 1e6) {
                 return Err(self.invalid(
                     "h_nt",
-                    &format!("{} nT is no horizontal field", Brief(h_nt)),
+                    &format!("{} nT is not a valid horizontal field", Brief(h_nt)),
                 ));
             }
             let z_nt = self.needed("z_nt", row.z_nt)?;
             if !(-1e6..=1e6).contains(&z_nt) {
-                return Err(
-                    self.invalid("z_nt", &format!("{} nT is no vertical field", Brief(z_nt)))
-                );
+                return Err(self.invalid(
+                    "z_nt",
+                    &format!("{} nT is not a valid vertical field", Brief(z_nt)),
+                ));
             }
             return Ok((variation, h_nt, z_nt));
         }
