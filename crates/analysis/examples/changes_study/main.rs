@@ -169,7 +169,7 @@ fn settled_hours(log: &Log, from: Timestamp, to: Timestamp) -> f64 {
 fn was_withdrawn(c: &Change) -> bool {
     c.evidence
         .iter()
-        .any(|line| line.contains("at first taken for a change of the ship"))
+        .any(|line| line.contains("at first taken for a change of the vessel"))
 }
 
 /// Per cent.

@@ -323,12 +323,12 @@ fn cargo_that_nobody_closed_is_said_to_leave_samples_out_and_after_weeks_leaves_
     assert_eq!(soon.notices.len(), 1, "{:?}", soon.notices);
     let count = format!("{} samples are left out", left_out(&soon));
     assert!(soon.notices[0].contains(&count), "{:?}", soon.notices);
-    assert!(soon.notices[0].contains("give the entry its end"));
+    assert!(soon.notices[0].contains("record the end of the entry"));
     let late = sailed(29.0);
     is_sound(&late);
     assert_eq!(left_out(&late), 0);
     assert_eq!(late.epochs.len(), 1);
-    assert!(late.notices[0].contains("taken for the ship as she is"));
+    assert!(late.notices[0].contains("used for the model"));
     let used = |analysis: &Analysis| analysis.epochs[0].model.as_ref().unwrap().samples_used;
     assert!(used(&late) as f64 > 0.9 * late.samples.len() as f64);
     let closed = analyse(&log.samples, &[], &AnalysisSettings::default());
@@ -388,7 +388,7 @@ fn cargo_that_left_by_the_samples_leaves_out_none_for_ever_though_nobody_closed_
     assert!(since(&soon) < 0.1, "{}", since(&soon));
     assert!(since(&late) > 0.9, "{}", since(&late));
     let told = &late.notices[0];
-    assert!(told.contains("those of the ship without it"), "{told}");
+    assert!(told.contains("those of the vessel without it"), "{told}");
 }
 
 /// A year mistaken is no reason to leave out a year's samples without a word.

@@ -110,7 +110,7 @@ fn a_compass_whose_zero_moved_is_no_struck_ship() {
         let told = of_the_ship(&analysis);
         assert_eq!(told.len(), 1, "seed {seed}: {told:?}");
         assert_eq!(told[0].cause, Cause::Alignment);
-        assert!(told[0].evidence[0].contains("the compass's own zero moved"));
+        assert!(told[0].evidence[0].contains("the compass's own alignment"));
         assert!(told[0].step.is_none());
         let off_h = told[0].from.seconds_since(log.samples[moved].time) / HOUR_S;
         assert!(off_h.abs() < 36.0, "seed {seed}: {off_h} h");

@@ -141,7 +141,7 @@ fn no_compass_is_told_to_be_astray_by_more_than_half_a_turn() {
         );
         let analysis = run(&log.samples);
         for line in analysis.changes.iter().flat_map(|c| &c.evidence) {
-            let Some(after) = line.strip_prefix("it was astray by ") else {
+            let Some(after) = line.strip_prefix("the error was ") else {
                 continue;
             };
             let degrees: f64 = after.split(' ').next().unwrap().parse().unwrap();
