@@ -24,7 +24,7 @@ const SEED: u64 = 3;
 /// Fits of which the median time counts.
 const FITS: usize = 5;
 
-/// What both sides of the benchmark print.
+/// Output of both sides of the benchmark.
 #[derive(Serialize)]
 struct Answer {
     observations: usize,

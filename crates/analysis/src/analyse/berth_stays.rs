@@ -185,15 +185,15 @@ fn berth_change(stay: &Range<usize>, readings: &[Reading], error: &StayError) ->
     };
     let causes = causes(EventKind::Transient, &known);
     let mut evidence = vec![format!(
-        "alongside, the compass was off by {:.1} degrees in the mean of {} samples on one heading",
+        "alongside, the compass had a mean error of {:.1} degrees in {} samples on one heading",
         error.mean_deg.abs(),
         error.samples
     )];
     evidence.push(if is_over {
-        "before and after the ship was herself: it came with the berth and was left there"
+        "before and after, the vessel was unchanged: the error began and ended with the berth"
             .to_owned()
     } else {
-        "whether it is the berth's or hers will show when she has sailed".to_owned()
+        "the samples after sailing will show whether the berth or the vessel caused it".to_owned()
     });
     let referred = own
         .iter()

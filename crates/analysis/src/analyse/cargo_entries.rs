@@ -142,8 +142,8 @@ pub(super) fn notices(
         .filter_map(|entry| {
             let from = entry.from;
             let end = match entry.to {
-                None => "no end of it".to_owned(),
-                Some(to) => format!("its end only after the last sample, on {to}"),
+                None => "no end".to_owned(),
+                Some(to) => format!("an end only after the last sample, on {to}"),
             };
             let left_out = readings.iter().filter(|r| {
                 r.sample().time >= from && r.diagnostic.reason == Some(SampleReason::MagneticCargo)
@@ -156,25 +156,25 @@ pub(super) fn notices(
                 let days = contradicted.until.seconds_since(contradicted.since) / DAY_S;
                 let reason = if contradicted.is_back {
                     format!(
-                        "Since {} the samples are those of the ship without it",
+                        "Since {} the samples are those of the vessel without it",
                         contradicted.since
                     )
                 } else {
                     format!("In {days:.0} days nothing has set the samples apart from those before")
                 };
                 return Some(format!(
-                    "the logbook has magnetic cargo on board since {from}, and {end}. {reason}, so \
-                     that they are taken for the ship as she is. If the cargo was discharged, \
-                     give the entry its end"
+                    "the logbook has magnetic cargo on board since {from}, with {end}. {reason}, so \
+                     they are used for the model. If the cargo was discharged, record the \
+                     end of the entry"
                 ));
             }
             (left_out > 0).then(|| {
                 format!(
-                    "{left_out} samples are left out of the model, for the logbook has magnetic \
-                     cargo on board since {from}, and {end}. If it was discharged, give \
-                     the entry its end. If it is on board, the model is of the ship without it; \
-                     when nothing sets the samples apart for {CARGO_SHOWS_DAYS:.0} days, they are taken \
-                     again"
+                    "{left_out} samples are left out of the model, because the logbook has magnetic \
+                     cargo on board since {from}, with {end}. If it was discharged, record \
+                     the end of the entry. If it is on board, the model describes the vessel \
+                     without it; when nothing sets the samples apart for \
+                     {CARGO_SHOWS_DAYS:.0} days, they are used again"
                 )
             })
         })

@@ -30,9 +30,9 @@ use reading::{Reading, readings};
 use stuck_compass::mark_stuck;
 
 /// Notice while changes cannot be detected.
-const UNWATCHED: &str = "so far too little is known of the ship to tell a change of her \
-                         magnetism from her own: one would not be noticed. Steady courses on \
-                         more headings, by gyro or satellite compass, will tell";
+const UNWATCHED: &str = "too little is known of the vessel so far to detect a change of its \
+                         magnetism: one would not be noticed. Steady courses on more \
+                         headings, by gyro or satellite compass, are needed";
 
 /// Analyses all samples of one compass.
 pub fn analyse(

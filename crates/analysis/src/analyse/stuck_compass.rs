@@ -284,10 +284,10 @@ fn stuck_change(readings: &[Reading], found: &Stuck) -> Change {
             probability: 1.0,
         }],
         evidence: vec![format!(
-            "the compass {} {heading:.1} degrees in {} samples in a row while the ship turned {} \
+            "the compass {} {heading:.1} degrees in {} samples in a row while the vessel turned {} \
              times by gyro or satellite compass",
             if found.oscillates {
-                "trembled about"
+                "stayed near"
             } else {
                 "read"
             },

@@ -9,16 +9,16 @@ const POINTLESS_DEG: f64 = 90.0;
 /// Smallest drift that is given, degrees: a smaller figure would read as none.
 const SMALLEST_DRIFT_DEG: f64 = 0.1;
 /// Evidence of a transient that other vessels may confirm.
-const UNCONFIRMED: &str = "too faint to be certain by this ship alone";
+const UNCONFIRMED: &str = "too weak for this vessel alone to confirm";
 
 /// Evidence that one reference alone leaves open.
-const EITHER: &str = "compass or reference: there is no other reference to tell which";
+const EITHER: &str = "compass or reference: with no other reference this cannot be decided";
 
 /// Evidence of a transient that is over.
 pub(super) const LASTED: &str = "it lasted ";
 /// Evidence of a withdrawn change.
-const WITHDRAWN: &str = "it was held to be certain, and is withdrawn: the samples since do not \
-                         bear it out";
+const WITHDRAWN: &str = "it was reported as certain and is withdrawn: the samples since do not \
+                         confirm it";
 
 /// Returns the evidence of an event; `seen_deg` is the error of the compass as seen.
 pub(super) fn evidence(
@@ -30,15 +30,15 @@ pub(super) fn evidence(
     let [step, reference, burst, _] = event.leads;
     let mut lines = vec![match event.kind {
         EventKind::Step | EventKind::Return(_) => format!(
-            "a change of the ship's own magnetism explains the samples: {} none, {} a passing \
+            "a change of the vessel's own magnetism explains the samples: {} no change, {} a passing \
              disturbance and {} a fault of the reference",
             likelier(step),
             likelier(step - burst),
             likelier(step - reference)
         ),
         EventKind::Alignment => format!(
-            "what changed is the same on every heading, and gyro and satellite compass agree: \
-             that the compass's own zero moved is {} a change of the ship's magnetism",
+            "the error changed equally on every heading, and gyro and satellite compass agree: \
+             a change of the compass's own alignment is {} a change of the vessel's magnetism",
             likelier(event.over_step_log_likelihood_ratio)
         ),
         EventKind::Drift => format!(
@@ -47,21 +47,21 @@ pub(super) fn evidence(
             likelier(event.over_step_log_likelihood_ratio)
         ),
         EventKind::ReferenceFault => format!(
-            "what changed is the same on every heading: a fault of the reference is {} none and {} \
-             a change of the ship",
+            "the error changed equally on every heading: a fault of the reference is {} no fault and \
+             {} a change of the vessel",
             likelier(reference),
             likelier(reference - step)
         ),
         EventKind::Transient => format!(
-            "the compass went astray, but not for good: a passing disturbance is {} none and {} a \
-             change of the ship",
+            "the compass was disturbed for a time: a passing disturbance is {} none and {} a \
+             change of the vessel",
             likelier(burst),
             likelier(burst - step)
         ),
     }];
     if event.was_step {
         lines.push(
-            "at first taken for a change of the ship's own magnetism, until it was gone again at sea"
+            "at first taken for a change of the vessel's own magnetism, until it ended at sea"
                 .to_owned(),
         );
     }
@@ -69,34 +69,36 @@ pub(super) fn evidence(
         Some(true) => lines.push("it began at a port call".to_owned()),
         Some(false) => lines.push("it began at sea".to_owned()),
         None if event.noticed_late => lines.push(
-            "it may have begun at the port call before, where cargo comes on board, though it was \
-             seen at sea only"
+            "it may have begun at the port call before, where cargo is loaded, though it showed \
+             only at sea"
                 .to_owned(),
         ),
         None => {}
     }
     match known.ended_at_port {
-        Some(true) => lines.push("the ship was herself again after a port call".to_owned()),
-        Some(false) => lines.push("the ship became herself again at sea".to_owned()),
+        Some(true) => {
+            lines.push("the vessel returned to its earlier state at a port call".to_owned())
+        }
+        Some(false) => lines.push("the vessel returned to its earlier state at sea".to_owned()),
         None => {}
     }
     if known.changes_within_a_day > 1 {
         lines.push(format!(
-            "it is one of {} changes within a day of it",
+            "it is one of {} changes within a day",
             known.changes_within_a_day
         ));
     }
     if known.is_drifting {
-        lines.push("another change within weeks went the same way".to_owned());
+        lines.push("another change within weeks had the same direction".to_owned());
     }
     let is_wild = known
         .disturbance_deg
         .is_some_and(|degrees| degrees > MENTIONED_ERROR_DEG);
     if let Some(degrees) = seen_deg.filter(|_| is_wild) {
         lines.push(if degrees > POINTLESS_DEG {
-            format!("it was astray by {degrees:.0} degrees: the compass no longer pointed north")
+            format!("the error was {degrees:.0} degrees: the compass no longer pointed north")
         } else {
-            format!("it was astray by {degrees:.0} degrees, which few storms and anomalies come to")
+            format!("the error was {degrees:.0} degrees, which few storms and anomalies reach")
         });
         if known.one_reference {
             lines.push(EITHER.to_owned());
@@ -116,7 +118,7 @@ pub(super) fn evidence(
     }
     match (event.confirmed || event.withdrawn.is_some(), event.last) {
         (true, _) => {}
-        (false, None) => lines.push("not yet certain: more samples will tell".to_owned()),
+        (false, None) => lines.push("not yet certain: more samples are needed".to_owned()),
         (false, Some(_)) => lines.push(UNCONFIRMED.to_owned()),
     }
     lines
@@ -135,10 +137,10 @@ fn lasted(seconds: f64) -> String {
 fn drifted(worst_deg: f64) -> String {
     if worst_deg < SMALLEST_DRIFT_DEG {
         return format!(
-            "the deviation goes to and fro, and is now within {SMALLEST_DRIFT_DEG:.1} degrees of what it was"
+            "the deviation varies, and is now within {SMALLEST_DRIFT_DEG:.1} degrees of its earlier value"
         );
     }
-    format!("the deviation goes on changing, by up to {worst_deg:.1} degrees so far")
+    format!("the deviation continues to change, by up to {worst_deg:.1} degrees so far")
 }
 
 /// Returns the likelihood against an alternative in words, with the temper of `causes`: the

@@ -45,7 +45,7 @@ pub(super) fn dropped_references(all: &[ReferenceUse], changes: &mut Vec<Change>
     let mut dropped: Vec<(usize, Timestamp, &'static str)> = Vec::new();
     for (index, use_of) in all.iter().enumerate() {
         let which = match use_of.gyro_share {
-            None => "neither could be shown to be right",
+            None => "neither can be confirmed",
             Some(share) if use_of.both && share < 0.01 => "the gyro had failed",
             Some(share) if use_of.both && share > 0.99 => "the satellite compass had failed",
             Some(_) => continue,
@@ -70,8 +70,7 @@ pub(super) fn dropped_references(all: &[ReferenceUse], changes: &mut Vec<Change>
                 probability: 1.0,
             }],
             evidence: vec![format!(
-                "gyro and satellite compass parted in {} samples; held against the magnetic \
-                 compass, {}",
+                "gyro and satellite compass differed in {} samples; by the magnetic compass, {}",
                 spell.len(),
                 first.2
             )],

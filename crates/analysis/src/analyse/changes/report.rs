@@ -179,13 +179,13 @@ impl EventReporter<'_> {
         let mut evidence_lines = evidence(event, &known, worst, seen_deg);
         if let Some(after_s) = self.work_before(event, &known.reported) {
             evidence_lines.push(format!(
-                "the logbook has work on ship or compass {:.0} hours before: if it was done at this \
+                "the logbook has work on vessel or compass {:.0} hours before: if it was done at this \
                  time, correct the entry",
                 after_s / 3600.0
             ));
         }
         if is_discharge {
-            evidence_lines.push("the logbook has it that cargo was discharged then".to_owned());
+            evidence_lines.push("the logbook has cargo discharged at this time".to_owned());
         }
         // A change that left with the cargo does not last.
         let over = ended_row.map(|row| self.time(row));

@@ -281,7 +281,7 @@ impl EpochBuilder {
         logbook: &[LogbookEntry],
     ) -> Option<Change> {
         let (at, kind) = (epoch.from?, epoch.begun_by?);
-        let mut evidence = vec![format!("the logbook says so: {}", kind.description())];
+        let mut evidence = vec![format!("recorded in the logbook: {}", kind.description())];
         let logged = logbook.iter().filter(|entry| entry.kind == kind);
         let later_s = logged.map(|entry| at.seconds_since(entry.from));
         let later_s = later_s.min_by(|a, b| a.abs().total_cmp(&b.abs()));

@@ -7,7 +7,6 @@ use super::HeadingReading;
 use crate::gyro_speed_error::gyro_speed_error_deg;
 use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation};
 use binnacle_compass::field::{FieldAt, FieldModel};
-use binnacle_compass::number::CompactNumber;
 use binnacle_compass::position::Position;
 use binnacle_compass::settings::GyroSpeedError;
 use binnacle_compass::time::Timestamp;
@@ -267,7 +266,7 @@ impl Column {
         match value {
             Some(number) if !(number >= 0.0 && number.is_finite()) => Err(self.invalid(
                 column,
-                &format!("{} is not a number from 0 up", CompactNumber(number)),
+                &format!("{} is not a number of 0 or more", CompactNumber(number)),
             )),
             _ => Ok(value),
         }
@@ -287,21 +286,21 @@ impl Column {
             if !(h_nt > 0.0 && h_nt <= 1e6) {
                 return Err(self.invalid(
                     "h_nt",
-                    &format!("{} nT is no horizontal field", CompactNumber(h_nt)),
+                    &format!("{} nT is not a valid horizontal field", CompactNumber(h_nt)),
                 ));
             }
             let z_nt = self.needed("z_nt", row.z_nt)?;
             if !(-1e6..=1e6).contains(&z_nt) {
                 return Err(self.invalid(
                     "z_nt",
-                    &format!("{} nT is no vertical field", CompactNumber(z_nt)),
+                    &format!("{} nT is not a valid vertical field", CompactNumber(z_nt)),
                 ));
             }
             return Ok((variation, h_nt, z_nt));
         }
         let place = position.ok_or_else(|| self.empty("lat"))?;
         let time = row.time.ok_or_else(|| self.empty("time"))?;
-        let field = FieldAt::from_time(FieldModel::Igrf14, time)
+        let field = FieldAt::time(FieldModel::Igrf14, time)
             .and_then(|model| model.at(place, 0.0))
             .map_err(|e| self.invalid("time", &e.to_string()))?;
         Ok((field.declination(), field.h_nt(), field.z_nt))
