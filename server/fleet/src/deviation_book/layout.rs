@@ -32,7 +32,7 @@ const COLUMNS: [([&str; 2], f32, bool); 10] = [
     (["", "Remarks"], 650.0, false),
 ];
 
-/// Whose book it is, and of when.
+/// Vessel and period of the book.
 pub(super) struct Book {
     pub(super) vessel: String,
     pub(super) imo_number: Option<String>,
@@ -182,11 +182,11 @@ fn doubt(reason: SampleReason) -> &'static str {
     }
 }
 
-/// Where the master's line begins.
+/// Left edge of the master's line.
 const MASTER: f32 = RIGHT - 150.0;
 const FOOT: f32 = 7.0;
 
-/// What stands at the foot, beside the master's line.
+/// Returns the text at the foot, beside the master's line.
 fn said_at_the_foot() -> Vec<String> {
     let says = "Observed by the agent on board by itself, in settled stretches of heading: one in \
                 each watch that has one, and after alterations of course of 20° or more. A card is \

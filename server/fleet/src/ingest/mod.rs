@@ -124,9 +124,9 @@ async fn put_batch(
     downlink::answer(&app, agent, stream, has).await
 }
 
-/// What a batch came to.
+/// Result of a received batch.
 struct Taken {
-    /// Whether it was not there already.
+    /// True if it was not stored before.
     is_new: bool,
     told: Vec<events::Event>,
 }
@@ -156,7 +156,7 @@ async fn take(
     Ok(Taken { is_new, told })
 }
 
-/// Ask for what the shore has
+/// Fetch what the agent lacks
 #[utoipa::path(get, path = "/streams/{stream}/downlink", tag = "agents", security(("token" = [])),
     params(("stream" = Uuid, Path), Has),
     responses((status = 200, description = "As JSON, or in the compact form asked for",

@@ -10,15 +10,15 @@ use binnacle_platform::time::Time;
 
 /// A vessel is about to go out of service, or to come back.
 pub struct ServiceChanged {
-    /// Whose vessel.
+    /// Operator of the vessel.
     pub operator: OperatorId,
-    /// Which vessel.
+    /// The vessel.
     pub vessel: VesselId,
     /// The vessel's name.
     pub vessel_name: String,
-    /// Whether it comes back.
+    /// True if it comes back.
     pub in_service: bool,
-    /// When.
+    /// Time of the change.
     pub at: Time,
 }
 

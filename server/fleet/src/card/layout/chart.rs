@@ -10,7 +10,7 @@ use binnacle_drawing::{Pen, Point, Sheet, Style};
 const LEFT: f32 = 352.0;
 const BAND: u8 = 214;
 
-/// What a deviation's place across is.
+/// Horizontal scale of deviations.
 struct Across {
     most_deg: f64,
 }
@@ -118,7 +118,7 @@ fn observed_deg(row: &CardRow) -> Option<f64> {
     Some(row.deviation_deg + row.residual_deg?)
 }
 
-/// What was observed near a heading.
+/// Draws the observed deviation near a heading.
 fn cross(sheet: &mut Sheet, row: &CardRow, lines: &Lines, across: &Across) {
     const ARM: f32 = 2.4;
     let Some(observed_deg) = observed_deg(row) else {

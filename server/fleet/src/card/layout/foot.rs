@@ -10,7 +10,7 @@ use binnacle_drawing::{A4, Face, MARGIN, Sheet, Style, wrap};
 use binnacle_platform::time::Time;
 
 const SECOND: f32 = 262.0;
-/// Where the signatures begin, from the sheet's upper edge.
+/// Upper edge of the signatures, from the sheet's upper edge.
 const SIGNATURES: f32 = A4.1 - MARGIN - 68.0;
 const NOTE_LINE: f32 = 9.4;
 

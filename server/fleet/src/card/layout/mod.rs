@@ -31,7 +31,7 @@ pub(super) fn sheet(card: &Card) -> Sheet {
     sheet
 }
 
-/// What the document says of itself.
+/// Returns the metadata of the document.
 pub(super) fn about(card: &Card) -> About {
     About {
         title: format!(
@@ -60,10 +60,10 @@ fn fact(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) {
     sheet.text((at.0 + LABEL, at.1), Style::plain(size), value);
 }
 
-/// From one line of what is told to the next.
+/// Distance between two lines of labelled text.
 const TOLD: f32 = 9.6;
 
-/// The same on as many lines as it takes; answers with where the next one begins.
+/// Draws labelled text on as many lines as it needs. Returns the position of the next line.
 fn told(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) -> f32 {
     const LABEL: f32 = 68.0;
     let style = Style::plain(8.0);
@@ -76,7 +76,7 @@ fn told(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) -> f3
     at.1 + TOLD * lines.len().max(1) as f32
 }
 
-/// What stands where nothing is known.
+/// Text for an unknown value.
 const UNKNOWN: &str = "not recorded";
 
 /// A value, or that there is none.

@@ -5,7 +5,7 @@ use crate::card::contents::{Card, CardRow};
 use binnacle_drawing::words::{east_west, heading, heading_to_a_tenth, signed};
 use binnacle_drawing::{Face, Pen, Sheet, Style};
 
-/// Where its columns end; the last one ends the table.
+/// Right edges of the columns; the last one ends the table.
 const ENDS: [f32; 6] = [72.0, 126.0, 172.0, 226.0, 276.0, 312.0];
 const TITLES: [[&str; 2]; 6] = [
     ["Compass", "heading"],
@@ -16,7 +16,7 @@ const TITLES: [[&str; 2]; 6] = [
     ["", "Samples"],
 ];
 
-/// Where the lines lie: one for each 15° from 000 to 360.
+/// Positions of the lines: one for each 15° from 000 to 360.
 pub(super) struct Lines {
     /// The first line's middle.
     pub(super) top: f32,
