@@ -194,7 +194,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     let alerts = alerts::list_in_force(db, id, compass.id).await?;
     let made = tokio::task::spawn_blocking(move || {
         let seen = match model.foretold_by {
-            Some(_) => Seen::Foretold(&model.model.0),
+            Some(_) => Seen::Predicted(&model.model.0),
             None => Seen::Fitted,
         };
         let basis = Basis {

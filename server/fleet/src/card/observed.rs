@@ -28,7 +28,7 @@ pub(super) enum Seen<'a> {
     /// It was fitted to those that carried weight.
     Fitted,
     /// It was predicted before them: each is compared with its prediction.
-    Foretold(&'a Model),
+    Predicted(&'a Model),
 }
 
 /// Fields of a sample that the comparison needs.
@@ -82,7 +82,7 @@ impl Seen<'_> {
     fn residual(self, sample: &Sample) -> Option<(f64, f64)> {
         match self {
             Seen::Fitted => Some((sample.residual_deg?, sample.weight)).filter(|_| sample.used),
-            Seen::Foretold(model) => {
+            Seen::Predicted(model) => {
                 if !matches!(sample.reason, None | Some(SampleReason::NoModel)) {
                     return None;
                 }
@@ -91,8 +91,8 @@ impl Seen<'_> {
                     z_nt: sample.z_nt?,
                 };
                 let compass = CompassHeading::new(sample.compass_deg)?;
-                let foretold = model.deviation(compass, earth).ok()?.deviation;
-                let residual_deg = sample.deviation_deg? - foretold.degrees_east();
+                let predicted = model.deviation(compass, earth).ok()?.deviation;
+                let residual_deg = sample.deviation_deg? - predicted.degrees_east();
                 Some((wrap_180(residual_deg), 1.0))
             }
         }

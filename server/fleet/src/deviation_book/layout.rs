@@ -14,7 +14,7 @@ const LEFT: f32 = MARGIN;
 const RIGHT: f32 = WIDTH - MARGIN;
 const TOP: f32 = MARGIN + 74.0;
 const LINE: f32 = 11.6;
-const FAINT: u8 = 90;
+const GREY: u8 = 90;
 /// Entries on a sheet.
 const ROWS: usize = 33;
 
@@ -93,7 +93,7 @@ fn head(sheet: &mut Sheet, book: &Book, page: usize, of: usize) {
     let rule = MARGIN + 38.0;
     sheet.rule((LEFT, rule), (RIGHT, rule), 1.0);
     for ([first, second], x, ends) in COLUMNS {
-        let style = Style::plain(7.0).grey(FAINT);
+        let style = Style::plain(7.0).grey(GREY);
         let style = if ends { style.end() } else { style };
         sheet.text((x, TOP - 22.0), style, first);
         sheet.text((x, TOP - 13.5), style, second);
@@ -196,7 +196,7 @@ fn said_at_the_foot() -> Vec<String> {
 
 fn foot(sheet: &mut Sheet) {
     let y = HEIGHT - MARGIN;
-    let small = Style::plain(FOOT).grey(FAINT);
+    let small = Style::plain(FOOT).grey(GREY);
     for (above, line) in said_at_the_foot().into_iter().rev().enumerate() {
         sheet.text((LEFT, y - 8.5 * above as f32), small, line);
     }

@@ -64,12 +64,12 @@ pub async fn import(
     let mut imported = Imported::default();
     let mut joiner = Joiner::default();
     let mut streams = BTreeSet::new();
-    for (name, octets) in messages {
+    for (name, bytes) in messages {
         let refuse = |problem: String| Refused {
             message: name.clone(),
             problem,
         };
-        let frame = match joiner.push(octets) {
+        let frame = match joiner.push(bytes) {
             Ok(Some(frame)) => frame,
             Ok(None) => continue,
             Err(error) => {

@@ -51,7 +51,7 @@ impl IntoResponse for Answer {
         let compact = reads_compact.then(|| downlink::encode(&self.downlink));
         match compact.flatten() {
             // A body without a content type is bytes (RFC 9110, 8.3), which saves forty of them.
-            Some(octets) => Body::from(octets).into_response(),
+            Some(bytes) => Body::from(bytes).into_response(),
             None => Json(self.downlink).into_response(),
         }
     }
@@ -136,15 +136,15 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
     } else {
         None
     };
-    let news = match current {
+    let newer = match current {
         Some(model) if Some(model.id.0) == has.model => None,
-        Some(model) if !is_news(app, &model, has.card.as_deref()).await? => None,
+        Some(model) if !should_send(app, &model, has.card.as_deref()).await? => None,
         current => current,
     };
     let settings = settings::find(&app.db, agent.vessel_id).await?.agent;
     let downlink = Downlink {
         contiguous_seq: contiguous_seq as u64,
-        model: news.map(|model| ModelDownlink {
+        model: newer.map(|model| ModelDownlink {
             id: model.id.0,
             version: model.version as u32,
             data_until: model.data_until.0,
@@ -165,7 +165,7 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
 }
 
 /// Tells whether an agent should get this model in place of the one that it names.
-async fn is_news(app: &App, model: &StoredModel, card: Option<&str>) -> Result<bool> {
+async fn should_send(app: &App, model: &StoredModel, card: Option<&str>) -> Result<bool> {
     let Some(card) = card else {
         return Ok(true);
     };

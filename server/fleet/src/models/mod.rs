@@ -1,8 +1,8 @@
 //! The models of a vessel's compasses: every version is kept, the highest is current,
 //! but while a change has ended its epoch and no other model has taken its place.
 
+mod downlink_policy;
 mod missing;
-mod news;
 mod schema;
 mod store;
 

@@ -232,7 +232,7 @@ async fn amend_vessel(
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
     let vessel = store::lock(&mut tx, writer.operator, id).await?;
-    let told = match amendment.in_service {
+    let events_out = match amendment.in_service {
         Some(in_service) => {
             service::set(&mut tx, writer.operator, &vessel, in_service, now).await?
         }
@@ -241,7 +241,7 @@ async fn amend_vessel(
     store::update(&mut tx, id, &amendment.applied_to(vessel)?).await?;
     tx.commit().await?;
     app.work.notify_one();
-    for event in told {
+    for event in events_out {
         app.publish(event);
     }
     Ok(Json(assemble(&app, writer.operator, id).await?))
