@@ -5,7 +5,7 @@ use crate::voyages::lorden::information_while_laden;
 use crate::{
     DAY_S, HOUR_S, alarms, each, planned, run, seeds, share, telling, variety, was_withdrawn,
 };
-use binnacle_compass::result::{Analysis, Cause, Change, Elsewhere, weigh_with_fleet};
+use binnacle_compass::result::{Analysis, Cause, Change, FleetDisturbance, weigh_with_fleet};
 use binnacle_compass::time::Timestamp;
 use std::collections::BTreeMap;
 
@@ -160,14 +160,14 @@ fn covering<'a>(analysis: &'a Analysis, storm: &Happened) -> Option<&'a Change> 
 }
 
 /// Returns the evidence of the other ships, as the server keeps it.
-fn elsewhere(fleet: &[(Log, Analysis)], but: usize) -> Vec<Elsewhere> {
+fn elsewhere(fleet: &[(Log, Analysis)], but: usize) -> Vec<FleetDisturbance> {
     let others = fleet.iter().enumerate().filter(|(ship, _)| *ship != but);
     let reported = others.flat_map(|(ship, (log, analysis))| {
         let passing = analysis.changes.iter();
         let passing = passing.filter(|c| c.confirmed && c.cause.is_transient());
         passing.filter_map(move |c| {
             let last = log.samples.last().unwrap().time;
-            Some(Elsewhere {
+            Some(FleetDisturbance {
                 ship,
                 from: c.from,
                 until: c.ended.unwrap_or(last).max(c.from),

@@ -151,7 +151,9 @@ fn telling<'a>(analysis: &'a Analysis, h: &Happened) -> Option<&'a Change> {
     Some(if first.cause.changes_deviation() {
         first
     } else {
-        reports.find(|c| c.cause.changes_deviation()).unwrap_or(first)
+        reports
+            .find(|c| c.cause.changes_deviation())
+            .unwrap_or(first)
     })
 }
 

@@ -132,7 +132,10 @@ fn a_swing_in_high_latitudes_where_the_field_is_weak_is_no_strike() {
         let analysis = run(&log.samples[..end]);
         let reported = reported(&analysis);
         assert_eq!(reported.len(), 1, "seed {seed}: {:?}", analysis.changes);
-        assert!(reported[0].cause.is_transient(), "seed {seed}: {reported:?}");
+        assert!(
+            reported[0].cause.is_transient(),
+            "seed {seed}: {reported:?}"
+        );
     }
 }
 

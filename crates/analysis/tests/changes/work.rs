@@ -66,7 +66,9 @@ fn work_that_was_planned_for_an_earlier_hour_begins_one_epoch_when_it_was_done()
         assert!(used as f64 > 0.95 * before.count() as f64, "seed {seed}");
         let reported = &analysis.changes;
         assert!(
-            reported.iter().all(|c| c.confirmed || c.is_weak_transient()),
+            reported
+                .iter()
+                .all(|c| c.confirmed || c.is_weak_transient()),
             "seed {seed}"
         );
     }

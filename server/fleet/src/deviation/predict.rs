@@ -1,4 +1,4 @@
-//! What a model says about every heading at one place.
+//! Predictions of a model on every heading at one place.
 
 use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::deviation::CoefficientsInDegrees;
@@ -36,8 +36,8 @@ pub struct Worst {
     pub band95_deg: Option<f64>,
 }
 
-/// What an adjuster would find who swung the ship: the approximate coefficients of
-/// the handbooks, degrees.
+/// Approximate coefficients of the handbooks, degrees, as an adjuster finds them who swings the
+/// ship.
 #[derive(ToSchema)]
 #[schema(as = HandbookCoefficients)]
 #[allow(

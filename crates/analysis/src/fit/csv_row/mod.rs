@@ -7,6 +7,7 @@ use super::HeadingReading;
 use crate::gyro_speed_error::gyro_speed_error_deg;
 use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation};
 use binnacle_compass::field::{FieldAt, FieldModel};
+use binnacle_compass::number::CompactNumber;
 use binnacle_compass::position::Position;
 use binnacle_compass::settings::GyroSpeedError;
 use binnacle_compass::time::Timestamp;
@@ -300,7 +301,7 @@ impl Column {
         }
         let place = position.ok_or_else(|| self.empty("lat"))?;
         let time = row.time.ok_or_else(|| self.empty("time"))?;
-        let field = FieldAt::time(FieldModel::Igrf14, time)
+        let field = FieldAt::from_time(FieldModel::Igrf14, time)
             .and_then(|model| model.at(place, 0.0))
             .map_err(|e| self.invalid("time", &e.to_string()))?;
         Ok((field.declination(), field.h_nt(), field.z_nt))

@@ -1,8 +1,8 @@
-//! Whether a ship that has one model should be sent another: a model costs more octets
-//! than the samples that it was made from.
+//! Policy that decides whether an agent gets a newer model: a model costs more bytes than the
+//! samples that it was made from.
 //!
-//! What always holds: a model of another epoch matters, and so does one that a ship
-//! would see or that is three days younger than hers.
+//! Invariants: a model of another epoch is sent. So is one whose difference shows on board, or one
+//! three days younger than the agent's.
 
 use super::StoredModel;
 use binnacle_compass::angle::CompassHeading;
@@ -10,22 +10,22 @@ use binnacle_compass::model::Model;
 
 /// A card is read to half a degree, a heading to a tenth.
 const LEAST_DEG: f64 = 0.1;
-/// What is less than this part of the known band is within what was known.
+/// Part of the known band within which a difference does not matter.
 const OF_BAND: f64 = 0.25;
 /// The bridge says how old its model is.
 const OLDER_S: f64 = 3.0 * 86_400.0;
 const STEP_DEG: u32 = 10;
-/// A foretold model older than this has had its time, whatever it was sure of.
+/// Age beyond which a predicted model is replaced, whatever its certainty, seconds.
 const FORETOLD_FOR_S: f64 = 60.0 * 86_400.0;
 /// Of bx and by, in [`DRIFT_S`].
 const USUAL_DRIFT_NT: f64 = 60.0;
 const DRIFT_S: f64 = 30.0 * 86_400.0;
-/// Where bx and by stand among the parameters.
+/// Indices of bx and by among the parameters.
 const PERMANENT: [usize; 2] = [0, 2];
 
 impl StoredModel {
-    /// Whether it matters to a ship that has an earlier one: by its deviation or band, on
-    /// any heading where she was last, by its epoch, or by its age.
+    /// Tells whether an agent with an earlier model needs this one. It compares deviation and band
+    /// on all headings at the last place, epoch, and age.
     pub fn matters_after(&self, known: &StoredModel) -> bool {
         let older_s = self.data_until.0.seconds_since(known.data_until.0);
         self.replaces() != known.replaces()
@@ -37,8 +37,8 @@ impl StoredModel {
             })
     }
 
-    /// Whether it is more certain of the heading of which it is least certain than a
-    /// foretold model is by then, or that one is too old to plan from.
+    /// Tells whether it replaces a predicted model. It does when it is more certain on its least
+    /// certain heading, or when the prediction is too old to plan from.
     pub fn knows_more_than(&self, foretold: &StoredModel) -> bool {
         let age_s = self.data_until.0.seconds_since(foretold.data_until.0);
         if age_s > FORETOLD_FOR_S {
