@@ -165,8 +165,6 @@ pub(crate) fn causes(
     }
     let transient_lead = (transient - most).exp();
     let disturbance_deg = circumstances.disturbance_deg.unwrap_or(0.0);
-    let in_storm = (-(disturbance_deg / STORM_DEG).powi(2)).exp();
-    let over_anomaly = 1.0 / (1.0 + (disturbance_deg / ANOMALY_DEG).powi(2));
     let by_fault = disturbance_deg.powi(2) / (disturbance_deg.powi(2) + COMPASS_FAULT_DEG.powi(2));
     weights.push((
         Cause::CompassFault,
@@ -189,34 +187,10 @@ pub(crate) fn causes(
         };
         weights.push((Cause::Alignment, share * of_reference));
     }
-    // A transient that goes on is no shorter than it has been.
-    let long = match circumstances.transient_s {
-        Some(seconds) if seconds > LONG_TRANSIENT_S => 1.0,
-        Some(_) if circumstances.is_over => 0.0,
-        _ => 0.5,
-    };
-    let elsewhere = if circumstances.alongside {
-        WITH_BERTH_STAY
-    } else {
-        1.0
-    };
-    weights.push((
-        Cause::MagneticStorm,
-        6.0 * transient_lead * in_storm * (0.1 + 0.8 * long) * elsewhere,
-    ));
-    weights.push((
-        Cause::LocalAnomaly,
-        3.0 * transient_lead * over_anomaly * (0.9 - 0.8 * long) * elsewhere,
-    ));
-    let at_berth = match circumstances.at_port {
-        // It lasts as long as the stay.
-        _ if circumstances.alongside => 1.0,
-        Some(true) => 0.9 - 0.8 * long,
-        _ => 0.01 * (0.9 - 0.8 * long),
-    };
-    weights.push((
-        Cause::BerthSteel,
-        3.0 * transient_lead * over_anomaly * at_berth,
+    weights.extend(storm_and_place_weights(
+        circumstances,
+        transient_lead,
+        disturbance_deg,
     ));
     for (cause, weight) in &mut weights {
         if circumstances.reported.contains(cause) {
@@ -245,6 +219,47 @@ pub(crate) fn causes(
             .then_with(by_agreement)
     });
     causes
+}
+
+/// Returns the weights of a storm, a local anomaly and steel at a berth.
+fn storm_and_place_weights(
+    circumstances: &Circumstances,
+    transient_lead: f64,
+    disturbance_deg: f64,
+) -> [(Cause, f64); 3] {
+    let in_storm = (-(disturbance_deg / STORM_DEG).powi(2)).exp();
+    let over_anomaly = 1.0 / (1.0 + (disturbance_deg / ANOMALY_DEG).powi(2));
+    // A transient that goes on is no shorter than it has been.
+    let long = match circumstances.transient_s {
+        Some(seconds) if seconds > LONG_TRANSIENT_S => 1.0,
+        Some(_) if circumstances.is_over => 0.0,
+        _ => 0.5,
+    };
+    let elsewhere = if circumstances.alongside {
+        WITH_BERTH_STAY
+    } else {
+        1.0
+    };
+    let at_berth = match circumstances.at_port {
+        // It lasts as long as the stay.
+        _ if circumstances.alongside => 1.0,
+        Some(true) => 0.9 - 0.8 * long,
+        _ => 0.01 * (0.9 - 0.8 * long),
+    };
+    [
+        (
+            Cause::MagneticStorm,
+            6.0 * transient_lead * in_storm * (0.1 + 0.8 * long) * elsewhere,
+        ),
+        (
+            Cause::LocalAnomaly,
+            3.0 * transient_lead * over_anomaly * (0.9 - 0.8 * long) * elsewhere,
+        ),
+        (
+            Cause::BerthSteel,
+            3.0 * transient_lead * over_anomaly * at_berth,
+        ),
+    ]
 }
 
 /// Reduces the weights of causes that contradict the detector's decision.

@@ -214,12 +214,7 @@ impl World {
         rng: &mut ChaCha8Rng,
     ) {
         let due = minute as f64 >= plan.event_day * 1440.0;
-        let Situation {
-            arrived,
-            at_sea_minutes,
-            compass_deg,
-        } = now;
-        let at_sea = at_sea_minutes > 600;
+        let at_sea = now.at_sea_minutes > 600;
         match (self.state, plan.event) {
             (Stage::ToCome, Event::Step(nt) | Event::StepBy(nt, _) | Event::Lightning(nt))
                 if due && at_sea =>
@@ -228,7 +223,7 @@ impl World {
                 let (sin, cos) = match plan.event {
                     // Compass north lies as far to port of the bow as the ship heads east
                     // of it.
-                    Event::StepBy(_, from_needle) => (from_needle - compass_deg).to_radians(),
+                    Event::StepBy(_, from_needle) => (from_needle - now.compass_deg).to_radians(),
                     _ => TAU * rng.random::<f64>(),
                 }
                 .sin_cos();
@@ -247,7 +242,7 @@ impl World {
                 self.note(name, minute);
                 self.state = Stage::Over;
             }
-            (Stage::ToCome, Event::Cargo | Event::Refit) if due && arrived => {
+            (Stage::ToCome, Event::Cargo | Event::Refit) if due && now.arrived => {
                 let before = truth.parameters;
                 self.base = before.to_array();
                 let sd = [600.0, 0.005, 600.0, 0.0025, 0.008, 0.003, 0.003];
@@ -265,7 +260,7 @@ impl World {
                     Stage::Over
                 };
             }
-            (Stage::Laden(calls), _) if arrived => {
+            (Stage::Laden(calls), _) if now.arrived => {
                 self.state = Stage::Laden(calls - 1);
                 if calls == 1 {
                     truth.parameters = Parameters::from_array(self.base);
@@ -468,14 +463,13 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         let alongside = passage.berth_minutes > 0.0;
         let arrived = alongside && at_sea_for > 0;
         at_sea_for = if alongside { 0 } else { at_sea_for + 1 };
-        let compass_deg = match plan.event {
-            Event::StepBy(..) => shown_deg(&truth, &passage, &field),
-            _ => 0.0,
-        };
         let now = Situation {
             arrived,
             at_sea_minutes: at_sea_for,
-            compass_deg,
+            compass_deg: match plan.event {
+                Event::StepBy(..) => shown_deg(&truth, &passage, &field),
+                _ => 0.0,
+            },
         };
         world.plan(plan, minute, now, &mut truth, &mut rng);
         let (variation_error, gyro_off) = world.chance(plan, minute, &passage, &errors, &mut rng);

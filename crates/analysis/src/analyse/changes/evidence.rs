@@ -77,7 +77,7 @@ pub(super) fn evidence(
     }
     match known.ended_at_port {
         Some(true) => {
-            lines.push("the vessel returned to its earlier state at a port call".to_owned())
+            lines.push("the vessel returned to its earlier state at a port call".to_owned());
         }
         Some(false) => lines.push("the vessel returned to its earlier state at sea".to_owned()),
         None => {}

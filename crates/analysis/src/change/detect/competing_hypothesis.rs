@@ -198,7 +198,15 @@ impl Detector<'_> {
                 return true;
             }
         }
+        self.accept_competitor(k, place, ratio);
+        true
+    }
+
+    /// Puts a competing hypothesis in the place of its step; `ratio` is its log-likelihood ratio
+    /// against the step.
+    fn accept_competitor(&mut self, k: usize, place: usize, ratio: f64) {
         let competitor = self.competing.swap_remove(place);
+        let of = competitor.event;
         self.competing.clear();
         self.returns.forget(of);
         self.remove_later_steps(of);
@@ -238,7 +246,6 @@ impl Detector<'_> {
         }
         self.replace_null(k, competitor.filter, competitor.first);
         self.competing = competing;
-        true
     }
 
     /// Restores a step that had been replaced by an alignment change.
