@@ -85,9 +85,8 @@ impl Letter {
         let (why, page) = match why {
             Why::Listed(least) => (
                 format!(
-                    "You get this because {address} is on your company's list for alerts from {} \
-                     on. An administrator takes it off:",
-                    least
+                    "You get this because {address} is on your company's list for alerts from {least} \
+                     on. An administrator takes it off:"
                 ),
                 "/mail",
             ),
