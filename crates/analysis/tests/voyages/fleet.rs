@@ -4,7 +4,7 @@
 
 use super::kept::Kept;
 pub(crate) use super::plan::{Event, Happened, Name, Plan};
-use super::{Errors, Faults, Passage, Truth, Variety, gauss, needle};
+use super::{Errors, Faults, Passage, Truth, gauss, needle};
 use binnacle_compass::angle::{CompassHeading, wrap_180};
 use binnacle_compass::field::{FieldAt, FieldModel};
 use binnacle_compass::model::Parameters;
