@@ -23,8 +23,8 @@ const OUTLIER_Z_SQUARED: f64 = 9.0;
 /// Returns the reference's share in the heading at which rows are linearised. On a strong
 /// magnet the compass may turn several times as fast as the vessel, so that its own reading
 /// would explain whatever it shows: the share is 1.
-pub(crate) fn reference_share(ship: &Unknowns) -> f64 {
-    if ship[0].hypot(ship[2]) > STRONG_MAGNET {
+pub(crate) fn reference_share(vessel: &Unknowns) -> f64 {
+    if vessel[0].hypot(vessel[2]) > STRONG_MAGNET {
         1.0
     } else {
         USUAL_REFERENCE_SHARE
@@ -80,7 +80,7 @@ impl HypothesisBank {
                 continue;
             };
             for row in rows {
-                let m = relinearise(hypothesis, noise, |ship| measure(row, ship));
+                let m = relinearise(hypothesis, noise, |vessel| measure(row, vessel));
                 hypothesis.observe(&m, noise, None);
             }
         }

@@ -322,7 +322,7 @@ mod tests {
     use crate::estimate::Prior;
     use binnacle_compass::result::NoiseLevels;
 
-    fn ship() -> Filter {
+    fn vessel() -> Filter {
         let noise = NoiseVariances::new(&NoiseLevels::TYPICAL);
         Filter::new(&Prior::population(0.5), &noise)
     }
@@ -333,13 +333,13 @@ mod tests {
         let mut calls = PortCallReturns::default();
         calls.add_baseline(Baseline {
             event: 0,
-            filter: ship(),
+            filter: vessel(),
             origin: StepOrigin::AtPort,
             latest: None,
             port_calls: 0,
         });
         for at in [10, 20] {
-            calls.add_port_call(at, &ship(), usize::MAX, LoggedCargo::Nothing);
+            calls.add_port_call(at, &vessel(), usize::MAX, LoggedCargo::Nothing);
         }
         for (call, ratio) in calls.calls.iter_mut().zip(leads) {
             call.returns[0].filter.log_likelihood = ratio;
@@ -350,9 +350,9 @@ mod tests {
     #[test]
     fn that_she_is_herself_again_is_as_likely_as_all_calls_of_it_together() {
         let both = after_two_calls([3.0, 3.0]);
-        let both = both.likeliest(&ship(), 0.0, false).unwrap();
+        let both = both.likeliest(&vessel(), 0.0, false).unwrap();
         let one = after_two_calls([3.0, -30.0]);
-        let one = one.likeliest(&ship(), 0.0, false).unwrap();
+        let one = one.likeliest(&vessel(), 0.0, false).unwrap();
         assert!(both.probability > one.probability + 0.05, "{both:?}");
         assert!((both.probability - both.any).abs() < 1e-12);
         assert_eq!(both.at, 10, "the first call is the likelier beforehand");
@@ -362,7 +362,7 @@ mod tests {
     fn a_disturbance_that_was_told_speaks_neither_for_a_return_nor_against_it() {
         let calls = after_two_calls([5.0, -30.0]);
         let probability = |is_disturbed: bool| {
-            let likeliest = calls.likeliest(&ship(), 60.0, is_disturbed);
+            let likeliest = calls.likeliest(&vessel(), 60.0, is_disturbed);
             likeliest.unwrap().probability
         };
         assert!(probability(false) < 1e-6);
@@ -372,7 +372,7 @@ mod tests {
 
     #[test]
     fn what_passed_leaves_a_return_as_likely_as_it_was_but_lends_it_no_lead() {
-        let null = ship();
+        let null = vessel();
         for (led, gained, leads) in [(5.0, 20.0, 0.0), (-3.0, 20.0, -3.0), (5.0, 2.0, 3.0)] {
             let mut calls = after_two_calls([led, led]);
             calls.credit_transient(&null, gained);

@@ -15,6 +15,8 @@ mod kept;
 #[allow(dead_code, reason = "only the comparison of detectors asks for it")]
 pub(crate) mod lorden;
 mod passage;
+#[allow(dead_code, reason = "only what is about changes asks for it")]
+mod plan;
 pub(crate) mod tally;
 
 use binnacle_analysis::fit::Observation;

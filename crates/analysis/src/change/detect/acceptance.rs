@@ -39,12 +39,12 @@ impl Detector<'_> {
             || baseline.is_some_and(|base| !base.began_at_port_call());
         if kind == HypothesisKind::Step && self.reference_fault.is_none() && at_sea {
             // Each was linearised at its own end: either may be the likelier.
-            let back = leads[HypothesisKind::Return as usize];
-            let back =
-                back.map(|lead| (lead, self.date_change(lead.fork, HypothesisKind::Return, k)));
+            let returned = leads[HypothesisKind::Return as usize];
+            let returned =
+                returned.map(|lead| (lead, self.date_change(lead.fork, HypothesisKind::Return, k)));
             let likelier = |d: &DatedChange| d.filter.log_likelihood > dated.filter.log_likelihood;
-            if let Some((lead, back)) = back.filter(|(_, back)| likelier(back)) {
-                return self.accept_dated_return(k, lead, back, leads);
+            if let Some((lead, returned)) = returned.filter(|(_, returned)| likelier(returned)) {
+                return self.accept_dated_return(k, lead, returned, leads);
             }
         }
         if kind == HypothesisKind::Step
@@ -94,9 +94,9 @@ impl Detector<'_> {
             }
             let gained = dated.filter.log_likelihood - self.null.log_likelihood;
             let mut returns = std::mem::take(&mut self.returns);
-            let next = |back: &Filter| self.measure(k, &back.unknowns());
-            returns.apply_reference_change(gained, |back| {
-                apply_reference_step(back, &next(back), lead.kind)
+            let next = |returned: &Filter| self.measure(k, &returned.unknowns());
+            returns.apply_reference_change(gained, |returned| {
+                apply_reference_step(returned, &next(returned), lead.kind)
             });
             self.returns = returns;
         }
@@ -197,8 +197,8 @@ impl Detector<'_> {
     /// hours at sea came from beside the vessel: it becomes a transient.
     fn accept_dated_return(&mut self, k: usize, lead: Lead, dated: DatedChange, leads: Leads) {
         let zero = self.alignment_change.take().map(|(event, _)| event);
-        let ship = || self.returns.baselines.last().map(|base| base.event);
-        let Some(event) = zero.or_else(ship) else {
+        let vessel = || self.returns.baselines.last().map(|base| base.event);
+        let Some(event) = zero.or_else(vessel) else {
             return;
         };
         let before = self.bank.forks[lead.fork].origin().clone();
@@ -223,12 +223,12 @@ impl Detector<'_> {
         self.replace_null(k, dated.filter, dated.first);
     }
 
-    fn was_brief(&self, event: &Event, back: &DatedChange) -> bool {
+    fn was_brief(&self, event: &Event, returned: &DatedChange) -> bool {
         let time = |row: usize| self.observations[row].time;
-        let lasted_s = time(back.first)
+        let lasted_s = time(returned.first)
             .zip(time(event.first))
             .map(|(end, begin)| end.seconds_since(begin));
-        let mut rows = event.between.0..=back.between.1.max(back.first);
+        let mut rows = event.between.0..=returned.between.1.max(returned.first);
         matches!(event.kind, EventKind::Step | EventKind::Alignment)
             && lasted_s.is_some_and(|s| s < BRIEF_CHANGE_S)
             && !rows.any(|row| self.is_port_call(row))
@@ -248,7 +248,7 @@ impl Detector<'_> {
         let gained = dated.filter.log_likelihood - self.null.log_likelihood;
         let repaired = EarlierState::Reference(&repaired);
         self.returns
-            .apply_reference_change(gained, |back| repaired.restore(back));
+            .apply_reference_change(gained, |returned| repaired.restore(returned));
         self.record_event(
             k,
             EventKind::Return(event),
@@ -267,13 +267,13 @@ impl Detector<'_> {
     pub(crate) fn accept_port_call_return(
         &mut self,
         k: usize,
-        back: ReturnCandidate,
+        returned: ReturnCandidate,
         leads: Leads,
     ) {
         // Before places in the list change.
         self.record_alignment_ratios();
         self.competing.clear();
-        self.close_transient(back.at);
+        self.close_transient(returned.at);
         self.alignment_change = None;
         // Steps since the call were this return.
         let is_reference = |event: &Event| match event.kind {
@@ -282,7 +282,7 @@ impl Detector<'_> {
         };
         let is_removed = |(place, event): (usize, &Event)| {
             let is_past = event.kind == EventKind::Transient || is_reference(event);
-            place > back.event && !is_past && event.between.1 >= back.at
+            place > returned.event && !is_past && event.between.1 >= returned.at
         };
         let removed = self.events.iter().enumerate().map(is_removed).collect();
         let moved = remove_events(&mut self.events, removed);
@@ -292,18 +292,18 @@ impl Detector<'_> {
         let before = self.null.clone();
         self.record_event(
             k,
-            EventKind::Return(back.event),
-            back.at,
-            (back.at, back.at),
+            EventKind::Return(returned.event),
+            returned.at,
+            (returned.at, returned.at),
             leads,
             Some(FilterChange {
                 before: &before,
-                after: &back.filter,
+                after: &returned.filter,
             }),
         );
-        self.returns.forget(back.event);
+        self.returns.forget(returned.event);
         self.extra_drift = ExtraDrift::default();
-        self.replace_null(k, back.filter, back.at);
+        self.replace_null(k, returned.filter, returned.at);
     }
 
     pub(crate) fn replace_null(&mut self, k: usize, filter: Filter, first: usize) {

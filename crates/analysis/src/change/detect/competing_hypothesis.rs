@@ -136,10 +136,10 @@ impl Detector<'_> {
             ratio_of(HypothesisKind::Transient),
         );
         // A drifting vessel may well have returned: a return is simpler.
-        let back = self
+        let returned = self
             .return_candidate(leads)
-            .map_or(0.0, |back| back.log_likelihood_ratio);
-        let back = back.max(ratio_of(HypothesisKind::Return));
+            .map_or(0.0, |returned| returned.log_likelihood_ratio);
+        let returned = returned.max(ratio_of(HypothesisKind::Return));
         let lead = |competitor: &CompetingHypothesis| {
             competitor.filter.log_likelihood - self.null.log_likelihood
         };
@@ -174,7 +174,7 @@ impl Detector<'_> {
         if ratio < threshold
             || ratio < step - COMPETING_DEFICIT_LOG_LIKELIHOOD_RATIO
             || ratio < transient
-            || ratio < back
+            || ratio < returned
         {
             return false;
         }

@@ -102,12 +102,12 @@ impl Detector<'_> {
                 }
             };
         if is_accepted {
-            let back =
+            let returned =
                 self.return_candidate_within(&leads, RETURN_FOR_STEP_DEFICIT_LOG_LIKELIHOOD_RATIO);
-            if let Some(back) = back.filter(|back| self.replaces_step(&leads, back))
+            if let Some(returned) = returned.filter(|returned| self.replaces_step(&leads, returned))
                 && kind == HypothesisKind::Step
             {
-                return self.accept_port_call_return(k, back, leads);
+                return self.accept_port_call_return(k, returned, leads);
             }
             if kind == HypothesisKind::Step && self.is_discharge(k, &leads) {
                 return self.accept_return(k, leads);
@@ -262,10 +262,10 @@ impl Detector<'_> {
     /// time. A few disturbed readings just before may speak against a return at the call
     /// itself.
     fn is_discharge(&self, k: usize, leads: &Leads) -> bool {
-        let [step, _, _, back] = *leads;
-        step.zip(back).is_some_and(|(step, back)| {
-            let at = self.bank.forks[back.fork].at;
-            back.log_likelihood_ratio > step.log_likelihood_ratio
+        let [step, _, _, returned] = *leads;
+        step.zip(returned).is_some_and(|(step, returned)| {
+            let at = self.bank.forks[returned.fork].at;
+            returned.log_likelihood_ratio > step.log_likelihood_ratio
                 && self.discharge_near(at, k).is_some()
         })
     }
@@ -289,11 +289,12 @@ impl Detector<'_> {
     }
 
     /// Returns true if a return at this call may replace a certain step.
-    fn replaces_step(&self, leads: &Leads, back: &ReturnCandidate) -> bool {
+    fn replaces_step(&self, leads: &Leads, returned: &ReturnCandidate) -> bool {
         let step = leads[HypothesisKind::Step as usize].map(|lead| self.bank.forks[lead.fork].at);
-        let near = back.at.saturating_sub(RETURN_FOR_STEP_ROWS_BEFORE)
-            ..=back.at + RETURN_FOR_STEP_ROWS_AFTER;
-        back.probability > RETURN_FOR_STEP_POSTERIOR && step.is_some_and(|at| near.contains(&at))
+        let near = returned.at.saturating_sub(RETURN_FOR_STEP_ROWS_BEFORE)
+            ..=returned.at + RETURN_FOR_STEP_ROWS_AFTER;
+        returned.probability > RETURN_FOR_STEP_POSTERIOR
+            && step.is_some_and(|at| near.contains(&at))
     }
 
     /// Returns true if both references were read lately.
