@@ -124,7 +124,7 @@ impl Case {
         compass_deg(&self.ship, standing, &self.hardware, place, lying)
     }
 
-    /// Model of her headings by a fit without errors.
+    /// Model of the ship by a fit without errors.
     fn model(&self) -> Model {
         let head_north = Lying {
             magnetic_deg: 0.0,

@@ -22,7 +22,7 @@ pub(crate) struct Sea {
     /// Headings until an alarm.
     pub(crate) alarmed: Vec<f64>,
     pub(crate) undecided: u64,
-    /// Passed adjustments with more than so much difference from the prediction on any
+    /// Passed adjustments with more than this difference from the prediction on any
     /// heading.
     pub(crate) passed_beyond_2_deg: u64,
 }

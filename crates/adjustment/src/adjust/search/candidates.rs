@@ -127,7 +127,7 @@ impl AxisCandidates {
         candidates
     }
 
-    /// Adds the settings with so many trays, pruned to one per few nT.
+    /// Adds the settings with these numbers of trays, pruned to one per few nT.
     fn add_pruned(
         &mut self,
         trays: &RangeInclusive<u8>,

@@ -57,7 +57,7 @@ impl ParetoFront {
         }
     }
 
-    /// Returns the best residual with at most so many moves.
+    /// Returns the best residual with at most this number of moves.
     pub(crate) fn at(&self, moves: u32) -> f64 {
         let known = self.best[..=(moves as usize).min(MOST_MOVES - 1)]
             .iter()
