@@ -188,7 +188,7 @@ fn size(detected: &DetectedChange<'_>, stage: Stage) -> Size {
     let ahead_deg = found.size_ahead_deg.unwrap_or(0.0);
     let size_deg = found.size_deg.unwrap_or(0.0).max(ahead_deg);
     Size {
-        size_deg,
+        magnitude_deg: size_deg,
         at_least_deg: size_deg,
         limit_deg: detected.limits.deviation_deg,
         was: detected.was,
@@ -204,7 +204,7 @@ fn size(detected: &DetectedChange<'_>, stage: Stage) -> Size {
 /// Grades a change by the deviation that it causes, with hysteresis.
 pub(super) fn by_size(size: &Size) -> Severity {
     let reaches =
-        |limit_deg, severity| size.size_deg >= limit_deg - hysteresis_deg(size.was, severity);
+        |limit_deg, severity| size.magnitude_deg >= limit_deg - hysteresis_deg(size.was, severity);
     let severity = if reaches(size.limit_deg, Severity::Critical) {
         Severity::Critical
     } else if reaches(WARN_DEG, Severity::Warning) {
