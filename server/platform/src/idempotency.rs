@@ -82,7 +82,7 @@ impl Key {
     }
 }
 
-/// What tells one request from another: what it creates and its content.
+/// Returns the hash that identifies a request: of the kind it creates and its content.
 ///
 /// # Errors
 /// When the content cannot be written as JSON.

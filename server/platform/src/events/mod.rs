@@ -43,7 +43,7 @@ where
     OpenApiRouter::new().routes(routes!(follow_events))
 }
 
-/// What happened to a vessel.
+/// Kind of change to a vessel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
@@ -72,15 +72,15 @@ pub enum Kind {
 pub struct Event {
     /// Its id, by which a dashboard resumes.
     pub id: EventId,
-    /// Whose vessel.
+    /// Operator of the vessel.
     pub operator_id: OperatorId,
     /// The firm that is told; none when the operator is.
     pub firm_id: Option<FirmId>,
     /// The work order, if it is of one.
     pub order_id: Option<OrderId>,
-    /// Which vessel.
+    /// The vessel concerned.
     pub vessel_id: VesselId,
-    /// What happened.
+    /// Kind of event.
     pub kind: Kind,
 }
 
@@ -88,7 +88,7 @@ pub struct Event {
 pub struct EventStored {
     /// The event.
     pub event: Event,
-    /// When.
+    /// Time of the event.
     pub at: Time,
 }
 
@@ -97,9 +97,9 @@ impl DomainEvent for EventStored {}
 /// The data of an event.
 #[derive(Serialize, ToSchema)]
 pub struct VesselEvent {
-    /// Which vessel.
+    /// The vessel concerned.
     pub vessel_id: VesselId,
-    /// What happened.
+    /// Kind of event.
     pub kind: Kind,
     /// The work order, if it is of one.
     #[serde(skip_serializing_if = "Option::is_none")]

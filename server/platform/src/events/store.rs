@@ -81,8 +81,8 @@ async fn write(
     Ok(event)
 }
 
-/// What happened since an event was seen; everything there is when that is so long
-/// ago that it was forgotten.
+/// Returns the events since the given one. If that event is already deleted, returns all
+/// events that are left.
 pub(super) async fn since(db: &Db, tenant: Tenant, last: EventId) -> Result<Vec<Event>> {
     rows!(
         db,
@@ -102,7 +102,7 @@ pub(super) async fn since(db: &Db, tenant: Tenant, last: EventId) -> Result<Vec<
     )
 }
 
-/// What happened to anyone's vessels since a time, and shortly before it.
+/// Returns the events of all tenants since a time, with a short overlap before it.
 pub(super) async fn all_since(db: &Db, from: Time) -> Result<Vec<Event>> {
     rows!(
         db,

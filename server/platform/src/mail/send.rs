@@ -15,12 +15,12 @@ use reqwest::Url;
 use std::fs;
 use std::time::{Duration, UNIX_EPOCH};
 
-/// What sends mail.
+/// Sender of mail.
 #[derive(Clone)]
 pub struct Mailer {
     relay: Relay,
     from: Mailbox,
-    /// Where people reach the dashboard, without a slash at the end.
+    /// Public URL of the dashboard, without a trailing slash.
     public_url: String,
 }
 
@@ -48,7 +48,7 @@ impl Mailer {
         }))
     }
 
-    /// The same, with a relay that is tried again after another time.
+    /// Returns the sender with a relay timeout other than the default.
     #[must_use]
     pub fn with_patience(self, patience: Duration) -> Mailer {
         Mailer {

@@ -47,7 +47,7 @@ type Client = CoreClient<
     EndpointMaybeSet,
 >;
 
-/// Whom the provider names, and what it says of their e-mail.
+/// The person named by the provider, with the e-mail address it claims.
 pub(super) struct Identity {
     pub(super) subject: String,
     email: Option<String>,
@@ -71,7 +71,7 @@ fn client(app: &App, found: &Found) -> Result<Client, Refusal> {
     Ok(client.set_auth_type(auth).set_redirect_uri(redirect))
 }
 
-/// Where a person goes to sign in.
+/// Returns the provider's address at which a person signs in.
 pub(super) fn address(app: &App, found: &Found, attempt: &Attempt) -> Result<Url, Refusal> {
     let client = client(app, found)?;
     let (state, nonce) = (attempt.state(), attempt.nonce());

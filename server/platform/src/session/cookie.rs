@@ -42,7 +42,7 @@ pub(super) fn set(config: &Serve, token: &str, max_age_s: u64) -> HeaderMap {
     HeaderMap::from_iter([(SET_COOKIE, header)])
 }
 
-/// Which requests of other sites' carry a cookie.
+/// The cross-site requests that carry a cookie.
 #[derive(Clone, Copy, Debug)]
 pub enum SameSite {
     /// Following a link does.

@@ -27,7 +27,7 @@ where
         .routes(routes!(me))
 }
 
-/// What a user signs in with.
+/// A user's credentials.
 #[derive(Deserialize, ToSchema)]
 #[schema(example = json!({ "email": "captain@example.com", "password": "seven gulls over the quay" }))]
 struct SignIn {
@@ -99,7 +99,7 @@ async fn sign_out(
     Ok((StatusCode::NO_CONTENT, cookie::set(&app.config, "", 0)))
 }
 
-/// Who is signed in
+/// Show the signed-in user
 #[utoipa::path(get, path = "/me", tag = "session",
     responses((status = 200, body = User), (status = 401, body = Problem)))]
 async fn me(caller: Caller) -> Json<User> {

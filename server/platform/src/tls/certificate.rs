@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// TLS sessions that can be resumed; each takes some 300 bytes.
 const SESSIONS: usize = 32_768;
 
-/// How hands are shaken.
+/// TLS configurations for handshakes.
 #[derive(Clone, Debug)]
 pub struct Configs {
     usual: Arc<ServerConfig>,
@@ -33,7 +33,7 @@ impl Configs {
     }
 }
 
-/// Where the certificate is kept.
+/// Location of the certificate.
 #[derive(Clone, Debug)]
 pub struct Certificate {
     /// PEM: the server's certificate first, then those up to the authority's.

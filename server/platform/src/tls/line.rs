@@ -21,10 +21,10 @@ const ENCRYPTED: u8 = 23;
 #[derive(Debug)]
 pub(super) struct Tcp {
     stream: TcpStream,
-    /// What is kept for the next write.
+    /// Data held back for the next write.
     kept: Vec<u8>,
     hands_shaken: bool,
-    /// What is kept has been joined by what a peer waits for.
+    /// True once data that the peer waits for has joined the data held back.
     joined: bool,
 }
 
@@ -47,8 +47,8 @@ impl Tcp {
         self.acknowledge_with_answers();
     }
 
-    /// What acknowledges a hello or a request may go with the answer to it. The system
-    /// forgets it now and then; it only saves octets.
+    /// Lets the acknowledgement of a hello or a request go with the answer to it. The system
+    /// resets this now and then; it only saves bytes.
     fn acknowledge_with_answers(&self) {
         #[cfg(target_os = "linux")]
         SockRef::from(&self.stream).set_tcp_quickack(false).ok();

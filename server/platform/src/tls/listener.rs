@@ -19,7 +19,7 @@ use tracing::{debug, error, info};
 
 /// Over a satellite that loses packets a handshake takes up to half a minute.
 const HANDSHAKE: Duration = Duration::from_mins(1);
-/// So many hands are shaken at once; others wait in the system's queue.
+/// Maximum number of concurrent handshakes; further connections wait in the system's queue.
 const HANDSHAKES: usize = 1024;
 
 type Connection = (Line, SocketAddr);

@@ -33,7 +33,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use webhook::{MadeWebhook, NewWebhook, Webhook, WebhookList};
 
-/// What a webhook's secret begins with.
+/// Prefix of a webhook's secret.
 const SECRET_PREFIX: &str = "bns_";
 
 /// The routes of this part.

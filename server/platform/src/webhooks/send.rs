@@ -25,14 +25,14 @@ pub const SIGNATURE_HEADER: &str = "Binnacle-Signature";
 const PATIENCE: Duration = Duration::from_secs(10);
 const MAX_URL: usize = 500;
 
-/// What sends.
+/// Sender of webhook messages.
 #[derive(Clone, Debug)]
 pub struct Sender {
     client: Client,
     reach: Reach,
 }
 
-/// Where messages may go.
+/// The addresses to which messages may go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
     /// Over https, to addresses of the public internet.
@@ -88,7 +88,7 @@ impl Carrier for Sender {
     }
 }
 
-/// What asks others' servers: patient, but not for long, and led nowhere else.
+/// Builds the client for requests to other servers: with a timeout, and without redirects.
 ///
 /// # Errors
 /// When this machine has no certificates to check others by.

@@ -126,7 +126,7 @@ pub(super) async fn change(
     Ok(())
 }
 
-/// Where a webhook goes and what signs it; none if it was removed.
+/// Returns a webhook's URL and signing secret; none if it was removed.
 pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, String)>> {
     row!(
         db,

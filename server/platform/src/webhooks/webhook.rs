@@ -10,7 +10,7 @@ use crate::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// What a webhook is told of, as JSON in its row.
+/// Kinds of messages for a webhook, as JSON in its row.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(super) struct Kinds(pub(super) Vec<Kind>);
@@ -27,13 +27,13 @@ impl TryFrom<String> for Kinds {
 #[derive(Clone, Debug, Deserialize, Serialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct NewWebhook {
-    /// Where to POST to.
+    /// URL for the POST requests.
     #[schema(max_length = 500, example = "https://example.com/hooks/binnacle")]
     pub(super) url: String,
-    /// What to tell of.
+    /// Kinds of messages to send.
     #[schema(example = json!(["alert.raised", "alert.cleared"]))]
     pub(super) kinds: Vec<Kind>,
-    /// Whether anything is sent; true if not said.
+    /// True if messages are sent; true by default.
     #[serde(default = "enabled")]
     pub(super) enabled: bool,
 }
@@ -47,16 +47,16 @@ fn enabled() -> bool {
 pub(super) struct Webhook {
     /// The webhook's id.
     pub(super) id: WebhookId,
-    /// Where it POSTs to.
+    /// URL for the POST requests.
     #[schema(example = "https://example.com/hooks/binnacle")]
     pub(super) url: String,
-    /// What it is told of.
+    /// Kinds of messages sent.
     #[sqlx(try_from = "String")]
     #[schema(value_type = Vec<Kind>)]
     pub(super) kinds: Kinds,
-    /// Whether anything is sent; what was not delivered waits meanwhile.
+    /// True if messages are sent; undelivered messages wait meanwhile.
     pub(super) enabled: bool,
-    /// When it was made.
+    /// Creation time.
     pub(super) created_at: Time,
     /// Deliveries that wait.
     pub(super) pending: i64,
@@ -69,7 +69,7 @@ pub(super) struct Webhook {
 pub(super) struct MadeWebhook {
     #[serde(flatten)]
     pub(super) about: Webhook,
-    /// What its messages are signed with; never shown again.
+    /// Signing secret of its messages; never shown again.
     #[schema(example = "bns_mZ3q8k…")]
     pub(super) secret: String,
 }
@@ -85,7 +85,7 @@ pub(super) struct WebhookList {
 }
 
 impl NewWebhook {
-    /// The same, in order, if it can be sent to.
+    /// Returns the webhook with its kinds in order, if messages can be sent to it.
     ///
     /// # Errors
     /// When it cannot, or would never be.
