@@ -34,7 +34,7 @@ pub enum Kind {
     OnBoard,
     /// The adjuster has finished and signed.
     Completed,
-    /// Headings at sea agree with what was foretold.
+    /// Headings at sea agree with the prediction.
     Verified,
     /// A heading at sea does not.
     VerificationFailed,

@@ -1,4 +1,4 @@
-//! Live events: what dashboards are told as it happens.
+//! Live events for dashboards.
 //!
 //! What always holds: an event is stored in the transaction that makes it true,
 //! and reaches the dashboards of every server process on the same database: on
@@ -74,7 +74,7 @@ pub struct Event {
     pub id: EventId,
     /// Operator of the vessel.
     pub operator_id: OperatorId,
-    /// The firm that is told; none when the operator is.
+    /// The firm that receives the event; none if the operator does.
     pub firm_id: Option<FirmId>,
     /// The work order, if it is of one.
     pub order_id: Option<OrderId>,
@@ -112,8 +112,8 @@ const LONGEST_STREAM: Duration = Duration::from_mins(30);
 /// Follow the fleet live
 ///
 /// Server-sent events named `vessel`, whose data is a `VesselEvent`. With
-/// `Last-Event-ID`, what was missed within the last day comes first. A firm is told of its
-/// work orders only.
+/// `Last-Event-ID`, the events missed within the last day come first. A firm receives only the
+/// events of its work orders.
 #[utoipa::path(get, path = "/events", tag = "fleet",
     params(("Last-Event-ID" = Option<Uuid>, Header, description = "The last event seen")),
     responses((status = 200, content_type = "text/event-stream", body = VesselEvent),

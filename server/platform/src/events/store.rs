@@ -12,7 +12,7 @@ const KEPT_FOR_S: f64 = 86_400.0;
 /// Each process has its own clock, and a transaction may be seen late: how far to
 /// look back before the last event seen.
 const OVERLAP_S: f64 = 10.0;
-/// As many as a dashboard is told after a pause; with more it should read anew.
+/// Maximum number of events sent after a pause; beyond that, a dashboard should reload its data.
 const MOST_MISSED: i64 = 1000;
 
 /// Stores an event, to be made known with the transaction's commit.

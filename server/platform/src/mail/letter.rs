@@ -60,7 +60,7 @@ pub struct Attached {
 pub(super) enum Why {
     /// Someone is on the company's list for alerts from a severity on.
     Listed(Severity),
-    /// It is what a person with an account is told of.
+    /// Someone with an account chose this notification.
     Person,
     /// Someone is on the company's list for monthly reports.
     Reports,

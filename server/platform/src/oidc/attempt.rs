@@ -1,7 +1,7 @@
 //! A sign-in under way: what the browser keeps while its person is at the provider's.
 //!
-//! What always holds: the cookie is the only secret, and what the provider is told of it
-//! does not lead back to it. So nothing is stored for a sign-in before it comes back.
+//! What always holds: the cookie is the only secret. The values given to the provider do not
+//! reveal it. So nothing is stored for a sign-in before it comes back.
 
 use crate::app::App;
 use crate::config::Serve;

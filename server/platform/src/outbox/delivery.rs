@@ -75,7 +75,7 @@ pub enum Kind {
     #[serde(rename = "order.completed")]
     #[sqlx(rename = "order.completed")]
     OrderCompleted,
-    /// Headings at sea agree with what was foretold.
+    /// Headings at sea agree with the prediction.
     #[serde(rename = "order.verified")]
     #[sqlx(rename = "order.verified")]
     OrderVerified,
@@ -121,7 +121,7 @@ impl Kind {
     }
 }
 
-/// Something to be told.
+/// A message to be delivered.
 #[derive(Clone, Debug)]
 pub struct Message {
     /// The event's id.

@@ -7,7 +7,7 @@
 use binnacle_compass::time::Timestamp;
 use ring::hmac;
 
-/// Octets of a secret: as long as the hash (RFC 4226, section 4, requirement 6).
+/// Length of a secret in bytes, equal to the hash's (RFC 4226, section 4, requirement 6).
 pub(super) const SECRET_BYTES: usize = 20;
 const STEP_S: i64 = 30;
 const CODES: u32 = 1_000_000;

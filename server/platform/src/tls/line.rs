@@ -1,5 +1,5 @@
-//! Connections that spend few packets: each costs a ship forty octets and more beside
-//! what is in it.
+//! Connections that use few packets: each packet costs a ship forty bytes or more besides
+//! its content.
 //!
 //! What always holds: nothing that a peer waits for is kept back, and a peer that is
 //! still there gets all that was written.
@@ -13,7 +13,7 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 use tokio_rustls::server::TlsStream;
 
-/// The first octet of a TLS record that is encrypted (RFC 8446, 5.1).
+/// The first byte of an encrypted TLS record (RFC 8446, 5.1).
 const ENCRYPTED: u8 = 23;
 
 /// TCP below TLS. The ticket for a next session, which nobody waits for, goes with the
@@ -139,7 +139,7 @@ impl AsyncWrite for Tcp {
     }
 }
 
-/// TLS whose peer, when it has said goodbye, is not told so in five packets but in one.
+/// A TLS connection that, after the peer has closed it, ends with one packet instead of five.
 #[derive(Debug)]
 pub struct Line {
     stream: TlsStream<Tcp>,

@@ -4,8 +4,8 @@
 //!
 //! - Messages wait and are sent as [`crate::outbox`] says.
 //! - Each try is signed with the webhook's secret over its time and its body.
-//! - Nothing is sent to an address that is not one of the public internet, unless
-//!   the server was told to.
+//! - Nothing is sent to an address outside the public internet, unless the server is
+//!   configured to allow it.
 
 mod address;
 mod announce;
@@ -137,7 +137,7 @@ async fn change_webhook(
 
 /// Remove a webhook
 ///
-/// What it was to be told is forgotten.
+/// Pending messages to it are deleted.
 #[utoipa::path(delete, path = "/webhooks/{id}", tag = "alerts", params(("id" = WebhookId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 404, body = Problem)))]
