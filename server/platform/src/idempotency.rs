@@ -1,6 +1,6 @@
 //! `Idempotency-Key`: a create request that is sent again creates nothing more.
 //!
-//! What always holds: the key and what it made are stored in one transaction, so
+//! Invariants: the key and what it made are stored in one transaction, so
 //! that either both exist or neither. A key is the operator's or the firm's own and is
 //! forgotten after a day; those of a work order are kept with the order
 //! (`work_orders::keys`).

@@ -1,6 +1,6 @@
 //! Passwords and tokens: made here, compared here, stored only as hashes.
 //!
-//! What always holds: a password's hash is Argon2id with a salt of its own; a
+//! Invariants: a password's hash is Argon2id with a salt of its own; a
 //! token has at least 128 random bits, so that a plain SHA-256 of it is enough.
 
 use argon2::Argon2;
@@ -97,7 +97,7 @@ pub fn hash_password(password: &str) -> anyhow::Result<String> {
 /// Checks a password against a stored hash. Takes as long without a hash, so that the timing
 /// does not reveal which e-mail addresses exist.
 pub fn password_matches(password: &str, stored: Option<&str>) -> bool {
-    // Who was invited and has not answered yet has none either.
+    // A user with an open invitation has no hash either.
     let Some(stored) = stored.filter(|stored| !stored.is_empty()) else {
         let _ = Argon2::default().hash_password(password.as_bytes());
         return false;

@@ -1,6 +1,6 @@
 //! Live events for dashboards.
 //!
-//! What always holds: an event is stored in the transaction that makes it true,
+//! Invariants: an event is stored in the transaction that makes it true,
 //! and reaches the dashboards of every server process on the same database: on
 //! PostgreSQL through LISTEN and NOTIFY, on SQLite (one process) directly. A
 //! dashboard that comes back with the last id it saw gets what it missed, some of
@@ -106,7 +106,7 @@ pub struct VesselEvent {
     pub order_id: Option<OrderId>,
 }
 
-/// A client is to come back after so long, to be looked at anew.
+/// Maximum length of a stream: after that the client reconnects and is authorized again.
 const LONGEST_STREAM: Duration = Duration::from_mins(30);
 
 /// Follow the fleet live
@@ -162,7 +162,7 @@ impl Follower {
     async fn next(mut self) -> Option<(std::result::Result<Sent, Infallible>, Follower)> {
         loop {
             if let Some(event) = self.pending.pop_front() {
-                // Who was signed out meanwhile, or whose token was revoked, hears no more.
+                // A client that was signed out, or whose token was revoked, gets no more events.
                 if !self.caller.still_vouched_for(&self.app).await.ok()? {
                     return None;
                 }

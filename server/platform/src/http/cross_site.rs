@@ -1,6 +1,6 @@
 //! Refuses changes that another site's page asks a browser for.
 //!
-//! What always holds: no change is made for a request that says that it comes from another
+//! Invariants: no change is made for a request that says that it comes from another
 //! site, whatever cookie it carries. That is besides the cookie's own `SameSite=Strict` and
 //! the header that only a page of ours sends. Programs say neither, and bring a token.
 

@@ -1,6 +1,6 @@
 //! The mail relay: what the settings say of it, and a conversation with it.
 //!
-//! What always holds: a name and a password go only over TLS with a certificate that
+//! Invariants: a name and a password go only over TLS with a certificate that
 //! was checked; a relay without TLS is spoken to only within one's own network. No
 //! error names the password.
 

@@ -71,7 +71,7 @@ impl Mailer {
             .to(Mailbox::new(None, address.parse()?))
             .subject(letter.subject.as_str())
             .date(UNIX_EPOCH + Duration::from_micros(written))
-            // The same at every try, so that a mailbox can tell a second copy.
+            // The id is the same at every try, so that a mailbox can detect a second copy.
             .message_id(Some(format!(
                 "<{}.{}@{domain}>",
                 claimed.id,
@@ -85,7 +85,7 @@ impl Mailer {
             None => builder.header(ContentType::TEXT_PLAIN).body(text)?,
             Some((files, report)) => builder.multipart(with_files(text, files, &report.month))?,
         };
-        // Nobody's holiday notice is to answer (RFC 3834, section 5).
+        // Automatic replies, such as holiday notices, are suppressed (RFC 3834, section 5).
         message.headers_mut().insert_raw(HeaderValue::new(
             HeaderName::new_from_ascii_str("Auto-Submitted"),
             "auto-generated".to_owned(),

@@ -1,6 +1,6 @@
 //! A sign-in under way: what the browser keeps while its person is at the provider's.
 //!
-//! What always holds: the cookie is the only secret. The values given to the provider do not
+//! Invariants: the cookie is the only secret. The values given to the provider do not
 //! reveal it. So nothing is stored for a sign-in before it comes back.
 
 use crate::app::App;

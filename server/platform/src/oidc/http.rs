@@ -1,6 +1,6 @@
 //! Requests to the provider.
 //!
-//! What always holds: each ends within ten seconds; redirects are not followed; no more
+//! Invariants: each ends within ten seconds; redirects are not followed; no more
 //! is read than a provider has to say; a provider with a certificate is asked for nothing
 //! without. The server's own admin named the provider, which may be within the network
 //! then; but one on the public internet cannot send requests into it.

@@ -1,6 +1,6 @@
 //! The provider's own description: its addresses and keys.
 //!
-//! What always holds: it is asked when someone wants to sign in, not before; once an hour
+//! Invariants: it is asked when someone wants to sign in, not before; once an hour
 //! at most, but that a token by a key that is not known yet makes it be asked again; and
 //! after a failure not again for some seconds, however many wait.
 
@@ -15,11 +15,11 @@ use std::sync::Arc;
 use tokio::sync::Mutex;
 use tracing::warn;
 
-/// After so long it is asked anew.
+/// Time after which the provider is asked again, seconds.
 const KEPT_S: f64 = 3600.0;
-/// Not sooner, for keys that are not known.
+/// Minimum wait before another request for unknown keys, seconds.
 pub(super) const NEW_KEYS_AFTER_S: f64 = 60.0;
-/// Nor after a failure.
+/// Minimum wait after a failure, seconds.
 const TRIED_AGAIN_AFTER_S: f64 = 5.0;
 
 /// Cache of the last discovery, whether it succeeded or failed.

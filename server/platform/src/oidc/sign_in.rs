@@ -194,7 +194,7 @@ async fn conclude(
     answer: Answer,
 ) -> Done {
     let attempt = Attempt::of(app, headers).ok_or(Refusal::Over)?;
-    // Of hashes, so that how long it takes does not tell how much is right.
+    // Hashes are compared, so that the timing does not reveal how much is right.
     let state = answer.state.unwrap_or_default();
     if secret::hash(&state) != attempt.state_hash() {
         return Err(Refusal::Over);
@@ -238,7 +238,7 @@ async fn who(
     let issuer = app.config.oidc.oidc_issuer.as_deref().unwrap_or_default();
     let identity = claims::redeem(app, attempt, code).await?;
     let subject = identity.subject.as_str();
-    // PostgreSQL takes no NUL in a text, and no provider names anyone so.
+    // PostgreSQL accepts no NUL in a text, and no provider uses one in a name.
     if subject.chars().any(char::is_control) {
         return Err(Refusal::Untrusted);
     }

@@ -1,6 +1,6 @@
 //! The queues in the database, one for each receiver.
 //!
-//! What always holds: a receiver's deliveries are numbered in the order in which
+//! Invariants: a receiver's deliveries are numbered in the order in which
 //! their transactions commit, and of each work order's, and of those of none, only the
 //! first that waits is due. One worker at a time has it, the one that holds its lease, and no
 //! other calls upon the same receiver. Webhooks are always taken before mail recipients, and

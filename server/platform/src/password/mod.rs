@@ -15,7 +15,7 @@ pub const LEAST: usize = 12;
 pub const MOST_BYTES: usize = 1024;
 /// Minimum number of characters left after all easily guessed parts are removed.
 const LEAST_LEFT: usize = 6;
-/// Shorter words are in everything.
+/// Minimum length of a word that counts as easily guessed.
 const LEAST_WORD: usize = 4;
 
 /// Refuses a password that is short or easily guessed; `about` is what is known of

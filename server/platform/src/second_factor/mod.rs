@@ -1,7 +1,7 @@
 //! A second factor for those who want one, or whose operator wants it: codes from an
 //! authenticator app (RFC 6238), and recovery codes for when the telephone is gone.
 //!
-//! What always holds: a code works once; recovery codes are stored as hashes and each
+//! Invariants: a code works once; recovery codes are stored as hashes and each
 //! works once; a factor counts only after a first code has come, so that nobody locks
 //! themselves out; the password is asked for again before anything of it changes.
 

@@ -1,7 +1,7 @@
 //! Codes from the time, RFC 6238 on RFC 4226: SHA-1, six digits, thirty seconds, which
 //! is what every authenticator app takes.
 //!
-//! What always holds: a code is of one step of time, and whoever asks says after which
+//! Invariants: a code is of one step of time, and whoever asks says after which
 //! step it must be, so that a code that was seen once is worth nothing.
 
 use binnacle_compass::time::Timestamp;

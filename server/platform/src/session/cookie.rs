@@ -1,6 +1,6 @@
 //! The session's cookie, and what every cookie of ours is like.
 //!
-//! What always holds: scripts cannot read it, other sites' requests do not carry the
+//! Invariants: scripts cannot read it, other sites' requests do not carry the
 //! session's, and where it is for https alone its name begins with `__Host-`, so that no other
 //! host of the domain can plant one (RFC 6265bis, section 4.1.3.2).
 

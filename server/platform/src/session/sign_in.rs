@@ -108,7 +108,7 @@ async fn me(caller: Caller) -> Json<User> {
 
 /// The user, if everything is right.
 async fn judge(app: &App, request: &RequestContext, from: &Origin, given: SignIn) -> Result<User> {
-    // PostgreSQL takes no NUL in a text, and nobody has such an e-mail.
+    // PostgreSQL accepts no NUL in a text, and nobody has such an e-mail address.
     if given.email.chars().any(char::is_control) {
         return Err(Error::WrongPassword);
     }

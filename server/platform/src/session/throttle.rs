@@ -1,6 +1,6 @@
 //! Slows down those who guess passwords and codes.
 //!
-//! What always holds: an e-mail that nobody has is throttled like any other, so
+//! Invariants: an e-mail that nobody has is throttled like any other, so
 //! that the answer does not tell which exist. Failures count for the e-mail, and, so
 //! that one password is not tried on every e-mail, for the address they come from.
 

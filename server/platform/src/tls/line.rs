@@ -1,7 +1,7 @@
 //! Connections that use few packets: each packet costs a ship forty bytes or more besides
 //! its content.
 //!
-//! What always holds: nothing that a peer waits for is kept back, and a peer that is
+//! Invariants: nothing that a peer waits for is kept back, and a peer that is
 //! still there gets all that was written.
 
 use socket2::SockRef;

@@ -1,6 +1,6 @@
 //! API tokens: for programs that act for a user.
 //!
-//! What always holds: a token is shown once and stored as a hash; it may do no
+//! Invariants: a token is shown once and stored as a hash; it may do no
 //! more than its user, and only read unless its scope is `write`.
 
 mod store;
@@ -121,7 +121,7 @@ async fn create_token(
     caller: Caller,
     Valid(new): Valid<NewToken>,
 ) -> Result<(StatusCode, Json<MadeToken>)> {
-    // One that leaked is not to make others that outlive it.
+    // A leaked token must not create others that outlive it.
     caller.must_be_signed_in()?;
     caller.must_have_second_factor()?;
     let name = crate::http::text("name", &new.name)?;

@@ -1,6 +1,6 @@
 //! One-time codes with which people set a password of their own.
 //!
-//! What always holds: a code is stored as a hash, works once and for a week; whoever
+//! Invariants: a code is stored as a hash, works once and for a week; whoever
 //! uses it gets a password and nothing else, and signs in with that.
 
 use crate::access::Custodian;

@@ -1,6 +1,6 @@
 //! An operator's users and their roles.
 //!
-//! What always holds: an operator keeps at least one admin who can sign in; nobody
+//! Invariants: an operator keeps at least one admin who can sign in; nobody
 //! learns another's password, for an admin gives a one-time code and the person sets
 //! the password; who is disabled is signed out at once, and so are their tokens; a token
 //! changes none of this.

@@ -1,6 +1,6 @@
 //! Webhooks: telling an operator's or a firm's programs of what happened.
 //!
-//! What always holds:
+//! Invariants:
 //!
 //! - Messages wait and are sent as [`crate::outbox`] says.
 //! - Each try is signed with the webhook's secret over its time and its body.

@@ -91,8 +91,8 @@ impl NewWebhook {
     /// When it cannot, or would never be.
     pub(super) fn checked(mut self, tenant: Tenant, reach: Reach) -> Result<NewWebhook> {
         let invalid = |field, detail| Err(Error::Invalid { field, detail });
-        // A blank that came along when it was copied; within, a reader of addresses may pass
-        // over it, and the request would go elsewhere than what is shown.
+        // Blanks at the ends come from copying. A blank inside might be skipped by a URL parser,
+        // and the request would go elsewhere than to the address shown.
         self.url = self.url.trim().to_owned();
         if self.url.chars().any(|c| c.is_whitespace() || is_control(c)) {
             return invalid("url", "has blanks or control characters".to_owned());
