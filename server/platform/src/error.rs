@@ -139,7 +139,7 @@ pub struct Problem {
     pub title: String,
     /// The HTTP status.
     pub status: u16,
-    /// What is wrong this time.
+    /// Details of this occurrence.
     pub detail: String,
     /// Fields of one kind of problem alone; the document lists them by domain.
     #[serde(flatten)]
