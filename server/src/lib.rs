@@ -1,4 +1,4 @@
-//! The shore server: ingest, analysis, API, dashboard host, and the science on
+//! The server: ingest, analysis, API, dashboard host, and the science on
 //! the command line.
 //!
 //! One folder or file for each thing it can do; in reading order:

@@ -1,4 +1,4 @@
-//! The shore server.
+//! The server.
 
 use anyhow::{Result, anyhow};
 use binnacle_server::cli::{Cli, Command};

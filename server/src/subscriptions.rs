@@ -1,4 +1,4 @@
-//! Who handles which event: one table, in the order in which the handlers run.
+//! Event subscriptions: one table, in the order in which the handlers run.
 
 use binnacle_orders::work_orders;
 use binnacle_planning::{calendar, notifications, port_calls, schedule};

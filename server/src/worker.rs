@@ -16,14 +16,14 @@ use std::convert::Infallible;
 use std::time::{Duration, Instant};
 use tracing::{error, info, warn};
 
-/// How often to look for jobs that nobody was told of.
+/// Interval between checks for jobs without a notification.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
-/// How often to renew the lease of the job at hand: thrice before it ends.
+/// Interval between renewals of a job's lease: three per lease.
 const RENEW_EVERY: Duration = Duration::from_secs(20);
-/// How often to forget old events.
+/// Interval between removals of old events.
 const PRUNE_EVERY: Duration = Duration::from_hours(1);
 
-/// What a step did.
+/// Result of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Worked {
     /// A vessel was analysed; so many compasses had news.
@@ -151,7 +151,7 @@ async fn work(app: &App, job: queue::Job) -> Result<usize> {
     Ok(news.len())
 }
 
-/// What is new about a compass; none when its input is what it was.
+/// Analyses a compass; `None` when its input has not changed.
 async fn analyse_compass(
     app: &App,
     vessel_id: VesselId,

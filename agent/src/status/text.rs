@@ -47,7 +47,7 @@ impl Status {
                     model.version, model.data_until
                 )?;
                 if let Some(withdrawn) = &model.withdrawn {
-                    writeln!(out, "           {}: not in use", withdrawn)?;
+                    writeln!(out, "           {withdrawn}: not in use")?;
                     writeln!(out, "           {}", CardWithdrawn::ADVICE)?;
                 } else if let Some(replaces) = &model.replaces {
                     writeln!(out, "           {}", replaces.of_older_cards())?;

@@ -1,6 +1,6 @@
-//! How long it takes to plan an adjustment of a full binnacle: 4 magnet trays of 20
-//! holes, 3 sizes of spheres at 12 marks, 8 lengths of bar; spheres that slew to 7
-//! angles make seven times as many choices of iron.
+//! Time to plan an adjustment of a full binnacle: 4 magnet trays of 20 holes, 3 sizes of
+//! spheres at 12 marks, 8 lengths of bar. Spheres that slew to 7 angles make seven times as
+//! many choices of iron.
 
 #![allow(missing_docs)] // divan's attribute makes public items
 #![allow(clippy::unwrap_used)]
@@ -41,7 +41,7 @@ fn bench(bencher: Bencher<'_, '_>, seed: u64, slews_deg: &[f64]) {
     let model = model(&mut rng, &truth, &waters);
     let berth = waters[0].earth();
     let mut exact = FLUXGATE;
-    // A berth that is turned away would be quick.
+    // A refused berth would end the search early.
     exact.heading_sd_deg = 0.1;
     let found = reading(&mut rng, &truth, (berth.h_nt, berth.z_nt), exact);
     let adjustment = Adjustment {

@@ -1,8 +1,8 @@
-//! The adjustment of a compass: its correctors, the reading at the berth, the plan and the
-//! checks of its steps.
+//! Adjustment of a magnetic compass: correctors, berth readings, plans, and checks of their
+//! steps.
 //!
-//! Pure: no input or output, no clock, no randomness. Everything here is a
-//! function of its arguments. The conventions are those of [`binnacle_compass`].
+//! Pure: no input or output, no clock, no randomness. Every function depends on its
+//! arguments alone. The conventions are those of [`binnacle_compass`].
 
 pub mod binnacle;
 pub mod corrector;
@@ -11,5 +11,11 @@ pub mod berth;
 
 pub mod adjust;
 
+#[cfg(feature = "openapi")]
+pub mod openapi;
+
 #[cfg(test)]
+use binnacle_compass::ship::{EarthField, ShipMagnetism};
+#[cfg(test)]
+#[path = "../../compass/src/ship/test_support.rs"]
 mod test_support;

@@ -16,7 +16,7 @@ use binnacle_adjustment::adjust::{Adjustment, Circumstances, Limits, plan};
 use binnacle_adjustment::corrector::effect;
 use tally::Tally;
 
-/// With no errors at all the formulas and the independent iron say the same.
+/// Without errors, the formulas and the independent iron agree.
 #[test]
 fn the_formulas_are_those_of_iron_that_knows_nothing_of_them() {
     for seed in 0..20 {
@@ -42,7 +42,8 @@ fn the_formulas_are_those_of_iron_that_knows_nothing_of_them() {
             for axis in 0..axes {
                 let induced: f64 = (0..3).map(|c| found.chi[axis][c] * earth[c]).sum();
                 let off = found.b_nt[axis] + induced - truth[axis];
-                // What magnetises the bar across, and pairs of odd magnets, are left out.
+                // Induction across the bar, and between unequal pairs, is left out of the
+                // formulas.
                 let size = truth.iter().map(|part| part.abs()).fold(0.0, f64::max);
                 assert!(
                     off.abs() < 0.03 * size + 5.0,
@@ -50,7 +51,8 @@ fn the_formulas_are_those_of_iron_that_knows_nothing_of_them() {
                 );
             }
         }
-        // What turns the card, wherever it points; what lies along it turns nothing.
+        // The part across the card turns it, on any heading; the part along it turns
+        // nothing.
         for step in 0..12 {
             let (east, north) = (f64::from(step) * 30.0).to_radians().sin_cos();
             let across = |[x, y]: [f64; 2]| north * y - east * x;
@@ -62,10 +64,10 @@ fn the_formulas_are_those_of_iron_that_knows_nothing_of_them() {
     }
 }
 
-/// Needles turn the card on D and E; were they counted into λ, as soft iron would be, a
-/// tenth of B and C would be left on a binnacle with thick plates close by.
+/// Needles turn the card on D and E. If they counted in λ, as soft iron would, a tenth of B
+/// and C would remain on a binnacle with thick plates close by.
 #[test]
-fn with_strong_needles_and_no_errors_the_compass_is_left_as_foretold() {
+fn with_strong_needles_and_no_errors_the_compass_is_left_as_predicted() {
     for seed in 0..12 {
         let mut rng = Random::new(seed);
         let binnacle = adjusting::binnacle(&mut rng, (seed % 2) as usize);
@@ -106,21 +108,21 @@ fn with_strong_needles_and_no_errors_the_compass_is_left_as_foretold() {
     }
 }
 
-/// The berth of docs/plan.md is one.
+/// The berth of docs/plan.md is valid.
 #[test]
 fn the_berth_in_the_documentation_reads() {
     let page = include_str!("../../../docs/plan.md");
     let from = page.split("```json\n").nth(1).unwrap();
     let form = from.split("```").next().unwrap();
     let form: binnacle_adjustment::adjust::BerthForm = serde_json::from_str(form).unwrap();
-    let berth = form.read().unwrap();
+    let berth = form.parse().unwrap();
     assert_eq!(berth.waters.len(), 2);
     assert!((22_000.0..27_000.0).contains(&berth.earth.h_nt));
-    // Variation is about nil there in 2026.
+    // Variation is near zero there in 2026.
     assert!((berth.reading.magnetic().degrees() - 63.0).abs() < 1.5);
 }
 
-/// Numbers that no ship has, in every field of the form: an error, a refusal or a plan in
+/// Implausible numbers in every field of the form give an error, a refusal or a plan in
 /// finite numbers, and never a panic.
 #[test]
 fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
@@ -138,17 +140,17 @@ fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
     let truth = adjusting::ship(&mut rng, &binnacle).with(&binnacle.setting);
     let waters = adjusting::knowledge::waters(&mut rng, 0.15);
     let model = adjusting::knowledge::model(&mut rng, &truth, &waters);
-    // The reading is hers, so that most of what is written does give a plan.
+    // The reading is the ship's own, so that most inputs do give a plan.
     let page: binnacle_adjustment::adjust::BerthForm =
         serde_json::from_value(form.clone()).unwrap();
-    let there = page.read().unwrap();
+    let there = page.parse().unwrap();
     let place = (there.earth.h_nt, there.earth.z_nt);
     let [x, y, z] = truth.field(place, there.reading.magnetic().degrees());
     let reading = &mut form["reading"];
     for (name, part) in [("forward", x), ("starboard", y), ("down", z)] {
         reading[name] = serde_json::json!(part / 1000.0);
     }
-    // So is the compass, but for what the needles induce.
+    // So is the compass, except for the needles' induction.
     let compass_deg = (-y).atan2(x).to_degrees().rem_euclid(360.0);
     reading["compass_deg"] = serde_json::json!(compass_deg);
     let strange = [
@@ -168,12 +170,12 @@ fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
             let form = serde_json::from_value::<binnacle_adjustment::adjust::BerthForm>(form);
             let Ok(berth) = form
                 .map_err(drop)
-                .and_then(|form| form.read().map_err(drop))
+                .and_then(|form| form.parse().map_err(drop))
             else {
                 continue;
             };
             let mut adjustment = berth.adjustment(&model, &binnacle);
-            // Wider than anyone may ask for.
+            // Wider than any accepted limit.
             (adjustment.limits.residual_deg, adjustment.limits.band_deg) = (60.0, 60.0);
             let Ok(outcome) = binnacle_adjustment::adjust::plan(&adjustment) else {
                 continue;
@@ -202,7 +204,8 @@ fn the_band_holds_and_little_is_left_on_ships_that_the_planner_never_saw() {
     assert!(tally.within_3_deg() >= 0.95, "{tally}");
 }
 
-/// Whatever is said of the heading: across the needle by what turns the field by 5° to 10°.
+/// With any stated heading error: changes across the needle that turn the field by 5° to
+/// 10°.
 #[test]
 fn a_ship_that_changed_since_her_model_is_refused_however_unsure_the_heading_is_said_to_be() {
     for heading_sd_deg in [0.5, 2.0, 5.0] {
@@ -210,18 +213,17 @@ fn a_ship_that_changed_since_her_model_is_refused_however_unsure_the_heading_is_
             heading_sd_deg,
             ..FLUXGATE
         };
-        let changed = Tally::changed(0..8, [0.0..0.0, 5.0..10.0], (FLUXGATE, said), None);
+        let changed = Tally::changed(0..8, [0.0..0.0, 5.0..10.0], FLUXGATE, said, None);
         assert_eq!(changed.planned, 0, "{heading_sd_deg}: {changed}");
     }
-    let honest = Tally::changed(0..8, [0.0..0.0, 0.0..0.0], (FLUXGATE, FLUXGATE), None);
+    let honest = Tally::changed(0..8, [0.0..0.0, 0.0..0.0], FLUXGATE, FLUXGATE, None);
     assert!(honest.planned >= 7, "{honest}");
 }
 
 #[test]
-fn a_change_along_the_needle_is_refused_where_an_earlier_berth_told_lambda() {
-    let by = (FLUXGATE, FLUXGATE);
-    let changed = Tally::changed(0..8, [5.0..10.0, 0.0..0.0], by, Some(0.012));
+fn a_change_along_the_needle_is_refused_where_an_earlier_berth_gave_lambda() {
+    let changed = Tally::changed(0..8, [5.0..10.0, 0.0..0.0], FLUXGATE, FLUXGATE, Some(0.012));
     assert_eq!(changed.planned, 0, "{changed}");
-    let honest = Tally::changed(0..8, [0.0..0.0, 0.0..0.0], by, Some(0.012));
+    let honest = Tally::changed(0..8, [0.0..0.0, 0.0..0.0], FLUXGATE, FLUXGATE, Some(0.012));
     assert!(honest.planned >= 7, "{honest}");
 }

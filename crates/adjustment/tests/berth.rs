@@ -1,5 +1,5 @@
-//! λ at the berth over many draws: how far it errs, whether its standard errors
-//! say so, and what became of the published system of two equations.
+//! λ at the berth over many draws: its errors, their agreement with the standard errors,
+//! and the published system of two equations.
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
@@ -32,17 +32,16 @@ fn model(array: [f64; 7], constant_deg: f64, covariance: Option<&Covariance>) ->
     }
 }
 
-/// The published way (Basterretxea-Iribar, Sotés & Uriarte 2016, eq. 12), from
-/// (4): the model gives v, what the ship adds beyond χ11 Hx and χ22 Hy, over λ.
-/// With λ = 1 + (χ11 + χ22)/2 the field read is
+/// Solves the published system (Basterretxea-Iribar, Sotés & Uriarte 2016, eq. 12), from
+/// (4): the model gives v, the ship's addition beyond χ11 Hx and χ22 Hy, over λ. With
+/// λ = 1 + (χ11 + χ22)/2 the measured field is
 ///
 ///     Bx = Hx + χ11 Hx + (1 + (χ11 + χ22)/2) vx
 ///     By = Hy + χ22 Hy + (1 + (χ11 + χ22)/2) vy
 ///
-/// two equations in χ11 and χ22, whose known difference is not made use of. On
-/// north Hy is nil, and the second equation is By = λ vy: λ has to come from
-/// the little that the ship herself adds athwartships. (Solved for χ11/λ and
-/// χ22/λ it is the same system.)
+/// two equations in χ11 and χ22, without their known difference. On north Hy is zero, and
+/// the second equation is By = λ vy: λ then depends on the ship's small athwartship field.
+/// (Solved for χ11/λ and χ22/λ it is the same system.)
 fn lambda_by_equation_12(p: &Parameters, earth: EarthField, magnetic: f64, b: [f64; 2]) -> f64 {
     let [hx, hy, z] = earth.in_ship_axes(magnetic);
     let vx = p.chi12 * hy + p.chi13 * z + p.bx_nt;
@@ -56,8 +55,8 @@ fn lambda_by_equation_12(p: &Parameters, earth: EarthField, magnetic: f64, b: [f
     1.0 + f64::midpoint(chi11, chi22)
 }
 
-/// Half the width that holds 68 % of the errors: for normal ones their standard
-/// deviation, and finite where a determinant may be nil.
+/// Half the width that holds 68 % of the errors: for normal errors their standard
+/// deviation, and finite for a zero determinant.
 fn spread(mut errors: Vec<f64>) -> f64 {
     errors.sort_by(f64::total_cmp);
     let at = |share: f64| errors[(share * errors.len() as f64) as usize];
@@ -84,7 +83,7 @@ fn projection_errs_alike_on_every_heading_where_two_equations_fail_on_cardinal_o
         alignment_sd_deg: 0.0,
         tilt_sd_deg: 0.0,
     };
-    // The verdict is another test's matter: vague soft iron lets every angle pass.
+    // The verdict is tested elsewhere: uncertain soft iron lets every angle pass.
     let mut wide = model.clone();
     wide.covariance = Some([[0.0; 8]; 8]);
     for chi in [5, 6] {
@@ -94,7 +93,7 @@ fn projection_errs_alike_on_every_heading_where_two_equations_fail_on_cardinal_o
         let (mut projection, mut equation_12) = (Vec::new(), Vec::new());
         for _ in 0..4_000 {
             let actual_deg = f64::from(degrees);
-            let [bx, by, _] = ship.field_aboard(BISCAY.in_ship_axes(actual_deg.to_radians()));
+            let [bx, by, _] = ship.field_at_compass(BISCAY.in_ship_axes(actual_deg.to_radians()));
             let b = [
                 bx + noise_nt * normal(&mut rng),
                 by + noise_nt * normal(&mut rng),
@@ -119,8 +118,8 @@ fn projection_errs_alike_on_every_heading_where_two_equations_fail_on_cardinal_o
     }
 }
 
-/// A covariance as a voyage leaves it: bx hangs together with χ13, by with χ23,
-/// and χ21 − χ12 with the constant.
+/// A covariance as after a voyage: bx is correlated with χ13, by with χ23, and χ21 − χ12
+/// with the constant.
 fn covariance() -> Covariance {
     let mut root = SMatrix::<f64, 8, 8>::zeros();
     for (index, sd) in [60.0, 2e-3, 60.0, 2e-3, 1.5e-3, 4e-3, 4e-3, 0.5]
@@ -137,7 +136,7 @@ fn covariance() -> Covariance {
     std::array::from_fn(|row| std::array::from_fn(|column| product[(row, column)]))
 }
 
-/// The unknowns of one of the models that this covariance allows for.
+/// Draws the unknowns of a model from this covariance.
 fn draw(rng: &mut ChaCha8Rng, covariance: &Covariance) -> [f64; 8] {
     let matrix = SMatrix::<f64, 8, 8>::from_fn(|row, column| covariance[row][column]);
     let root = matrix.cholesky().unwrap().l();
@@ -146,7 +145,7 @@ fn draw(rng: &mut ChaCha8Rng, covariance: &Covariance) -> [f64; 8] {
     std::array::from_fn(|index| drawn[index])
 }
 
-/// A ship at a berth, what is thought of her, and what is read.
+/// A ship at a berth, with its model and reading.
 struct Berth {
     ship: ShipMagnetism,
     model: Model,
@@ -180,9 +179,9 @@ fn berth(rng: &mut ChaCha8Rng, alignment: Alignment) -> Berth {
         alignment_sd_deg: rng.random_range(0.0..1.0),
         tilt_sd_deg: rng.random_range(0.0..0.5),
     };
-    // In the axes of the fit, in which the ship's parameters are meant.
+    // In the axes of the fit, which define the ship's parameters.
     let magnetic_deg: f64 = rng.random_range(0.0..360.0);
-    let aboard = ship.field_aboard(earth.in_ship_axes(magnetic_deg.to_radians()));
+    let at_compass = ship.field_at_compass(earth.in_ship_axes(magnetic_deg.to_radians()));
     let offset_deg = match alignment {
         Alignment::Keel => 0.0,
         Alignment::AsFitted => constant_deg,
@@ -190,7 +189,7 @@ fn berth(rng: &mut ChaCha8Rng, alignment: Alignment) -> Berth {
     let given = magnetic_deg + offset_deg + errors.heading_sd_deg * normal(rng);
     BerthReading::new(
         MagneticHeading::new(given).unwrap(),
-        read(rng, aboard, errors),
+        read(rng, at_compass, errors),
         errors,
         alignment,
     )
@@ -203,14 +202,14 @@ fn berth(rng: &mut ChaCha8Rng, alignment: Alignment) -> Berth {
     .unwrap()
 }
 
-/// The horizontal field as a magnetometer sees it that is pitched, rolled and
-/// turned in its seat.
-fn read(rng: &mut ChaCha8Rng, aboard: [f64; 3], errors: ReadingErrors) -> [f64; 2] {
+/// Horizontal field measured by a magnetometer that is pitched, rolled and turned in its
+/// seat.
+fn read(rng: &mut ChaCha8Rng, at_compass: [f64; 3], errors: ReadingErrors) -> [f64; 2] {
     let mut angle = |sd_deg: f64| (sd_deg * normal(rng)).to_radians().sin_cos();
     let (sin_pitch, cos_pitch) = angle(errors.tilt_sd_deg);
     let (sin_roll, cos_roll) = angle(errors.tilt_sd_deg);
     let (sin_turn, cos_turn) = angle(errors.alignment_sd_deg);
-    let [x, y, z] = aboard;
+    let [x, y, z] = at_compass;
     let (x, z) = (cos_pitch * x - sin_pitch * z, sin_pitch * x + cos_pitch * z);
     let y = cos_roll * y + sin_roll * z;
     [
@@ -219,7 +218,7 @@ fn read(rng: &mut ChaCha8Rng, aboard: [f64; 3], errors: ReadingErrors) -> [f64; 
     ]
 }
 
-/// How often an estimate's 95 % interval held the truth.
+/// Coverage of an estimate's 95 % interval.
 #[derive(Default)]
 struct Tally {
     held: u32,
@@ -291,7 +290,7 @@ fn standard_errors_hold_the_truth_in_95_of_100_berths() {
         for (name, tally) in NAMES.iter().zip(&tallies) {
             assert_holds_95(&format!("{alignment:?}: {name}"), tally);
         }
-        // One honest berth in a hundred, by the verdict's own measure.
+        // One correct berth in a hundred, by the verdict's definition.
         assert!((10..80).contains(&turned_away), "{turned_away}");
     }
 }
@@ -307,7 +306,7 @@ fn moved_magnets_lie_within_their_standard_errors_in_95_of_100_berths() {
             earth,
             reading,
         } = berth(&mut rng, Alignment::Keel);
-        // What the model holds of the magnets from before they were moved.
+        // Model of the magnets before they were moved.
         model.parameters_over_lambda.bx_nt += 3_000.0;
         model.parameters_over_lambda.by_nt -= 2_000.0;
         let error = 0.008;

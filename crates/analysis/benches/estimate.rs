@@ -1,4 +1,4 @@
-//! How long a fit and a whole analysis take: sixty days, and a year and more, of
+//! Benchmarks of a fit and of a whole analysis: sixty days, and a year and more, of
 //! ten-minute samples.
 
 #![allow(missing_docs)] // divan's attribute makes public items
@@ -30,8 +30,8 @@ fn robust_fit(bencher: Bencher<'_, '_>, days: u32) {
     bencher.bench_local(|| fit_robust(&voyage.observations, &RobustOptions::default()));
 }
 
-/// The same ship's samples as they come ashore, the youngest first: sorting and
-/// the earth's field are part of it.
+/// The samples of one vessel as they arrive at the server, the latest first: sorting and
+/// the earth's field are included.
 #[divan::bench(args = [60, 423], sample_count = 10, sample_size = 1)]
 fn analyse_gyro(bencher: Bencher<'_, '_>, days: u32) {
     bench_analysis(bencher, days, &Faults::USUAL);
@@ -62,11 +62,15 @@ fn bench_analysis(bencher: Bencher<'_, '_>, days: u32, faults: &Faults) {
 fn igrf(lat_deg: f64, lon_deg: f64, time: Timestamp) -> (f64, f64, f64) {
     let position = Position::new(lat_deg, lon_deg).unwrap();
     let at = field(FieldModel::Igrf14, position, 0.0, time).unwrap();
-    let aboard = at.for_ship();
-    (at.declination().degrees_east(), aboard.h_nt, aboard.z_nt)
+    let ship_field = at.for_ship();
+    (
+        at.declination().degrees_east(),
+        ship_field.h_nt,
+        ship_field.z_nt,
+    )
 }
 
-/// What the instruments read, from what became of their readings.
+/// Returns the sample whose readings gave an observation.
 fn sample(o: &Observation) -> Sample {
     let reference = ((o.compass + o.deviation) + o.variation).degrees();
     let apart = o.gyro_less_satellite_deg;

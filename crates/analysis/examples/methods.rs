@@ -55,7 +55,7 @@ fn main() {
     }
 }
 
-/// What became of one method's models of one group of ships.
+/// Outcome of one method's models of one group of ships.
 #[derive(Clone, Copy, Default)]
 struct Score {
     refused: u64,
@@ -98,7 +98,7 @@ fn scores(variety: Variety, ships: u64) -> [Score; METHODS.len()] {
     scores
 }
 
-/// Mean square error of the curve at the last place, and the share of headings
+/// Returns the mean square error of the curve at the last place, and the share of headings
 /// whose band holds the truth; none where the model has ambiguous headings there.
 fn judge(model: &Model, voyage: &Voyage) -> Option<(f64, f64)> {
     let Truth { h_nt, z_nt, .. } = voyage.truth;

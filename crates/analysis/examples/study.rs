@@ -30,7 +30,7 @@ fn main() {
     table_of_what_is_wrong(ships);
 }
 
-/// Does a piece of work for every seed, on all cores, results in order.
+/// Runs a piece of work for every seed, on all cores, with the results in order.
 fn each<T: Send>(seeds: std::ops::Range<u64>, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let seeds: Vec<u64> = seeds.collect();
@@ -62,7 +62,7 @@ fn table_of_efficiency(ships: u64) {
             (error / bound).sqrt()
         };
         let ratio = ratio_of(&mut found.iter());
-        // How much the ratio owes to which ships were drawn: each left out in turn.
+        // Jackknife over the ships: each left out in turn.
         let n = found.len() as f64;
         let spread: f64 = (0..found.len())
             .map(|left_out| {
@@ -105,7 +105,7 @@ fn tally(seeds: std::ops::Range<u64>, sail: impl Fn(u64) -> Tally + Sync) -> Tal
     sum
 }
 
-/// How often the band holds the truth.
+/// Prints how often the band holds the truth.
 fn table_of_coverage(ships: u64) {
     for satellite in [false, true] {
         println!("\ncoverage, satellite compass beside the gyro: {satellite}");
@@ -143,7 +143,7 @@ fn print(name: &str, tally: &Tally) {
     );
 }
 
-/// What happens when ships or instruments are not as usual.
+/// Prints the results for unusual ships or instruments.
 fn table_of_the_unusual(ships: u64) {
     println!("\nunusual ships and instruments:");
     let usual = Faults::USUAL;
@@ -180,7 +180,8 @@ fn table_of_the_unusual(ships: u64) {
     }
 }
 
-/// What wild readings and a gyro's constant error do to the fit of a voyage of 30 days.
+/// Prints the effects of wild readings and a gyro's constant error on the fit of a voyage
+/// of 30 days.
 fn table_of_what_is_wrong(ships: u64) {
     println!("\nthe same voyages with something wrong, 30 days:");
     for variety in VARIETIES {
@@ -199,8 +200,8 @@ fn table_of_what_is_wrong(ships: u64) {
     }
 }
 
-/// By how much the curve moves at most, degrees, when every tenth reading is 20°
-/// out; and a parameter, in standard errors, when the gyro is 1.5° off.
+/// Returns the largest move of the curve, degrees, when every tenth reading is 20° off; and
+/// that of a parameter, in standard errors, when the gyro is 1.5° off.
 fn moved(seed: u64, variety: Variety) -> Option<(f64, f64)> {
     let voyage = sail(seed, variety, 30.0, &Faults::USUAL);
     let options = options(&voyage.sizes);

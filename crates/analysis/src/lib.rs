@@ -1,9 +1,12 @@
-//! What a ship's own headings tell about her magnetism: estimation, changes, the whole
-//! analysis of a compass, and advice what to sail next.
+//! Analysis of a vessel's own headings: estimation, change detection, the whole analysis of
+//! a compass, and advice on what to sail next.
 //!
-//! Pure: no input or output, no clock, no randomness. Everything here is a
-//! function of its arguments, so that an analysis can be repeated to the byte.
-//! The conventions are those of [`binnacle_compass`].
+//! Pure: no input or output, no clock, no randomness. Everything here is a function of its
+//! arguments, so that an analysis can be repeated to the byte. The conventions are those of
+//! [`binnacle_compass`].
+
+mod gyro_speed_error;
+mod observation;
 
 pub mod estimate;
 pub mod fit;

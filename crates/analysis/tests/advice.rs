@@ -1,5 +1,5 @@
-//! Is the advice on what to sail next right? Judged by refits of voyages with
-//! the watches sailed, and by laws that any advice must keep.
+//! Advice on what to sail next, judged by refits of voyages with the watches sailed, and by
+//! laws that any advice must keep.
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
@@ -36,8 +36,8 @@ const BISCAY: EarthField = EarthField {
 };
 const REFERENCE_SD_DEG: f64 = 0.5;
 
-/// A ship known from the population and `rows` of half a degree in the field
-/// given, on headings from north to south by east.
+/// Returns a ship known from the population and `rows` of half a degree in the field given,
+/// on headings from north to south by east.
 fn known_ship(rng: &mut ChaCha8Rng, rows: u32, earth: EarthField) -> Model {
     let sd = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008, 3.0];
     let mut information = SMatrix::<f64, 8, 8>::zeros();
@@ -86,7 +86,7 @@ fn ask(model: &Model, here: EarthField) -> Result<SailNext, AdviceError> {
     })
 }
 
-/// The same ship with the signs of some of her parameters the other way round.
+/// Returns the ship with some of its parameters of opposite sign.
 fn turned(model: &Model, signs: [f64; 8]) -> Model {
     let mut turned = model.clone();
     let parameters = model.parameters_over_lambda.to_array();
@@ -193,7 +193,7 @@ fn a_ship_of_one_latitude_is_sent_across_the_equator() {
     assert!(best.after_three.rms_deg < 0.7 * elsewhere.band.rms_deg);
     assert_eq!(best.headings.len(), 3);
 
-    // Where she is asked about is where the band is narrowed.
+    // The band is narrowed in the waters asked about.
     let cape = EarthField {
         h_nt: 10_500.0,
         z_nt: -23_000.0,
@@ -298,7 +298,7 @@ impl HalfSeen {
         .unwrap()
     }
 
-    /// The estimator's own fit after some watches, a day apart, from a week after
+    /// Returns the estimator's own fit after some watches, a day apart, from a week after
     /// the voyage: each a compass heading and a place.
     fn refit(&self, watches: &[(f64, Position)], rng: &mut ChaCha8Rng) -> Model {
         let mut observations = self.voyage.observations.clone();
@@ -385,7 +385,7 @@ fn a_refit_with_the_watch_sailed_narrows_most_where_it_was_advised() {
             mean(&narrowed)
         });
         assert!(outside < 0.5 * inside, "{seed} {outside} {inside}");
-        // The promise is what every heading of the range keeps.
+        // Every heading of the range must keep the promise.
         let promised = now - best.after_one.rms_deg;
         let kept = inside / promised;
         assert!((1.0..1.5).contains(&kept), "{seed} {kept}");

@@ -1,4 +1,4 @@
-//! Whatever observations come, a fit ends in a finite model or a named refusal.
+//! For any observations a fit ends in a finite model or a named refusal.
 
 use binnacle_analysis::advice::{Question, advise};
 use binnacle_analysis::fit::{Observation, RobustOptions, fit_ols, fit_paper, fit_robust};

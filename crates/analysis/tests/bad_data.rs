@@ -1,5 +1,4 @@
-//! Data that cannot be right: a named refusal or an honest wide band, never a
-//! NaN and never a panic.
+//! Invalid data: a named refusal or an honest wide band, never a NaN and never a panic.
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
@@ -7,7 +6,7 @@
 mod voyages;
 
 use binnacle_analysis::fit::{
-    HeadingReading, Observation, RobustFit, RobustOptions, fit_robust, refer,
+    HeadingReading, Observation, RobustFit, RobustOptions, fit_robust, observe_readings,
 };
 use binnacle_compass::angle::{CompassHeading, Deviation, TrueHeading, Variation, wrap_180};
 use binnacle_compass::model::Caution;
@@ -33,7 +32,7 @@ fn cautions(fit: &RobustFit) -> &[Caution] {
     &fit.model.quality.as_ref().unwrap().cautions
 }
 
-/// Part of the headings on which the band at the ship's place holds the truth.
+/// Returns the share of headings on which the band at the ship's place holds the truth.
 fn held(voyage: &Voyage, fit: &RobustFit) -> f64 {
     let Truth { h_nt, z_nt, .. } = voyage.truth;
     let held = (0..36).filter(|k| {
@@ -89,8 +88,7 @@ fn rows_of_one_time_do_not_upset_the_fit() {
     assert!(held(&voyage, &fit(&observations).unwrap()) > 0.9);
 }
 
-/// Rows of one time or of two seem to tell the same again and again, or something new
-/// each: their times are not believed.
+/// Rows of one time or of two seem identical, or new each: their times are not plausible.
 #[test]
 fn rows_that_share_their_times_are_taken_for_rows_without() {
     let voyage = voyage(30.0);
@@ -123,13 +121,13 @@ fn ten_years_without_a_sample_make_the_band_no_bolder() {
     let apart = fit(&observations).unwrap();
     assert!(held(&voyage, &apart) > 0.9);
     let bx_variance = |fit: &RobustFit| fit.model.covariance.unwrap()[0][0];
-    // That she is the same after ten years shows how little she drifts, but no
-    // gap can tell more than no gap.
+    // A vessel unchanged after ten years drifts little, but no gap can show more than no
+    // gap.
     assert!(bx_variance(&apart) > 0.9 * bx_variance(&together));
 }
 
-/// The same voyage where the variation is 180° more: every reference heading
-/// passes through south where it passed through north.
+/// The variation is 180° larger: every reference heading passes through south where it
+/// passed through north.
 #[test]
 fn variations_about_180_degrees_change_nothing() {
     let voyage = voyage(20.0);
@@ -158,7 +156,7 @@ fn variations_about_180_degrees_change_nothing() {
         voyage.observations.iter().map(of).collect()
     };
     let model = |turned: f64| {
-        let referred = refer(&readings(turned), 0.5).unwrap();
+        let referred = observe_readings(&readings(turned), 0.5).unwrap();
         let observations: Vec<Observation> = referred.observations.into_iter().flatten().collect();
         fit(&observations).unwrap().model
     };
@@ -196,7 +194,7 @@ fn a_reference_that_never_moves_is_refused_by_name() {
             weight: 1.0,
         })
         .collect();
-    let refused = refer(&readings, 0.5).unwrap_err();
+    let refused = observe_readings(&readings, 0.5).unwrap_err();
     assert!(
         matches!(refused, FitError::ReferenceStuck { .. }),
         "{refused}"
@@ -216,7 +214,7 @@ fn a_reference_that_never_moves_is_refused_by_name() {
     }
 }
 
-/// A gyro alone, wrong by little and by much for a week out of six.
+/// A gyro alone has small and large errors for a week out of six.
 #[test]
 fn a_gyro_that_is_wrong_for_a_week_does_not_break_the_band() {
     for wrong_deg in [2.0, 5.0, 15.0, 60.0] {
@@ -296,7 +294,7 @@ fn compass_and_gyro_that_changed_places_are_refused_by_name() {
     }
 }
 
-/// Thrice the usual swing of gyro and compass, and one reading in ten 20° out.
+/// Three times the usual swing of gyro and compass, and one reading in ten 20° off.
 #[test]
 fn bad_weather_with_wild_readings_is_not_refused() {
     let bad = Faults {
@@ -323,7 +321,7 @@ fn sound_instruments_give_no_caution_about_residuals() {
     }
 }
 
-/// The reference's own constant left aside, which would hide a band too narrow.
+/// Error without the reference's own constant, which would hide a band too narrow.
 #[test]
 fn without_times_the_band_still_holds() {
     let (mut held, mut looked_at) = (0, 0);

@@ -1,5 +1,5 @@
-//! Is the estimator's band honest, and is it narrow? Judged on voyages it has
-//! never seen, by a generator that shares nothing with it.
+//! Honesty and width of the estimator's band, judged on voyages from a generator that
+//! shares nothing with it.
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
@@ -63,7 +63,7 @@ fn one_wild_reading_in_thirty_does_no_harm() {
     assert_eq!((tally.refused, tally.passed), (0, tally.ships));
 }
 
-/// One row in ten is 20° out by one instrument, and always to the same side. The first
+/// One row in ten is 20° off by one instrument, and always to the same side. The first
 /// three are the voyages that suffered most while a wild reading passed for a turn.
 #[test]
 fn one_reading_in_ten_that_is_20_degrees_out_moves_the_prediction_by_less_than_a_third() {
@@ -76,8 +76,8 @@ fn one_reading_in_ten_that_is_20_degrees_out_moves_the_prediction_by_less_than_a
         let voyage = sail(seed, variety, 30.0, &Faults::USUAL);
         let before = fitted(&voyage.observations);
         for is_compass in [false, true] {
-            let mut upset = voyage.observations.clone();
-            for observation in upset.iter_mut().step_by(10) {
+            let mut disturbed = voyage.observations.clone();
+            for observation in disturbed.iter_mut().step_by(10) {
                 let wrong = observation.deviation.degrees_east() + 20.0;
                 observation.deviation = Deviation::new(wrong).unwrap();
                 if is_compass {
@@ -85,7 +85,7 @@ fn one_reading_in_ten_that_is_20_degrees_out_moves_the_prediction_by_less_than_a
                     observation.compass = CompassHeading::new(wrong.rem_euclid(360.0)).unwrap();
                 }
             }
-            let after = fitted(&upset);
+            let after = fitted(&disturbed);
             let Truth { h_nt, z_nt, .. } = voyage.truth;
             for heading in 0..36 {
                 let compass = f64::from(heading) * 10.0;
@@ -120,8 +120,7 @@ fn a_gyros_constant_error_goes_to_the_constant_and_leaves_the_magnetism_alone() 
             let se = covariance[j][j].sqrt();
             assert!((a[j] - b[j]).abs() < se, "{variety:?}, parameter {j}");
         }
-        // What the compass's user sees moves by just that much: A and constant
-        // together.
+        // The deviation as the user sees it moves by that much: A and constant together.
         let moved = |model: &Model| {
             let p = model.parameters_over_lambda;
             model.constant_deg + ((p.chi21 - p.chi12) / 2.0).to_degrees()
@@ -139,12 +138,12 @@ fn a_ship_of_one_sea_says_what_she_cannot_know() {
             .observations
             .retain(|o| (o.z_nt / o.h_nt / home - 1.0).abs() < 0.04);
         let model = fitted(&voyage.observations);
-        let told = model.identifiable.unwrap();
+        let reported = model.identifiable.unwrap();
         assert!(
-            !(told.bx_nt || told.chi13 || told.by_nt || told.chi23),
-            "{told:?}"
+            !(reported.bx_nt || reported.chi13 || reported.by_nt || reported.chi23),
+            "{reported:?}"
         );
-        assert!(told.chi11_minus_chi22, "{told:?}");
+        assert!(reported.chi11_minus_chi22, "{reported:?}");
         let quality = model.quality.clone().unwrap();
         assert!(quality.cautions.contains(&Caution::OneMagneticLatitude));
 
@@ -168,14 +167,17 @@ fn a_ship_of_one_sea_says_what_she_cannot_know() {
 fn both_hemispheres_tell_all_but_what_mixes_with_the_constant() {
     let voyage = sail(4000, Variety::Rich, 60.0, &Faults::USUAL);
     let model = fitted(&voyage.observations);
-    let told = model.identifiable.unwrap();
+    let reported = model.identifiable.unwrap();
     assert!(
-        told.bx_nt && told.chi13 && told.by_nt && told.chi23,
-        "{told:?}"
+        reported.bx_nt && reported.chi13 && reported.by_nt && reported.chi23,
+        "{reported:?}"
     );
-    assert!(told.chi11_minus_chi22, "{told:?}");
+    assert!(reported.chi11_minus_chi22, "{reported:?}");
     // A mixes with the constant: of these two only the sum is known.
-    assert!(!told.chi12 && !told.chi21 && !told.constant_deg, "{told:?}");
+    assert!(
+        !reported.chi12 && !reported.chi21 && !reported.constant_deg,
+        "{reported:?}"
+    );
     let quality = model.quality.unwrap();
     assert_eq!(quality.cautions, []);
     assert!(quality.from_data.bx_nt > 0.9 && quality.from_data.chi11_minus_chi22 > 0.9);
@@ -208,7 +210,7 @@ fn a_year_of_drift_is_followed() {
     assert_eq!((tally.refused, tally.passed), (0, tally.ships));
 }
 
-/// Three degrees askew is far out for a compass, and she is believed.
+/// Three degrees of alignment error are far out for a compass, and must be accepted.
 #[test]
 fn a_compass_that_is_bolted_down_askew_is_found_out() {
     for seed in 6000..6003 {
@@ -233,7 +235,7 @@ fn a_compass_that_is_bolted_down_askew_is_found_out() {
     }
 }
 
-/// Both hemispheres in twenty samples: latitudes are not what lacks.
+/// Both hemispheres in twenty samples: latitudes are not missing.
 #[test]
 fn too_few_samples_are_not_taken_for_too_few_latitudes() {
     for seed in 2400..2404 {
@@ -249,13 +251,13 @@ fn too_few_samples_are_not_taken_for_too_few_latitudes() {
     }
 }
 
-/// A ship in one sea after an upset: what the iron's shape induces rests on what was
-/// known before, and is known as badly as it says.
+/// One sea after a jump: the induced parameters rest on prior knowledge, and are as
+/// uncertain as stated.
 #[test]
 fn what_was_known_before_an_upset_counts_for_no_more_than_it_is_worth() {
     let sd = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008];
-    // As the sizes of upsets go: a third of what ships differ by.
-    let upsets = [-1.5, -0.9, -0.4, 0.1, 0.5, 0.8, 1.3_f64];
+    // Sizes as of jumps: a third of the difference between ships.
+    let jumps = [-1.5, -0.9, -0.4, 0.1, 0.5, 0.8, 1.3_f64];
     let (mut held, mut looked_at) = (0, 0);
     for (k, seed) in (2500..2512).enumerate() {
         let voyage = sail(seed, Variety::Poor, 4.0, &Faults::USUAL);
@@ -263,7 +265,7 @@ fn what_was_known_before_an_upset_counts_for_no_more_than_it_is_worth() {
         let mut covariance = [[0.0; 8]; 8];
         for j in 0..7 {
             let part = if matches!(j, 0 | 2) { 0.8 } else { 0.3 };
-            before[j] += part * sd[j] * upsets[(k + 3 * j) % 7];
+            before[j] += part * sd[j] * jumps[(k + 3 * j) % 7];
             covariance[j][j] = (0.03 * sd[j]).powi(2);
         }
         covariance[7][7] = 0.3;
@@ -274,13 +276,13 @@ fn what_was_known_before_an_upset_counts_for_no_more_than_it_is_worth() {
             ..fitted(&voyage.observations)
         };
         let options = RobustOptions {
-            prior: Prior::after_upset(&known, 0.5).unwrap(),
+            prior: Prior::after_jump(&known, 0.5).unwrap(),
             reference_constant_sd_deg: 0.5,
         };
         let fit = fit_known_ship(&voyage.observations, &options).unwrap();
         let found = fit.model.parameters_over_lambda.to_array();
         let truth = voyage.truth.parameters.to_array();
-        // χ13, χ23 and D: the others are told by headings, or not at all.
+        // χ13, χ23 and D: headings show the others, or nothing does.
         for j in [1, 3, 4] {
             let se = fit.model.covariance.unwrap()[j][j].sqrt();
             held += u32::from((found[j] - truth[j]).abs() <= 1.96 * se);

@@ -1,5 +1,5 @@
-//! Ordinary least squares finds the ship where its assumptions hold, and says
-//! what is missing where they cannot be met.
+//! Ordinary least squares finds the parameters where its assumptions hold, and names what
+//! is missing where they do not.
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
@@ -89,7 +89,7 @@ fn a_weight_of_two_is_the_row_twice_and_of_none_the_row_left_out() {
 
 #[test]
 fn noise_in_angle_is_better_answered_in_angle() {
-    // The paper's rows weigh force: where H is small they hear noise louder.
+    // The paper's rows weigh force: where H is small, noise counts more.
     let error = |fit: fn(&[Observation]) -> Result<_, FitError>| {
         let ships = (0..40).map(|seed| {
             let (rows, truth) = textbook_voyage(seed, 1.0);

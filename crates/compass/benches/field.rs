@@ -1,4 +1,4 @@
-//! What an evaluation of the earth's field costs:
+//! Cost of an evaluation of the earth's field:
 //! `cargo bench -p binnacle-compass --bench field`.
 
 use binnacle_compass::field::{FieldAt, FieldModel, field};
@@ -29,6 +29,6 @@ fn field_evaluation(bencher: Bencher<'_, '_>, model: FieldModel) {
 #[divan::bench(args = MODELS, sample_size = 100)]
 fn field_evaluation_at_one_time(bencher: Bencher<'_, '_>, model: FieldModel) {
     let (position, time) = off_ushant();
-    let model = FieldAt::time(model, time).expect("a date that both models know");
+    let model = FieldAt::from_time(model, time).expect("a date that both models know");
     bencher.bench(|| model.at(black_box(position), black_box(0.0)));
 }

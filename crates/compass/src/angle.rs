@@ -1,10 +1,11 @@
-//! Headings and the differences between them, as types that only add up rightly.
+//! Headings, deviation and variation as types that combine only in the right way.
 //!
 //! `CompassHeading + Deviation = MagneticHeading` and
 //! `MagneticHeading + Variation = TrueHeading`; nothing else compiles. Headings
 //! are always in [0°, 360°), deviation and variation in (−180°, 180°], east
 //! positive.
 
+use crate::number::CompactNumber;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::{Add, Sub};
@@ -26,37 +27,22 @@ pub fn wrap_180(degrees: f64) -> f64 {
     }
 }
 
-/// Why a number is not an angle of the kind asked for.
+/// Error of a number that is not a valid angle.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum AngleError {
     /// The number is NaN or infinite.
     #[error("{0} is not a finite angle")]
     NotFinite(f64),
     /// The number lies outside the range that the outside world may send.
-    #[error("{} degrees is outside {low} to {high}", Brief(*value))]
+    #[error("{} degrees is outside {low} to {high}", CompactNumber(*value))]
     OutOfRange {
-        /// What was sent.
+        /// Value as received.
         value: f64,
-        /// The least that is accepted.
+        /// Least accepted value.
         low: f64,
-        /// The most that is accepted.
+        /// Greatest accepted value.
         high: f64,
     },
-}
-
-/// A number as a complaint quotes it: with an exponent where it would be a long one.
-#[derive(Clone, Copy, Debug)]
-pub struct Brief(pub f64);
-
-impl fmt::Display for Brief {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size = self.0.abs();
-        if size != 0.0 && !(1e-6..1e9).contains(&size) {
-            write!(f, "{:e}", self.0)
-        } else {
-            write!(f, "{}", self.0)
-        }
-    }
 }
 
 macro_rules! heading {
@@ -89,7 +75,7 @@ macro_rules! heading {
         impl TryFrom<f64> for $name {
             type Error = AngleError;
 
-            /// Accepts what an instrument or a user may say: 0 to 360 degrees.
+            /// Accepts the range that instruments and users send: 0 to 360 degrees.
             fn try_from(degrees: f64) -> Result<Self, AngleError> {
                 if !degrees.is_finite() {
                     return Err(AngleError::NotFinite(degrees));
@@ -121,7 +107,7 @@ macro_rules! heading {
 
 heading!(
     CompassHeading,
-    "What the magnetic compass reads, before deviation."
+    "Heading read from the magnetic compass, before deviation."
 );
 heading!(
     MagneticHeading,
@@ -143,7 +129,7 @@ macro_rules! difference {
         pub struct $name(f64);
 
         impl $name {
-            /// No difference at all.
+            /// Zero degrees.
             pub const ZERO: Self = Self(0.0);
 
             /// Wraps any finite angle; `None` for NaN or infinity.
@@ -184,7 +170,7 @@ macro_rules! difference {
         }
 
         impl fmt::Display for $name {
-            /// As seamen write it: `3.4° W`.
+            /// Formats as on a nautical chart: `3.4° W`.
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 let side = if self.0 < 0.0 { "W" } else { "E" };
                 write!(f, "{:.1}° {side}", self.0.abs())
@@ -195,11 +181,11 @@ macro_rules! difference {
 
 difference!(
     Deviation,
-    "What the ship's own magnetism adds: magnetic heading less compass heading."
+    "Angle added by the ship's own magnetism: magnetic heading less compass heading."
 );
 difference!(
     Variation,
-    "What the earth adds: true heading less magnetic heading."
+    "Angle between magnetic and true north: true heading less magnetic heading."
 );
 
 impl Add<Deviation> for CompassHeading {

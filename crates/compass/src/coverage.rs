@@ -1,9 +1,8 @@
-//! Where the data are: how many samples in each sector of compass heading and
-//! each band of magnetic latitude.
+//! Coverage of the data: sample counts by sector of compass heading and band of magnetic
+//! latitude.
 //!
-//! Headings tell the parameters apart on one magnetic latitude only up to the
-//! sums bx + χ13 Z and by + χ23 Z; the more bands are filled, the better the
-//! model holds elsewhere.
+//! At one magnetic latitude, headings determine only the sums bx + χ13 Z and by + χ23 Z.
+//! The more bands are filled, the better the model holds elsewhere.
 
 use crate::angle::CompassHeading;
 use serde::{Deserialize, Serialize};
@@ -21,14 +20,15 @@ pub struct Coverage {
     pub heading_step_deg: u16,
     /// Width of a band of magnetic latitude, degrees.
     pub magnetic_latitude_step_deg: i16,
-    /// The bands that hold samples, from south to north.
+    /// Bands with samples, from south to north.
     pub bands: Vec<CoverageBand>,
-    /// The cells that hold samples, by band and then by heading.
+    /// Cells with samples, by band and then by heading.
     pub cells: Vec<CoverageCell>,
 }
 
 /// The range of fields in one band of magnetic latitude.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CoverageBand {
     /// The band's southern edge, degrees of magnetic latitude.
     pub magnetic_latitude_from_deg: i16,
@@ -40,29 +40,29 @@ pub struct CoverageBand {
     pub z_nt_from: f64,
     /// Greatest vertical field of its samples, nT, down positive.
     pub z_nt_to: f64,
-    /// How many samples it holds.
+    /// Number of samples in it.
     pub samples: u64,
 }
 
 /// One sector of heading within one band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CoverageCell {
     /// The sector's first compass heading, degrees.
     pub heading_from_deg: u16,
     /// The band's southern edge, degrees of magnetic latitude.
     pub magnetic_latitude_from_deg: i16,
-    /// How many samples it holds.
+    /// Number of samples in it.
     pub samples: u64,
 }
 
-/// Magnetic latitude in degrees, atan(tan(dip)/2), north positive: where on a
-/// dipole earth the field would dip like this.
+/// Magnetic latitude in degrees, atan(tan(dip)/2), north positive: the latitude with this
+/// dip on a dipole earth.
 pub fn magnetic_latitude_deg(h_nt: f64, z_nt: f64) -> f64 {
     z_nt.atan2(2.0 * h_nt).to_degrees()
 }
 
-/// The southern edge of the band that a field belongs to, degrees of magnetic
-/// latitude.
+/// Southern edge of a field's band, degrees of magnetic latitude.
 pub fn magnetic_latitude_band_deg(h_nt: f64, z_nt: f64) -> i16 {
     band_of(magnetic_latitude_deg(h_nt, z_nt))
 }

@@ -1,13 +1,15 @@
-//! The words and the physics that every part of Binnacle shares: angles, time and place,
-//! the earth's field, the deviation of a ship's compass, and what an analysis reads and finds.
+//! Shared vocabulary and physics: angles, time and place, the earth's field, the deviation
+//! of a ship's compass, and the input and result of an analysis.
 //!
-//! Pure: no input or output, no clock, no randomness. Everything here is a
-//! function of its arguments, so that an analysis can be repeated to the byte.
+//! Pure: no input or output, no clock, no randomness. Every function depends on its
+//! arguments alone, so an analysis can be repeated to the byte.
 //!
-//! Conventions, everywhere (they are those of the compass adjuster's handbooks):
+//! Conventions, as in the compass adjuster's handbooks:
 //! angles run clockwise from north; `true = magnetic + variation` and
 //! `magnetic = compass + deviation`, both east-positive; fields are in
 //! nanotesla; ship axes are x forward, y starboard, z down.
+
+pub mod number;
 
 pub mod angle;
 pub mod position;
@@ -16,13 +18,16 @@ pub mod time;
 pub mod model;
 pub mod sample;
 
-pub mod field;
+pub mod ship;
 
 pub mod deviation;
-pub mod handbook;
-pub mod ship;
+pub mod field;
 
 pub mod coverage;
 pub mod logbook;
-pub mod result;
 pub mod settings;
+
+pub mod result;
+
+#[cfg(feature = "openapi")]
+pub mod openapi;

@@ -1,8 +1,8 @@
-//! What people report about a ship that bears on her magnetism.
+//! Magnetic logbook: reported events that affect a ship's magnetism.
 //!
-//! What always holds: an entry that was read ends no earlier than it begins.
-//! Entries may overlap, lie before the first sample or after the last, and stand
-//! in any order: an entry's effect depends on itself and on the sample alone.
+//! Invariants: a valid entry ends no earlier than it begins. Entries may overlap, lie
+//! before the first sample or after the last, and come in any order. An entry's effect
+//! depends only on itself and on the sample.
 
 use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -11,29 +11,30 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct LogbookEntry {
-    /// When it happened, or began.
+    /// Time of the event, or its beginning.
     pub from: Timestamp,
-    /// When it ended, for what lasts (cargo on board, a berth); none for an
-    /// event or for what still goes on.
+    /// End of a lasting condition (cargo on board, a berth); none for an event or an
+    /// ongoing condition.
     pub to: Option<Timestamp>,
-    /// What happened.
+    /// Kind of event.
     pub kind: LogbookKind,
-    /// What the magnetic cargo was, where that is known.
+    /// Kind of the magnetic cargo, where known.
     pub cargo: Option<Cargo>,
-    /// In the reporter's own words.
+    /// Free text of the reporter.
     pub note: String,
 }
 
-/// What a logbook entry is about; what upsets most comes first, and gives its
-/// name to an epoch that several begin at once.
+/// Kind of a logbook entry, the most disruptive first. The first kind names an epoch that
+/// several entries begin at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum LogbookKind {
-    /// The compass was adjusted: what was learnt before holds no more.
+    /// Adjustment of the compass: earlier knowledge no longer applies.
     Adjustment,
-    /// A magnet, a sphere or the Flinders bar was moved without an adjustment.
+    /// A corrector (magnet, sphere or Flinders bar) moved without an adjustment.
     CorrectorChange,
-    /// The compass or its bearing to the ship's head was altered.
+    /// The compass, or its alignment with the ship's head, was altered.
     CompassMoved,
     /// Structural or electrical work.
     Repair,
@@ -43,65 +44,67 @@ pub enum LogbookKind {
     Welding,
     /// Degaussing or deperming.
     Degaussing,
-    /// The ship was struck or came near to it.
+    /// Lightning strike on the ship or nearby.
     Lightning,
     /// Collision, grounding or another heavy blow.
     Shock,
     /// Magnetic cargo on board from `from` to `to`.
     MagneticCargo,
-    /// Alongside from `from` to `to`: among cranes, piles and other ships.
+    /// Alongside from `from` to `to`: near cranes, piles and other ships.
     Berth,
-    /// Anything else; it changes nothing in the analysis.
+    /// Anything else; without effect on the analysis.
     Note,
 }
 
-/// What a magnetic cargo consists of.
+/// Kind of magnetic cargo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = CargoKind))]
 #[serde(rename_all = "snake_case")]
 pub enum Cargo {
     /// Plates, coils, pipes, rails.
     Steel,
     /// Scrap iron, which carries magnetism of its own.
     Scrap,
-    /// Containers, whatever is in them.
+    /// Containers with any content.
     Containers,
-    /// Anything else that moves the compass.
+    /// Other cargo that affects the compass.
     Other,
 }
 
-/// Why something is no logbook entry.
+/// Error of an invalid logbook entry.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LogbookError {
-    /// It would end before it begins.
+    /// The end is before the beginning.
     #[error("to: {to} is before from, {from}")]
     EndsBeforeItBegins {
-        /// When it begins.
+        /// Given beginning.
         from: Timestamp,
-        /// When it would end.
+        /// Given end.
         to: Timestamp,
     },
-    /// Only magnetic cargo consists of something.
-    #[error("cargo: only an entry of kind magnetic_cargo has one")]
-    NotACargo,
+    /// A cargo is given for an entry of another kind.
+    #[error("cargo: allowed only for kind magnetic_cargo")]
+    UnexpectedCargo,
 }
 
 impl LogbookEntry {
-    /// The entry, if it can be one.
+    /// Validates the entry.
     ///
     /// # Errors
-    /// When it ends before it begins, or names a cargo and is about none.
+    /// When it ends before it begins, or has a cargo and is of another kind.
     pub fn checked(self) -> Result<LogbookEntry, LogbookError> {
         let from = self.from;
         if let Some(to) = self.to.filter(|to| *to < from) {
             return Err(LogbookError::EndsBeforeItBegins { from, to });
         }
         if self.cargo.is_some() && self.kind != LogbookKind::MagneticCargo {
-            return Err(LogbookError::NotACargo);
+            return Err(LogbookError::UnexpectedCargo);
         }
         Ok(self)
     }
 
-    /// The entry as it stands at a time: what ends later goes on yet.
+    /// Returns the entry as known at a time: a later end is still open.
     pub fn as_of(&self, until: Timestamp) -> LogbookEntry {
         LogbookEntry {
             to: self.to.filter(|to| *to <= until),
@@ -111,8 +114,7 @@ impl LogbookEntry {
 }
 
 impl LogbookKind {
-    /// Whether the ship before and after such an entry is to be taken for two
-    /// different magnets, whatever the data say.
+    /// Returns true when such an entry always begins a new epoch, whatever the data show.
     pub fn ends_an_epoch(self) -> bool {
         match self {
             LogbookKind::Adjustment
@@ -130,9 +132,9 @@ impl LogbookKind {
         }
     }
 
-    /// Whether the iron of ship and binnacle is much what it was, so that what the
-    /// epoch before tells of it still counts.
-    pub fn leaves_the_iron(self) -> bool {
+    /// Returns true when soft iron of ship and binnacle stays nearly the same, so that the
+    /// previous epoch still informs about it.
+    pub fn preserves_soft_iron(self) -> bool {
         matches!(
             self,
             LogbookKind::Repair
@@ -142,8 +144,8 @@ impl LogbookKind {
         )
     }
 
-    /// As a sentence names it.
-    pub fn in_words(self) -> &'static str {
+    /// Description of the kind within a sentence.
+    pub fn description(self) -> &'static str {
         match self {
             LogbookKind::Adjustment => "the compass was adjusted",
             LogbookKind::CorrectorChange => "a corrector was moved",
@@ -161,7 +163,7 @@ impl LogbookKind {
     }
 }
 
-/// An entry as it is written.
+/// Written form of an entry, before validation.
 #[derive(Deserialize)]
 struct Unchecked {
     from: Timestamp,

@@ -1,25 +1,28 @@
-//! Places on the earth.
+//! Positions on the earth.
 
-use crate::angle::Brief;
+use crate::number::CompactNumber;
 use serde::{Deserialize, Serialize};
 
 /// A geodetic position (WGS 84): latitude in [−90°, 90°], north positive, and
 /// longitude in [−180°, 180°), east positive.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(try_from = "RawPosition", into = "RawPosition")]
 pub struct Position {
+    #[cfg_attr(feature = "openapi", schema(rename = "lat"))]
     lat_deg: f64,
+    #[cfg_attr(feature = "openapi", schema(rename = "lon"))]
     lon_deg: f64,
 }
 
-/// Why two numbers are not a position.
+/// Error of two numbers that are not a position.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PositionError {
     /// Latitude is NaN, infinite or beyond a pole.
-    #[error("latitude {} is not within -90 to 90 degrees", Brief(*.0))]
+    #[error("latitude {} is not within -90 to 90 degrees", CompactNumber(*.0))]
     Latitude(f64),
     /// Longitude is NaN, infinite or beyond half a turn.
-    #[error("longitude {} is not within -180 to 180 degrees", Brief(*.0))]
+    #[error("longitude {} is not within -180 to 180 degrees", CompactNumber(*.0))]
     Longitude(f64),
 }
 
@@ -30,7 +33,8 @@ struct RawPosition {
 }
 
 impl Position {
-    /// A position from degrees north and degrees east (−180 to 180; 180 becomes −180).
+    /// Makes a position from degrees north and degrees east (−180 to 180; 180 becomes
+    /// −180).
     ///
     /// # Errors
     /// When either number is not finite or out of range.

@@ -1,24 +1,27 @@
-//! What an operator decides about how a vessel's samples are read.
+//! Settings of an analysis, chosen by the operator.
 
 use crate::field::FieldModel;
 use serde::{Deserialize, Serialize};
 
-/// What is known beforehand of a reference's constant error: its standard
-/// deviation in degrees.
+/// Prior standard deviation of a reference's constant error, degrees.
 pub const REFERENCE_CONSTANT_SD_DEG: f64 = 0.5;
 
-/// Settings of an analysis. They are part of its input: a change of settings
-/// makes a new analysis of the same samples.
+/// Settings of an analysis, part of its input: a changed setting makes a new analysis of
+/// the same samples.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = ReadingSettings))]
 #[serde(default)]
 pub struct AnalysisSettings {
-    /// Which model of the earth's field the samples are held against.
+    /// Model of the earth's field that the samples are compared with.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub field_model: FieldModel,
-    /// Whether the gyro already takes its speed error out.
+    /// Correction of the gyro's speed error.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub gyro_speed_error: GyroSpeedError,
-    /// What is known beforehand of one reference's constant error: its standard
-    /// deviation in degrees. Headings cannot tell it from the compass's own
-    /// alignment, so that it stands in every band.
+    /// Prior standard deviation of one reference's constant error, degrees. Headings cannot
+    /// separate it from the compass's own alignment, so every band contains it.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub reference_constant_sd_deg: f64,
 }
 
@@ -32,14 +35,15 @@ impl Default for AnalysisSettings {
     }
 }
 
-/// Who takes out the error that a gyro has from the ship's own motion over the
-/// turning earth. It must be done once, never twice.
+/// Place where the gyro's error from the ship's motion over the turning earth is corrected.
+/// The correction must be applied exactly once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum GyroSpeedError {
-    /// The gyro does it itself.
+    /// The gyro corrects it.
     #[default]
     Corrected,
-    /// The gyro does not: it is taken out here, from speed and latitude.
+    /// The gyro does not: the analysis corrects it from speed and latitude.
     Uncorrected,
 }

@@ -1,4 +1,4 @@
-//! Instants, in UTC, to the microsecond.
+//! Instants in UTC, to the microsecond.
 
 use chrono::{DateTime, Datelike, NaiveDateTime, SecondsFormat, TimeZone, Utc};
 use serde::{Deserialize, Serialize};
@@ -7,17 +7,22 @@ use std::fmt;
 /// An instant as microseconds since 1970-01-01T00:00:00Z, between the years
 /// 1 and 9999; RFC 3339 in JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(
+    feature = "openapi",
+    schema(as = Time, value_type = String, format = DateTime, example = "2026-11-21T07:00:00Z")
+)]
 #[serde(try_from = "String", into = "String")]
 pub struct Timestamp(i64);
 
-/// Why something is not an instant.
+/// Error of a value that is not an instant.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TimestampError {
-    /// The text would be one, if it said in which time zone.
-    #[error("{0:?} says no time zone; write Z for UTC or an offset as +01:00")]
+    /// The text has no time zone and is valid otherwise.
+    #[error("{0:?} has no time zone; write Z for UTC or an offset such as +01:00")]
     NoZone(String),
-    /// The text does not read as RFC 3339.
-    #[error("{0:?} is not an RFC 3339 time as 2026-12-01T08:00:00Z")]
+    /// The text is not RFC 3339.
+    #[error("{0:?} is not an RFC 3339 time such as 2026-12-01T08:00:00Z")]
     NotRfc3339(String),
     /// The instant lies outside the years 1 to 9999.
     #[error("{0} microseconds since 1970 lies outside the years 1 to 9999")]
@@ -26,13 +31,13 @@ pub enum TimestampError {
 
 /// 0001-01-01T00:00:00Z.
 const FIRST_MICROS: i64 = -62_135_596_800_000_000;
-/// So much of a wrong text is said again, in characters.
-const SAID_AGAIN: usize = 40;
+/// Characters of an invalid text that the error quotes.
+const QUOTED_CHARS: usize = 40;
 /// 9999-12-31T23:59:59.999999Z.
 const LAST_MICROS: i64 = 253_402_300_799_999_999;
 
 impl Timestamp {
-    /// An instant from microseconds since 1970-01-01T00:00:00Z.
+    /// Makes an instant from microseconds since 1970-01-01T00:00:00Z.
     ///
     /// # Errors
     /// When it lies outside the years 1 to 9999.
@@ -47,7 +52,7 @@ impl Timestamp {
     /// Reads RFC 3339 with any offset.
     ///
     /// # Errors
-    /// When the text is not RFC 3339, and in so many words when only the zone is missing.
+    /// When the text is not RFC 3339; a missing time zone has an error of its own.
     pub fn parse(text: &str) -> Result<Timestamp, TimestampError> {
         let given = text.trim();
         if let Ok(parsed) = DateTime::parse_from_rfc3339(given) {
@@ -57,7 +62,7 @@ impl Timestamp {
         let lacks_zone = ["%Y-%m-%dT%H:%M:%S%.f", "%Y-%m-%dT%H:%M"]
             .iter()
             .any(|format| NaiveDateTime::parse_from_str(&without, format).is_ok());
-        let short = text.chars().take(SAID_AGAIN).collect();
+        let short = text.chars().take(QUOTED_CHARS).collect();
         Err(if lacks_zone {
             TimestampError::NoZone(short)
         } else {
@@ -81,7 +86,7 @@ impl Timestamp {
         Timestamp(moved.clamp(FIRST_MICROS, LAST_MICROS))
     }
 
-    /// The year and the part of it that has passed, as field models want it.
+    /// Year with its elapsed fraction, the time scale of field models.
     pub fn decimal_year(self) -> f64 {
         let year = self.to_chrono().year();
         let start = year_start_micros(year);
@@ -89,7 +94,7 @@ impl Timestamp {
         f64::from(year) + (self.0 - start) as f64 / length as f64
     }
 
-    /// The same instant as chrono has it.
+    /// Converts the instant to chrono's type.
     #[allow(clippy::missing_panics_doc, reason = "it cannot: see the message")]
     pub fn to_chrono(self) -> DateTime<Utc> {
         DateTime::from_timestamp_micros(self.0).expect("the range was checked when it was made")

@@ -1,5 +1,5 @@
-//! The model's JSON is what docs/model.md says it is, and its worked example
-//! comes out as printed there.
+//! The model's JSON agrees with docs/model.md, and its worked example gives the printed
+//! values.
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
@@ -29,7 +29,7 @@ fn example() -> Model {
     serde_json::from_str(example_text()).unwrap()
 }
 
-/// The rows below a table's heading, as their cells.
+/// Rows below a table's heading, as cells.
 fn table(heading: &str) -> Vec<Vec<&'static str>> {
     let after = PAGE.split_once(heading).unwrap().1;
     let rows = after
@@ -44,7 +44,7 @@ fn number(cell: &str) -> f64 {
     cell.trim_end_matches('°').parse().unwrap()
 }
 
-/// As printed, to half of the last place that is.
+/// Compares to half of the last printed digit.
 fn assert_printed(printed: &str, value: f64, what: &str) {
     let (_, places) = printed.trim_end_matches('°').split_once('.').unwrap();
     let half = places.bytes().fold(0.500_1, |half, _| half / 10.0);

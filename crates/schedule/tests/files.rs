@@ -51,7 +51,7 @@ fn each_fault_of_a_csv_is_named_with_line_and_column() {
     let cases = [
         (
             "c,v,NLRTM,2026-12-01T06:00:00,2026-12-02T18:00:00Z,",
-            "line 2: eta: \"2026-12-01T06:00:00\" says no time zone",
+            "line 2: eta: \"2026-12-01T06:00:00\" has no time zone",
         ),
         (
             "c,v,NLRTM,2026-12-01T06:00:00Z,2026-11-20T18:00:00Z,",
@@ -333,7 +333,7 @@ fn a_missing_property_is_refused_with_its_line() {
     let (start, port) = ("DTSTART:20270701T060000Z", "LOCATION:NLRTM");
     assert_eq!(
         said("DTSTART:20270701T060000", END, port),
-        "line 20: DTSTART: \"20270701T060000\" says no time zone; write Z for UTC"
+        "line 20: DTSTART: \"20270701T060000\" has no time zone; write Z for UTC"
     );
     assert!(said("DTSTART;VALUE=DATE:20270701", END, port).contains("is a whole day"));
     assert!(

@@ -43,12 +43,12 @@ fn each_fault_is_named_with_its_path() {
         (
             "/now",
             json!("2026-11-21T00:00:00"),
-            "now: \"2026-11-21T00:00:00\" says no time zone",
+            "now: \"2026-11-21T00:00:00\" has no time zone",
         ),
         (
             "/port_calls/1/eta",
             json!("2026-12-05 06:00"),
-            "port_calls[1].eta: \"2026-12-05 06:00\" says no time zone",
+            "port_calls[1].eta: \"2026-12-05 06:00\" has no time zone",
         ),
         (
             "/port_calls/0/etd",

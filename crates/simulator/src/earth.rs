@@ -17,7 +17,7 @@ pub(crate) struct Chart {
 
 impl Chart {
     pub(crate) fn new(time: Timestamp) -> Result<Chart, FieldError> {
-        let field = FieldAt::time(FieldModel::Igrf14, time)?;
+        let field = FieldAt::from_time(FieldModel::Igrf14, time)?;
         Ok(Chart { drawn: time, field })
     }
 

@@ -82,7 +82,7 @@ impl Report {
             Err(LogbookError::EndsBeforeItBegins { from, to }) => {
                 Err(error("to", format!("{to} is before from, {from}")))
             }
-            Err(LogbookError::NotACargo) => {
+            Err(LogbookError::UnexpectedCargo) => {
                 Err(error("cargo", "is only allowed for magnetic cargo"))
             }
         }

@@ -1,8 +1,8 @@
-//! The fonts on a sheet, and how wide text is in them.
+//! Fonts of a sheet, and the width of text set in them.
 //!
-//! They are Noto Sans of the Noto Project, under the SIL Open Font License 1.1 (see
-//! `fonts/OFL.txt`), cut down to Latin, Greek and Cyrillic letters and the signs that
-//! go with them. A character that is not there is drawn as an empty box.
+//! The fonts are Noto Sans of the Noto Project, under the SIL Open Font License 1.1 (see
+//! `fonts/OFL.txt`), reduced to Latin, Greek and Cyrillic letters and common signs. A
+//! missing character is drawn as an empty box.
 
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
@@ -19,15 +19,15 @@ pub enum Face {
     Bold,
 }
 
-/// A character as a font draws it.
+/// Glyph of a character.
 pub(super) struct Drawn {
-    /// The glyph.
+    /// Glyph id in the font.
     pub(super) id: GlyphId,
-    /// How far it is to the next, as a part of the font's size.
+    /// Distance to the next glyph, as a fraction of the font size.
     pub(super) advance: f32,
-    /// The character's place in the text, bytes.
+    /// Byte offset of the character in the text.
     pub(super) at: usize,
-    /// Its length, bytes.
+    /// Length of the character in bytes.
     pub(super) length: usize,
 }
 
@@ -39,7 +39,7 @@ impl Face {
         }
     }
 
-    /// The characters of a text, one glyph each.
+    /// Returns the glyphs of a text, one for each character.
     pub(super) fn draw(self, text: &str) -> Vec<Drawn> {
         let font = FontRef::new(self.bytes()).expect("the fonts are part of the program");
         let characters = font.charmap();
@@ -57,13 +57,13 @@ impl Face {
     }
 }
 
-/// How wide a text is.
+/// Returns the width of a text in points.
 pub fn width(text: &str, face: Face, size: f32) -> f32 {
     let advances = face.draw(text).into_iter().map(|drawn| drawn.advance);
     size * advances.sum::<f32>()
 }
 
-/// As much of a text as a width has room for, with an ellipsis where that is not all.
+/// Truncates a text to a width, with an ellipsis where something is cut off.
 pub fn cut(text: &str, face: Face, size: f32, room: f32) -> String {
     if width(text, face, size) <= room {
         return text.to_owned();
@@ -78,7 +78,7 @@ pub fn cut(text: &str, face: Face, size: f32, room: f32) -> String {
     String::new()
 }
 
-/// A text as lines that a width has room for; a word that has no room is cut.
+/// Wraps a text into lines that fit a width; a single word that is too long is truncated.
 pub fn wrap(text: &str, face: Face, size: f32, room: f32) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -103,7 +103,7 @@ mod tests {
         let one = width("0", Face::Regular, 10.0);
         assert!((width("00", Face::Regular, 10.0) - 2.0 * one).abs() < 1e-4);
         assert!((width("0", Face::Regular, 20.0) - 2.0 * one).abs() < 1e-4);
-        // Figures are equally wide, so that columns of them stand straight.
+        // Digits are equally wide, so that columns of them line up.
         assert!((width("1", Face::Regular, 10.0) - one).abs() < 1e-6);
         assert!(width("0", Face::Bold, 10.0) > 0.9 * one);
     }

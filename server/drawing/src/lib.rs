@@ -1,10 +1,10 @@
-//! Sheets of paper: what is drawn on one, to be written as PDF and as SVG alike.
+//! Vector sheets that are written as PDF and as SVG from the same data.
 //!
-//! What always holds:
+//! Invariants:
 //!
 //! - Lengths are points, 1/72 inch, from the upper left corner, y downwards.
-//! - There is no colour but grey, so that a printed sheet says what the screen says.
-//! - The same sheet becomes the same bytes: nothing here knows the time.
+//! - Grey is the only colour, so that a printed sheet shows the same as the screen.
+//! - The same sheet gives the same bytes: nothing here reads the time.
 
 mod font;
 pub mod paper;
@@ -21,13 +21,13 @@ pub type Point = (f32, f32);
 
 /// Width and height of ISO 216 A4.
 pub const A4: (f32, f32) = (595.28, 841.89);
-/// What a printer may leave blank around it.
+/// Blank margin, for printers that cannot print to the edge.
 pub const MARGIN: f32 = 36.0;
 
 /// Black, among greys from 0 to 255.
 pub const BLACK: u8 = 0;
 
-/// A page and everything on it, in the order in which it is drawn.
+/// Page with everything drawn on it, in drawing order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
     pub(crate) width: f32,
@@ -35,58 +35,58 @@ pub struct Sheet {
     pub(crate) marks: Vec<Mark>,
 }
 
-/// Something drawn.
+/// Element of a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Mark {
-    /// A line of text whose baseline begins, ends or has its middle at a point.
+    /// Line of text whose start, middle or end of the baseline is at a point.
     Text {
         at: Point,
         style: Style,
         text: String,
     },
-    /// A line through points.
+    /// Line through points.
     Line { points: Vec<Point>, pen: Pen },
-    /// The inside of a polygon.
+    /// Filled polygon.
     Area { points: Vec<Point>, grey: u8 },
 }
 
-/// How text looks.
+/// Text style.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
-    /// Its face.
+    /// Font face.
     pub face: Face,
-    /// The font's size.
+    /// Font size.
     pub size: f32,
-    /// Which of its places is at the point given.
+    /// Part of the text that is placed at the given point.
     pub anchor: Anchor,
-    /// From 0, black, to 255.
+    /// Grey level from 0, black, to 255.
     pub grey: u8,
 }
 
-/// A place in a line of text.
+/// Reference point in a line of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Where it begins.
+    /// Start of the text.
     Start,
-    /// Half-way.
+    /// Middle of the text.
     Middle,
-    /// Where it ends.
+    /// End of the text.
     End,
 }
 
-/// How a line looks.
+/// Line style.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pen {
-    /// Its width.
+    /// Line width.
     pub width: f32,
-    /// From 0, black, to 255.
+    /// Grey level from 0, black, to 255.
     pub grey: u8,
-    /// Length of dashes and of the gaps between; 0 for none.
+    /// Length of dashes and of the gaps between them; 0 for a solid line.
     pub dash: f32,
 }
 
 impl Sheet {
-    /// A blank sheet, upright.
+    /// Returns a blank sheet in portrait format.
     pub fn a4() -> Sheet {
         Sheet {
             width: A4.0,
@@ -95,7 +95,7 @@ impl Sheet {
         }
     }
 
-    /// The same, lying.
+    /// Returns a blank sheet in landscape format.
     pub fn a4_lying() -> Sheet {
         Sheet {
             width: A4.1,
@@ -117,7 +117,7 @@ impl Sheet {
         self.marks.push(Mark::Line { points, pen });
     }
 
-    /// Draws a straight line of a width in black.
+    /// Draws a straight black line of the given width.
     pub fn rule(&mut self, from: Point, to: Point, width: f32) {
         self.line(vec![from, to], Pen::black(width));
     }
@@ -135,7 +135,7 @@ impl Sheet {
 }
 
 impl Style {
-    /// Plain black text of a size.
+    /// Returns plain black text of a size.
     pub fn plain(size: f32) -> Style {
         Style {
             face: Face::Regular,
@@ -145,7 +145,7 @@ impl Style {
         }
     }
 
-    /// Bold black text of a size.
+    /// Returns bold black text of a size.
     pub fn bold(size: f32) -> Style {
         Style {
             face: Face::Bold,
@@ -153,12 +153,12 @@ impl Style {
         }
     }
 
-    /// The same in grey.
+    /// Sets the grey level.
     pub fn grey(self, grey: u8) -> Style {
         Style { grey, ..self }
     }
 
-    /// The same, about its middle.
+    /// Centres the text on its point.
     pub fn middle(self) -> Style {
         Style {
             anchor: Anchor::Middle,
@@ -166,7 +166,7 @@ impl Style {
         }
     }
 
-    /// The same, up to its end.
+    /// Ends the text at its point.
     pub fn end(self) -> Style {
         Style {
             anchor: Anchor::End,
@@ -174,7 +174,7 @@ impl Style {
         }
     }
 
-    /// Where a text begins that is anchored at `x`.
+    /// Returns the x coordinate of the start of a text that is anchored at `x`.
     fn start(self, x: f32, text: &str) -> f32 {
         let width = width(text, self.face, self.size);
         match self.anchor {
@@ -186,7 +186,7 @@ impl Style {
 }
 
 impl Pen {
-    /// A black pen.
+    /// Returns a black pen.
     pub fn black(width: f32) -> Pen {
         Pen {
             width,
@@ -195,12 +195,12 @@ impl Pen {
         }
     }
 
-    /// The same in grey.
+    /// Sets the grey level.
     pub fn grey(self, grey: u8) -> Pen {
         Pen { grey, ..self }
     }
 
-    /// The same, dashed.
+    /// Sets the dash length.
     pub fn dashed(self, dash: f32) -> Pen {
         Pen { dash, ..self }
     }

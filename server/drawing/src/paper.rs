@@ -1,20 +1,20 @@
-//! Sheets that are written from the top, one after the other.
+//! Running text on sheets, written from top to bottom with page breaks.
 
 use super::{Face, MARGIN, Sheet, Style, wrap};
 
-/// Where text begins.
+/// Left edge of text.
 pub const LEFT: f32 = MARGIN + 6.0;
-/// Where it ends.
+/// Right edge of text.
 pub const RIGHT: f32 = 595.28 - MARGIN - 6.0;
 const BOTTOM: f32 = 841.89 - MARGIN - 24.0;
-/// From one line to the next.
+/// Line spacing.
 pub const LINE: f32 = 11.0;
-/// The size of text.
+/// Font size of body text.
 pub const SIZE: f32 = 8.3;
-/// Where what is said of something begins.
+/// Left edge of the values beside labels.
 pub const VALUE: f32 = LEFT + 96.0;
 
-/// Sheets, and how far the last one is written.
+/// Sheets with the position of the next line on the last one.
 pub struct Paper {
     sheets: Vec<Sheet>,
     y: f32,
@@ -27,7 +27,7 @@ impl Default for Paper {
 }
 
 impl Paper {
-    /// One blank sheet.
+    /// Starts with one blank sheet.
     pub fn new() -> Paper {
         let mut paper = Paper {
             sheets: Vec::new(),
@@ -37,7 +37,7 @@ impl Paper {
         paper
     }
 
-    /// The sheets, each with these lines at its foot and its number.
+    /// Returns the sheets, each with the given footer lines and its page number.
     pub fn finish(mut self, foot: &[String]) -> Vec<Sheet> {
         let of = self.sheets.len();
         let style = Style::plain(7.0).grey(90);
@@ -58,14 +58,14 @@ impl Paper {
         self.y = MARGIN + 14.0;
     }
 
-    /// Turns the page unless so many lines have room on it.
+    /// Breaks the page unless the given number of lines fits on it.
     pub fn room_for(&mut self, lines: usize) {
         if self.y + LINE * lines as f32 > BOTTOM {
             self.turn();
         }
     }
 
-    /// Puts a text on the line at hand.
+    /// Writes a text on the current line.
     pub fn put(&mut self, x: f32, style: Style, text: &str) {
         let y = self.y;
         if let Some(sheet) = self.sheets.last_mut() {
@@ -73,12 +73,12 @@ impl Paper {
         }
     }
 
-    /// Goes on so far.
+    /// Moves down by a distance.
     pub fn down(&mut self, points: f32) {
         self.y += points;
     }
 
-    /// What follows is called.
+    /// Writes a heading.
     pub fn title(&mut self, text: &str) {
         self.room_for(4);
         self.y += 7.0;
@@ -86,7 +86,7 @@ impl Paper {
         self.y += LINE + 2.0;
     }
 
-    /// A text on as many lines as it takes, from `x` on.
+    /// Writes a text from `x` on, wrapped over as many lines as it needs.
     pub fn lines(&mut self, x: f32, style: Style, text: &str) {
         for line in wrap(text, style.face, style.size, RIGHT - x) {
             self.room_for(1);
@@ -95,7 +95,7 @@ impl Paper {
         }
     }
 
-    /// What something is called and what is said of it; nothing where there is nothing.
+    /// Writes a label and its value; nothing where the value is empty.
     pub fn fact(&mut self, label: &str, value: &str) {
         if value.is_empty() {
             return;
@@ -113,7 +113,7 @@ impl Paper {
         }
     }
 
-    /// Cells that end at places across.
+    /// Writes a table row whose cells end at the given x coordinates.
     pub fn row(&mut self, style: Style, first: &str, cells: &[(f32, String)]) {
         self.room_for(1);
         self.put(LEFT, style, first);

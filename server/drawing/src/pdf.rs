@@ -1,4 +1,4 @@
-//! Sheets as PDF.
+//! PDF output of sheets.
 
 use super::font::Face;
 use super::{Mark, Pen, Point, Sheet};
@@ -15,22 +15,22 @@ use krilla::surface::Surface;
 use krilla::text::{Font, GlyphId, KrillaGlyph};
 use std::array;
 
-/// What a document says of itself.
+/// Metadata of a document.
 #[derive(Clone, Debug)]
 pub struct About {
-    /// Its title.
+    /// Document title.
     pub title: String,
-    /// When that was made from which it is drawn.
+    /// Time of the data that is drawn.
     pub created: Timestamp,
 }
 
-/// The fonts as one document embeds them.
+/// Fonts as one document embeds them.
 struct Fonts([Font; 2]);
 
-/// A document of sheets.
+/// Writes sheets as a PDF document.
 ///
 /// # Errors
-/// When the writer finds fault with it, which no sheet should bring about.
+/// When the PDF writer rejects a sheet, which is a mistake in the code.
 pub fn pdf(sheets: &[Sheet], about: &About) -> Result<Vec<u8>> {
     let fonts = Fonts::load()?;
     let mut document = Document::new();
@@ -146,8 +146,8 @@ fn stroke(pen: Pen) -> Stroke {
     }
 }
 
-/// A time of ours is RFC 3339 in UTC: its figures are year, month, day, hour, minute
-/// and second.
+/// Converts a timestamp, whose RFC 3339 text in UTC has year, month, day, hour, minute and
+/// second.
 fn date(time: Timestamp) -> DateTime {
     let text = time.to_string();
     let mut figures = text.split(|letter: char| !letter.is_ascii_digit());

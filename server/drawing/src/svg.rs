@@ -1,13 +1,13 @@
-//! Sheets as SVG, one below the other.
+//! SVG output of sheets, one below the other.
 //!
-//! What always holds: text is as wide as on the printed sheet, whatever font the
-//! reader has: each line says how long it is.
+//! Invariant: text is as wide as on the printed sheet, whatever font the reader has,
+//! because each line states its length.
 
 use super::font::{Face, width};
 use super::{Mark, Point, Sheet, Style};
 use std::fmt::Write;
 
-/// The sheets as a document of its own; `title` is for those who do not see it.
+/// Writes sheets as one SVG document; `title` is its accessible name.
 pub fn svg(sheets: &[Sheet], title: &str) -> String {
     let width = sheets.iter().map(|sheet| sheet.width).fold(0.0, f32::max);
     let height = sheets.iter().fold(0.0, |sum, sheet| sum + sheet.height);

@@ -1,6 +1,6 @@
-//! Figures as seamen write them.
+//! Angles and positions in nautical notation.
 
-/// An angle with E or W, east positive; to a tenth, and a nil without a side.
+/// Formats an angle to a tenth with E or W, east positive; zero has no side.
 pub fn east_west(degrees: f64) -> String {
     sided(degrees, "E", "W")
 }
@@ -15,7 +15,7 @@ fn sided(degrees: f64, positive: &str, negative: &str) -> String {
     format!("{size}° {side}")
 }
 
-/// A signed angle, to a tenth, with a true minus sign.
+/// Formats a signed angle to a tenth, with a true minus sign.
 pub fn signed(degrees: f64) -> String {
     let size = format!("{:.1}°", degrees.abs());
     match size.as_str() {
@@ -25,23 +25,23 @@ pub fn signed(degrees: f64) -> String {
     }
 }
 
-/// A heading in three figures; what rounds to 360 is 000.
+/// Formats a heading with three digits; one that rounds to 360 is 000.
 pub fn heading(degrees: f64) -> String {
     format!("{:03.0}°", degrees.round().rem_euclid(360.0))
 }
 
-/// A heading in three figures and a tenth; what rounds to 360 is 000.
+/// Formats a heading with three digits and a decimal; one that rounds to 360 is 000.
 pub fn heading_to_a_tenth(degrees: f64) -> String {
     let tenths = (10.0 * degrees).round().rem_euclid(3600.0);
     format!("{:05.1}°", tenths / 10.0)
 }
 
-/// Degrees and minutes of latitude.
+/// Formats a latitude in degrees and minutes.
 pub fn latitude(degrees: f64) -> String {
     minutes(degrees, 2, "N", "S")
 }
 
-/// Degrees and minutes of longitude.
+/// Formats a longitude in degrees and minutes.
 pub fn longitude(degrees: f64) -> String {
     minutes(degrees, 3, "E", "W")
 }

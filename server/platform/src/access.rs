@@ -1,9 +1,10 @@
-//! Who is asking: extractors that a handler names in its arguments.
+//! Access control: extractors that a handler names in its arguments.
 //!
-//! What always holds: a [`Reader`] and a [`Writer`] belong to one operator, and
-//! every query about a fleet takes that operator's id; a [`PartyReader`] and a
-//! [`PartyWriter`] belong to an operator or a firm, and find nothing of another's. A request that a cookie vouches for may change something only with the
-//! header `X-Binnacle-Request`, which another site's form cannot send.
+//! Invariants: a [`Reader`] and a [`Writer`] belong to one operator, and every query about
+//! a fleet takes that operator's id. A [`PartyReader`] and a [`PartyWriter`] belong to an
+//! operator or a firm, and see nothing of any other tenant. A request authenticated by
+//! cookie may change something only with the header `X-Binnacle-Request`, which another
+//! site's form cannot send.
 
 use crate::app::App;
 use crate::audit::{Actor, RequestContext};
@@ -16,74 +17,74 @@ use axum::extract::{FromRef, FromRequestParts};
 use axum::http::header::AUTHORIZATION;
 use axum::http::request::Parts;
 
-/// The header that a page of our own sends with every change.
+/// Header that our own pages send with every change.
 pub const REQUEST_HEADER: &str = "x-binnacle-request";
 
-/// A person, or a token that stands for one.
+/// Authenticated caller: a person, or a token that acts for one.
 #[derive(Clone, Debug)]
 pub struct Caller {
-    /// The person.
+    /// User who calls, or for whom the token acts.
     pub user: User,
-    /// Whether a token limits the person to reading.
+    /// True if the token may only read.
     pub read_only: bool,
-    /// The session, when a cookie brought it.
+    /// Session, if a cookie identified one.
     pub session: Option<SessionId>,
-    /// The API token, when one was sent.
+    /// API token, if one was sent.
     pub token: Option<TokenId>,
 }
 
-/// Someone who may see an operator's fleet.
+/// Caller who may see an operator's fleet.
 #[derive(Clone, Copy, Debug)]
 pub struct Reader {
-    /// Whose fleet.
+    /// Operator of the fleet.
     pub operator: OperatorId,
-    /// Who.
+    /// Calling user.
     pub user: UserId,
 }
 
-/// Someone who may change an operator's fleet.
+/// Caller who may change an operator's fleet.
 #[derive(Clone, Copy, Debug)]
 pub struct Writer {
-    /// Whose fleet.
+    /// Operator of the fleet.
     pub operator: OperatorId,
-    /// Who.
+    /// Calling user.
     pub user: UserId,
 }
 
-/// An operator's admin, who may see what is for admins only.
+/// Operator's admin, who may read what only admins may.
 #[derive(Clone, Copy, Debug)]
 pub struct Overseer {
-    /// Whose people.
+    /// Operator that the admin belongs to.
     pub operator: OperatorId,
-    /// Who.
+    /// Calling user.
     pub user: UserId,
 }
 
-/// An operator's admin at a screen, who may say who signs in and how. A token that leaked
-/// is not to make people of its own, or to become another.
+/// Operator's admin with a session, who may manage users and sign-in rules. A leaked token
+/// must not be able to create users or to take over an account.
 #[derive(Clone, Copy, Debug)]
 pub struct Custodian {
-    /// Whose people.
+    /// Operator that the admin belongs to.
     pub operator: OperatorId,
-    /// Who.
+    /// Calling user.
     pub user: UserId,
 }
 
-/// Someone of an operator's or a firm's who may see the work orders between them.
+/// Caller of an operator or a firm, who may read the work orders between the two.
 #[derive(Clone, Copy, Debug)]
 pub struct PartyReader {
-    /// Whose side.
+    /// Operator or firm of the caller.
     pub tenant: Tenant,
-    /// Who.
+    /// Calling user.
     pub user: UserId,
 }
 
-/// Someone of an operator's or a firm's who may bring the work orders between them on.
+/// Caller of an operator or a firm, who may act on the work orders between the two.
 #[derive(Clone, Copy, Debug)]
 pub struct PartyWriter {
-    /// Whose side.
+    /// Operator or firm of the caller.
     pub tenant: Tenant,
-    /// Who.
+    /// Calling user.
     pub user: UserId,
 }
 
@@ -96,13 +97,13 @@ impl From<Writer> for PartyWriter {
     }
 }
 
-/// Someone who may read the audit log, and of which tenant: all of it where that is none.
+/// Caller who may read the audit log: of one tenant, or all of it if that is `None`.
 #[derive(Clone, Copy, Debug)]
 pub struct Auditor {
     tenant: Option<Tenant>,
 }
 
-/// Someone who manages operators and firms.
+/// Caller who manages operators and firms.
 #[derive(Clone, Copy, Debug)]
 pub struct Platform {
     user: UserId,
@@ -110,24 +111,24 @@ pub struct Platform {
 }
 
 impl Caller {
-    /// The session: what follows is for a person at a screen.
+    /// Returns the session, for actions that need a person at a screen.
     ///
     /// # Errors
-    /// When a token stands for the person.
+    /// When the caller is a token.
     pub fn must_be_signed_in(&self) -> Result<SessionId> {
         self.session
             .ok_or(Error::Forbidden("a token cannot do this; sign in"))
     }
 
-    /// Whose side the caller is on; none for a platform admin.
+    /// Returns the caller's tenant; `None` for a platform admin.
     pub fn tenant(&self) -> Option<Tenant> {
         self.user.tenant()
     }
 
-    /// Refuses who has not set up the second factor that the operator wants.
+    /// Refuses a caller without the second factor that the operator requires.
     ///
     /// # Errors
-    /// When that is so.
+    /// [`Error::SecondFactorRequired`].
     pub fn must_have_second_factor(&self) -> Result<()> {
         if self.user.lacks_second_factor() {
             return Err(Error::SecondFactorRequired);
@@ -135,10 +136,10 @@ impl Caller {
         Ok(())
     }
 
-    /// Whether the session or token that vouched for the caller still does.
+    /// Returns true if the caller's session or token is still valid.
     ///
     /// # Errors
-    /// When the database does.
+    /// When the database fails.
     pub async fn still_vouched_for(&self, app: &App) -> Result<bool> {
         let now = app.clock.now().into();
         let found = match (self.session, self.token) {
@@ -155,10 +156,10 @@ impl Caller {
         operator.ok_or(Error::Forbidden("only an operator's people have a fleet"))
     }
 
-    /// Whose side the caller is on.
+    /// Returns the caller's tenant.
     ///
     /// # Errors
-    /// When on none, or when a second factor is wanting.
+    /// When the caller has none, or a second factor is missing.
     pub fn party(&self) -> Result<Tenant> {
         self.must_have_second_factor()?;
         let none = "a platform admin has neither a fleet nor orders";
@@ -172,10 +173,10 @@ impl Caller {
         Ok(())
     }
 
-    /// Refuses a token that may only read.
+    /// Refuses a read-only token.
     ///
     /// # Errors
-    /// When it is one.
+    /// When the caller is one.
     pub fn must_not_only_read(&self) -> Result<()> {
         if self.read_only {
             return Err(Error::Forbidden("this token may only read"));
@@ -191,24 +192,24 @@ impl From<&Caller> for Actor {
 }
 
 impl Auditor {
-    /// The operator whose lines alone are to be seen.
+    /// Returns the operator to whose lines the log is limited.
     pub fn operator(&self) -> Option<OperatorId> {
         self.tenant.and_then(Tenant::operator)
     }
 
-    /// The firm whose lines alone are to be seen.
+    /// Returns the firm to whose lines the log is limited.
     pub fn firm(&self) -> Option<FirmId> {
         self.tenant.and_then(Tenant::firm)
     }
 }
 
 impl Platform {
-    /// The admin, unless a token limits them to reading: what keys of theirs belong to.
+    /// Returns the owner of the admin's idempotency keys; refuses a read-only token.
     pub fn who_may_write(&self) -> Result<Tenant> {
         if self.read_only {
             return Err(Error::Forbidden("this token may only read"));
         }
-        // Nobody else has this id: keys are told apart by it alone.
+        // No tenant has this id, and idempotency keys are separated by it alone.
         Ok(Tenant::Operator(OperatorId(self.user.0)))
     }
 }

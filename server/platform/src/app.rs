@@ -1,4 +1,4 @@
-//! What every handler and the worker share.
+//! State shared by all handlers and workers.
 
 use crate::clock::Clock;
 use crate::config::Serve;
@@ -10,34 +10,34 @@ use std::sync::Arc;
 use tokio::sync::{Notify, Semaphore};
 use tokio_util::sync::CancellationToken;
 
-/// Cheap to clone; one in the process (one in each test).
+/// Application state: cheap to clone, one per process and one per test.
 #[derive(Clone)]
 pub struct App {
     /// The database.
     pub db: Db,
-    /// The time.
+    /// Source of the current time.
     pub clock: Clock,
-    /// What `serve` was told.
+    /// Settings of `serve`.
     pub config: Arc<Serve>,
-    /// Live events to this process's dashboards.
+    /// Live event channel to this process's dashboards.
     pub live: Live,
     /// Wakes the worker when there is a new job.
     pub work: Arc<Notify>,
-    /// Passwords being hashed at once: each takes 19 MB and a core.
+    /// Limit on concurrent password hashing: each takes 19 MB and a core.
     pub hashing: Arc<Semaphore>,
-    /// Plans for correctors being made at once: each takes a core for a second or two, and an
-    /// adjuster at the berth waits for it.
+    /// Limit on concurrent corrector planning: each plan takes a core for a second or two
+    /// while an adjuster at the berth waits for it.
     pub planning: Arc<Semaphore>,
-    /// Who else's word one may sign in by, as far as is known.
+    /// Cached metadata of the OpenID Connect provider.
     pub provider: Arc<Provider>,
-    /// Cancelled when the server is to stop.
+    /// Token that is cancelled when the server is to stop.
     pub stopping: CancellationToken,
-    /// Where `/metrics` reads.
+    /// Source of the `/metrics` response.
     pub metrics: PrometheusHandle,
 }
 
 impl App {
-    /// An application on an open, migrated database.
+    /// Creates the application on an open, migrated database.
     pub fn new(db: Db, clock: Clock, config: Serve, metrics: PrometheusHandle) -> App {
         App {
             db,
@@ -53,7 +53,7 @@ impl App {
         }
     }
 
-    /// After so long without a request a session ends.
+    /// Returns the seconds without a request after which a session ends.
     pub fn idle_s(&self) -> f64 {
         f64::from(self.config.session_idle_hours) * 3600.0
     }

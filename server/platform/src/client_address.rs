@@ -1,9 +1,8 @@
-//! Where a request comes from, as far as can be told.
+//! Client address and program of a request.
 //!
-//! What always holds: what a client says of itself is not believed. The address is the
-//! connection's, or the one that the outermost of our own proxies saw: `--proxies` says
-//! how many there are, and only the entries that these have appended to
-//! `X-Forwarded-For` are read.
+//! Invariants: nothing that a client says about itself is trusted. The address is that of
+//! the connection, or the one seen by the outermost of our own proxies. `--proxies` gives
+//! their number, and only the entries that they appended to `X-Forwarded-For` are read.
 
 use crate::app::App;
 use crate::tls::TlsListener;
@@ -16,10 +15,10 @@ use std::convert::Infallible;
 use std::net::{IpAddr, SocketAddr};
 use tokio::net::TcpListener;
 
-/// Longest name of a program that is kept, in characters.
+/// Longest stored name of a client program, in characters.
 const MAX_PROGRAM: usize = 200;
 
-/// The other end of a connection.
+/// Remote address of a connection.
 #[derive(Clone, Copy, Debug)]
 pub struct Peer(SocketAddr);
 
@@ -35,23 +34,23 @@ impl Connected<IncomingStream<'_, TlsListener>> for Peer {
     }
 }
 
-/// Where a request comes from.
+/// Origin of a request.
 #[derive(Clone, Debug, Default)]
 pub struct Origin {
-    /// The client's address, if one is known.
+    /// Client address, if known.
     pub address: Option<IpAddr>,
-    /// What the client calls itself; may be empty.
+    /// Client's `User-Agent`; may be empty.
     pub program: String,
 }
 
 impl Origin {
-    /// As it is stored and shown.
+    /// Returns the address as it is stored and shown.
     pub fn address_text(&self) -> String {
         self.address.map_or_else(String::new, |ip| ip.to_string())
     }
 
-    /// What failed sign-ins are counted under: an IPv4 address, or the /64 of an IPv6
-    /// one, of which whoever has one has all.
+    /// Returns the network under which failed sign-ins are counted: an IPv4 address, or an
+    /// IPv6 /64, because its holder controls all of its addresses.
     pub(crate) fn network(&self) -> String {
         match self.address {
             Some(IpAddr::V6(ip)) => {
@@ -65,7 +64,7 @@ impl Origin {
 }
 
 impl Origin {
-    /// Reads the origin of a request that came through as many proxies as are configured.
+    /// Reads the origin of a request behind the configured number of proxies.
     pub fn of_request(parts: &Parts, app: &App) -> Origin {
         let peer = parts.extensions.get::<ConnectInfo<Peer>>();
         let peer = peer.map(|ConnectInfo(Peer(peer))| peer.ip());
@@ -95,7 +94,7 @@ where
     }
 }
 
-/// The address that so many proxies of ours vouch for.
+/// Returns the client address behind the given number of our own proxies.
 fn client(peer: Option<IpAddr>, forwarded: &[&str], proxies: usize) -> Option<IpAddr> {
     let Some(before_last) = proxies.checked_sub(1) else {
         return peer.map(|ip| ip.to_canonical());
@@ -111,7 +110,7 @@ fn client(peer: Option<IpAddr>, forwarded: &[&str], proxies: usize) -> Option<Ip
 mod tests {
     use super::*;
 
-    /// What a client finds for the peer 192.0.2.1.
+    /// Returns the address found for the peer 192.0.2.1.
     fn seen(forwarded: &[&str], proxies: usize) -> String {
         let peer = "192.0.2.1".parse().unwrap();
         client(Some(peer), forwarded, proxies).unwrap().to_string()

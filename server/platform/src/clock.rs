@@ -1,27 +1,27 @@
-//! The one place where this program reads the time.
+//! Clock: the one place where this program reads the time.
 
 use binnacle_compass::time::Timestamp;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Tells the time: the machine's, or one that a test sets.
+/// Source of the current time: the machine's clock, or one that a test sets.
 #[derive(Clone, Debug, Default)]
 pub enum Clock {
     /// The machine's clock.
     #[default]
     System,
-    /// Stands still until it is moved; microseconds since 1970.
+    /// Clock that stands still until it is moved; microseconds since 1970.
     Manual(Arc<AtomicI64>),
 }
 
 impl Clock {
-    /// A clock that stands at `time` until [`Clock::advance`] moves it.
+    /// Creates a clock that stands at `time` until [`Clock::advance`] moves it.
     pub fn manual(time: Timestamp) -> Clock {
         Clock::Manual(Arc::new(AtomicI64::new(time.micros())))
     }
 
-    /// Now, UTC.
+    /// Returns the current time, UTC.
     #[allow(clippy::missing_panics_doc, reason = "it cannot: see the message")]
     pub fn now(&self) -> Timestamp {
         match self {
@@ -31,7 +31,7 @@ impl Clock {
         }
     }
 
-    /// Moves a manual clock on; the machine's clock moves by itself.
+    /// Advances a manual clock; the machine's clock is not affected.
     pub fn advance(&self, seconds: f64) {
         if let Clock::Manual(micros) = self {
             micros.store(self.now().plus_seconds(seconds).micros(), Ordering::SeqCst);

@@ -1,16 +1,16 @@
-//! Ed25519 keys and signatures (RFC 8032) as firms give them, in hexadecimal digits.
+//! Ed25519 keys and signatures (RFC 8032) of firms, in hexadecimal digits.
 //!
-//! What always holds: a signature that is taken could be made by none but who holds the
-//! private half of its key. There are keys of small order by which one signature fits
-//! every text: such a key is none.
+//! Invariants: only the holder of a private key can make a signature that is accepted for
+//! its public key. For a public key of small order one signature fits every text, so such
+//! keys are rejected.
 
 use crate::error::{Error, Result};
 use ed25519_dalek::{Signature, VerifyingKey};
 
-/// A public key by its 64 digits.
+/// Parses a public key of 64 hexadecimal digits.
 ///
 /// # Errors
-/// [`Error::Invalid`] where it is none.
+/// [`Error::Invalid`] if it is not a valid key.
 pub fn key(public_key: &str) -> Result<VerifyingKey> {
     let octets = from_hex(public_key).and_then(|octets| octets.try_into().ok());
     let octets = octets.ok_or_else(|| wrong("public_key", "is not 64 hexadecimal digits"))?;
@@ -25,8 +25,8 @@ pub fn key(public_key: &str) -> Result<VerifyingKey> {
     Ok(key)
 }
 
-/// Refuses a field with anything but the key's signature, 128 digits, over a text that is
-/// called so.
+/// Verifies the key's signature, 128 hexadecimal digits, over a text. `called` names the
+/// text in the error.
 ///
 /// # Errors
 /// [`Error::Invalid`] with the field.
@@ -49,7 +49,7 @@ fn wrong(field: &'static str, detail: &str) -> Error {
     }
 }
 
-/// Octets written as hexadecimal digits, in pairs.
+/// Decodes pairs of hexadecimal digits into bytes.
 pub fn from_hex(text: &str) -> Option<Vec<u8>> {
     let digits: Option<Vec<u32>> = text.chars().map(|c| c.to_digit(16)).collect();
     let digits = digits.filter(|digits| digits.len() % 2 == 0)?;
@@ -65,7 +65,7 @@ pub fn from_hex(text: &str) -> Option<Vec<u8>> {
 mod tests {
     use super::*;
 
-    /// The points of order 1, 2, 4 and 8, and other ways to write them.
+    /// Points of order 1, 2, 4 and 8, and their other encodings.
     const SMALL: [&str; 8] = [
         "0100000000000000000000000000000000000000000000000000000000000000",
         "ecffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff7f",

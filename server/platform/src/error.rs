@@ -1,7 +1,7 @@
 //! Error of the API: a status and an RFC 9457 problem document.
 //!
-//! What always holds: what went wrong inside is logged here, once, and never sent. No domain
-//! is known here: what a domain refuses becomes a [`DomainProblem`] by its own conversion.
+//! Invariants: an internal failure is logged here once and never sent. This module knows no
+//! domain: a domain's refusal becomes a [`DomainProblem`] by its own conversion.
 
 use axum::Json;
 use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
@@ -16,57 +16,57 @@ use utoipa::ToSchema;
 /// Failure of a request, as every handler returns it.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// It does not exist, or belongs to someone else: nobody is told which.
+    /// Missing, or owned by someone else: the response does not reveal which.
     #[error("{0} not found")]
     NotFound(&'static str),
-    /// No valid session or token came with the request.
+    /// Request without a valid session or token.
     #[error("sign in, or send a valid token")]
     Unauthenticated,
-    /// E-mail and password do not belong together.
+    /// Wrong e-mail or password.
     #[error("e-mail or password is wrong")]
     WrongPassword,
-    /// The password is right, and a code is wanted besides.
+    /// Right password, but a code is needed too.
     #[error("enter the code of your authenticator app, or a recovery code")]
     SecondFactorNeeded,
-    /// The password is right and the code is not.
+    /// Right password, but a wrong code.
     #[error("the code is wrong, or was used before")]
     WrongCode,
-    /// The operator wants a second factor, and this person has none yet.
+    /// Second factor required by the operator, but not set up by this user.
     #[error("your company wants a second factor: set one up first")]
     SecondFactorRequired,
-    /// The caller may see it, but not do this.
+    /// Visible to the caller, but not allowed.
     #[error("{0}")]
     Forbidden(&'static str),
-    /// Not to be read at all.
+    /// Malformed request.
     #[error("{0}")]
     BadRequest(String),
-    /// Read, but it cannot be.
+    /// Well-formed request with an invalid value.
     #[error("{field}: {detail}")]
     Invalid {
-        /// The field at fault, as the request calls it.
+        /// Field at fault, as named in the request.
         field: &'static str,
-        /// What is wrong with it.
+        /// Problem with the value.
         detail: String,
     },
-    /// Not to be done to it as it stands.
+    /// Action that is not possible in the current state.
     #[error("{0}")]
     WrongState(String),
-    /// A domain's own refusal.
+    /// Refusal by a domain.
     #[error("{0}")]
     Domain(Box<DomainProblem>),
-    /// The server was not told how to.
+    /// Feature that this server is not configured for.
     #[error("{0}")]
     NotSetUp(&'static str),
-    /// The key was used for another request.
+    /// Idempotency key that was used for another request.
     #[error("this idempotency key was used for another request")]
     KeyReused,
-    /// It was there, but can be used no more.
+    /// Resource that existed but can no longer be used.
     #[error("{0}")]
     Gone(&'static str),
-    /// The body is larger than is taken here.
+    /// Request body over the size limit.
     #[error("the body is larger than {0} bytes")]
     TooLarge(usize),
-    /// Not the media type that is taken here.
+    /// Unsupported media type.
     #[error("{0}")]
     UnsupportedMediaType(String),
     /// Too many wrong passwords.
@@ -75,10 +75,10 @@ pub enum Error {
         /// Seconds to wait.
         retry_after_s: u64,
     },
-    /// The path is there, but not for this method.
+    /// Path that exists, but not for this method.
     #[error("this path knows no such method")]
     MethodNotAllowed,
-    /// Something went wrong here.
+    /// Internal failure.
     #[error("something went wrong here; it has been logged")]
     Internal(anyhow::Error),
 }
@@ -139,7 +139,7 @@ pub struct Problem {
     pub title: String,
     /// The HTTP status.
     pub status: u16,
-    /// What is wrong this time.
+    /// Details of this occurrence.
     pub detail: String,
     /// Fields of one kind of problem alone; the document lists them by domain.
     #[serde(flatten)]

@@ -1,6 +1,6 @@
 //! `Idempotency-Key`: a create request that is sent again creates nothing more.
 //!
-//! What always holds: the key and what it made are stored in one transaction, so
+//! Invariants: the key and what it made are stored in one transaction, so
 //! that either both exist or neither. A key is the operator's or the firm's own and is
 //! forgotten after a day; those of a work order are kept with the order
 //! (`work_orders::keys`).
@@ -82,7 +82,7 @@ impl Key {
     }
 }
 
-/// What tells one request from another: what it creates and its content.
+/// Returns the hash that identifies a request: of the kind it creates and its content.
 ///
 /// # Errors
 /// When the content cannot be written as JSON.

@@ -8,7 +8,7 @@ use crate::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// What a notification is about.
+/// Subject of a notification.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema, sqlx::Type,
 )]
@@ -34,7 +34,7 @@ pub enum Kind {
     OnBoard,
     /// The adjuster has finished and signed.
     Completed,
-    /// Headings at sea agree with what was foretold.
+    /// Headings at sea agree with the prediction.
     Verified,
     /// A heading at sea does not.
     VerificationFailed,
@@ -49,9 +49,9 @@ pub enum Kind {
 /// Message to the people whom its kind concerns.
 #[derive(Clone, Debug)]
 pub struct Notice {
-    /// What it is about.
+    /// Subject of the notice.
     pub kind: Kind,
-    /// Whether it waits for nothing.
+    /// True if the notice must go out at once.
     pub urgent: bool,
     /// In a line.
     pub subject: String,
@@ -69,13 +69,13 @@ pub struct Notice {
 
 /// Notices for a tenant's people, to be delivered to each as the person has chosen.
 pub struct NoticesPublished {
-    /// Whose people.
+    /// The tenant whose users are notified.
     pub tenant: Tenant,
     /// The notices.
     pub notices: Vec<Notice>,
-    /// Who caused them, and gets none.
+    /// The user who caused the notices and receives none.
     pub by: Option<UserId>,
-    /// When.
+    /// Time of the notices.
     pub at: Time,
 }
 
@@ -99,7 +99,7 @@ impl Kind {
         Kind::Alert,
     ];
 
-    /// Whether someone of that role is ever told of it.
+    /// Checks whether users with this role can receive notices of this kind.
     pub fn concerns(self, role: Role) -> bool {
         match role {
             Role::Admin | Role::Viewer => !matches!(self, Kind::Offered | Kind::Withdrawn),

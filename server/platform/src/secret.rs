@@ -1,6 +1,6 @@
 //! Passwords and tokens: made here, compared here, stored only as hashes.
 //!
-//! What always holds: a password's hash is Argon2id with a salt of its own; a
+//! Invariants: a password's hash is Argon2id with a salt of its own; a
 //! token has at least 128 random bits, so that a plain SHA-256 of it is enough.
 
 use argon2::Argon2;
@@ -15,7 +15,7 @@ pub fn hash(secret: &str) -> Vec<u8> {
     Sha256::digest(secret.as_bytes()).to_vec()
 }
 
-/// So many random octets.
+/// Returns `N` random bytes.
 pub fn random<const N: usize>() -> [u8; N] {
     rng().random()
 }
@@ -41,7 +41,7 @@ pub fn new_vessel_token(vessel: Uuid) -> String {
     base64url(&bytes)
 }
 
-/// Whether a token may be one that [`new_vessel_token`] made for the vessel.
+/// Checks whether a token may be one that [`new_vessel_token`] made for the vessel.
 pub fn is_vessel_token(token: &str, vessel: Uuid) -> bool {
     from_base64url(token).is_some_and(|bytes| bytes.len() == 32)
         && vessel_of_token(token) == Some(vessel)
@@ -94,10 +94,10 @@ pub fn hash_password(password: &str) -> anyhow::Result<String> {
     Ok(hash.to_string())
 }
 
-/// Whether a password belongs to a stored hash; takes as long when there is no
-/// hash to compare with, so that timing does not tell which e-mails exist.
+/// Checks a password against a stored hash. Takes as long without a hash, so that the timing
+/// does not reveal which e-mail addresses exist.
 pub fn password_matches(password: &str, stored: Option<&str>) -> bool {
-    // Who was invited and has not answered yet has none either.
+    // A user with an open invitation has no hash either.
     let Some(stored) = stored.filter(|stored| !stored.is_empty()) else {
         let _ = Argon2::default().hash_password(password.as_bytes());
         return false;

@@ -1,4 +1,4 @@
-//! Whose something is: an operator's with a fleet, or a firm's that adjusts compasses.
+//! Tenants: operators with a fleet, and firms that adjust compasses.
 
 use crate::ids::{FirmId, OperatorId};
 use uuid::Uuid;

@@ -7,20 +7,20 @@ use uuid::Uuid;
 /// `admin`.
 #[derive(Debug, Args)]
 pub struct Admin {
-    /// Which database.
+    /// Database to use.
     #[command(flatten)]
     pub database: Database,
-    /// What to do.
+    /// Command to run.
     #[command(subcommand)]
     pub command: AdminCommand,
 }
 
-/// What `admin` can do.
+/// Commands of `admin`.
 #[derive(Debug, Subcommand)]
 pub enum AdminCommand {
     /// Create something and print it as JSON
     Create {
-        /// What to create.
+        /// Thing to create.
         #[command(subcommand)]
         what: Create,
     },
@@ -28,7 +28,7 @@ pub enum AdminCommand {
     /// password, second factor, sessions, API tokens, calendars and whom a sign-in provider
     /// means are gone
     ResetUser {
-        /// What the person signs in with
+        /// Email address the person signs in with
         #[arg(long)]
         email: String,
     },
@@ -43,7 +43,7 @@ pub enum AdminCommand {
     },
 }
 
-/// What `admin create` can create.
+/// Commands of `admin create`.
 #[derive(Debug, Subcommand)]
 pub enum Create {
     /// A company with a fleet
@@ -57,7 +57,7 @@ pub enum Create {
         /// The operator's id
         #[arg(long)]
         operator: Uuid,
-        /// Who.
+        /// New person.
         #[command(flatten)]
         person: Person,
         /// May the user change things?
@@ -78,13 +78,13 @@ pub enum Create {
         /// The firm's id
         #[arg(long)]
         firm: Uuid,
-        /// Who.
+        /// New person.
         #[command(flatten)]
         person: Person,
     },
     /// Someone who manages operators and firms
     PlatformAdmin {
-        /// Who.
+        /// New person.
         #[command(flatten)]
         person: Person,
     },
@@ -93,7 +93,7 @@ pub enum Create {
 /// A person to be created.
 #[derive(Debug, Args)]
 pub struct Person {
-    /// What the person signs in with
+    /// Email address the person signs in with
     #[arg(long)]
     pub email: String,
     /// The person's name
@@ -104,7 +104,7 @@ pub struct Person {
     pub password_stdin: bool,
 }
 
-/// What a user of an operator may do.
+/// Rights of an operator's user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FleetRole {
     /// See and change

@@ -9,12 +9,12 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use uuid::Uuid;
 
-/// The shore server: ingest, analysis, API and dashboard; and the science on the
+/// The server: ingest, analysis, API and dashboard; and the science on the
 /// command line.
 #[derive(Debug, Parser)]
 #[command(version, name = "binnacle-server")]
 pub struct Cli {
-    /// What to do.
+    /// Command to run.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -80,12 +80,12 @@ pub struct Field {
     /// Metres above the WGS 84 ellipsoid
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub altitude_m: f64,
-    /// Which model
+    /// Model of the earth's field
     #[arg(long, value_enum, default_value_t)]
     pub model: FieldModel,
 }
 
-/// Which fit.
+/// Method of fitting.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Method {
     /// Equation 11 of Basterretxea-Iribar, Sotés and Uriarte 2016, for comparison
@@ -97,7 +97,7 @@ pub enum Method {
     Robust,
 }
 
-/// Whether the gyro takes out the error that it has from the ship's own speed.
+/// Handling of the gyro's error from the vessel's own speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum GyroSpeedError {
     /// It does
@@ -124,10 +124,10 @@ pub struct Fit {
     /// Print JSON rather than a table
     #[arg(long)]
     pub json: bool,
-    /// Which fit
+    /// Method of fitting
     #[arg(long, value_enum, default_value_t)]
     pub method: Method,
-    /// Whether the gyro takes the error of the ship's own speed out of its headings
+    /// Handling of the gyro's error from the vessel's own speed
     #[arg(long, value_enum, default_value_t)]
     pub gyro_speed_error: GyroSpeedError,
 }
@@ -135,7 +135,7 @@ pub struct Fit {
 /// `deviation`.
 #[derive(Debug, Args)]
 pub struct Deviation {
-    /// What `fit --json` printed
+    /// Output of `fit --json`
     #[arg(long)]
     pub model: PathBuf,
     /// Degrees north
@@ -164,7 +164,7 @@ pub struct Deviation {
 /// `bursts`.
 #[derive(Debug, Args)]
 pub struct Bursts {
-    /// Which database.
+    /// Database to use.
     #[command(flatten)]
     pub database: Database,
     /// The vessel whose messages they are
@@ -190,16 +190,16 @@ pub struct Schedule {
 /// `plan`.
 #[derive(Debug, Args)]
 pub struct Plan {
-    /// What `fit --json` prints
+    /// Output of `fit --json`
     #[arg(long)]
     pub model: PathBuf,
     /// The binnacle and its correctors (docs/binnacle.md)
     #[arg(long)]
     pub binnacle: PathBuf,
-    /// What was found at the berth (docs/plan.md)
+    /// Readings at the berth (docs/plan.md)
     #[arg(long)]
     pub berth: PathBuf,
-    /// What the magnetometer read after the steps: says whether they were done as planned
+    /// Magnetometer reading after the steps, to check whether they were done as planned
     #[arg(long)]
     pub after: Option<PathBuf>,
 }
@@ -213,7 +213,7 @@ pub struct Analyse {
     /// Logbook entries: a JSON array, or a page of them as the API answers it
     #[arg(long)]
     pub logbook: Option<PathBuf>,
-    /// Whether the gyro takes the error of the ship's own speed out of its headings
+    /// Handling of the gyro's error from the vessel's own speed
     #[arg(long, value_enum, default_value_t)]
     pub gyro_speed_error: GyroSpeedError,
 }

@@ -39,7 +39,7 @@ pub fn admin(arguments: Admin) -> Result<ExitCode> {
     })
 }
 
-/// What the audit log calls it.
+/// Returns the command's name in the audit log.
 fn name_of(command: &AdminCommand) -> &'static str {
     match command {
         AdminCommand::Create { what } => match what {
@@ -65,7 +65,7 @@ async fn run(request: &RequestContext, command: AdminCommand, now: Time) -> Made
     }
 }
 
-/// What was made, or what was wrong with the request.
+/// Created record, or the reason why the request is invalid.
 type Made = Result<Result<serde_json::Value, String>>;
 
 async fn create(request: &RequestContext, what: Create, now: Time) -> Made {
@@ -144,7 +144,7 @@ async fn create_firm(request: &RequestContext, name: &str, operators: &[Uuid], n
     ))
 }
 
-/// What a tenant is named by, if there is none of that id.
+/// Returns the kind of tenant that does not exist, if the id is unknown.
 async fn missing(
     tx: &mut Tx,
     tenant: Option<Tenant>,

@@ -14,7 +14,7 @@ use binnacle_compass::settings::AnalysisSettings;
 use serde::Serialize;
 use std::process::ExitCode;
 
-/// What is printed.
+/// Printed result.
 #[derive(Serialize)]
 struct Analysed {
     #[serde(flatten)]

@@ -25,7 +25,7 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
     for path in &arguments.messages {
         let name = path.display().to_string();
         match read(path) {
-            Ok(octets) => messages.push((name, octets)),
+            Ok(bytes) => messages.push((name, bytes)),
             Err(error) => return answer(Err(BadInput(format!("{name}: {error}")))),
         }
     }
@@ -39,9 +39,9 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
         Ok(imported?)
     })?;
     if let Some(folder) = &arguments.answers {
-        for (stream, octets) in &imported.answers {
+        for (stream, bytes) in &imported.answers {
             let path = folder.join(format!("{stream}.sbd"));
-            write_whole(&path, octets).with_context(|| path.display().to_string())?;
+            write_whole(&path, bytes).with_context(|| path.display().to_string())?;
         }
     }
     let told = answer(Ok(json(&imported)))?;
@@ -56,16 +56,16 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
     })
 }
 
-/// One octet more than a message may have, so that what is longer is seen to be.
+/// One byte more than a message may have, so that what is longer is seen to be.
 fn read(path: &Path) -> io::Result<Vec<u8>> {
-    let mut octets = Vec::new();
+    let mut bytes = Vec::new();
     let most = MESSAGE_BYTES as u64 + 1;
-    File::open(path)?.take(most).read_to_end(&mut octets)?;
-    Ok(octets)
+    File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
-fn write_whole(path: &Path, octets: &[u8]) -> io::Result<()> {
+fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let partial = path.with_extension("partial");
-    fs::write(&partial, octets)?;
+    fs::write(&partial, bytes)?;
     fs::rename(partial, path)
 }

@@ -4,17 +4,18 @@ use super::{BadInput, answer, input, json, table};
 use crate::cli::{Fit, Method};
 use binnacle_analysis::advice::{Question, advise};
 use binnacle_analysis::fit::{
-    Observation, RobustFit, RobustOptions, fit_ols, fit_paper, fit_robust, readings_from_csv, refer,
+    Observation, RobustFit, RobustOptions, fit_ols, fit_paper, fit_robust, observe_readings,
+    readings_from_csv,
 };
 use binnacle_compass::coverage::coverage;
-use binnacle_compass::deviation::NAMES;
+use binnacle_compass::deviation::PARAMETER_NAMES;
 use binnacle_compass::model::{Model, Quality};
 use binnacle_compass::result::{FitError, HeadingRange, ReferenceCheck, SailNext};
 use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
 use binnacle_compass::ship::EarthField;
 use std::process::ExitCode;
 
-/// What was found.
+/// Result of a fit.
 struct Found {
     model: Model,
     check: ReferenceCheck,
@@ -41,14 +42,14 @@ fn find(arguments: &Fit) -> Result<Found, BadInput> {
     let readings = readings_from_csv(&table.rows, arguments.gyro_speed_error.into())
         .map_err(|error| table.complaint(&error))?;
     let refused = |error: FitError| BadInput(format!("{}: {error}", arguments.file.display()));
-    let referred = refer(&readings, REFERENCE_CONSTANT_SD_DEG).map_err(refused)?;
+    let referred = observe_readings(&readings, REFERENCE_CONSTANT_SD_DEG).map_err(refused)?;
     let observations: Vec<Observation> = referred.observations.into_iter().flatten().collect();
     let mut sail_next = None;
     let fitted = match arguments.method {
         Method::Paper => fit_paper(&observations),
         Method::Ols => fit_ols(&observations),
         Method::Robust => {
-            let options = RobustOptions::of_any_ship(referred.check.constant_sd_deg);
+            let options = RobustOptions::for_unknown_vessel(referred.check.constant_sd_deg);
             fit_robust(&observations, &options).map(|fit| {
                 sail_next = what_to_sail(&fit, &observations, &referred.check);
                 fit.model
@@ -64,7 +65,7 @@ fn find(arguments: &Fit) -> Result<Found, BadInput> {
     })
 }
 
-/// What would narrow the band where the ship was last.
+/// Advises on headings that would narrow the confidence band at the vessel's last position.
 fn what_to_sail(
     fit: &RobustFit,
     observations: &[Observation],
@@ -103,7 +104,7 @@ fn describe(found: &Found) -> String {
             known.constant_deg,
         ]
     });
-    let rows: Vec<[String; 4]> = NAMES
+    let rows: Vec<[String; 4]> = PARAMETER_NAMES
         .iter()
         .zip(values.into_iter().chain([model.constant_deg]))
         .enumerate()
@@ -140,7 +141,7 @@ fn describe(found: &Found) -> String {
         + &found.sail_next.as_ref().map_or_else(String::new, band)
 }
 
-/// Which reference was not believed.
+/// Names the reference that was rejected.
 fn dropped(check: &ReferenceCheck) -> String {
     let line = |name: &str, count: u64| match count {
         0 => String::new(),
@@ -202,7 +203,7 @@ fn headings(range: HeadingRange) -> String {
     format!("headings {from:03} to {to:03}")
 }
 
-/// What the samples are worth, and what not to trust the model for.
+/// Describes the quality of the samples and the limits of the model.
 fn worth(quality: &Quality) -> String {
     let samples = quality.effective_samples;
     let condition = quality.condition.map_or_else(

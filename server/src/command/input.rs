@@ -60,7 +60,7 @@ pub(super) fn json_file<T: DeserializeOwned>(path: &Path) -> Result<T, BadInput>
     Ok(read)
 }
 
-/// What is wrong with JSON that begins so many lines down a file, in which field.
+/// Describes an error in JSON that begins some lines down a file, with its field.
 pub(super) fn json_complaint(
     path: &Path,
     lines_before: usize,

@@ -28,10 +28,10 @@ use tokio::task::JoinSet;
 use tracing::{error, info, warn};
 use tracing_subscriber::EnvFilter;
 
-/// What is under way when the server is told to stop gets so long to finish.
+/// Time for requests in progress to finish when the server stops.
 const GRACE: Duration = Duration::from_secs(20);
 
-/// So many webhooks are told at once: one that is slow keeps back only its own.
+/// Number of webhooks sent concurrently, so that a slow receiver delays only its own.
 const WEBHOOK_SENDERS: usize = 4;
 /// All letters go through one relay.
 const MAIL_SENDERS: usize = 2;

@@ -7,7 +7,8 @@
 use super::{BadInput, answer, input, json};
 use crate::cli::Plan;
 use binnacle_adjustment::adjust::{
-    AdjustError, Adjustment, AfterForm, BerthForm, Done, Outcome, plan as find_plans, read_again,
+    AdjustError, Adjustment, BerthForm, CompletedStep, Outcome, PostCheckForm,
+    check_second_reading, plan as find_plans,
 };
 use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_compass::model::Model;
@@ -15,7 +16,7 @@ use serde::Serialize;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// What is printed.
+/// Printed result.
 #[derive(Serialize)]
 struct Planned {
     /// `planned` or `refused`.
@@ -37,10 +38,10 @@ fn find(arguments: &Plan) -> Result<String, BadInput> {
     model.check().map_err(|error| of(&arguments.model, error))?;
     let binnacle: Binnacle = input::json_file(&arguments.binnacle)?;
     let form: BerthForm = input::json_file(&arguments.berth)?;
-    if let Some(mistake) = form.mistaken(&model, &binnacle) {
+    if let Some(mistake) = form.explain_misreadings(&model, &binnacle) {
         return Err(of(&arguments.berth, mistake));
     }
-    let berth = form.read().map_err(|error| of(&arguments.berth, error))?;
+    let berth = form.parse().map_err(|error| of(&arguments.berth, error))?;
     let outcome = find_plans(&berth.adjustment(&model, &binnacle));
     let outcome = outcome.map_err(|error| match error {
         AdjustError::Binnacle(error) => of(&arguments.binnacle, error),
@@ -63,7 +64,7 @@ fn find(arguments: &Plan) -> Result<String, BadInput> {
     }))
 }
 
-/// What the magnetometer says of the steps of a plan that were done.
+/// Checks the steps of a plan against the magnetometer reading after them.
 fn read_after(
     arguments: &Plan,
     file: &Path,
@@ -77,7 +78,7 @@ fn read_after(
             format!("no plan was given: {}", refused.words),
         ));
     }
-    let after: AfterForm = input::json_file(file)?;
+    let after: PostCheckForm = input::json_file(file)?;
     let plans = outcome.plans.len();
     if after.plan == 0 || after.plan > plans {
         return Err(of(file, format!("plan: there are plans 1 to {plans}")));
@@ -87,10 +88,10 @@ fn read_after(
         let steps = plan.steps.len();
         return Err(of(file, format!("turned_deg: the plan has {steps} steps")));
     }
-    let there = form.read_after(&after).map_err(|error| of(file, error))?;
+    let there = form.parse_after(&after).map_err(|error| of(file, error))?;
     let steps = plan.steps.into_iter().enumerate();
-    let done: Vec<Done> = steps
-        .map(|(index, step)| Done {
+    let done: Vec<CompletedStep> = steps
+        .map(|(index, step)| CompletedStep {
             step,
             turned_deg: after.turned_deg.get(index).copied().flatten(),
         })
@@ -99,7 +100,7 @@ fn read_after(
         now: Some(&plan.setting),
         ..adjustment.clone()
     };
-    let again = read_again(
+    let again = check_second_reading(
         &adjustment,
         &done,
         &there.reading,

@@ -4,7 +4,7 @@
 //! page, which knows what to show there; files whose names carry a hash may be
 //! kept for ever, all others are asked for again.
 
-mod ahead;
+mod preload;
 
 use axum::extract::{FromRequestParts, Request, State};
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, ETAG, IF_NONE_MATCH};
@@ -38,11 +38,11 @@ pub async fn serve(State(app): State<App>, request: Request) -> Response {
     match Files::get("index.html") {
         Some(page) => {
             let mut answer = answer("index.html", &page, &parts.headers);
-            let vessel = ahead::vessel(&path);
+            let vessel = preload::vessel(&path);
             let reads =
                 vessel.is_some() && Reader::from_request_parts(&mut parts, &app).await.is_ok();
-            ahead::add(
-                ahead::links(vessel, reads, &parts.headers),
+            preload::add(
+                preload::links(vessel, reads, &parts.headers),
                 answer.headers_mut(),
             );
             answer

@@ -37,14 +37,14 @@ pub fn install_metrics() -> anyhow::Result<PrometheusHandle> {
     Ok(handle)
 }
 
-/// Whether the process runs
+/// Check whether the process runs
 #[utoipa::path(get, path = "/healthz", tag = "operations", security(()),
     responses((status = 200, body = String)))]
 async fn healthz() -> &'static str {
     "ok"
 }
 
-/// Whether requests can be served
+/// Check whether requests can be served
 #[utoipa::path(get, path = "/readyz", tag = "operations", security(()),
     responses((status = 200, body = String), (status = 503, body = String)))]
 async fn readyz(State(app): State<App>) -> (StatusCode, &'static str) {

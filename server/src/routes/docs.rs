@@ -118,7 +118,7 @@ fn schema_section(page: &mut String, name: &str, schema: &Value) {
     page.push_str("</table></section>");
 }
 
-/// What a schema is, in a few words, with links.
+/// Returns a short description of a schema, with links.
 fn kind(schema: &Value) -> String {
     if let Some(name) = schema["$ref"]
         .as_str()

@@ -1,8 +1,8 @@
-//! What the document must say of every operation, and none says for itself.
+//! Completion of the OpenAPI document with details common to all operations.
 //!
-//! What always holds: each answer has a description, which OpenAPI 3.1 demands;
-//! each problem has the media type of RFC 9457; and the problems that come from
-//! reading a request are listed wherever there is something to read.
+//! What always holds: each response has a description, which OpenAPI 3.1 demands. Each problem
+//! has the media type of RFC 9457. The problems of reading a request are listed wherever there is
+//! something to read.
 
 use axum::http::StatusCode;
 use std::mem;

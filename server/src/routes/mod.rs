@@ -51,9 +51,9 @@ const PATIENCE: Duration = Duration::from_mins(2);
         (name = "session", description = "Signing in; one's sessions, second factor, API tokens"),
         (name = "people", description = "Who may sign in, and how"),
         (name = "platform", description = "Operators and firms, for platform admins"),
-        (name = "agents", description = "What the agents aboard talk to"),
+        (name = "agents", description = "What the agents on board talk to"),
         (name = "fleet", description = "Vessels, compasses, models"),
-        (name = "adjusting", description = "Binnacles, port calls and work orders. What is foretold here is \
+        (name = "adjusting", description = "Binnacles, port calls and work orders. What is predicted here is \
             a prediction, not a certificate"),
         (name = "alerts", description = "What people must know of, and how they are told"),
         (name = "notifications", description = "What you yourself are told, and in which ways"),
@@ -78,7 +78,7 @@ impl utoipa::Modify for Security {
     }
 }
 
-/// What ships talk to: no headers but the needed, they cross the satellite link.
+/// Returns the routes for agents, with minimal headers to save the satellite link.
 fn for_agents() -> OpenApiRouter<ServerState> {
     OpenApiRouter::new()
         .merge(enrolment::agent_router())
@@ -161,7 +161,7 @@ async fn no_such_method() -> error::Error {
     error::Error::MethodNotAllowed
 }
 
-/// What a bug answers; the panic itself is on standard error.
+/// Returns the response after a panic; the panic itself is on standard error.
 fn panicked(_: Box<dyn std::any::Any + Send>) -> Response {
     error::Error::Internal(anyhow::anyhow!("a handler panicked")).into_response()
 }
@@ -170,7 +170,7 @@ async fn no_such_route() -> error::Error {
     error::Error::NotFound("page")
 }
 
-/// What log lines of a request say of it: never the query, which may hold a secret.
+/// Returns the log span of a request, without the query, which may hold a secret.
 fn span(request: &Request) -> Span {
     let route = request.extensions().get::<MatchedPath>();
     let route = route.map_or("dashboard", MatchedPath::as_str);

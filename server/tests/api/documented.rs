@@ -58,7 +58,7 @@ fn ship(binnacle: &Binnacle, berth: &Value) -> (Value, [f64; 3]) {
         }
     }
     let magnetic_deg = number("heading_true_deg") - found.declination().degrees_east();
-    let aboard = bowl_out.field_aboard(earth.in_ship_axes(magnetic_deg.to_radians()));
+    let aboard = bowl_out.field_at_compass(earth.in_ship_axes(magnetic_deg.to_radians()));
     let mut covariance = [[0.0; 8]; 8];
     for (index, sd) in [60.0_f64, 1.5e-3, 50.0, 1.5e-3, 2e-3, 2e-3, 2e-3, 0.3]
         .iter()

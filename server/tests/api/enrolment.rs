@@ -251,7 +251,7 @@ async fn a_second_computer_with_an_agents_files_is_an_alert_until_the_agent_is_r
             (&json!("raised"), &json!("warning"))
         );
         let last = found[0]["evidence"][1].as_str().unwrap();
-        assert!(last.starts_with(&format!("Batch {seq} came")), "{last}");
+        assert!(last.starts_with(&format!("Batch {seq} arrived")), "{last}");
     }
     shore.work().await;
     assert_eq!(clones(&ada).await[0]["state"], "raised");

@@ -55,7 +55,7 @@ fn ship_with(setting: &Setting, h_nt: f64) -> ShipMagnetism {
 fn read_with(setting: &Setting) -> [f64; 2] {
     // With variation 3 W that is magnetic 66; no needles, bowl out.
     let earth = BERTH.in_ship_axes(66_f64.to_radians());
-    let [forward, starboard, _] = ship_with(setting, f64::INFINITY).field_aboard(earth);
+    let [forward, starboard, _] = ship_with(setting, f64::INFINITY).field_at_compass(earth);
     [forward, starboard]
 }
 

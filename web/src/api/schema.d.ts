@@ -147,10 +147,9 @@ export interface paths {
         };
         /**
          * Read the audit log
-         * @description Every change that was made or tried, and what firms read of work orders. An operator's
-         *     admins see what their people and agents did and what firms did and read of their
-         *     vessels' orders; a firm's people what was done in the firm's name; platform admins see
-         *     all.
+         * @description Returns every change made or tried, and the work-order data read by firms. An operator's
+         *     admins see the actions of their people and agents, and those of firms on their vessels'
+         *     orders. A firm's people see the actions in the firm's name. Platform admins see all.
          */
         get: operations["list_audit"];
         put?: never;
@@ -168,7 +167,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** The audit log as CSV */
+        /** Download the audit log as CSV */
         get: operations["audit_csv"];
         put?: never;
         post?: never;
@@ -312,8 +311,8 @@ export interface paths {
         /**
          * Follow the fleet live
          * @description Server-sent events named `vessel`, whose data is a `VesselEvent`. With
-         *     `Last-Event-ID`, what was missed within the last day comes first. A firm is told of its
-         *     work orders only.
+         *     `Last-Event-ID`, the events missed within the last day come first. A firm receives only the
+         *     events of its work orders.
          */
         get: operations["follow_events"];
         put?: never;
@@ -602,7 +601,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Who is signed in */
+        /** Show the signed-in user */
         get: operations["me"];
         put?: never;
         post?: never;
@@ -1224,8 +1223,8 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Whether one may sign in by another's word
-         * @description By that of an OpenID Connect provider, if this server was told of one.
+         * Show the sign-in provider
+         * @description This is the OpenID Connect provider, if one is set up on this server.
          */
         get: operations["find_provider"];
         put?: never;
@@ -1398,7 +1397,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Ask for what the shore has */
+        /** Fetch what the agent lacks */
         get: operations["downlink"];
         put?: never;
         post?: never;
@@ -1826,7 +1825,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Where a compass's samples lie, and where more would tell most */
+        /** Show the coverage of a compass's samples and where more would help most */
         get: operations["find_coverage"];
         put?: never;
         post?: never;
@@ -2039,9 +2038,9 @@ export interface paths {
         /** See what rules on adjusting ask about a vessel */
         get: operations["find_particulars"];
         /**
-         * Say what rules on adjusting ask about a vessel
-         * @description What is left out or null is not known, and binds her: to adjust too early costs a fee,
-         *     to adjust too late a detention.
+         * Set the facts that rules on adjusting use
+         * @description A fact that is left out or null is unknown, and binds the vessel: to adjust too early costs a
+         *     fee, to adjust too late a detention.
          */
         put: operations["set_particulars"];
         post?: never;
@@ -2286,7 +2285,7 @@ export interface paths {
         post?: never;
         /**
          * Remove a webhook
-         * @description What it was to be told is forgotten.
+         * @description Pending messages to it are deleted.
          */
         delete: operations["delete_webhook"];
         options?: never;
@@ -2998,7 +2997,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Whether the process runs */
+        /** Check whether the process runs */
         get: operations["healthz"];
         put?: never;
         post?: never;
@@ -3036,7 +3035,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Whether requests can be served */
+        /** Check whether requests can be served */
         get: operations["readyz"];
         put?: never;
         post?: never;
@@ -3066,10 +3065,10 @@ export interface components {
              */
             password: string;
         };
-        /** @description Who can now sign in. */
+        /** @description The user who can now sign in. */
         Accepted: {
             /**
-             * @description What to sign in with.
+             * @description E-mail address to sign in with.
              * @example ada@example.com
              */
             email: string;
@@ -3088,7 +3087,7 @@ export interface components {
             note?: string | null;
         };
         /**
-         * @description Who did something.
+         * @description Kind of actor.
          * @enum {string}
          */
         ActorKind: "user" | "token" | "agent" | "command";
@@ -3116,7 +3115,7 @@ export interface components {
              */
             due_on: string;
             /**
-             * @description What is not known of the vessel, and so binds her as if it were.
+             * @description Particulars of the vessel that are unknown; a rule that depends on one binds the vessel.
              * @example [
              *       "gross_tonnage"
              *     ]
@@ -3128,11 +3127,11 @@ export interface components {
              */
             predicted: components["schemas"]["DeviationAhead"][];
             /**
-             * @description Why, in words.
+             * @description Reason in plain words.
              * @example 24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G, read second-hand)
              */
             reason: string;
-            /** @description How much that presses. */
+            /** @description Urgency of the due date. */
             urgency: components["schemas"]["Urgency"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
@@ -3160,9 +3159,9 @@ export interface components {
             /** @description What is wrong. */
             words: string;
         };
-        /** @description What an agent says of its spool and budget, with a batch. */
+        /** @description State of an agent's spool and budget, reported with a batch. */
         AgentAboard: {
-            /** @description When it was said. */
+            /** @description Time of the report. */
             at: components["schemas"]["Time"];
             /**
              * Format: int64
@@ -3171,8 +3170,8 @@ export interface components {
             batches_waiting: number;
             /**
              * Format: int64
-             * @description What was left of the link's budget where that was less than a day's, in hundredths of
-             *     it, less than none when overdrawn; none where there was enough, or is no limit.
+             * @description Rest of the link's budget where that is less than a day's, in hundredths of a day's,
+             *     negative when overdrawn. None where there is enough, or no limit.
              */
             budget_left_percent: number | null;
         };
@@ -3181,7 +3180,7 @@ export interface components {
          * @description An installation of the agent.
          */
         AgentId: string;
-        /** @description How an agent samples and sends. */
+        /** @description Settings of an agent's sampling and sending. */
         AgentSettings: {
             /**
              * Format: double
@@ -3190,7 +3189,7 @@ export interface components {
             max_rate_of_turn_deg_min: number;
             /**
              * Format: double
-             * @description How far heading may swing to either side within 30 s, degrees.
+             * @description Greatest swing of heading to either side within 30 s, degrees.
              */
             max_swing_deg: number;
             /**
@@ -3241,9 +3240,9 @@ export interface components {
              */
             contiguous_seq: number;
             last_upload_at: components["schemas"]["Time"] | null;
-            /** @description How the link did of late. */
+            /** @description Link statistics of the last week. */
             last_week: components["schemas"]["LinkWeek"];
-            /** @description When the stream was opened. */
+            /** @description Time at which the stream was opened. */
             opened_at: components["schemas"]["Time"];
             revoked_at: components["schemas"]["Time"] | null;
             /**
@@ -3370,57 +3369,57 @@ export interface components {
          * @enum {string}
          */
         AlertState: "raised" | "acknowledged" | "cleared";
-        /** @description Something that was done, or tried. */
+        /** @description Action that was done or tried. */
         AuditLine: {
             /**
              * Format: uuid
-             * @description The user's or the agent's id.
+             * @description Id of the user or the agent.
              */
             actor_id: string | null;
-            /** @description Who. */
+            /** @description Kind of actor. */
             actor_kind: components["schemas"]["ActorKind"];
-            /** @description The name at that time; of an agent, its vessel's. */
+            /** @description Name of the actor at that time; for an agent, its vessel's name. */
             actor_name: string;
-            /** @description Where from; empty if that is not known. */
+            /** @description Client address; empty if unknown. */
             address: string;
-            /** @description When. */
+            /** @description Time of the request. */
             at: components["schemas"]["Time"];
             /**
              * Format: uuid
-             * @description The firm whose people did it, or which it was about.
+             * @description Firm of the actor, or the firm concerned.
              */
             firm_id: string | null;
             /**
              * Format: uuid
-             * @description The request's id, as the answer's `X-Request-Id` gave it.
+             * @description Request id, as returned in `X-Request-Id`.
              */
             id: string;
-            /** @description What was done: the request's method. Empty for a command on the server itself. */
+            /** @description HTTP method of the request; empty for a command on the server itself. */
             method: string;
             /**
              * Format: uuid
-             * @description The operator whose fleet it was about, or whose people did it.
+             * @description Operator of the fleet concerned, or of the actor.
              */
             operator_id: string | null;
             order_id: components["schemas"]["OrderId"] | null;
-            /** @description The route with its ids. */
+            /** @description Route with its ids filled in. */
             path: string;
-            /** @description The route, as this document names it, or the command. */
+            /** @description Route as named in this document, or the command. */
             route: string;
             /**
              * Format: int64
-             * @description The status of the answer. None if it was done and the server ended, or the client
-             *     went, before there was one.
+             * @description Response status. Null if the action was done but the server stopped, or the client
+             *     disconnected, before it responded.
              */
             status: number | null;
             token_id: components["schemas"]["TokenId"] | null;
             vessel_id: components["schemas"]["VesselId"] | null;
         };
-        /** @description A page of the audit log. */
+        /** @description Page of the audit log. */
         AuditList: {
-            /** @description The newest first. */
+            /** @description Lines, newest first. */
             items: components["schemas"]["AuditLine"][];
-            /** @description `after` of the next page. */
+            /** @description Value of `after` for the next page. */
             next: string | null;
         };
         /** @description Half the width of the 95 % band over all headings in some waters, degrees. */
@@ -3595,11 +3594,11 @@ export interface components {
         Binnacle: {
             /** @description All correctors on board, those in use included. */
             aboard: components["schemas"]["CorrectorsAboard"];
-            /** @description What was measured of them; it wins over the formulas. */
+            /** @description Measured effects of the correctors, which take precedence over the formulas. */
             calibration?: Record<string, never>[];
             /** @description The maker's number of this one. */
             serial: string;
-            /** @description How they stand now. */
+            /** @description Their present setting. */
             setting: components["schemas"]["CorrectorSetting"];
             /** @description Its design, whole. */
             type: components["schemas"]["BinnacleDesign"];
@@ -3621,16 +3620,16 @@ export interface components {
             heeling?: components["schemas"]["HeelingBucket"] | null;
             /** @description Kinds of magnets that fit somewhere in it. */
             magnets: components["schemas"]["MagnetKind"][];
-            /** @description Who makes it. */
+            /** @description Its maker. */
             maker: string;
-            /** @description What the maker calls it. */
+            /** @description The maker's name for it. */
             model: string;
             /**
              * Format: double
              * @description Magnetic moment of the needles, A·m².
              */
             needle_moment_am2: number;
-            /** @description Where its figures come from. */
+            /** @description Source of its figures. */
             provenance: string;
             quadrantal?: components["schemas"]["QuadrantalBrackets"] | null;
             /**
@@ -3643,17 +3642,17 @@ export interface components {
         BinnacleInShort: {
             /** @description All correctors on board, those in use included. */
             aboard: components["schemas"]["CorrectorsAboard"];
-            /** @description When it was written. */
+            /** @description Time of the revision. */
             at: components["schemas"]["Time"];
-            /** @description Who wrote it. */
+            /** @description Author of the revision. */
             by: string;
-            /** @description Who makes it. */
+            /** @description Its maker. */
             maker: string;
-            /** @description How many of its effects were measured. */
+            /** @description Number of measured effects. */
             measured_effects: number;
-            /** @description What the maker calls it. */
+            /** @description The maker's name for it. */
             model: string;
-            /** @description Why, in a few words. */
+            /** @description Reason, in a few words. */
             reason: string | null;
             /**
              * Format: int64
@@ -3665,13 +3664,13 @@ export interface components {
         };
         /** @description A revision of the binnacle that a compass stands in. */
         BinnacleRevision: {
-            /** @description When it was written. */
+            /** @description Time of the revision. */
             at: components["schemas"]["Time"];
             /** @description The binnacle, with the correctors on board and how they stand. */
             binnacle: components["schemas"]["Binnacle"];
-            /** @description Who wrote it. */
+            /** @description Author of the revision. */
             by: string;
-            /** @description Why, in a few words. */
+            /** @description Reason, in a few words. */
             reason: string | null;
             /**
              * Format: int64
@@ -3688,16 +3687,16 @@ export interface components {
         };
         /** @description A design in a line. */
         BinnacleType: {
-            /** @description Who makes it. */
+            /** @description Its maker. */
             maker: string;
-            /** @description What the maker calls it. */
+            /** @description The maker's name for it. */
             model: string;
             /**
              * @description By which it is found.
              * @example class_a_trays
              */
             name: string;
-            /** @description Where its figures come from. */
+            /** @description Source of its figures. */
             provenance: string;
         };
         /** @description All designs; they are few. */
@@ -3707,7 +3706,7 @@ export interface components {
             /** @description There is no next page. */
             next: string | null;
         };
-        /** @description What an officer reported, whole. */
+        /** @description An officer's report, whole. */
         BoardReport: components["schemas"]["LogbookReport"] & {
             /**
              * @description The officer's name, or nothing.
@@ -3720,7 +3719,7 @@ export interface components {
              */
             revision: number;
             /**
-             * @description Whether the officer takes the report back.
+             * @description True if the officer withdraws the report.
              * @default false
              */
             withdrawn: boolean;
@@ -3732,21 +3731,21 @@ export interface components {
              * @description The latest revision from on board that is there.
              */
             revision: number;
-            /** @description Whether the entry counts no more, taken back on board or ashore. */
+            /** @description True if the entry was withdrawn, on board or ashore. */
             withdrawn: boolean;
         };
         /**
-         * @description Who observed a compass error.
+         * @description Observer of a compass error.
          * @enum {string}
          */
         BookObserver: "automatic";
         /**
-         * @description What an entry was made for.
+         * @description Occasion of an entry.
          * @enum {string}
          */
         BookOccasion: "watch" | "alteration";
         /**
-         * @description What a true heading is taken from.
+         * @description Reference of a true heading.
          * @enum {string}
          */
         BookReference: "gyro" | "satellite" | "gyro_and_satellite";
@@ -3759,20 +3758,20 @@ export interface components {
             centre_mm: number;
             /**
              * Format: double
-             * @description What the scale says, mm.
+             * @description Scale mark, mm.
              */
             mark_mm: number;
         };
         /** @description A calendar that programs subscribe to. */
         CalendarFeed: {
-            /** @description When it was made. */
+            /** @description Time of creation. */
             created_at: components["schemas"]["Time"];
-            /** @description Who made it. */
+            /** @description Name of its creator. */
             created_by: string;
             /** @description Its id. */
             id: components["schemas"]["FeedId"];
             /**
-             * @description What it is called.
+             * @description Name of the feed.
              * @example Nao Victoria
              */
             name: string;
@@ -3792,11 +3791,11 @@ export interface components {
              * @description Degrees, true.
              */
             heading_deg: number;
-            /** @description How it is known. */
+            /** @description Source of the heading. */
             source: components["schemas"]["CallBerthHeadingSource"];
         };
         /**
-         * @description How a heading alongside is known.
+         * @description Source of a heading alongside.
          * @enum {string}
          */
         CallBerthHeadingSource: "given" | "read" | "berth" | "port";
@@ -3819,8 +3818,8 @@ export interface components {
             on: string;
         };
         /**
-         * @description Who adjusted a compass, by the record of the work order. They have signed that record,
-         *     and no card.
+         * @description Adjuster of a compass, by the record of the work order. The adjuster has signed that record, and
+         *     no card.
          */
         CardAdjuster: {
             /**
@@ -3845,19 +3844,19 @@ export interface components {
         CardCoefficients: {
             /**
              * Format: double
-             * @description What the model adds on every heading: alignment, reference and variation
-             *     offsets. The handbook's A includes it.
+             * @description Constant that the model adds on every heading: alignment, reference and variation offsets.
+             *     The handbook's A includes it.
              * @example 0.2
              */
             constant_deg: number;
             /** @description The exact ones, × 57.3. */
             exact: components["schemas"]["HandbookCoefficients"];
-            /** @description What an adjuster would find who swung the ship. */
+            /** @description Approximate coefficients, as an adjuster finds them who swings the ship. */
             handbook: components["schemas"]["HandbookCoefficients"];
         };
-        /** @description How a binnacle's correctors stand. */
+        /** @description Setting of a binnacle's correctors. */
         CardCorrectors: {
-            /** @description When it was written. */
+            /** @description Time of the revision. */
             at: components["schemas"]["Time"];
             /**
              * @description The binnacle: maker, model and serial number.
@@ -3870,14 +3869,14 @@ export interface components {
              * @example 3
              */
             revision: number;
-            /** @description How each of them stands. */
+            /** @description Setting of each corrector. */
             setting: components["schemas"]["CorrectorSetting"];
         };
         /** @description The model that a card is made from. */
         CardModel: {
             /**
-             * @description The time of the first sample in it; of a model that was foretold, in the one that it
-             *     was foretold from.
+             * @description The time of the first sample in it; for a predicted model, in the model that it was
+             *     predicted from.
              */
             data_from: components["schemas"]["Time"];
             /** @description The time of the last of them. */
@@ -3887,7 +3886,7 @@ export interface components {
              * @example state-space-9
              */
             estimator: string;
-            /** @description When it was fitted, or foretold. */
+            /** @description Time at which it was fitted or predicted. */
             fitted_at: components["schemas"]["Time"];
             foretold_by: components["schemas"]["OrderId"] | null;
             /** @description The model version's id. */
@@ -3913,11 +3912,11 @@ export interface components {
              */
             version: number;
         };
-        /** @description When a compass is due to be adjusted next, by the schedule's rules. */
+        /** @description Due date of a compass's next adjustment, by the schedule's rules. */
         CardNextDue: {
             /**
-             * @description Whether the flag's own rules were among those that were asked: they are where the
-             *     vessel's flag is recorded by its two letters.
+             * @description True if the flag's own rules were applied. They are where the vessel's flag is recorded by
+             *     its two letters.
              */
             flags_own_rules: boolean;
             /**
@@ -3927,19 +3926,19 @@ export interface components {
              */
             on: string;
             /**
-             * @description Why, with the rule.
+             * @description Reason, with the rule.
              * @example 24 months after the adjustment of 2026-11-21 (ISO 25862:2019, Annex G)
              */
             reason: string;
         };
         /**
-         * @description What belongs on a card and nobody has recorded here.
+         * @description Item that belongs on a card and is not recorded here.
          * @enum {string}
          */
         CardNotRecorded: "correctors" | "degaussing_coils" | "adjuster" | "signature" | "next_due";
-        /** @description Where and when a card holds, and the earth's field there. */
+        /** @description Place and time at which a card holds, and the earth's field there. */
         CardPlace: {
-            /** @description When. */
+            /** @description Time. */
             at: components["schemas"]["Time"];
             /**
              * Format: double
@@ -4017,13 +4016,13 @@ export interface components {
             samples: number;
         };
         /**
-         * @description What a card is worth.
+         * @description Status of a card.
          * @enum {string}
          */
         CardStatus: "predicted" | "verified";
-        /** @description What verified a card. */
+        /** @description Verification of a card at sea. */
         CardVerification: {
-            /** @description When the compass was adjusted. */
+            /** @description Time of the adjustment. */
             adjusted_at: components["schemas"]["Time"];
             /**
              * @description Headings that counted, 15° or more apart.
@@ -4045,58 +4044,57 @@ export interface components {
             samples: number;
             /** @description The time of the last of these. */
             until: components["schemas"]["Time"];
-            /** @description When the headings were found to be enough. */
+            /** @description Time at which the headings were enough. */
             verified_at: components["schemas"]["Time"];
         };
         /** @description The ship that a card is of. */
         CardVessel: {
             /**
-             * @description Her call sign.
+             * @description Its call sign.
              * @example EAVN
              */
             call_sign: string | null;
             /**
-             * @description Her flag state.
+             * @description Its flag state.
              * @example Spain
              */
             flag: string | null;
             /** @description The vessel's id. */
             id: components["schemas"]["VesselId"];
             /**
-             * @description Her IMO number.
+             * @description Its IMO number.
              * @example 9074729
              */
             imo_number: string | null;
             /**
-             * @description Her name.
+             * @description Its name.
              * @example Nao Victoria
              */
             name: string;
         };
-        /** @description That cards from before hold no more. */
+        /** @description Withdrawal of earlier cards. */
         CardWithdrawn: {
             /**
-             * @description What altered the ship's magnetism or the compass: a kind of logbook entry, a cause
-             *     that was found, or `ship_as_before`.
+             * @description Change of the ship's magnetism or the compass: a kind of logbook entry, a detected cause, or
+             *     `ship_as_before`.
              * @example adjustment
              */
             reason: string;
-            /** @description Since when. */
+            /** @description Time from which they do not hold. */
             since: components["schemas"]["Time"];
         };
         /** @description Magnetic cargo on board. */
         CargoAboard: {
             /**
-             * @description What it is: `steel`, `scrap`, `containers` or `other`; none where the logbook does
-             *     not say.
+             * @description Its kind: `steel`, `scrap`, `containers` or `other`; none where the logbook does not say.
              * @example steel
              */
             cargo: string | null;
-            /** @description Since when. */
+            /** @description Time from which it is on board. */
             since: components["schemas"]["Time"];
         };
         /**
-         * @description What a magnetic cargo consists of.
+         * @description Kind of magnetic cargo.
          * @enum {string}
          */
         CargoKind: "steel" | "scrap" | "containers" | "other";
@@ -4110,7 +4108,7 @@ export interface components {
              */
             probability: number;
         };
-        /** @description What a model should not be trusted for. */
+        /** @description Caution on the use of a model. */
         Caution: {
             /** @enum {string} */
             caution: "one_magnetic_latitude";
@@ -4133,10 +4131,10 @@ export interface components {
             caution: "long_gap";
             /**
              * Format: double
-             * @description How long there were none, days.
+             * @description Duration of the gap, days.
              */
             days: number;
-            /** @description When the last sample was taken. */
+            /** @description Time of the last sample. */
             last: components["schemas"]["Time"];
         } | {
             /** @enum {string} */
@@ -4200,12 +4198,12 @@ export interface components {
          * @enum {string}
          */
         ChangeCause: "lightning_or_shock" | "magnetic_cargo" | "adjustment_or_repair" | "drift" | "compass_fault" | "alignment" | "reference_fault" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown";
-        /** @description From when on someone gets mail. */
+        /** @description A new minimum severity for a recipient. */
         ChangedMailRecipient: {
             /** @description Of alerts as bad as this or worse. */
             severity: components["schemas"]["Severity"];
         };
-        /** @description What is to be otherwise about a notification. */
+        /** @description Change to a notification. */
         ChangedNotification: {
             /** @description Whether you have read it. */
             read: boolean;
@@ -4230,13 +4228,13 @@ export interface components {
             new: string;
         };
         /**
-         * @description What is to be otherwise about a user; what is left out stays.
+         * @description Changes to a user; omitted fields stay as they are.
          * @example {
          *       "role": "admin"
          *     }
          */
         ChangedUser: {
-            /** @description Whether the user is shut out. */
+            /** @description True to disable the user. */
             disabled?: boolean | null;
             /** @description The user's name. */
             name?: string | null;
@@ -4262,11 +4260,11 @@ export interface components {
              */
             reason: string;
         };
-        /** @description A magnetic element aboard. */
+        /** @description A magnetic compass on board. */
         Compass: {
             /** @description The binnacle that it stands in: maker, type and number. */
             binnacle: string | null;
-            /** @description When it was entered. */
+            /** @description Time at which it was entered. */
             created_at: components["schemas"]["Time"];
             /** @description The compass's id. */
             id: components["schemas"]["CompassId"];
@@ -4277,7 +4275,7 @@ export interface components {
             make: string | null;
             /** @description Its name. */
             name: string;
-            /** @description What it serves as. */
+            /** @description Its role. */
             role: components["schemas"]["CompassRole"];
             /**
              * @description Its serial number.
@@ -4285,7 +4283,7 @@ export interface components {
              */
             serial_number: string | null;
         };
-        /** @description What is to be changed of a compass; what is left out stays, null takes a value away. */
+        /** @description Amendment of a compass. Absent fields stay as they are; null removes a value. */
         CompassAmendment: {
             /**
              * @description The binnacle's maker, type and number.
@@ -4320,7 +4318,7 @@ export interface components {
             next: string | null;
         };
         /**
-         * @description What a compass serves as.
+         * @description Role of a compass.
          * @enum {string}
          */
         CompassRole: "standard" | "steering" | "transmitting";
@@ -4414,7 +4412,7 @@ export interface components {
              */
             worst_residual_deg: number;
         };
-        /** @description How every corrector stands; an empty list or null is none. */
+        /** @description Setting of every corrector; an empty list or null is none. */
         CorrectorSetting: {
             /** @description Athwartship magnets, a hole each. */
             athwartship?: components["schemas"]["MagnetsInHole"][];
@@ -4445,7 +4443,7 @@ export interface components {
             /** @description Sizes of which there is a pair. */
             quadrantal?: string[];
         };
-        /** @description Where a compass's samples lie. */
+        /** @description Coverage of a compass's samples. */
         Coverage: {
             /** @description The bands that hold samples, from south to north. */
             bands: components["schemas"]["CoverageBand"][];
@@ -4501,19 +4499,19 @@ export interface components {
         Delivery: {
             /**
              * Format: int64
-             * @description How often it was tried since it was last to be sent.
+             * @description Number of attempts since it was last queued.
              */
             attempts: number;
-            /** @description What a webhook is sent, or a mail's `subject` and `text`. */
+            /** @description Body sent to a webhook, or a mail's `subject` and `text`. */
             body: Record<string, never>;
-            /** @description When it was written. */
+            /** @description Creation time of the message. */
             created_at: components["schemas"]["Time"];
             delivered_at: components["schemas"]["Time"] | null;
             /** @description The event's id, which a webhook's body names too. */
             id: components["schemas"]["DeliveryId"];
-            /** @description What it tells of. */
+            /** @description Subject of the message. */
             kind: components["schemas"]["MessageKind"];
-            /** @description Why the last try failed. */
+            /** @description Error of the last failed attempt. */
             last_error: string | null;
             /**
              * Format: int64
@@ -4522,7 +4520,7 @@ export interface components {
              */
             last_status: number | null;
             next_attempt_at: components["schemas"]["Time"] | null;
-            /** @description How it stands. */
+            /** @description State of the delivery. */
             state: components["schemas"]["DeliveryState"];
         };
         /**
@@ -4538,7 +4536,7 @@ export interface components {
             next: string | null;
         };
         /**
-         * @description How a delivery stands.
+         * @description State of a delivery.
          * @enum {string}
          */
         DeliveryState: "pending" | "delivered" | "dead";
@@ -4550,11 +4548,11 @@ export interface components {
              */
             on: string;
             /**
-             * @description Where: `here`, a port's name, or a canal's.
+             * @description Place: `here`, a port's name, or a canal's.
              * @example Rotterdam
              */
             place: string;
-            /** @description Which way that is. */
+            /** @description Direction of the deviation. */
             side: components["schemas"]["DeviationSide"];
             /**
              * Format: double
@@ -4627,12 +4625,12 @@ export interface components {
              * @example 12
              */
             model_version: number | null;
-            /** @description Who observed it. */
+            /** @description Its observer. */
             observer: components["schemas"]["BookObserver"];
-            /** @description What it was made for. */
+            /** @description Occasion of the entry. */
             occasion: components["schemas"]["BookOccasion"];
             reason: components["schemas"]["SampleReason"] | null;
-            /** @description What the true heading was taken from. */
+            /** @description Reference of the true heading. */
             reference: components["schemas"]["BookReference"];
             /**
              * Format: double
@@ -4661,7 +4659,7 @@ export interface components {
             variation_deg: number;
             /**
              * Format: int32
-             * @description How many settled ten-second windows the means are of.
+             * @description Number of settled ten-second windows in the means.
              * @example 60
              */
             windows: number;
@@ -4679,25 +4677,25 @@ export interface components {
             correctors: components["schemas"]["CardCorrectors"] | null;
             degaussed_at: components["schemas"]["Time"] | null;
             /**
-             * @description How the degaussing coils are, as it is recorded of the vessel.
+             * @description State of the degaussing coils, as recorded of the vessel.
              * @example no coils fitted
              */
             degaussing: string | null;
             /** @description The model that says so. */
             model: components["schemas"]["CardModel"];
             next_due: components["schemas"]["CardNextDue"] | null;
-            /** @description What belongs on a card and is not recorded here: a person must write it. */
+            /** @description Items that belong on a card and are not recorded here: a person must write them. */
             not_recorded: components["schemas"]["CardNotRecorded"][];
-            /** @description What the reader must know, a sentence each; the most pressing first. */
+            /** @description Notes for the reader, a sentence each; the most pressing first. */
             notes: string[];
-            /** @description Where and when it holds. */
+            /** @description Place and time at which it holds. */
             place: components["schemas"]["CardPlace"];
             replaces: components["schemas"]["CardWithdrawn"] | null;
             /** @description By compass heading from 0, each 15°. */
             rows: components["schemas"]["CardRow"][];
-            /** @description The same in words, to stand wherever figures of the card stand. */
+            /** @description The status in words, to accompany figures of the card wherever they are shown. */
             statement: string;
-            /** @description What the card is worth. */
+            /** @description Status of the card. */
             status: components["schemas"]["CardStatus"];
             unverified_order: components["schemas"]["OrderId"] | null;
             verified: components["schemas"]["CardVerification"] | null;
@@ -4713,7 +4711,7 @@ export interface components {
             worst: components["schemas"]["WorstHeading"];
         };
         /**
-         * @description Whether the compass deviation book is kept.
+         * @description State of the compass deviation book: kept or not.
          * @enum {string}
          */
         DeviationRecordKept: "kept" | "not_kept";
@@ -4741,13 +4739,13 @@ export interface components {
             magnetic_deg: number;
         };
         /**
-         * @description Which way a compass deviates.
+         * @description Direction of a deviation.
          * @enum {string}
          */
         DeviationSide: "east" | "west";
         /** @description A deviation table. */
         DeviationTable: {
-            /** @description When. */
+            /** @description Time. */
             at: components["schemas"]["Time"];
             /**
              * Format: double
@@ -4784,7 +4782,7 @@ export interface components {
              */
             z_nt: number;
         };
-        /** @description When a digest is sent, if there is anything in it. */
+        /** @description Time at which a digest is sent, if there is anything in it. */
         Digest: {
             /**
              * @description At this time of day.
@@ -4813,14 +4811,14 @@ export interface components {
              */
             contiguous_seq: number;
             model?: components["schemas"]["ModelDownlink"] | null;
-            /** @description The shore's clock. */
+            /** @description The server's clock. */
             server_time: components["schemas"]["Time"];
             settings?: components["schemas"]["AgentSettings"] | null;
         };
         /** @description Everything the agent needs to send. */
         EnrolAnswer: {
             compass_name: string;
-            /** @description The shore's clock. */
+            /** @description The server's clock. */
             server_time: components["schemas"]["Time"];
             /**
              * Format: uuid
@@ -4842,7 +4840,7 @@ export interface components {
         EnrolmentCode: {
             /** @description To be typed on board; works once and is never shown again. */
             code: string;
-            /** @description When it stops working. */
+            /** @description Time at which it expires. */
             expires_at: components["schemas"]["Time"];
         };
         /**
@@ -4887,7 +4885,7 @@ export interface components {
             to: components["schemas"]["Time"] | null;
         };
         /**
-         * @description What happened to a vessel.
+         * @description Kind of change to a vessel.
          * @enum {string}
          */
         EventKind: "batch" | "model" | "logbook" | "alert" | "work_order" | "port_call" | "schedule" | "need";
@@ -4953,7 +4951,7 @@ export interface components {
             firm_id: components["schemas"]["FirmId"];
             /** @description Its name. */
             firm_name: string;
-            /** @description Why. */
+            /** @description Reason. */
             why: string;
         };
         /** @description A page of firms. */
@@ -5077,15 +5075,15 @@ export interface components {
         };
         /** @description An alert, in short. */
         FleetAlert: {
-            /** @description What it is about. */
+            /** @description Its cause. */
             cause: components["schemas"]["AlertCause"];
             /** @description Its id. */
             id: components["schemas"]["AlertId"];
-            /** @description How bad it is. */
+            /** @description Its severity. */
             severity: components["schemas"]["Severity"];
-            /** @description How far people have come with it. */
+            /** @description Its state of handling. */
             state: components["schemas"]["AlertState"];
-            /** @description What is so, in a sentence. */
+            /** @description Summary, in a sentence. */
             summary: string;
         };
         /** @description A compass of the fleet's, and what it stands in. */
@@ -5095,11 +5093,11 @@ export interface components {
             compass_id: components["schemas"]["CompassId"];
             /** @description Its name. */
             compass_name: string;
-            /** @description What it serves as. */
+            /** @description Its role. */
             role: components["schemas"]["CompassRole"];
-            /** @description Her id. */
+            /** @description The vessel's id. */
             vessel_id: components["schemas"]["VesselId"];
-            /** @description Her name. */
+            /** @description The vessel's name. */
             vessel_name: string;
         };
         /** @description A page of binnacles. */
@@ -5109,7 +5107,7 @@ export interface components {
             /** @description `after` of the next page. */
             next: string | null;
         };
-        /** @description How good a model is, in short. */
+        /** @description Quality of a model, in short. */
         FleetModel: {
             /** @description For how many reasons it should not be trusted everywhere. */
             cautions: number;
@@ -5126,7 +5124,7 @@ export interface components {
              */
             version: number;
         };
-        /** @description What a fleet's compasses are due for, how bad they are, and what was done. */
+        /** @description Report on a fleet: due dates, deviations and completed work. */
         FleetReport: {
             /** @description Their compasses. */
             compasses: number;
@@ -5144,14 +5142,14 @@ export interface components {
             from: string;
             /** @description Adjustments that were completed in the time, in order. */
             jobs: components["schemas"]["ReportJob"][];
-            /** @description When the report was made: what is due, and how bad, is as of then. */
+            /** @description Time of the report; due dates and deviations are as of then. */
             made_at: components["schemas"]["Time"];
             /**
-             * @description Whose fleet.
+             * @description Name of the operator.
              * @example Naviera Vizcaína
              */
             operator_name: string;
-            /** @description What they saved against swinging. */
+            /** @description Savings against swinging. */
             saved: components["schemas"]["ReportSaved"];
             /**
              * Format: date
@@ -5162,22 +5160,22 @@ export interface components {
             vessels: number;
         };
         /**
-         * @description What one of an operator's people may do.
+         * @description Role of an operator's user.
          * @enum {string}
          */
         FleetRole: "admin" | "viewer";
-        /** @description How a vessel stands, in a line of a table and a mark on a map. */
+        /** @description State of a vessel, for a line of a table and a mark on a map. */
         FleetVessel: {
             alert: components["schemas"]["FleetAlert"] | null;
-            /** @description Her call sign. */
+            /** @description Its call sign. */
             call_sign: string | null;
             /** @description The vessel's id. */
             id: components["schemas"]["VesselId"];
-            /** @description Her IMO number, seven digits. */
+            /** @description Its IMO number, seven digits. */
             imo_number: string | null;
             last_upload_at: components["schemas"]["Time"] | null;
             model: components["schemas"]["FleetModel"] | null;
-            /** @description Her name. */
+            /** @description Its name. */
             name: string;
             next_call: components["schemas"]["NextCall"] | null;
             /**
@@ -5187,9 +5185,9 @@ export interface components {
             open_alerts: number;
             position: components["schemas"]["LastPosition"] | null;
             /**
-             * @description Where she was in the month before, degrees north and east, a place for each twelve
-             *     hours, the oldest first. Empty in an answer of more than 200 vessels, where a map of
-             *     them would be a tangle: ask for the vessel.
+             * @description Its places in the month before, degrees north and east, one for each twelve hours, the
+             *     oldest first. Empty in a response of more than 200 vessels, where a map of them would be
+             *     unreadable.
              */
             track: number[][];
             worst: components["schemas"]["WorstHeading"] | null;
@@ -5241,13 +5239,13 @@ export interface components {
             constant_deg: number;
         };
         /**
-         * @description Whether the gyro takes its speed error out itself.
+         * @description Correction of the gyro's speed error by the gyro itself.
          * @enum {string}
          */
         GyroSpeedError: "corrected" | "uncorrected";
         /**
-         * @description What an adjuster would find who swung the ship: the approximate coefficients of
-         *     the handbooks, degrees.
+         * @description Approximate coefficients of the handbooks, degrees, as an adjuster finds them who swings the
+         *     ship.
          */
         HandbookCoefficients: {
             /**
@@ -5317,12 +5315,12 @@ export interface components {
         HeelingBucket: {
             /**
              * Format: int32
-             * @description How many it takes.
+             * @description Greatest number of magnets in it.
              */
             at_most: number;
             /** @description The kind of magnets that fits, upright. */
             magnet: string;
-            /** @description Where the bucket may hang, numbered from the bottom. */
+            /** @description Positions of the bucket, numbered from the bottom. */
             positions: components["schemas"]["NumberedHeight"][];
         };
         /** @description What becomes of the heeling magnets. */
@@ -5345,7 +5343,7 @@ export interface components {
         HeelingSetting: {
             /**
              * Format: int32
-             * @description How many magnets.
+             * @description Number of magnets.
              */
             count: number;
             /**
@@ -5353,10 +5351,10 @@ export interface components {
              * @description Number of its position, from the bottom.
              */
             position: number;
-            /** @description Where their red ends point: up or down. */
+            /** @description Direction of their red ends: up or down. */
             red: components["schemas"]["RedEnd"];
         };
-        /** @description Which parameters the data determine; what is false rests on the prior. */
+        /** @description Parameters that the data determine; false for those that rest on the prior. */
         Identifiable: {
             bx_nt: boolean;
             by_nt: boolean;
@@ -5378,17 +5376,17 @@ export interface components {
         Invitation: {
             /** @description Works once and is never shown again. */
             code: string;
-            /** @description When it stops working. */
+            /** @description Expiry time. */
             expires_at: components["schemas"]["Time"];
             /**
-             * @description Where to use it, if the server was told its address. What stands after the # is
-             *     sent to no server and gets into no log.
+             * @description Link for its use, if the server knows its public address. The part after the # is sent to
+             *     no server and appears in no log.
              */
             link: string | null;
         };
         /** @description A user who was invited, and how. */
         InvitedUser: {
-            /** @description What to give them. */
+            /** @description The invitation to pass on. */
             invitation: components["schemas"]["Invitation"];
             /** @description The user. */
             user: components["schemas"]["User"];
@@ -5405,9 +5403,9 @@ export interface components {
              * @description Diameter of the sphere; of boxes and plates, that of the spheres that do the same.
              */
             diameter_mm: number;
-            /** @description What it is called. */
+            /** @description Name of the correctors. */
             name: string;
-            /** @description What it looks like. */
+            /** @description Their shape. */
             shape: components["schemas"]["IronShape"];
             /**
              * Format: double
@@ -5431,9 +5429,9 @@ export interface components {
             /** @description What the firm calls it. */
             name: string;
         };
-        /** @description Where a vessel was last known to be. */
+        /** @description Last known position of a vessel. */
         LastPosition: {
-            /** @description When. */
+            /** @description Time. */
             at: components["schemas"]["Time"];
             /**
              * Format: double
@@ -5450,10 +5448,10 @@ export interface components {
         LaterNeed: components["schemas"]["PlannedCompass"] & {
             /**
              * Format: date
-             * @description When it is due.
+             * @description Due date.
              */
             due_on: string;
-            /** @description Why. */
+            /** @description Reason. */
             reason: string;
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
@@ -5502,7 +5500,7 @@ export interface components {
              */
             magnetic_cargo: number;
         };
-        /** @description What came over a stream's link in the last seven days. */
+        /** @description Statistics of a stream's link in the last seven days. */
         LinkWeek: {
             /**
              * Format: int64
@@ -5511,20 +5509,17 @@ export interface components {
             batches: number;
             /**
              * Format: int64
-             * @description How long the latest sample of a batch was on its way, at most, seconds: what had to
-             *     wait for the link. None of no samples.
+             * @description Longest delay of the latest sample of a batch, seconds: time for which it waited for the
+             *     link. None without samples.
              */
             longest_wait_s: number | null;
             /**
              * Format: int64
-             * @description Octets in them, without what the protocols below add.
+             * @description Bytes in them, without the overhead of the protocols below.
              */
             octets: number;
         };
-        /**
-         * @description What is to be changed in an entry; what is left out stays, null takes a value
-         *     away.
-         */
+        /** @description Amendment of an entry. Absent fields stay as they are; null removes a value. */
         LogbookAmendment: {
             cargo?: components["schemas"]["CargoKind"] | null;
             compass_id?: components["schemas"]["CompassId"] | null;
@@ -5536,43 +5531,43 @@ export interface components {
             to?: components["schemas"]["Time"] | null;
         };
         /**
-         * @description Where an entry was reported.
+         * @description Place at which an entry was reported.
          * @enum {string}
          */
         LogbookAuthor: "user" | "agent" | "firm";
         /** @description An entry of a vessel's logbook. */
         LogbookEntry: components["schemas"]["LogbookReport"] & {
-            /** @description Where it was reported. */
+            /** @description Place of its author. */
             author: components["schemas"]["LogbookAuthor"];
             compass_id: components["schemas"]["CompassId"] | null;
-            /** @description When it came here. */
+            /** @description Time at which the server received it. */
             created_at: components["schemas"]["Time"];
             /** @description The reporter's name; empty when a report from on board gives none. */
             created_by: string;
             /** @description The entry's id. */
             id: components["schemas"]["EntryId"];
             revised_at: components["schemas"]["Time"] | null;
-            /** @description Who amended it last. */
+            /** @description Author of the last amendment. */
             revised_by: string | null;
             /**
              * Format: int32
              * @description Counts from 1.
              */
             revision: number;
-            /** @description Why. */
+            /** @description Reason for the withdrawal. */
             withdrawal_reason: string | null;
             withdrawn_at: components["schemas"]["Time"] | null;
-            /** @description Who withdrew it. */
+            /** @description Person who withdrew it. */
             withdrawn_by: string | null;
         };
         /**
-         * @description What a logbook entry is about.
+         * @description Subject of a logbook entry.
          * @enum {string}
          */
         LogbookKind: "adjustment" | "corrector_change" | "compass_moved" | "repair" | "dry_docking" | "welding" | "degaussing" | "lightning" | "shock" | "magnetic_cargo" | "berth" | "note";
         /** @description A page of a logbook. */
         LogbookList: {
-            /** @description What happened last comes first. */
+            /** @description Entries, the latest event first. */
             items: components["schemas"]["LogbookEntry"][];
             /** @description `after` of the next page. */
             next: string | null;
@@ -5580,10 +5575,10 @@ export interface components {
         /** @description One event, as its reporter writes it down. */
         LogbookReport: {
             cargo?: components["schemas"]["CargoKind"] | null;
-            /** @description When it happened, or began. */
+            /** @description Time or beginning of the event. */
             from: components["schemas"]["Time"];
             /**
-             * @description Where the magnetic cargo lies.
+             * @description Place of the magnetic cargo.
              * @example 2
              */
             hatch?: string | null;
@@ -5613,13 +5608,13 @@ export interface components {
         /** @description A webhook just made. */
         MadeWebhook: components["schemas"]["Webhook"] & {
             /**
-             * @description What its messages are signed with; never shown again.
+             * @description Signing secret of its messages; never shown again.
              * @example bns_mZ3q8k…
              */
             secret: string;
         };
         /**
-         * @description What magnets are put into.
+         * @description Carrier of magnets.
          * @enum {string}
          */
         MagnetCarrier: "hole" | "tray";
@@ -5640,14 +5635,14 @@ export interface components {
              * @description Relative standard deviation of a magnet's moment about the nominal one.
              */
             moment_tolerance: number;
-            /** @description What they are called. */
+            /** @description Name of the magnets. */
             name: string;
         };
         /** @description Magnets of one kind on board. */
         MagnetLot: {
             /**
              * Format: int32
-             * @description How many there are, those in use included.
+             * @description Number of magnets, those in use included.
              */
             count: number;
             /**
@@ -5666,14 +5661,14 @@ export interface components {
              */
             tested_sd?: number | null;
         };
-        /** @description Where the magnets of one axis may stand. */
+        /** @description Positions of the magnets of one axis. */
         MagnetRack: {
             /**
              * Format: int32
-             * @description How many trays there are, or how many holes may hold magnets at once.
+             * @description Number of trays, or of holes that may hold magnets at once.
              */
             at_once: number;
-            /** @description What magnets are put into. */
+            /** @description Carrier of the magnets. */
             carrier: components["schemas"]["MagnetCarrier"];
             /** @description The holes, numbered from the bottom. */
             holes: components["schemas"]["NumberedHeight"][];
@@ -5681,7 +5676,7 @@ export interface components {
             magnets: string[];
             /**
              * Format: int32
-             * @description How many magnets each takes.
+             * @description Magnets in each.
              */
             magnets_each: number;
             /**
@@ -5704,7 +5699,7 @@ export interface components {
         MagnetsInHole: {
             /**
              * Format: int32
-             * @description How many.
+             * @description Number of magnets.
              */
             count: number;
             /**
@@ -5717,17 +5712,17 @@ export interface components {
              * @example 200 mm
              */
             magnet: string;
-            /** @description Where their red, north-seeking ends point. */
+            /** @description Direction of their red, north-seeking ends. */
             red: components["schemas"]["RedEnd"];
         };
         /** @description Someone who gets mail. */
         MailRecipient: {
             /**
-             * @description Where to.
+             * @description E-mail address of the recipient.
              * @example superintendent@example.com
              */
             address: string;
-            /** @description Since when. */
+            /** @description Time at which the recipient was added. */
             created_at: components["schemas"]["Time"];
             /**
              * Format: int64
@@ -5750,32 +5745,32 @@ export interface components {
             items: components["schemas"]["MailRecipient"][];
             /** @description `after` of the next page. */
             next: string | null;
-            /** @description Whether this server was told how to send mail. */
+            /** @description True if mail is set up on this server. */
             sending: boolean;
         };
         /** @description A user, as `/me` shows it. */
         Me: {
-            /** @description What the user signs in with. */
+            /** @description E-mail address used to sign in. */
             email: string;
             firm_id: components["schemas"]["FirmId"] | null;
-            /** @description That firm's name. */
+            /** @description Name of the firm. */
             firm_name: string | null;
             /** @description The user's name. */
             name: string;
             operator_id: components["schemas"]["OperatorId"] | null;
-            /** @description That operator's name. */
+            /** @description Name of the operator. */
             operator_name: string | null;
-            /** @description What the user may do. */
+            /** @description Role of the user. */
             role: components["schemas"]["Role"];
-            /** @description Whether the user has a second factor. */
+            /** @description True if the user has a second factor. */
             second_factor: boolean;
-            /** @description Whether the operator wants one: without it nothing else can be seen or done. */
+            /** @description True if the operator requires a second factor: without one, access is refused. */
             second_factor_required: boolean;
             /** @description The user's id. */
             user_id: components["schemas"]["UserId"];
         };
         /**
-         * @description What a message tells of.
+         * @description Subject of a message.
          * @enum {string}
          */
         MessageKind: "alert.raised" | "alert.updated" | "alert.acknowledged" | "alert.cleared" | "order.offered" | "order.answered" | "order.lapsed" | "order.withdrawn" | "order.message" | "order.retime_proposed" | "order.call_moved" | "order.updated" | "order.completed" | "order.verified" | "order.failed" | "order.closed" | "order.cancelled" | "notification" | "report" | "test";
@@ -5783,8 +5778,8 @@ export interface components {
         Model: {
             /**
              * Format: double
-             * @description What is added to the exact deviation: alignment, reference and variation
-             *     offsets, degrees, east positive.
+             * @description Constant added to the exact deviation: alignment, reference and variation offsets, degrees,
+             *     east positive.
              */
             constant_deg: number;
             /** @description 8 × 8: the parameters in their order, the constant last. */
@@ -5837,7 +5832,7 @@ export interface components {
         ModelSummary: {
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
-            /** @description When it was fitted. */
+            /** @description Time at which it was fitted. */
             created_at: components["schemas"]["Time"];
             /** @description The time of the last sample in it. */
             data_until: components["schemas"]["Time"];
@@ -5863,7 +5858,7 @@ export interface components {
         ModelVersion: {
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
-            /** @description When it was fitted. */
+            /** @description Time at which it was fitted. */
             created_at: components["schemas"]["Time"];
             /** @description The time of the first sample in it. */
             data_from: components["schemas"]["Time"];
@@ -5926,14 +5921,14 @@ export interface components {
              * @description By when it wants the compass adjusted.
              */
             due_on: string;
-            /** @description What it is. */
+            /** @description Kind of cause. */
             kind: components["schemas"]["NeedCauseKind"];
             /** @description In words. */
             reason: string;
             rule: components["schemas"]["RuleCited"] | null;
         };
         /**
-         * @description What brings a due date about.
+         * @description Cause of a due date.
          * @enum {string}
          */
         NeedCauseKind: "never_adjusted" | "interval" | "event" | "over_limit" | "transit" | "change" | "failed_verification";
@@ -5945,7 +5940,7 @@ export interface components {
             vessel_id: components["schemas"]["VesselId"];
             /** @description Her name. */
             vessel_name: string;
-            /** @description Why it is beside the plan. */
+            /** @description Reason why it is beside the plan. */
             why: string;
         };
         /** @description Headings that are still needed. */
@@ -5962,7 +5957,7 @@ export interface components {
          *     }
          */
         NewCalendarFeed: {
-            /** @description What it is called. */
+            /** @description Name of the feed. */
             name: string;
             vessel_id?: components["schemas"]["VesselId"] | null;
         };
@@ -5972,7 +5967,7 @@ export interface components {
             compass_id: components["schemas"]["CompassId"] | null;
             /**
              * Format: int32
-             * @description How long the code is valid, seconds; three days if not said.
+             * @description Validity of the code, seconds; three days by default.
              * @default null
              */
             valid_for_s: number | null;
@@ -5995,7 +5990,7 @@ export interface components {
             make?: string | null;
             /** @description Its name. */
             name: string;
-            /** @description What it serves as. */
+            /** @description Its role. */
             role: components["schemas"]["CompassRole"];
             /** @description Its serial number. */
             serial_number?: string | null;
@@ -6022,7 +6017,7 @@ export interface components {
         /** @description Someone who is to get mail. */
         NewMailRecipient: {
             /**
-             * @description Where to.
+             * @description E-mail address of the recipient.
              * @example superintendent@example.com
              */
             address: string;
@@ -6084,7 +6079,7 @@ export interface components {
             day: string;
             /** @description By this firm. */
             firm_id: components["schemas"]["FirmId"];
-            /** @description Why. */
+            /** @description Note, such as the reason. */
             note?: string | null;
         };
         /**
@@ -6105,14 +6100,14 @@ export interface components {
              * @description Her true heading alongside, where it is known.
              */
             berth_heading_deg?: number | null;
-            /** @description When she is expected alongside, with a time zone. */
+            /** @description Expected arrival alongside, with a time zone. */
             eta: components["schemas"]["Time"];
             /**
              * Format: double
              * @description She comes within so many hours of that, nineteen times in twenty.
              */
             eta_uncertainty_h?: number;
-            /** @description When she is expected to leave, 120 days later at most. */
+            /** @description Expected departure, 120 days later at most. */
             etd: components["schemas"]["Time"];
             /**
              * Format: double
@@ -6124,7 +6119,7 @@ export interface components {
              * @example NLRTM
              */
             port: string;
-            /** @description What it is called where it comes from; port and ETA where nothing is said. */
+            /** @description Reference in the source system; port and ETA by default. */
             reference?: string | null;
         };
         /**
@@ -6165,7 +6160,7 @@ export interface components {
             answer_within_hours?: number | null;
             /** @description A compass of the job; its others go with it. */
             compass_id: components["schemas"]["CompassId"];
-            /** @description What is said to them. */
+            /** @description Message to the firms. */
             text?: string | null;
             /** @description Firms that are asked next, in this order, when it says no or nothing. */
             then?: components["schemas"]["FirmId"][];
@@ -6178,9 +6173,9 @@ export interface components {
         /** @description A token to be made. */
         NewToken: {
             expires_at?: components["schemas"]["Time"] | null;
-            /** @description What it is for. */
+            /** @description Purpose of the token. */
             name: string;
-            /** @description What it may do. */
+            /** @description Scope of the token. */
             scope: components["schemas"]["TokenScope"];
         };
         /**
@@ -6192,11 +6187,11 @@ export interface components {
          *     }
          */
         NewUser: {
-            /** @description What the user is to sign in with. */
+            /** @description E-mail address to sign in with. */
             email: string;
             /** @description The user's name. */
             name: string;
-            /** @description What the user may do. */
+            /** @description Role of the user. */
             role: components["schemas"]["FleetRole"];
         };
         /** @description A vessel to be entered. */
@@ -6204,7 +6199,7 @@ export interface components {
             /** @description Its call sign. */
             call_sign?: string | null;
             /**
-             * @description How its degaussing coils are, in words.
+             * @description State of its degaussing coils, in words.
              * @example no coils fitted
              */
             degaussing?: string | null;
@@ -6220,10 +6215,10 @@ export interface components {
         };
         /** @description A webhook to be made, or as it is to be. */
         NewWebhook: {
-            /** @description Whether anything is sent; true if not said. */
+            /** @description True if messages are sent; true by default. */
             enabled?: boolean;
             /**
-             * @description What to tell of.
+             * @description Kinds of messages to send.
              * @example [
              *       "alert.raised",
              *       "alert.cleared"
@@ -6231,7 +6226,7 @@ export interface components {
              */
             kinds: components["schemas"]["MessageKind"][];
             /**
-             * @description Where to POST to.
+             * @description URL for the POST requests.
              * @example https://example.com/hooks/binnacle
              */
             url: string;
@@ -6271,9 +6266,9 @@ export interface components {
         };
         /** @description A port call, in short, and what awaits the compass there. */
         NextCall: {
-            /** @description When she arrives. */
+            /** @description Time of arrival. */
             eta: components["schemas"]["Time"];
-            /** @description When she leaves. */
+            /** @description Time of departure. */
             etd: components["schemas"]["Time"];
             /** @description Its UN/LOCODE. */
             port: string;
@@ -6284,11 +6279,11 @@ export interface components {
         /** @description Something that you ought to know. */
         Notification: {
             alert_id: components["schemas"]["AlertId"] | null;
-            /** @description When it happened. */
+            /** @description Time of the event. */
             created_at: components["schemas"]["Time"];
             /** @description The notification's id. */
             id: components["schemas"]["NotificationId"];
-            /** @description What it is about. */
+            /** @description Kind of event. */
             kind: components["schemas"]["NotificationKind"];
             order_id: components["schemas"]["OrderId"] | null;
             /**
@@ -6302,9 +6297,9 @@ export interface components {
              * @example Nao Victoria: Nervión Compass accepts the adjustment at Bilbao
              */
             subject: string;
-            /** @description What there is to know, as the letter has it. */
+            /** @description Full text, as in the letter. */
             text: string;
-            /** @description Whether mail of it waits for nothing. */
+            /** @description Whether its mail skips quiet hours and digests. */
             urgent: boolean;
             vessel_id: components["schemas"]["VesselId"] | null;
         };
@@ -6314,7 +6309,7 @@ export interface components {
          */
         NotificationId: string;
         /**
-         * @description What a notification is about.
+         * @description Subject of a notification.
          * @enum {string}
          */
         NotificationKind: "due_soon" | "need_raised" | "offered" | "answered" | "answer_late" | "message" | "call_moved" | "on_board" | "completed" | "verified" | "verification_failed" | "withdrawn" | "alert";
@@ -6326,12 +6321,12 @@ export interface components {
             next: string | null;
             /**
              * Format: int64
-             * @description How many you have not read, on whatever page.
+             * @description Number of unread notifications on all pages.
              */
             unread: number;
         };
         /**
-         * @description How a person wants to be told.
+         * @description Notification settings of a person.
          * @example {
          *       "digest": {
          *         "at": "07:30",
@@ -6352,7 +6347,7 @@ export interface components {
          *     }
          */
         NotificationSettings: {
-            /** @description When what is told together is sent; each day at 07:00 if not said. */
+            /** @description Time of the digest; each day at 07:00 by default. */
             digest?: components["schemas"]["Digest"];
             quiet_hours: components["schemas"]["QuietHours"] | null;
             /**
@@ -6360,23 +6355,23 @@ export interface components {
              * @example Europe/Madrid
              */
             time_zone?: string;
-            /** @description How to tell of each kind; what is left out is told in the way that is usual. */
+            /** @description Way of delivery for each kind; a kind that is left out has the default way. */
             ways?: {
                 [key: string]: components["schemas"]["NotificationWay"];
             };
         };
-        /** @description How you are told. */
+        /** @description Notification settings in force. */
         NotificationSettingsInForce: {
             /**
-             * @description Where mail goes: what you sign in with.
+             * @description Address for mail: the one you sign in with.
              * @example ada@example.com
              */
             address: string;
-            /** @description When the next digest is sent, if there is anything in it. */
+            /** @description Time of the next digest, if there is anything in it. */
             next_digest_at: components["schemas"]["Time"];
-            /** @description Whether this server was told how to send mail. */
+            /** @description Whether this server is set up to send mail. */
             sending: boolean;
-            /** @description What you have said. */
+            /** @description Your settings. */
             settings: components["schemas"]["NotificationSettings"];
             /** @description Every kind that you are told of, with the way in force. */
             ways: {
@@ -6384,11 +6379,11 @@ export interface components {
             };
         };
         /**
-         * @description How a person is told of something.
+         * @description Way of delivery of a notification.
          * @enum {string}
          */
         NotificationWay: "mail" | "digest" | "list" | "off";
-        /** @description Which are read. */
+        /** @description Notifications to mark as read. */
         NotificationsRead: {
             until?: components["schemas"]["NotificationId"] | null;
         };
@@ -6461,7 +6456,7 @@ export interface components {
         };
         /** @description A company with a fleet. */
         Operator: {
-            /** @description When it was entered here. */
+            /** @description Time at which it was entered. */
             created_at: components["schemas"]["Time"];
             /** @description Its id. */
             id: components["schemas"]["OperatorId"];
@@ -6632,15 +6627,15 @@ export interface components {
          * @description A photograph in an order.
          */
         PhotoId: string;
-        /** @description What a person wants for a compass. */
+        /** @description Pin of a compass's job, set by a person. */
         Pin: {
             /** @description At this call. */
             call_id: components["schemas"]["CallId"];
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
-            /** @description When it was said. */
+            /** @description Time of the pin. */
             created_at: components["schemas"]["Time"];
-            /** @description Who said it. */
+            /** @description Name of the person who set it. */
             created_by: string;
             /**
              * Format: date
@@ -6649,7 +6644,7 @@ export interface components {
             day: string;
             /** @description By this firm. */
             firm_id: components["schemas"]["FirmId"];
-            /** @description Why. */
+            /** @description Note, such as the reason. */
             note: string | null;
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
@@ -6659,18 +6654,18 @@ export interface components {
             /** @description By vessel and compass. */
             items: components["schemas"]["Pin"][];
         };
-        /** @description How a plan compares with the one before. */
+        /** @description Comparison of a plan with the previous one. */
         PlanAgainst: {
             /**
              * Format: double
-             * @description What this one costs more by the weights; less, where it is negative.
+             * @description Extra cost by the weights; negative where this plan costs less.
              */
             cost_eur: number;
-            /** @description How many of its jobs moved or were dropped. */
+            /** @description Number of the previous plan's jobs that moved or were dropped. */
             moved: number;
             /**
              * Format: double
-             * @description What is paid more.
+             * @description Extra payments.
              */
             paid_eur: number;
             /**
@@ -6679,7 +6674,7 @@ export interface components {
              */
             version: number;
         };
-        /** @description What became of a job of the plan before, or that there is a new one. */
+        /** @description Change of a job against the previous plan, or a new job. */
         PlanChange: {
             /** @description The compasses. */
             compasses: components["schemas"]["PlannedCompass"][];
@@ -6689,13 +6684,13 @@ export interface components {
             vessel_id: components["schemas"]["VesselId"];
             /** @description Her name. */
             vessel_name: string;
-            /** @description What became of it. */
+            /** @description Kind of change. */
             what: components["schemas"]["PlanChangeKind"];
-            /** @description Why. */
+            /** @description Reason. */
             why: string;
         };
         /**
-         * @description What became of a job.
+         * @description Kind of change of a job.
          * @enum {string}
          */
         PlanChangeKind: "kept" | "moved" | "new" | "dropped";
@@ -6790,7 +6785,7 @@ export interface components {
             /** @description Most trays or holes of fore-and-aft and athwartship magnets in use at once. */
             trays_in_use: number[];
         };
-        /** @description Where and when a job is, and what is paid for it. */
+        /** @description Place and day of a job, with its price. */
         PlanPlace: {
             /** @description At which call. */
             call_id: components["schemas"]["CallId"];
@@ -6900,7 +6895,7 @@ export interface components {
             firm_id: components["schemas"]["FirmId"];
             /** @description Its name. */
             firm_name: string;
-            /** @description From when she is alongside and the firm at work. */
+            /** @description Start of the window in which the vessel is alongside and the firm works. */
             from: components["schemas"]["Time"];
             /**
              * @description Orders under way that say something else: they are to be cancelled, or moved by
@@ -6915,7 +6910,7 @@ export interface components {
             late_days: number;
             /** @description The orders by which it is offered or agreed, one for each compass. */
             orders: components["schemas"]["OrderId"][];
-            /** @description Whether a person wants it so. */
+            /** @description Whether a person pinned it. */
             pinned: boolean;
             /**
              * @description UN/LOCODE of its port.
@@ -6924,9 +6919,9 @@ export interface components {
             port: string;
             /** @description The port's name. */
             port_name: string;
-            /** @description Why it is due. */
+            /** @description Reason of the due date. */
             reason: string;
-            /** @description How far it got. */
+            /** @description State of the job. */
             state: components["schemas"]["PlannedJobState"];
             /** @description Until when. */
             to: components["schemas"]["Time"];
@@ -6935,21 +6930,21 @@ export interface components {
              * @description Its part of the team's travel, euros.
              */
             travel_eur: number;
-            /** @description How much it presses. */
+            /** @description Urgency of the due date. */
             urgency: components["schemas"]["Urgency"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
             /** @description Her name. */
             vessel_name: string;
-            /** @description What else it was weighed by. */
+            /** @description Other terms of the cost. */
             weighed: components["schemas"]["PlannedJobWeighed"];
         };
         /**
-         * @description How far a job got.
+         * @description State of a job.
          * @enum {string}
          */
         PlannedJobState: "proposed" | "offered" | "confirmed";
-        /** @description What a job was weighed by beside what is paid, in euros. */
+        /** @description Terms of a job's cost beside payments, euros. */
         PlannedJobWeighed: {
             /**
              * Format: double
@@ -7008,37 +7003,37 @@ export interface components {
         /** @description A vessel's call at a port. */
         PortCall: components["schemas"]["PortCallContent"] & {
             berth_heading: components["schemas"]["CallBerthHeading"] | null;
-            /** @description When it was entered. */
+            /** @description Time of entry. */
             created_at: components["schemas"]["Time"];
-            /** @description Who entered it. */
+            /** @description Name of its author. */
             created_by: string;
             /** @description The call's id. */
             id: components["schemas"]["CallId"];
             /** @description The port's name. */
             port_name: string;
             revised_at: components["schemas"]["Time"] | null;
-            /** @description Who amended it last. */
+            /** @description Author of the last amendment. */
             revised_by: string | null;
             /**
              * Format: int32
              * @description Counts from 1.
              */
             revision: number;
-            /** @description Where it comes from, as it is now. */
+            /** @description Current source of the call. */
             source: components["schemas"]["PortCallSource"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
             /** @description Her name. */
             vessel_name: string;
-            /** @description Why. */
+            /** @description Reason. */
             withdrawal_reason: string | null;
             withdrawn_at: components["schemas"]["Time"] | null;
-            /** @description Who withdrew it. */
+            /** @description Name of the person who withdrew it. */
             withdrawn_by: string | null;
         };
         /**
-         * @description What is to be changed of a call; what is left out stays, null takes the berth or her
-         *     heading there away.
+         * @description Changes to a port call. A field that is left out stays; null removes the berth or the heading
+         *     there.
          * @example {
          *       "eta": "2026-12-09T02:00:00Z",
          *       "etd": "2026-12-11T12:00:00Z"
@@ -7057,7 +7052,7 @@ export interface components {
             /** @description UN/LOCODE. */
             port?: string;
         };
-        /** @description What a call says, wherever it comes from. */
+        /** @description Content of a port call, whatever its source. */
         PortCallContent: {
             /** @description The berth. */
             berth: string | null;
@@ -7066,14 +7061,14 @@ export interface components {
              * @description Her true heading alongside, as it was given.
              */
             berth_heading_deg: number | null;
-            /** @description When she is expected alongside. */
+            /** @description Expected arrival alongside. */
             eta: components["schemas"]["Time"];
             /**
              * Format: double
              * @description She comes within so many hours of that, nineteen times in twenty.
              */
             eta_uncertainty_h: number;
-            /** @description When she is expected to leave. */
+            /** @description Expected departure. */
             etd: components["schemas"]["Time"];
             /**
              * Format: double
@@ -7082,7 +7077,7 @@ export interface components {
             etd_uncertainty_h: number;
             /** @description UN/LOCODE of the port. */
             port: string;
-            /** @description What it is called where it comes from. */
+            /** @description Reference in the source system. */
             reference: string;
         };
         /** @description A page of calls. */
@@ -7094,27 +7089,27 @@ export interface components {
         };
         /** @description A call as it was written once. */
         PortCallRevision: {
-            /** @description When. */
+            /** @description Time of the revision. */
             at: components["schemas"]["Time"];
-            /** @description Who sent it. */
+            /** @description Name of its author. */
             author_name: string;
-            /** @description What it said. */
+            /** @description Content of the call at that revision. */
             call: components["schemas"]["PortCallContent"];
             /**
              * Format: int32
              * @description Counts from 1.
              */
             number: number;
-            /** @description Where it came from. */
+            /** @description Source of the revision. */
             source: components["schemas"]["PortCallSource"];
         };
         /**
-         * @description Where a call comes from.
+         * @description Source of a port call.
          * @enum {string}
          */
         PortCallSource: "api" | "csv" | "icalendar";
         /**
-         * @description What a file did.
+         * @description Result of an upload.
          * @example {
          *       "amended": 1,
          *       "created": 3,
@@ -7136,7 +7131,7 @@ export interface components {
             withdrawn: number;
         };
         /**
-         * @description Why a call is withdrawn.
+         * @description Reason for withdrawing a call.
          * @example {
          *       "reason": "Charter cancelled"
          *     }
@@ -7145,9 +7140,9 @@ export interface components {
             /** @description In a few words. */
             reason?: string | null;
         };
-        /** @description What was found. */
+        /** @description Ports found. */
         PortList: {
-            /** @description What begins with the text comes first. */
+            /** @description Ports that begin with the text come first. */
             items: components["schemas"]["Port"][];
         };
         /** @description One compass heading. */
@@ -7199,10 +7194,10 @@ export interface components {
              */
             z_nt: number;
         };
-        /** @description An error as it is sent (RFC 9457). */
+        /** @description Error as it is sent (RFC 9457). */
         Problem: {
             card_withdrawn?: components["schemas"]["CardWithdrawn"] | null;
-            /** @description What is wrong this time. */
+            /** @description Details of this occurrence. */
             detail: string;
             left_out?: components["schemas"]["LeftOut"] | null;
             refusal?: components["schemas"]["Refusal"] | null;
@@ -7253,9 +7248,9 @@ export interface components {
             /** @description Angles to which the brackets turn from athwartships, degrees clockwise. */
             slews_deg?: number[];
         };
-        /** @description What a model rests on. */
+        /** @description Quality of a model. */
         Quality: {
-            /** @description What the model should not be trusted for. */
+            /** @description Cautions on the use of the model. */
             cautions: components["schemas"]["Caution"][];
             /**
              * Format: double
@@ -7265,11 +7260,11 @@ export interface components {
             condition: number | null;
             /**
              * Format: double
-             * @description How many samples with independent errors would tell the deviation, where
-             *     the ship was last, as well as all her samples together.
+             * @description Number of samples with independent errors that would determine the deviation at the last
+             *     place as well as all samples do.
              */
             effective_samples: number;
-            /** @description What part of the knowledge of each parameter is from the data, 0 to 1. */
+            /** @description Part of the knowledge of each parameter that is from the data, 0 to 1. */
             from_data: components["schemas"]["FromData"];
         };
         /** @description Hours without mail; over midnight if `to` is before `from`. */
@@ -7285,11 +7280,11 @@ export interface components {
              */
             to: string;
         };
-        /** @description How samples are read. */
+        /** @description Settings of an analysis. */
         ReadingSettings: {
             /** @description The model of the earth's field. */
             field_model: components["schemas"]["FieldModel"];
-            /** @description Whether the gyro takes its speed error out itself. */
+            /** @description Correction of the gyro's speed error by the gyro itself. */
             gyro_speed_error: components["schemas"]["GyroSpeedError"];
             /**
              * Format: double
@@ -7322,13 +7317,13 @@ export interface components {
             recovery_codes: string[];
         };
         /**
-         * @description Where a red, north-seeking end points.
+         * @description Direction of a red, north-seeking end.
          * @enum {string}
          */
         RedEnd: "forward" | "aft" | "starboard" | "port" | "up" | "down";
         /**
-         * @description How gyro and satellite compass compare over the samples since the ship or the
-         *     compass was last changed.
+         * @description Comparison of gyro and satellite compass over the samples since the last change of the ship or
+         *     the compass.
          */
         References: {
             /**
@@ -7528,9 +7523,9 @@ export interface components {
              */
             due_on: string;
             order: components["schemas"]["ReportOrder"] | null;
-            /** @description Why, in words. */
+            /** @description Reason in plain words. */
             reason: string;
-            /** @description How much that presses. */
+            /** @description Urgency of the due date. */
             urgency: components["schemas"]["Urgency"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
@@ -7538,7 +7533,7 @@ export interface components {
             vessel_name: string;
         };
         /**
-         * @description Where a fee is known from.
+         * @description Source of a fee.
          * @enum {string}
          */
         ReportFeeFrom: "agreed" | "terms";
@@ -7548,11 +7543,11 @@ export interface components {
             compass_id: components["schemas"]["CompassId"];
             /** @description Its name. */
             compass_name: string;
-            /** @description When it was completed. */
+            /** @description Time of completion. */
             completed_at: components["schemas"]["Time"];
             /**
              * Format: double
-             * @description What the firm took, euros; none where that is not known.
+             * @description Fee of the firm, euros; none where it is unknown.
              */
             fee_eur: number | null;
             fee_from: components["schemas"]["ReportFeeFrom"] | null;
@@ -7562,9 +7557,9 @@ export interface components {
             order_id: components["schemas"]["OrderId"];
             /** @description The port. */
             port: string;
-            /** @description Whether it spared the ship a swing: not if headings at sea speak against it. */
+            /** @description Whether it spared the vessel a swing; not if headings at sea contradict it. */
             spared_swing: boolean;
-            /** @description What has become of it. */
+            /** @description State of the order. */
             state: components["schemas"]["WorkOrderState"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
@@ -7577,19 +7572,18 @@ export interface components {
             firm: string | null;
             /** @description The order. */
             id: components["schemas"]["OrderId"];
-            /** @description When it is to be done. */
+            /** @description Planned time of the work. */
             planned_at: components["schemas"]["Time"];
             /** @description The port. */
             port: string;
-            /** @description How far it has come. */
+            /** @description State of the order. */
             state: components["schemas"]["WorkOrderState"];
         };
-        /** @description What adjusting at the berth saved against swinging the ship. */
+        /** @description Savings from adjusting at the berth instead of swinging the vessel. */
         ReportSaved: {
             /**
              * Format: double
-             * @description What the fees of all jobs come to, as far as they are known, euros: those that the
-             *     sea does not confirm were paid for too.
+             * @description Sum of the known fees of all jobs, euros, including those of jobs that failed at sea.
              */
             fees_eur: number;
             /**
@@ -7609,12 +7603,12 @@ export interface components {
             saved_h: number;
             /**
              * Format: double
-             * @description What a swing costs, euros, by the operator's settings.
+             * @description Cost of a swing, euros, from the operator's settings.
              */
             swing_eur: number;
             /**
              * Format: double
-             * @description How long it takes, hours, by the operator's settings.
+             * @description Duration of a swing, hours, from the operator's settings.
              */
             swing_h: number;
             /**
@@ -7622,11 +7616,11 @@ export interface components {
              *     one visit.
              */
             swings: number;
-            /** @description How many of all jobs have no fee that is known. */
+            /** @description Number of jobs whose fee is unknown. */
             without_fee: number;
         };
         /**
-         * @description What reports reckon with, and who gets one each month.
+         * @description Cost figures for reports, and recipients of the monthly report.
          * @example {
          *       "monthly_to": [
          *         "superintendent@example.com"
@@ -7637,19 +7631,19 @@ export interface components {
          */
         ReportSettings: {
             /**
-             * @description Who gets the report of a month by mail after its end; at most 20 addresses.
+             * @description Recipients of the report of a month by mail after its end; at most 20 addresses.
              * @default []
              */
             monthly_to: string[];
             /**
              * Format: double
-             * @description What swinging a ship costs, euros: tugs, pilot, adjuster and the ship's time.
+             * @description Cost of swinging a vessel, euros: tugs, pilot, adjuster and the vessel's time.
              * @default 6000
              */
             swing_eur: number;
             /**
              * Format: double
-             * @description How long it takes, hours.
+             * @description Duration of a swing, hours.
              * @default 3
              */
             swing_h: number;
@@ -7668,7 +7662,7 @@ export interface components {
              * @description Their root mean square, degrees.
              */
             rms_deg: number;
-            /** @description How many. */
+            /** @description Number of residuals. */
             samples: number;
         };
         /** @description An entry as it is, and as it was. */
@@ -7683,13 +7677,13 @@ export interface components {
         };
         /** @description An entry as it was written once. */
         Revision: {
-            /** @description When. */
+            /** @description Time of the revision. */
             at: components["schemas"]["Time"];
-            /** @description Where it was written. */
+            /** @description Place of its author. */
             author: components["schemas"]["LogbookAuthor"];
-            /** @description Who wrote it; empty when a report from on board does not say. */
+            /** @description Name of its author; empty when a report from on board does not say. */
             author_name: string;
-            /** @description What it said. */
+            /** @description The entry as it was then. */
             entry: components["schemas"]["NewEntry"];
             /**
              * Format: int32
@@ -7698,7 +7692,7 @@ export interface components {
             number: number;
         };
         /**
-         * @description What a user may do.
+         * @description Role of a user.
          * @enum {string}
          */
         Role: "admin" | "viewer" | "adjuster" | "platform_admin";
@@ -7711,14 +7705,14 @@ export interface components {
              * @example iso-25862-interval
              */
             id: string;
-            /** @description Whether a copy or a report of it was read, rather than the document itself. */
+            /** @description Whether the rule was read in a copy or a report rather than in the document itself. */
             second_hand: boolean;
-            /** @description Where in it. */
+            /** @description Section of the document. */
             section: string | null;
         };
         /**
-         * @description What to sail next. A watch is four hours on one compass heading; three
-         *     watches are on three successive days.
+         * @description Advice on what to sail next. A watch is four hours on one compass heading; three watches are on
+         *     three successive days.
          */
         SailNext: {
             elsewhere: components["schemas"]["LatitudeAdvice"] | null;
@@ -7801,7 +7795,7 @@ export interface components {
             spread_deg: number | null;
             /** @description The middle of the stretch. */
             time: components["schemas"]["Time"];
-            /** @description Whether it carried weight in a model. */
+            /** @description True if it carried weight in a model. */
             used: boolean;
             /**
              * Format: double
@@ -7815,7 +7809,7 @@ export interface components {
             weight: number;
             /**
              * Format: int32
-             * @description How many settled ten-second windows the means are of.
+             * @description Number of settled ten-second windows in the means.
              */
             windows: number;
             /**
@@ -7839,7 +7833,7 @@ export interface components {
             residual_deg: (number | null)[];
             /** @description Seconds since the beginning of 1970, UTC. */
             unix_s: number[];
-            /** @description Whether it carried weight in a model. */
+            /** @description True for those that carried weight in a model. */
             used: boolean[];
         };
         /** @description A page of samples. */
@@ -7856,7 +7850,7 @@ export interface components {
             first: components["schemas"]["Time"] | null;
             /**
              * Format: int64
-             * @description How many days each interval is of: 1 up to 31 days, 7 beyond.
+             * @description Length of an interval, days: 1 up to 31 days, 7 beyond.
              */
             interval_days: number;
             /**
@@ -7870,13 +7864,13 @@ export interface components {
              * @description Root mean square of the residuals that carried weight, degrees.
              */
             rms_deg: number | null;
-            /** @description How many samples have a measured deviation. */
+            /** @description Number of samples with a measured deviation. */
             samples: number;
-            /** @description How many of those have a residual, being of an epoch with a model. */
+            /** @description Number of those with a residual, in an epoch with a model. */
             with_residual: number;
         };
         /**
-         * @description Why a sample was left out, or counted for less.
+         * @description Reason for which a sample was left out, or counted for less.
          * @enum {string}
          */
         SampleReason: "no_reference" | "reference_failed" | "compass_stuck" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "disturbance" | "outlier" | "no_model";
@@ -7884,7 +7878,7 @@ export interface components {
         Schedule: {
             outdated_since: components["schemas"]["Time"] | null;
             plan: components["schemas"]["SchedulePlan"] | null;
-            /** @description Why the last try to make another one failed. */
+            /** @description Error of the last attempt to make a plan. */
             problem: string | null;
         };
         /** @description Orders that were offered. */
@@ -7899,26 +7893,26 @@ export interface components {
             /** @description The order. */
             order_id: components["schemas"]["OrderId"];
         };
-        /** @description Who adjusts which compass where and when, how good that is, and what could not be done. */
+        /** @description Plan of a fleet: jobs, their quality, and the needs that could not be met. */
         SchedulePlan: {
             against: components["schemas"]["PlanAgainst"] | null;
             /** @description As of when: the begun hour. */
             as_of: components["schemas"]["Time"];
             /**
              * Format: double
-             * @description What no plan can cost less than.
+             * @description Lower bound of the cost of any plan.
              */
             bound_eur: number;
-            /** @description What became of the jobs of the plan before, and what is new. */
+            /** @description Changes against the previous plan. */
             changes: components["schemas"]["PlanChange"][];
             /**
              * Format: double
-             * @description What it costs by the weights, all that is unmet included.
+             * @description Cost by the weights, including everything unmet.
              */
             cost_eur: number;
             /**
              * Format: double
-             * @description How far the cost is above the bound, in per cent of the cost.
+             * @description Distance of the cost from the bound, per cent of the cost.
              */
             gap_percent: number;
             /** @description SHA-256 of what it rests on, hexadecimal: the same again makes no new plan. */
@@ -7934,18 +7928,18 @@ export interface components {
              * @description Fees and travel that are really paid.
              */
             paid_eur: number;
-            /** @description Whether no plan is better. */
+            /** @description Whether the plan is proven optimal. */
             proven_optimal: boolean;
-            /** @description When it was made. */
+            /** @description Time of creation. */
             solved_at: components["schemas"]["Time"];
             /**
              * Format: double
-             * @description How long that took, seconds.
+             * @description Time taken to solve, seconds.
              */
             solved_in_s: number;
             /** @description Compasses whose order is under way beside the plan. */
             under_way: components["schemas"]["NeedUnderWay"][];
-            /** @description What could not be scheduled, or only late. */
+            /** @description Needs that could not be scheduled, or only late. */
             unscheduled: components["schemas"]["UnscheduledNeed"][];
             /**
              * Format: int64
@@ -7964,12 +7958,12 @@ export interface components {
         SchedulePlanSummary: {
             /**
              * Format: double
-             * @description What it costs by the weights, all that is unmet included.
+             * @description Cost by the weights, including everything unmet.
              */
             cost_eur: number;
             /**
              * Format: double
-             * @description How far that is above what no plan can cost less than, in per cent.
+             * @description Distance of the cost from its lower bound, per cent.
              */
             gap_percent: number;
             /** @description Jobs in it. */
@@ -7981,9 +7975,9 @@ export interface components {
              * @description Fees and travel that are really paid.
              */
             paid_eur: number;
-            /** @description When it was made. */
+            /** @description Time of creation. */
             solved_at: components["schemas"]["Time"];
-            /** @description What could not be scheduled, or only late. */
+            /** @description Number of needs that are not scheduled, or only late. */
             unscheduled: number;
             /**
              * Format: int64
@@ -7992,7 +7986,7 @@ export interface components {
             version: number;
         };
         /**
-         * @description What counts how much in the schedule.
+         * @description Cost weights, terms and horizon of the schedule.
          * @example {
          *       "horizon_days": 180,
          *       "terms": {
@@ -8018,8 +8012,8 @@ export interface components {
             /** @description The terms by which compasses are due where a rule gives no date. */
             terms?: Record<string, never>;
             /**
-             * @description What counts how much, in euros; what is left out has its default. docs/schedule.md
-             *     has every figure.
+             * @description Cost weights in euros; a weight that is left out has its default. docs/schedule.md
+             *     explains each.
              */
             weights?: Record<string, never>;
         };
@@ -8076,7 +8070,7 @@ export interface components {
             code: string;
         };
         /**
-         * @description What an authenticator app needs to make codes.
+         * @description The secret from which an authenticator app makes codes.
          * @example {
          *       "secret": "GEZDGNBVGY3TQOJQGEZDGNBVGY3TQOJQ",
          *       "uri": "otpauth://totp/Binnacle:ada%40example%2Ecom?secret=GEZDGNBVGY3TQOJQGEZDGNBVGY3TQOJQ&issuer=Binnacle"
@@ -8085,7 +8079,7 @@ export interface components {
         SecondFactorSecret: {
             /** @description To be typed into the app; base 32. Never shown again. */
             secret: string;
-            /** @description The same as an address, to be shown as a QR code or opened on the telephone. */
+            /** @description The secret as a URI, to be shown as a QR code or opened on the phone. */
             uri: string;
         };
         /**
@@ -8193,26 +8187,26 @@ export interface components {
         /** @description A time that you are signed in for. */
         Session: {
             /**
-             * @description Where the sign-in came from; empty if that is not known.
+             * @description Network address of the sign-in; empty if unknown.
              * @example 198.51.100.7
              */
             address: string;
-            /** @description When you signed in. */
+            /** @description Time of the sign-in. */
             created_at: components["schemas"]["Time"];
-            /** @description Whether this request came with it. */
+            /** @description True for the session of this request. */
             current: boolean;
-            /** @description When it ends at the latest. */
+            /** @description Latest end of the session. */
             expires_at: components["schemas"]["Time"];
             /** @description The session's id. */
             id: components["schemas"]["SessionId"];
-            /** @description When a request last came, to ten minutes. */
+            /** @description Time of the last request, to ten minutes. */
             last_seen_at: components["schemas"]["Time"];
             /**
              * @description By whose word it was opened; none if by your password.
              * @example null
              */
             provider: string | null;
-            /** @description What the browser called itself. */
+            /** @description The browser's own name for itself (`User-Agent`). */
             user_agent: string;
         };
         /**
@@ -8233,7 +8227,7 @@ export interface components {
          */
         Severity: "notice" | "warning" | "critical";
         /**
-         * @description What a user signs in with.
+         * @description A user's credentials.
          * @example {
          *       "email": "captain@example.com",
          *       "password": "seven gulls over the quay"
@@ -8257,19 +8251,19 @@ export interface components {
          *     }
          */
         SignInProvider: {
-            /** @description What it is called; none when there is none. */
+            /** @description Name of the provider; none if no provider is set up. */
             name: string | null;
         };
         /**
-         * @description What an operator asks of its people when they sign in.
+         * @description An operator's rules for signing in.
          * @example {
          *       "second_factor_required": true
          *     }
          */
         SignInRules: {
             /**
-             * @description Whether everyone needs a second factor. Who has none may then only set one up, and
-             *     their tokens do nothing until they have.
+             * @description True if everyone needs a second factor. Users without one can then only set one up, and
+             *     their tokens stop working until they do.
              */
             second_factor_required: boolean;
         };
@@ -8413,16 +8407,16 @@ export interface components {
         };
         /** @description A token, without its secret. */
         Token: {
-            /** @description When it was made. */
+            /** @description Creation time. */
             created_at: components["schemas"]["Time"];
-            /** @description When it ends. */
+            /** @description Expiry time. */
             expires_at: components["schemas"]["Time"];
             /** @description The token's id. */
             id: components["schemas"]["TokenId"];
             last_used_at: components["schemas"]["Time"] | null;
-            /** @description What it is for, in the user's words. */
+            /** @description Purpose of the token, in the user's words. */
             name: string;
-            /** @description What it may do. */
+            /** @description Scope of the token. */
             scope: components["schemas"]["TokenScope"];
         };
         /**
@@ -8438,24 +8432,24 @@ export interface components {
             next: string | null;
         };
         /**
-         * @description What a token may do.
+         * @description Scope of a token.
          * @enum {string}
          */
         TokenScope: "read" | "write";
         /**
-         * @description What a ship carries for her living.
+         * @description Trade of a vessel.
          * @enum {string}
          */
         Trade: "bulk" | "container" | "tanker" | "general_cargo" | "ro_ro" | "passenger" | "fishing" | "offshore" | "other";
-        /** @description What could not be scheduled, or only late. */
+        /** @description Need that could not be scheduled, or only late. */
         UnscheduledNeed: {
-            /** @description Why it could not be. */
+            /** @description Reasons why it could not be scheduled in time. */
             because: string[];
             /** @description The compasses. */
             compasses: components["schemas"]["PlannedCompass"][];
             /**
              * Format: date
-             * @description When they are due.
+             * @description Due date.
              */
             due_on: string;
             /**
@@ -8465,28 +8459,28 @@ export interface components {
             orders?: components["schemas"]["OrderId"][];
             /** @description Whether it is in the plan, after the due date. */
             planned_late: boolean;
-            /** @description Why they are due. */
+            /** @description Reason of the due date. */
             reason: string;
-            /** @description How much that presses. */
+            /** @description Urgency of the due date. */
             urgency: components["schemas"]["Urgency"];
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
             /** @description Her name. */
             vessel_name: string;
-            /** @description What would have made it possible, the nearest first. */
+            /** @description Changes that would have made it possible, the nearest first. */
             would_help: string[];
         };
         /**
-         * @description How much a need presses.
+         * @description Urgency of a need.
          * @enum {string}
          */
         Urgency: "routine" | "soon" | "urgent" | "overdue";
         /** @description One of the operator's people. */
         User: {
-            /** @description Since when there is such a user. */
+            /** @description Creation time of the user. */
             created_at: components["schemas"]["Time"];
             /**
-             * @description What the user signs in with.
+             * @description E-mail address used to sign in.
              * @example ada@example.com
              */
             email: string;
@@ -8499,11 +8493,11 @@ export interface components {
              * @example Ada Lovelace
              */
             name: string;
-            /** @description What the user may do. */
+            /** @description Role of the user. */
             role: components["schemas"]["Role"];
-            /** @description Whether the user has a second factor. */
+            /** @description True if the user has a second factor. */
             second_factor: boolean;
-            /** @description Whether the user can sign in. */
+            /** @description State of the account. */
             state: components["schemas"]["UserState"];
         };
         /**
@@ -8519,7 +8513,7 @@ export interface components {
             next: string | null;
         };
         /**
-         * @description Whether a user can sign in.
+         * @description State of a user's account.
          * @enum {string}
          */
         UserState: "invited" | "active" | "disabled";
@@ -8529,9 +8523,9 @@ export interface components {
             call_sign: string | null;
             /** @description Its compasses, in the order in which they were entered. */
             compasses: components["schemas"]["Compass"][];
-            /** @description When it was entered here. */
+            /** @description Time at which it was entered. */
             created_at: components["schemas"]["Time"];
-            /** @description How its degaussing coils are, in words. */
+            /** @description State of its degaussing coils, in words. */
             degaussing: string | null;
             /** @description Its flag state. */
             flag: string | null;
@@ -8553,12 +8547,12 @@ export interface components {
             worst: components["schemas"]["WorstHeading"] | null;
             worst_alert: components["schemas"]["Severity"] | null;
         };
-        /** @description What is to be changed of a vessel; what is left out stays, null takes a value away. */
+        /** @description Amendment of a vessel. Absent fields stay as they are; null removes a value. */
         VesselAmendment: {
             /** @example EAVN */
             call_sign?: string | null;
             /**
-             * @description How her degaussing coils are, in words.
+             * @description State of its degaussing coils, in words.
              * @example no coils fitted
              */
             degaussing?: string | null;
@@ -8573,18 +8567,18 @@ export interface components {
              */
             imo_number?: string | null;
             /**
-             * @description False takes her out of service: she is in the fleet's lists no more, needs nothing and
-             *     calls for no alert; all that is stored of her stays, and what her agents send is kept.
+             * @description False takes the vessel out of service: it leaves the fleet's lists, has no needs and raises
+             *     no alert. All its records stay, and what its agents send is kept.
              */
             in_service?: boolean | null;
             name?: string | null;
         };
         /** @description The data of an event. */
         VesselEvent: {
-            /** @description What happened. */
+            /** @description Kind of event. */
             kind: components["schemas"]["EventKind"];
             order_id?: components["schemas"]["OrderId"] | null;
-            /** @description Which vessel. */
+            /** @description The vessel concerned. */
             vessel_id: components["schemas"]["VesselId"];
         };
         /**
@@ -8600,7 +8594,7 @@ export interface components {
             next: string | null;
         };
         /**
-         * @description What rules on adjusting ask about a vessel.
+         * @description Facts about a vessel that rules on adjusting use.
          * @example {
          *       "deviation_record": "kept",
          *       "flag_state": "PA",
@@ -8619,13 +8613,13 @@ export interface components {
             /** @default null */
             deviation_record: components["schemas"]["DeviationRecordKept"] | null;
             /**
-             * @description Her flag, ISO 3166; where it is not said, what the vessel's own `flag` tells.
+             * @description Its flag, ISO 3166; by default that of the vessel's own `flag`.
              * @default null
              */
             flag_state: string | null;
             /**
              * Format: int32
-             * @description Her gross tonnage.
+             * @description Its gross tonnage.
              * @default null
              */
             gross_tonnage: number | null;
@@ -8644,30 +8638,27 @@ export interface components {
         };
         /** @description A vessel's settings. */
         VesselSettings: {
-            /**
-             * @description How her agents sample and send; `version` rises with every change and is
-             *     ignored in a request.
-             */
+            /** @description Settings of its agents; `version` rises with every change and is ignored in a request. */
             agent: components["schemas"]["AgentSettings"];
-            /** @description From when on alerts are raised; the defaults if not said. */
+            /** @description Limits beyond which alerts are raised; the defaults if absent. */
             alerts?: components["schemas"]["AlertLimits"];
-            /** @description How her samples are read. */
+            /** @description Settings of the analysis of its samples. */
             analysis: components["schemas"]["ReadingSettings"];
         };
         /** @description A webhook, without its secret. */
         Webhook: {
-            /** @description When it was made. */
+            /** @description Creation time. */
             created_at: components["schemas"]["Time"];
             /**
              * Format: int64
              * @description Deliveries that were given up.
              */
             dead: number;
-            /** @description Whether anything is sent; what was not delivered waits meanwhile. */
+            /** @description True if messages are sent; undelivered messages wait meanwhile. */
             enabled: boolean;
             /** @description The webhook's id. */
             id: components["schemas"]["WebhookId"];
-            /** @description What it is told of. */
+            /** @description Kinds of messages sent. */
             kinds: components["schemas"]["MessageKind"][];
             /**
              * Format: int64
@@ -8675,7 +8666,7 @@ export interface components {
              */
             pending: number;
             /**
-             * @description Where it POSTs to.
+             * @description URL for the POST requests.
              * @example https://example.com/hooks/binnacle
              */
             url: string;
@@ -8697,7 +8688,7 @@ export interface components {
          * @enum {string}
          */
         Weekday: "monday" | "tuesday" | "wednesday" | "thursday" | "friday" | "saturday" | "sunday";
-        /** @description Why an entry is withdrawn. */
+        /** @description Reason for which an entry is withdrawn. */
         Withdrawal: {
             /** @description In a few words. */
             reason?: string | null;
@@ -9201,7 +9192,7 @@ export interface operations {
                 open?: boolean;
                 /** @description Only of this severity or worse. */
                 severity?: components["schemas"]["Severity"];
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -9489,19 +9480,19 @@ export interface operations {
     list_audit: {
         parameters: {
             query?: {
-                /** @description Of this user or agent only. */
+                /** @description Id of a user or an agent. */
                 actor?: string;
-                /** @description About this vessel only. */
+                /** @description Id of a vessel. */
                 vessel?: components["schemas"]["VesselId"];
-                /** @description About this work order only. */
+                /** @description Id of a work order. */
                 order?: components["schemas"]["OrderId"];
-                /** @description Of this route only, like `/api/v1/work-orders/{id}/model`. */
+                /** @description Route, like `/api/v1/work-orders/{id}/model`. */
                 route?: string;
-                /** @description The first instant, RFC 3339. */
+                /** @description First instant, RFC 3339. */
                 from?: string;
-                /** @description The instant after the last, RFC 3339. */
+                /** @description Instant after the last, RFC 3339. */
                 to?: string;
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -9562,17 +9553,17 @@ export interface operations {
     audit_csv: {
         parameters: {
             query?: {
-                /** @description Of this user or agent only. */
+                /** @description Id of a user or an agent. */
                 actor?: string;
-                /** @description About this vessel only. */
+                /** @description Id of a vessel. */
                 vessel?: components["schemas"]["VesselId"];
-                /** @description About this work order only. */
+                /** @description Id of a work order. */
                 order?: components["schemas"]["OrderId"];
-                /** @description Of this route only, like `/api/v1/work-orders/{id}/model`. */
+                /** @description Route, like `/api/v1/work-orders/{id}/model`. */
                 route?: string;
-                /** @description The first instant, RFC 3339. */
+                /** @description First instant, RFC 3339. */
                 from?: string;
-                /** @description The instant after the last, RFC 3339. */
+                /** @description Instant after the last, RFC 3339. */
                 to?: string;
             };
             header?: never;
@@ -9719,7 +9710,7 @@ export interface operations {
     list_binnacles: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -9771,7 +9762,7 @@ export interface operations {
     list_feeds: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -10086,7 +10077,7 @@ export interface operations {
     list_firms: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -10268,7 +10259,7 @@ export interface operations {
     list_keys: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -10753,7 +10744,7 @@ export interface operations {
     list_recipients: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -11082,7 +11073,7 @@ export interface operations {
             query?: {
                 /** @description Only those that stand so; `dead` are the dead letters. */
                 state?: components["schemas"]["DeliveryState"];
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -11851,7 +11842,7 @@ export interface operations {
                 urgency?: components["schemas"]["Urgency"];
                 /** @description Due on this day or before. */
                 due_by?: string;
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -11903,11 +11894,11 @@ export interface operations {
     list_notifications: {
         parameters: {
             query?: {
-                /** @description Whether only those that you have not read (`true`), or only those that you have. */
+                /** @description Only unread ones (`true`) or only read ones (`false`). */
                 unread?: boolean;
                 /** @description Only of this kind. */
                 kind?: components["schemas"]["NotificationKind"];
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -12113,7 +12104,7 @@ export interface operations {
     list_operators: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -12400,15 +12391,15 @@ export interface operations {
     list_port_calls: {
         parameters: {
             query?: {
-                /** @description What has not ended before this instant, RFC 3339. */
+                /** @description Only calls that have not ended before this instant, RFC 3339. */
                 from?: string;
-                /** @description What begins before this instant, RFC 3339. */
+                /** @description Only calls that begin before this instant, RFC 3339. */
                 to?: string;
                 /** @description At this port only, UN/LOCODE. */
                 port?: string;
-                /** @description Whether withdrawn calls are listed too; they are not if not said. */
+                /** @description Whether to list withdrawn calls too; by default they are left out. */
                 withdrawn?: boolean;
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -12470,9 +12461,8 @@ export interface operations {
         parameters: {
             query?: {
                 /**
-                 * @description Whether the file is all there is: calls of the vessels in it that came from such a
-                 *     file before, are not over and are not in this one are withdrawn. They stay if not
-                 *     said.
+                 * @description Whether the file is complete. Then calls of its vessels that came from such a file before,
+                 *     are not over and are missing in this one are withdrawn. By default they stay.
                  */
                 replace?: boolean;
             };
@@ -12563,7 +12553,7 @@ export interface operations {
                  * @example rotterdam
                  */
                 q: string;
-                /** @description How many at most; 20 if not said. */
+                /** @description Maximum number of results; 20 by default. */
                 limit?: number;
             };
             header?: never;
@@ -12699,7 +12689,7 @@ export interface operations {
                  * @example 2026-11-30
                  */
                 to?: string;
-                /** @description Which table; `due` if not said. */
+                /** @description Table to return; `due` by default. */
                 table?: "due" | "deviation" | "jobs";
             };
             header?: never;
@@ -13303,7 +13293,7 @@ export interface operations {
     list_plans: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -13705,7 +13695,7 @@ export interface operations {
                 code?: string;
                 /** @description As we gave it. */
                 state?: string;
-                /** @description Why nobody signed in. */
+                /** @description Error code, if nobody signed in. */
                 error?: string;
             };
             header?: never;
@@ -13849,7 +13839,7 @@ export interface operations {
     list_sessions: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -14131,7 +14121,7 @@ export interface operations {
             query?: {
                 /** @description The model version it uses; what follows it comes at once. */
                 model?: string;
-                /** @description The same by the last eight digits of its id; what follows comes when it matters. */
+                /** @description The last eight digits of that model's id; a later model is sent when it matters. */
                 card?: string;
                 /** @description The settings it uses. */
                 settings?: number;
@@ -14145,8 +14135,8 @@ export interface operations {
                  */
                 budget?: number;
                 /**
-                 * @description So many seconds at most, and no more than 55, the answer to a batch may wait for the
-                 *     analysis of its samples, and then tells what that found: of the last batch for now.
+                 * @description Seconds, at most 55, for which the response to a batch may wait for the analysis of its
+                 *     samples. The response then includes its results. Sent with the last batch for now.
                  */
                 wait?: number;
             };
@@ -14235,7 +14225,7 @@ export interface operations {
             query?: {
                 /** @description The model version it uses; what follows it comes at once. */
                 model?: string;
-                /** @description The same by the last eight digits of its id; what follows comes when it matters. */
+                /** @description The last eight digits of that model's id; a later model is sent when it matters. */
                 card?: string;
                 /** @description The settings it uses. */
                 settings?: number;
@@ -14249,8 +14239,8 @@ export interface operations {
                  */
                 budget?: number;
                 /**
-                 * @description So many seconds at most, and no more than 55, the answer to a batch may wait for the
-                 *     analysis of its samples, and then tells what that found: of the last batch for now.
+                 * @description Seconds, at most 55, for which the response to a batch may wait for the analysis of its
+                 *     samples. The response then includes its results. Sent with the last batch for now.
                  */
                 wait?: number;
             };
@@ -14304,7 +14294,7 @@ export interface operations {
     list_tokens: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -14472,7 +14462,7 @@ export interface operations {
     list_users: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -14872,7 +14862,7 @@ export interface operations {
             query?: {
                 /** @description Those in service, or those out of it; those in service if not said. */
                 in_service?: boolean;
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -15152,7 +15142,7 @@ export interface operations {
     list_agents: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -15777,7 +15767,7 @@ export interface operations {
     list_compasses: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -16218,7 +16208,7 @@ export interface operations {
     list_revisions: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -16433,7 +16423,7 @@ export interface operations {
                 to?: string;
                 /** @description A compass of the vessel's; its first one if not said. */
                 compass?: components["schemas"]["CompassId"];
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -16667,13 +16657,13 @@ export interface operations {
             query?: {
                 /** @description Of this kind only. */
                 kind?: components["schemas"]["LogbookKind"];
-                /** @description What had not ended before this instant, RFC 3339. */
+                /** @description Entries that had not ended before this instant, RFC 3339. */
                 from?: string;
-                /** @description What began before this instant, RFC 3339. */
+                /** @description Entries that began before this instant, RFC 3339. */
                 to?: string;
-                /** @description Whether withdrawn entries are listed too; they are if not said. */
+                /** @description Includes withdrawn entries; true by default. */
                 withdrawn?: boolean;
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -17139,7 +17129,7 @@ export interface operations {
             query?: {
                 /** @description A compass of the vessel's; its first one if not said. */
                 compass?: components["schemas"]["CompassId"];
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -17206,7 +17196,7 @@ export interface operations {
                 urgency?: components["schemas"]["Urgency"];
                 /** @description Due on this day or before. */
                 due_by?: string;
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -17407,15 +17397,15 @@ export interface operations {
     list_vessel_port_calls: {
         parameters: {
             query?: {
-                /** @description What has not ended before this instant, RFC 3339. */
+                /** @description Only calls that have not ended before this instant, RFC 3339. */
                 from?: string;
-                /** @description What begins before this instant, RFC 3339. */
+                /** @description Only calls that begin before this instant, RFC 3339. */
                 to?: string;
                 /** @description At this port only, UN/LOCODE. */
                 port?: string;
-                /** @description Whether withdrawn calls are listed too; they are not if not said. */
+                /** @description Whether to list withdrawn calls too; by default they are left out. */
                 withdrawn?: boolean;
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -17638,9 +17628,8 @@ export interface operations {
         parameters: {
             query?: {
                 /**
-                 * @description Whether the file is all there is: calls of the vessels in it that came from such a
-                 *     file before, are not over and are not in this one are withdrawn. They stay if not
-                 *     said.
+                 * @description Whether the file is complete. Then calls of its vessels that came from such a file before,
+                 *     are not over and are missing in this one are withdrawn. By default they stay.
                  */
                 replace?: boolean;
             };
@@ -17738,9 +17727,8 @@ export interface operations {
         parameters: {
             query?: {
                 /**
-                 * @description Whether the file is all there is: calls of the vessels in it that came from such a
-                 *     file before, are not over and are not in this one are withdrawn. They stay if not
-                 *     said.
+                 * @description Whether the file is complete. Then calls of its vessels that came from such a file before,
+                 *     are not over and are missing in this one are withdrawn. By default they stay.
                  */
                 replace?: boolean;
             };
@@ -18100,7 +18088,7 @@ export interface operations {
                 to?: string;
                 /** @description A compass of the vessel's; its first one if not said. */
                 compass?: components["schemas"]["CompassId"];
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -18532,7 +18520,7 @@ export interface operations {
     list_webhooks: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -18852,7 +18840,7 @@ export interface operations {
             query?: {
                 /** @description Only those that stand so; `dead` are the dead letters. */
                 state?: components["schemas"]["DeliveryState"];
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -19018,7 +19006,7 @@ export interface operations {
                 vessel?: components["schemas"]["VesselId"];
                 /** @description In this state only. */
                 state?: components["schemas"]["WorkOrderState"];
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -19972,7 +19960,7 @@ export interface operations {
     list_entries: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;
@@ -20093,7 +20081,7 @@ export interface operations {
     list_messages: {
         parameters: {
             query?: {
-                /** @description How many at most; 100 if not said. */
+                /** @description Maximum number of items; 100 by default. */
                 limit?: number;
                 /** @description `next` of the page before. */
                 after?: string;

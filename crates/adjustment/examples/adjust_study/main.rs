@@ -1,7 +1,7 @@
-//! The tables of BENCHMARKS.md on adjusting at the berth: how often the band of a plan
-//! holds the true residual and how large the worst one is; what becomes of steps that are
-//! done wrong, with and without a second reading of the magnetometer; how soon headings at sea
-//! tell right from wrong; and what a berth notices of a ship that changed since the model.
+//! Tables of BENCHMARKS.md on adjusting at the berth: coverage of a plan's band and size of
+//! its worst residual; detection of steps that are done wrong, with and without a second
+//! reading of the magnetometer; number of headings at sea until a verdict; and detection of
+//! a ship that changed since the model.
 //!
 //! `make study-adjust`, or
 //! `cargo run --release -p binnacle-adjustment --example adjust_study [SHIPS] [PART]`
@@ -69,29 +69,34 @@ fn main() {
     }
 }
 
-/// Class A: across the needle by what turns the field by 5° to 10°, by somebody who says how
-/// well he knows the heading, and who knows it so or to half a degree; and along it.
+/// Class A: changes across the needle that turn the field by 5° to 10°, with a stated
+/// heading error that is true or in fact half a degree; and changes along the needle.
 fn changed(ships: u64) {
     let nil = 0.0..0.0;
-    for told_deg in [1.0, 2.0, 3.0, 5.0] {
+    for given_deg in [1.0, 2.0, 3.0, 5.0] {
         let said = Instruments {
-            heading_sd_deg: told_deg,
+            heading_sd_deg: given_deg,
             ..FLUXGATE
         };
         for (name, is) in [("half a degree", FLUXGATE), ("as said", said)] {
             for across in [nil.clone(), 5.0..10.0] {
-                let tally =
-                    Tally::changed(0..ships, [nil.clone(), across.clone()], (is, said), None);
-                println!("heading said {told_deg}, is {name}, across {across:?}: {tally}");
+                let tally = Tally::changed(0..ships, [nil.clone(), across.clone()], is, said, None);
+                println!("heading said {given_deg}, is {name}, across {across:?}: {tally}");
             }
         }
     }
     for (name, instruments) in [("fluxgate", FLUXGATE), ("phone", PHONE)] {
-        for told_before in [None, Some(0.012)] {
+        for earlier_lambda_sd in [None, Some(0.012)] {
             for along in [nil.clone(), 5.0..10.0] {
-                let (by, changed) = ((instruments, instruments), [along.clone(), nil.clone()]);
-                let tally = Tally::changed(0..ships, changed, by, told_before);
-                println!("{name}, told before {told_before:?}, along {along:?}: {tally}");
+                let changed = [along.clone(), nil.clone()];
+                let tally = Tally::changed(
+                    0..ships,
+                    changed,
+                    instruments,
+                    instruments,
+                    earlier_lambda_sd,
+                );
+                println!("{name}, earlier lambda {earlier_lambda_sd:?}, along {along:?}: {tally}");
             }
         }
     }

@@ -1,77 +1,59 @@
-//! The heeling magnets: set only where the vertical force aboard was read, and can be.
+//! Heeling magnets, set only where the vertical field at the compass was measured
+//! plausibly.
 //!
-//! The card does not err in heel while the vertical force aboard is λ(1 − D) Z: what
-//! the athwartship force would be in a field as strong (docs/science.md, eq. 23).
+//! The card has no heeling error when the vertical field at the compass is λ(1 − D) Z,
+//! equal to the athwartship field in an earth's field of the same strength
+//! (docs/science.md, eq. 23).
 
-use super::Adjustment;
-use super::condition::Condition;
-use super::instructions::NORMAL_99;
-use super::tolerance::errors_between;
-use crate::berth::BerthError;
+use super::inputs::Adjustment;
+use super::state::{MagneticState, errors_between};
 use crate::binnacle::{HeelingSetting, Red, Setting};
 use crate::corrector::{Effect, Iron, effect, heeling_effect};
+use binnacle_compass::deviation::NORMAL_99;
 use serde::{Deserialize, Serialize};
 
-/// Heeling error that is left alone, degrees for each degree of heel.
+/// Acceptable heeling error, degrees per degree of heel.
 const GOOD_ENOUGH: f64 = 0.05;
 
-/// The vertical field at the card's place, correctors as they stood.
+/// Plan for the heeling magnets.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct VerticalReading {
-    /// nT, down positive.
-    pub down_nt: f64,
-}
-
-/// What becomes of the heeling magnets.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HeelingPlan {
-    /// Degrees of heeling error for each degree of heel on north, at the berth, as it
-    /// is; none where the vertical force was not read, or not so that it can be believed.
+    /// Present heeling error on north at the berth, degrees per degree of heel; none
+    /// without a plausible vertical reading.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub before_deg_per_deg: Option<f64>,
-    /// The same afterwards.
+    /// Heeling error after the plan, degrees per degree of heel.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub after_deg_per_deg: Option<f64>,
-    /// Whether they are left as found for want of a vertical reading to be believed.
+    /// Left as found for want of a plausible vertical reading.
     pub left_as_found: bool,
 }
 
-impl VerticalReading {
-    pub(super) fn must_be_a_field(self) -> Result<(), BerthError> {
-        if (-200_000.0..=200_000.0).contains(&self.down_nt) {
-            return Ok(());
-        }
-        Err(BerthError::Reading {
-            name: "down_nt",
-            value: self.down_nt,
-            least: -200_000.0,
-            greatest: 200_000.0,
-        })
-    }
-}
-
-/// What the magnetometer would read down with correctors of this effect, nT.
-fn down_nt(adjustment: &Adjustment<'_>, condition: &Condition<'_>, effect: &Effect) -> Option<f64> {
-    let read_nt = condition.vertical?.down_nt;
+/// Predicts the magnetometer's vertical reading with correctors of this effect, nT.
+fn down_nt(adjustment: &Adjustment<'_>, state: &MagneticState<'_>, effect: &Effect) -> Option<f64> {
+    let read_nt = state.vertical?.down_nt;
     let z_nt = adjustment.earth.z_nt;
-    Some(read_nt + condition.chi33_change(effect) * z_nt + condition.bz_change(effect))
+    Some(read_nt + state.chi33_change(effect) * z_nt + state.bz_change(effect))
 }
 
-/// How a step with heeling magnets is verified, which no compass on an even keel shows;
-/// none where the vertical force was not read.
-pub(super) fn check(
+/// Describes the check of a step with heeling magnets, which no compass on an even keel
+/// shows; none without a vertical reading.
+pub(crate) fn check_instruction(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     before: &Setting,
     after: &Setting,
 ) -> Option<String> {
-    let binnacle = condition.binnacle;
+    let binnacle = state.binnacle;
     let [was_nt, will_nt] =
-        [before, after].map(|setting| down_nt(adjustment, condition, &effect(binnacle, setting)));
+        [before, after].map(|setting| down_nt(adjustment, state, &effect(binnacle, setting)));
     let (was_nt, will_nt) = (was_nt?, will_nt?);
     let errors = adjustment.reading.errors();
     let tilted_nt = adjustment.earth.h_nt * errors.tilt_sd_deg.to_radians();
-    // Read twice with the same instrument: noise and tilt differ, its scale does not.
+    // Both readings use the same instrument: noise and tilt differ, its scale does not.
     let instrument_nt = std::f64::consts::SQRT_2 * errors.field_sd_nt.hypot(tilted_nt);
-    let scale_nt = adjustment.scale_sd * (will_nt - condition.vertical?.down_nt);
+    let scale_nt = adjustment.scale_sd * (will_nt - state.vertical?.down_nt);
     let of_correctors = errors_between(binnacle, &binnacle.setting, after);
     let squares = of_correctors.iter().map(|error| {
         let down_nt = error.chi[2][2] * adjustment.earth.z_nt + error.b_nt[2];
@@ -80,41 +62,42 @@ pub(super) fn check(
     let correctors_nt = squares.sum::<f64>().sqrt();
     let sd_nt = instrument_nt.hypot(scale_nt).hypot(correctors_nt);
     Some(format!(
-        "on an even keel the compass does not show these: with the bowl out and the magnetometer \
-         as before, it must now read {:.1} microtesla down, to {:.1}; before this step {:.1}",
+        "on an even keel the compass does not show these: with the bowl out, the magnetometer in \
+         its previous place must now read {:.1} microtesla down, within {:.1}; before this step \
+         {:.1}",
         will_nt / 1e3,
         NORMAL_99 * sd_nt / 1e3,
         was_nt / 1e3
     ))
 }
 
-/// J with correctors of this effect, degrees per degree.
+/// Predicts J with correctors of this effect, degrees per degree.
 fn heeling_error(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     effect: &Effect,
 ) -> Option<f64> {
-    let aboard_nt = down_nt(adjustment, condition, effect)?;
+    let at_card_nt = down_nt(adjustment, state, effect)?;
     let z_nt = adjustment.earth.z_nt;
     let h_nt = adjustment.earth.h_nt;
-    let ship = condition.aboard(effect, h_nt);
-    Some(((1.0 + ship.chi[1][1]) * z_nt - aboard_nt) / (ship.lambda() * h_nt))
+    let ship = state.with_effect(effect, h_nt);
+    Some(((1.0 + ship.chi[1][1]) * z_nt - at_card_nt) / (ship.lambda() * h_nt))
 }
 
-/// The magnets that leave the least heeling error with this iron; those that stand
-/// where it was not read, or where they are good enough.
-pub(super) fn chosen(
+/// Chooses the magnets with the least heeling error for this iron; keeps the present ones
+/// without a vertical reading, or where they are good enough.
+pub(crate) fn choose_magnets(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     iron: &Iron,
     of_iron: &Effect,
 ) -> Option<HeelingSetting> {
     let standing = adjustment.standing().heeling.clone();
-    let binnacle = condition.binnacle;
+    let binnacle = state.binnacle;
     let error = |set: Option<&HeelingSetting>| {
         let of_magnets = set.map(|set| heeling_effect(binnacle, iron, set));
         let whole = of_iron.plus(&of_magnets.unwrap_or_default());
-        heeling_error(adjustment, condition, &whole).map(f64::abs)
+        heeling_error(adjustment, state, &whole).map(f64::abs)
     };
     let (Some(bucket), Some(now)) = (&binnacle.design.heeling, error(standing.as_ref())) else {
         return standing;
@@ -122,11 +105,11 @@ pub(super) fn chosen(
     if now <= GOOD_ENOUGH {
         return standing;
     }
-    let aboard = binnacle.magnets_aboard(&bucket.magnet);
+    let available = binnacle.magnet_count(&bucket.magnet);
     let mut best = (now, standing);
     let mut all = vec![None];
     for place in &bucket.positions {
-        for count in (1..=bucket.at_most).filter(|count| u16::from(*count) <= aboard) {
+        for count in (1..=bucket.at_most).filter(|count| u16::from(*count) <= available) {
             for red in [Red::Up, Red::Down] {
                 all.push(Some(HeelingSetting {
                     position: place.number,
@@ -146,17 +129,15 @@ pub(super) fn chosen(
     best.1
 }
 
-pub(super) fn said(
+pub(crate) fn heeling_plan(
     adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
+    state: &MagneticState<'_>,
     setting: &Setting,
 ) -> HeelingPlan {
-    let of = |setting: &Setting| {
-        heeling_error(adjustment, condition, &effect(condition.binnacle, setting))
-    };
+    let of = |setting: &Setting| heeling_error(adjustment, state, &effect(state.binnacle, setting));
     HeelingPlan {
         before_deg_per_deg: of(&adjustment.binnacle.setting),
         after_deg_per_deg: of(setting),
-        left_as_found: condition.vertical.is_none(),
+        left_as_found: state.vertical.is_none(),
     }
 }

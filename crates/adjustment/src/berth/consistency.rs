@@ -1,114 +1,83 @@
-//! Whether the field at the berth points where the model says.
+//! Consistency of the field's direction at the berth with the model.
 //!
-//! Strength gives λ; direction is left over, and tests everything that was
-//! taken for granted.
+//! The field's strength gives λ. Its direction is left over, and tests all assumptions.
 
-use super::field::{Expected, Vector, dot};
-use super::{BerthReading, ReadingErrors};
-use binnacle_compass::angle::wrap_180;
-use binnacle_compass::model::Covariance;
-use binnacle_compass::ship::{EarthField, compass_rad};
+use super::reading_errors::ReadingErrors;
+use binnacle_compass::deviation::NORMAL_99;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Two-sided 99 % of a normal distribution, in standard deviations: one honest
-/// berth in a hundred is turned away.
-const NORMAL_99: f64 = 2.575_829;
-/// Beyond this a berth is not a good one, whatever its errors explain.
-const GOOD_DEG: f64 = 1.0;
-/// The standard error of a good berth's angle: what one beyond its 99 % would have shown is
-/// not taken for an error because the errors are wider.
+/// Standard error of the angle at a good berth, degrees. An angle beyond its 99 % is not
+/// attributed to errors only because the given errors are wider.
 const GOOD_ERROR_DEG: f64 = 1.0;
-/// As well as this a heading at a berth is known without ado.
+/// Standard deviation of an ordinary berth heading, degrees.
 const GOOD_HEADING_DEG: f64 = 2.0;
-/// So lies a telephone; anything made for it lies better.
+/// Alignment of a telephone, degrees; purpose-made instruments are better.
 const GOOD_ALIGNMENT_DEG: f64 = 2.0;
-/// Steel that turned the field farther would be nearer than a magnetometer is ever set up.
+/// Greatest turn by nearby steel, degrees: a magnetometer is never set up closer to steel.
 const STEEL_DEG: f64 = 20.0;
 
-/// The angle between the field read and the field expected, with its verdict.
+/// Angle between measured and expected field, with its verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Consistency {
-    /// How much more a compass in the field read would show than one in the
-    /// field expected, degrees in (−180, 180].
+    /// Compass heading in the measured field less that in the expected field, degrees in
+    /// (−180, 180].
     pub angle_deg: f64,
-    /// Its standard error, degrees; `None` when the model came without a
-    /// covariance.
+    /// Standard error of the angle, degrees; `None` for a model without a covariance.
     pub standard_error_deg: Option<f64>,
-    /// What it takes across the needle to turn it so far, nT.
+    /// Field across the needle that would turn it by the angle, nT.
     pub across_nt: f64,
-    /// What to make of it.
+    /// Verdict on the angle.
     pub verdict: Verdict,
 }
 
-/// What an angle at the berth says.
+/// Verdict on the angle at the berth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Within a degree and within its errors.
+    /// Within one degree and within its errors.
     Consistent,
-    /// Beyond a degree, but the errors given explain it: λ stands with its
-    /// standard error, and the berth has checked little else.
+    /// Beyond one degree, but within the given errors: λ is valid with its standard error,
+    /// and the berth has verified little else.
     Loose,
-    /// Beyond what the errors explain; beyond a degree where they are unknown.
+    /// Beyond the given errors, or beyond one degree where they are unknown.
     Inconsistent,
 }
 
-/// Something that would explain the angle if it alone were wrong.
+/// A single error that would explain the angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Suspect {
-    /// The heading given is too small by this, degrees (too great if negative).
+    /// The given heading is too small by this, degrees (too great if negative).
     Heading {
-        /// Degrees to add to it.
+        /// Correction to add, degrees.
         too_small_deg: f64,
     },
     /// The magnetometer is turned to starboard of its line (to port if negative).
     Magnetometer {
-        /// Degrees clockwise.
+        /// Turn, degrees clockwise.
         turned_deg: f64,
     },
-    /// The position is off, or the date, and with it the variation: too far east by this
-    /// (west if negative).
+    /// Position or date is wrong, and with it the variation: too far east (west if
+    /// negative).
     Variation {
-        /// Degrees.
+        /// Error of the variation, degrees.
         too_far_east_deg: f64,
     },
-    /// Steel of the quay, a crane or a ship alongside adds this across the needle.
+    /// Steel of the quay, a crane or a ship alongside adds a field across the needle.
     NearbySteel {
-        /// nT.
+        /// Field across the needle, nT.
         across_nt: f64,
     },
-    /// The ship's own magnetism is no longer the model's, by this across the needle.
+    /// The ship's magnetism has changed across the needle since the model.
     ShipsMagnetism {
-        /// nT.
+        /// Field across the needle, nT.
         across_nt: f64,
     },
 }
 
 impl Consistency {
-    pub(super) fn new(
-        expected: &Expected,
-        earth: EarthField,
-        reading: &BerthReading,
-        covariance: Option<&Covariance>,
-    ) -> Consistency {
-        let (b, u) = (reading.field_nt(), expected.u);
-        let angle_deg = wrap_180((compass_rad(b[0], b[1]) - compass_rad(u[0], u[1])).to_degrees());
-        let by_u = compass_slope(u).map(|slope| -slope);
-        let standard_error_deg = expected
-            .spread(reading, earth, compass_slope(b), by_u)
-            .standard_error(covariance)
-            .map(f64::to_degrees);
-        Consistency {
-            angle_deg,
-            standard_error_deg,
-            across_nt: b[0].hypot(b[1]) * angle_deg.to_radians().sin().abs(),
-            verdict: verdict(angle_deg.abs(), standard_error_deg),
-        }
-    }
-
-    /// What could be wrong, and by how much each would have to be: steel and the ship's
-    /// own magnetism only of an angle that they could bring about.
+    /// Lists the possible errors with their sizes. Steel and the ship's magnetism are
+    /// listed only for angles within their reach.
     pub fn suspects(&self) -> Vec<Suspect> {
         let across_nt = self.across_nt;
         let mut suspects = vec![
@@ -129,61 +98,46 @@ impl Consistency {
         suspects
     }
 
-    /// How far the ship's own field may have turned since the model, degrees, one standard
-    /// deviation, that a good berth's check would have shown and this one has not: an angle
-    /// that only wide errors explain may as well be hers, and so may as much as heading and
-    /// alignment are less sure than they can be. Nil at a good berth.
+    /// Undetected turn of the ship's field since the model, degrees, one standard
+    /// deviation: the part that a good berth's check would have shown. An angle explained
+    /// only by wide errors may be a real turn, and so may the excess of heading and
+    /// alignment errors over good ones. Zero at a good berth.
     pub fn unchecked_deg(&self, errors: ReadingErrors) -> f64 {
         beyond(self.angle_deg, NORMAL_99 * GOOD_ERROR_DEG)
             .hypot(beyond(errors.heading_sd_deg, GOOD_HEADING_DEG))
             .hypot(beyond(errors.alignment_sd_deg, GOOD_ALIGNMENT_DEG))
     }
 
-    /// What no more than one in a hundred such berths would have hidden, degrees: a turn of the
-    /// ship's field by less may have passed its check.
-    pub fn shows_from_deg(&self) -> Option<f64> {
+    /// Smallest turn of the ship's field that the check detects in 99 of 100 berths,
+    /// degrees.
+    pub fn detectable_turn_deg(&self) -> Option<f64> {
         self.standard_error_deg.map(|error| NORMAL_99 * error)
     }
 
-    /// The angle and its error.
-    pub fn apart(&self) -> String {
+    /// Summarises the angle and its error.
+    pub fn angle_summary(&self) -> String {
         let error = self
             .standard_error_deg
             .map_or("unknown".to_owned(), |error| format!("{error:.1} degrees"));
         format!(
-            "the field read is {:.1} degrees from the model's (standard error {error})",
+            "the measured field is {:.1} degrees from the model's (standard error {error})",
             self.angle_deg.abs()
         )
     }
+}
 
-    /// One line: the angle, its error, and the suspects.
-    pub fn in_words(&self) -> String {
+impl fmt::Display for Consistency {
+    /// Writes the angle, its error, and the suspects in one line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let suspects = self.suspects();
         let suspects: Vec<String> = suspects.iter().map(ToString::to_string).collect();
-        format!("{}; {}", self.apart(), suspects.join(", or "))
+        write!(f, "{}; {}", self.angle_summary(), suspects.join(", or "))
     }
 }
 
-/// What there is of a standard deviation beside a good one.
+/// Returns the excess of a standard deviation over a good one, in quadrature.
 fn beyond(value: f64, good: f64) -> f64 {
     (value.powi(2) - good.powi(2)).max(0.0).sqrt()
-}
-
-fn verdict(angle_deg: f64, standard_error_deg: Option<f64>) -> Verdict {
-    let explained = standard_error_deg.map_or(GOOD_DEG, |error| NORMAL_99 * error);
-    if angle_deg > explained {
-        Verdict::Inconsistent
-    } else if angle_deg > GOOD_DEG {
-        Verdict::Loose
-    } else {
-        Verdict::Consistent
-    }
-}
-
-/// Slopes of the compass heading that a field gives, radians a nT.
-fn compass_slope(field: Vector) -> Vector {
-    let squared = dot(field, field);
-    [field[1] / squared, -field[0] / squared]
 }
 
 impl fmt::Display for Verdict {

@@ -1,54 +1,53 @@
-//! Why a berth reading gives no λ.
+//! Error of a berth reading that gives no λ.
 
-use super::Consistency;
-use super::lambda::{GREATEST_LAMBDA, LEAST_LAMBDA};
+use super::consistency::Consistency;
+use super::lambda_range::{GREATEST_LAMBDA, LEAST_LAMBDA};
 use binnacle_compass::deviation::{DeviationError, ModelError};
 
-/// A refusal; each says what is wrong.
+/// Reason for the refusal of a berth reading.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BerthError {
-    /// A value of the reading is not finite, negative where it may not be, or
-    /// in the wrong unit.
+    /// A value of the reading is not finite, negative where that is not allowed, or in the
+    /// wrong unit.
     #[error("{name} is {value}, not a number between {least} and {greatest}")]
     Reading {
-        /// Which.
+        /// Name of the value.
         name: &'static str,
-        /// What it was.
+        /// Given value.
         value: f64,
-        /// The least accepted.
+        /// Least accepted value.
         least: f64,
-        /// The greatest accepted.
+        /// Greatest accepted value.
         greatest: f64,
     },
-    /// The horizontal field read is nil.
+    /// The measured horizontal field is zero.
     #[error("the magnetometer read no horizontal field at all")]
     NothingRead,
-    /// The model's numbers cannot be a ship's.
-    #[error("the model is none: {0}")]
+    /// The model's numbers are invalid.
+    #[error("invalid model: {0}")]
     Model(#[from] ModelError),
-    /// There is no field to steer by at the berth.
+    /// The earth's field at the berth is invalid.
     #[error(transparent)]
     Field(#[from] DeviationError),
-    /// By the model hardly any force turns the card north on this heading, so
-    /// that no factor can be told.
+    /// The model leaves hardly any directive force on this heading, so λ cannot be
+    /// determined.
     #[error(
         "the model leaves {directive_force:.3} of the mean directive force on magnetic heading \
          {magnetic_deg:.1}: turn the ship"
     )]
     NoDirectiveForce {
-        /// The heading, degrees, as the model takes it.
+        /// Magnetic heading in the model's terms, degrees.
         magnetic_deg: f64,
-        /// The directive force as a share of its mean over headings.
+        /// Directive force as a share of its mean over headings.
         directive_force: f64,
     },
-    /// The field does not point where the model says, beyond what the errors
-    /// given explain.
-    #[error("the berth is inconsistent: {}", .0.in_words())]
+    /// The field's direction differs from the model's by more than the given errors.
+    #[error("the berth is inconsistent: {0}")]
     Inconsistent(Consistency),
-    /// The direction is right, the strength is not.
+    /// The direction is right, but the strength is not.
     #[error(
         "lambda is {0:.4}, outside {LEAST_LAMBDA} to {GREATEST_LAMBDA}: the magnetometer's unit or \
-         scale, or the earth's field given, is not right"
+         scale, or the given earth's field, is wrong"
     )]
     Implausible(f64),
 }

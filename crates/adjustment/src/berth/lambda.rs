@@ -1,53 +1,49 @@
-//! λ, and with it the whole of the ship's horizontal magnetism.
+//! λ at the berth, and with it all of the ship's horizontal magnetism.
 
 use super::consistency::{Consistency, Verdict};
-use super::field::{Expected, Spread, UNKNOWNS, covariances, dot};
-use super::{BerthError, BerthReading, Estimated};
+use super::direction_check::check_direction;
+use super::error::BerthError;
+use super::estimated::Estimated;
+use super::expected_field::{ExpectedField, Spread, UNKNOWNS, covariances, dot};
+use super::lambda_range::{GREATEST_LAMBDA, LEAST_LAMBDA};
+use super::reading::BerthReading;
 use binnacle_compass::model::{Covariance, Model, Parameters};
 use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
 
-/// Less of the earth's field than this reaches no compass that was placed with any care.
-pub const LEAST_LAMBDA: f64 = 0.5;
-/// No ship gathers more of it at the compass than this.
-pub const GREATEST_LAMBDA: f64 = 1.25;
-/// Steel around a compass shields it, in a wheelhouse by up to a third, and hardly ever
-/// gathers more of the field than there is. Outside this a reading is looked at again.
-pub const USUAL_LAMBDA: std::ops::RangeInclusive<f64> = 0.65..=1.1;
-
-/// The seven ratios, the constant and λ: where λ stands.
+/// Index of λ, after the seven ratios and the constant.
 const LAMBDA: usize = UNKNOWNS;
 
-/// Variances and covariances of the seven ratios, the constant and, last, λ.
+/// Covariance of the seven ratios, the constant and, last, λ.
 pub type JointCovariance = [[f64; UNKNOWNS + 1]; UNKNOWNS + 1];
 
-/// What a berth reading tells.
+/// Result of a berth reading.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BerthEstimate {
-    /// The mean share of the earth's horizontal field that reaches the compass.
+    /// Mean share of the earth's horizontal field that reaches the compass.
     pub lambda: Estimated,
-    /// How well the field's direction agrees: never inconsistent here.
+    /// Agreement of the field's direction: never inconsistent here.
     pub consistency: Consistency,
     /// Poisson's parameters themselves.
     pub parameters: FullParameters,
-    /// Of the model's unknowns with λ; `None` when the model came without one.
+    /// Covariance of the model's unknowns with λ; `None` for a model without one.
     pub covariance: Option<JointCovariance>,
 }
 
-/// Poisson's horizontal parameters, no longer over λ.
+/// Poisson's horizontal parameters, not divided by λ.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FullParameters {
-    /// a.
+    /// Handbook coefficient a.
     pub chi11: Estimated,
-    /// b.
+    /// Handbook coefficient b.
     pub chi12: Estimated,
-    /// c.
+    /// Handbook coefficient c.
     pub chi13: Estimated,
-    /// d.
+    /// Handbook coefficient d.
     pub chi21: Estimated,
-    /// e.
+    /// Handbook coefficient e.
     pub chi22: Estimated,
-    /// f.
+    /// Handbook coefficient f.
     pub chi23: Estimated,
     /// P: fore-and-aft permanent field, nT, forward positive.
     pub bx_nt: Estimated,
@@ -55,21 +51,20 @@ pub struct FullParameters {
     pub by_nt: Estimated,
 }
 
-/// λ and all that follows from it, by projecting the field read on the field
-/// expected (docs/science.md, eq. 13): as sure on one heading as on another.
+/// Determines λ and the full parameters by projecting the measured field on the expected
+/// one (docs/science.md, eq. 13). The precision does not depend on the heading.
 ///
 /// # Errors
-/// When the model or the earth's field is none, the model leaves no directive
-/// force on this heading, the field's direction is not the model's, or λ is no
-/// ship's.
+/// When the model or the earth's field is invalid, the model leaves no directive force on
+/// this heading, the field's direction differs from the model's, or λ is implausible.
 pub fn lambda_at_berth(
     model: &Model,
     earth: EarthField,
     reading: &BerthReading,
 ) -> Result<BerthEstimate, BerthError> {
-    let expected = Expected::new(model, earth, reading)?;
+    let expected = ExpectedField::new(model, earth, reading)?;
     let covariance = model.covariance.as_ref();
-    let consistency = Consistency::new(&expected, earth, reading, covariance);
+    let consistency = check_direction(&expected, earth, reading, covariance);
     if consistency.verdict == Verdict::Inconsistent {
         return Err(BerthError::Inconsistent(consistency));
     }
@@ -94,7 +89,7 @@ pub fn lambda_at_berth(
     })
 }
 
-/// λ leans on the model, so that it errs together with the model's unknowns.
+/// Combines the model's covariance with λ, whose error depends on the model's unknowns.
 fn joint_covariance(covariance: &Covariance, spread: &Spread) -> JointCovariance {
     let with_lambda = covariances(covariance, &spread.by_unknown);
     let mut joint = [[0.0; UNKNOWNS + 1]; UNKNOWNS + 1];
@@ -110,7 +105,7 @@ fn joint_covariance(covariance: &Covariance, spread: &Spread) -> JointCovariance
 impl FullParameters {
     fn new(p: &Parameters, lambda: f64, joint: Option<&JointCovariance>) -> FullParameters {
         let d = p.chi11_minus_chi22 / 2.0;
-        // λ (share + slope × ratio), where the ratio is the one at `index`.
+        // Value λ (share + slope × ratio), where the ratio is the one at `index`.
         let scaled = |index: usize, slope: f64, share: f64| {
             let standard_error = joint.map(|joint| {
                 let by_ratio = lambda * slope;

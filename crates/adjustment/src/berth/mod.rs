@@ -1,41 +1,35 @@
-//! λ at the berth: what headings can never tell, from one magnetometer reading.
+//! λ at the berth from one magnetometer reading, which headings cannot determine.
 //!
-//! A fitted model knows the field at the compass but for one factor, λ. With
-//! the bowl out and a magnetometer in its place, the horizontal field itself
-//! gives that factor on any heading, and with it every parameter of Poisson's
-//! equations (docs/science.md, §5). The direction of the field is the check: it
-//! has to be the model's. A reading that fails it is refused, with what could
-//! be wrong; an answer carries standard errors that hold the reading's, the
-//! heading's and the model's own.
+//! A fitted model gives the field at the compass except for one factor, λ. With the bowl
+//! out and a magnetometer in its place, the horizontal field gives that factor on any
+//! heading, and with it every parameter of Poisson's equations (docs/science.md, §5). The
+//! direction of the field is the check: it must agree with the model's. A reading that
+//! fails it is refused with possible reasons. Standard errors include those of the reading,
+//! the heading and the model.
+
+mod estimated;
+mod reading;
+mod reading_errors;
 
 mod consistency;
-mod error;
-mod field;
+mod lambda_range;
+
 mod lambda;
 mod permanent;
-mod reading;
+
+mod direction_check;
+mod error;
+mod expected_field;
 
 pub use consistency::{Consistency, Suspect, Verdict};
 pub use error::BerthError;
-pub(crate) use field::slopes;
-pub use lambda::{
-    BerthEstimate, FullParameters, GREATEST_LAMBDA, JointCovariance, LEAST_LAMBDA, USUAL_LAMBDA,
-    lambda_at_berth,
-};
+pub use estimated::Estimated;
+pub(crate) use expected_field::slopes;
+pub use lambda::{BerthEstimate, FullParameters, JointCovariance, lambda_at_berth};
+pub use lambda_range::{GREATEST_LAMBDA, LEAST_LAMBDA, USUAL_LAMBDA};
 pub use permanent::{Permanent, permanent_at_berth};
-pub use reading::{Alignment, BerthReading, ReadingErrors};
-
-use serde::{Deserialize, Serialize};
-
-/// A number with its standard error.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Estimated {
-    /// The estimate.
-    pub value: f64,
-    /// Its standard error in the same unit; `None` when the model came without
-    /// a covariance.
-    pub standard_error: Option<f64>,
-}
+pub use reading::{Alignment, BerthReading};
+pub use reading_errors::ReadingErrors;
 
 #[cfg(test)]
 mod tests;

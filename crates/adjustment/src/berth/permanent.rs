@@ -1,33 +1,35 @@
-//! bx and by straight from a reading, with soft iron and λ as they were.
+//! bx and by from a reading, with soft iron and λ unchanged.
 //!
-//! For a ship whose magnets were moved after λ was found: iron keeps its shape,
-//! so that one reading tells what the magnets now do, without headings at sea.
+//! For a ship whose magnets were moved after λ was determined: the soft iron is unchanged,
+//! so one reading shows the magnets' new effect without headings at sea.
 
-use super::field::{Expected, Spread};
-use super::lambda::{GREATEST_LAMBDA, LEAST_LAMBDA};
-use super::{BerthError, BerthReading, Estimated};
+use super::error::BerthError;
+use super::estimated::Estimated;
+use super::expected_field::{ExpectedField, Spread};
+use super::lambda_range::{GREATEST_LAMBDA, LEAST_LAMBDA};
+use super::reading::BerthReading;
 use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
 
-/// The permanent horizontal field of a ship.
+/// Permanent horizontal field of a ship.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Permanent {
-    /// Fore and aft, nT, forward positive; not over λ.
+    /// Fore and aft, nT, forward positive; not divided by λ.
     pub bx_nt: Estimated,
-    /// Athwartships, nT, starboard positive; not over λ.
+    /// Athwartships, nT, starboard positive; not divided by λ.
     pub by_nt: Estimated,
 }
 
-/// The permanent field that explains a reading, given λ from another one:
-/// b = B − λ(u − b'). Heading and alignment err by about |B| times their angle.
+/// Determines the permanent field from a reading and an earlier λ: b = B − λ(u − b').
+/// Heading and alignment errors count as about |B| times their angle.
 ///
-/// The errors of λ and of the model are taken as independent: of λ's, nearly
-/// all is its own reading's.
+/// The errors of λ and of the model are treated as independent: nearly all of λ's error
+/// comes from its own reading.
 ///
 /// # Errors
-/// When the model or the earth's field is none, the model leaves no directive
-/// force on this heading, or λ or its standard error is none.
+/// When the model or the earth's field is invalid, the model leaves no directive force on
+/// this heading, or λ or its standard error is implausible.
 pub fn permanent_at_berth(
     model: &Model,
     earth: EarthField,
@@ -47,7 +49,7 @@ pub fn permanent_at_berth(
             greatest: GREATEST_LAMBDA,
         });
     }
-    let expected = Expected::new(model, earth, reading)?;
+    let expected = ExpectedField::new(model, earth, reading)?;
     let p = &model.parameters_over_lambda;
     let permanent = [p.bx_nt, p.by_nt];
     let solve = |axis: usize| {
@@ -56,7 +58,7 @@ pub fn permanent_at_berth(
         by_b[axis] = 1.0;
         let by_u = by_b.map(|slope| -lambda.value * slope);
         let mut spread: Spread = expected.spread(reading, earth, by_b, by_u);
-        // What the model thought of bx and by plays no part.
+        // The model's own bx and by play no part.
         spread.by_unknown[0] = 0.0;
         spread.by_unknown[2] = 0.0;
         let standard_error = model.covariance.as_ref().zip(lambda.standard_error);

@@ -1,55 +1,36 @@
-//! What was read at the berth, and how well.
+//! Reading of the magnetometer at the berth.
 
-use super::BerthError;
+use super::error::BerthError;
+use super::reading_errors::ReadingErrors;
 use binnacle_compass::angle::MagneticHeading;
 
-/// Three times the earth's strongest field: beyond it the unit is wrong.
+/// Three times the earth's strongest field, nT; a larger value has the wrong unit.
 const GREATEST_FIELD_NT: f64 = 200_000.0;
-/// A magnetometer worse than this tells nothing of a ship.
+/// Greatest useful error of a magnetometer, nT.
 const GREATEST_FIELD_SD_NT: f64 = 10_000.0;
-/// Beyond this an angle's error is no longer small, as the arithmetic takes it.
+/// Greatest error of an angle, degrees; the linear propagation needs small errors.
 const GREATEST_ANGLE_SD_DEG: f64 = 5.0;
-/// Less than this is a magnetometer that does not work.
+/// Least horizontal field of a working magnetometer, nT.
 const LEAST_FIELD_NT: f64 = 1.0;
 
-/// Standard deviations of a berth reading. The magnetometer's gain is not among
-/// them: an error of its scale is an error of λ, share for share.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ReadingErrors {
-    /// Of each horizontal part, nT: the magnetometer's noise together with what
-    /// the earth's field at the berth is not known to (crust, quay). More than 0.
-    pub field_sd_nt: f64,
-    /// Of the magnetic heading, degrees: that of the true heading together with
-    /// the variation's.
-    pub heading_sd_deg: f64,
-    /// Of the magnetometer's alignment, degrees.
-    pub alignment_sd_deg: f64,
-    /// Of the magnetometer's tilt in roll and in pitch, degrees, ship's heel
-    /// and trim included: tilt brings vertical field into the horizontal.
-    pub tilt_sd_deg: f64,
-}
-
-/// What heading and magnetometer are held against, which decides about the
-/// model's constant.
+/// Reference of heading and magnetometer, which determines the use of the model's constant.
 ///
-/// The constant is the offset of the model's reference (and variation) less that
-/// of the compass's lubber line; which of the two it is cannot be told. With
-/// one of each kind give [`Alignment::Keel`] and let the errors include the
-/// instrument's own offset.
+/// The constant is the offset of the model's reference (and variation) less that of the
+/// compass's lubber line; the two cannot be separated. For a mixed case use
+/// [`Alignment::Keel`] and include the instrument's own offset in the errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alignment {
-    /// The heading comes from outside the ship's instruments (a surveyed quay,
-    /// leading marks, the sun) and the magnetometer lies along the keel: neither
-    /// offset is met, and the constant is left out.
+    /// The heading comes from outside the ship's instruments (a surveyed quay, leading
+    /// marks, the sun) and the magnetometer is aligned with the keel. Neither offset
+    /// occurs, and the constant is not applied.
     Keel,
-    /// The heading is that of the very reference the model was fitted with, and
-    /// the magnetometer lies along the compass's lubber line: both offsets are
-    /// met as in the fit, and the constant is taken off the heading.
+    /// The heading comes from the reference of the model's fit, and the magnetometer is
+    /// aligned with the compass's lubber line. Both offsets occur as in the fit, and the
+    /// constant is subtracted from the heading.
     AsFitted,
 }
 
-/// The horizontal field at the card's centre on a known heading: finite, not
-/// nil, with errors that are errors.
+/// Valid reading of the horizontal field at the card's centre on a known heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BerthReading {
     magnetic: MagneticHeading,
@@ -59,12 +40,12 @@ pub struct BerthReading {
 }
 
 impl BerthReading {
-    /// A reading of the field `[forward, starboard]`, nT, on a magnetic heading:
-    /// true heading less variation.
+    /// Makes a reading of the field `[forward, starboard]`, nT, on a magnetic heading (true
+    /// heading less variation).
     ///
     /// # Errors
-    /// Names the first value that cannot be: not finite, a negative error, or
-    /// of a size that only a wrong unit gives.
+    /// Names the first value that is not finite, a negative error, or so large that its
+    /// unit is wrong.
     pub fn new(
         magnetic: MagneticHeading,
         field_nt: [f64; 2],
@@ -130,22 +111,22 @@ impl BerthReading {
         })
     }
 
-    /// Magnetic heading at the berth.
+    /// Returns the magnetic heading at the berth.
     pub fn magnetic(&self) -> MagneticHeading {
         self.magnetic
     }
 
-    /// The field read, `[forward, starboard]`, nT.
+    /// Returns the measured field, `[forward, starboard]`, nT.
     pub fn field_nt(&self) -> [f64; 2] {
         self.field_nt
     }
 
-    /// Standard deviations of all of it.
+    /// Returns the standard deviations of the reading.
     pub fn errors(&self) -> ReadingErrors {
         self.errors
     }
 
-    /// What heading and magnetometer are held against.
+    /// Returns the reference of heading and magnetometer.
     pub fn alignment(&self) -> Alignment {
         self.alignment
     }

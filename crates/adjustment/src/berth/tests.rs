@@ -54,9 +54,10 @@ fn heading(degrees: f64) -> MagneticHeading {
     MagneticHeading::new(degrees).unwrap()
 }
 
-/// What a faultless magnetometer reads aboard.
+/// Reading of a perfect magnetometer at the compass.
 fn field_read(ship: &ShipMagnetism, earth: EarthField, magnetic_deg: f64) -> [f64; 2] {
-    let [forward, starboard, _] = ship.field_aboard(earth.in_ship_axes(magnetic_deg.to_radians()));
+    let [forward, starboard, _] =
+        ship.field_at_compass(earth.in_ship_axes(magnetic_deg.to_radians()));
     [forward, starboard]
 }
 
@@ -109,7 +110,7 @@ fn every_heading_gives_back_the_whole_of_every_ship() {
 
 #[test]
 fn on_east_north_lies_to_port() {
-    // No iron but what halves the field all around.
+    // Only iron that halves the field all around.
     let ship = ShipMagnetism {
         chi: [[-0.5, 0.0, 0.0], [0.0, -0.5, 0.0], [0.0; 3]],
         b_nt: [0.0; 3],
@@ -138,7 +139,7 @@ fn lambda_is_scaled_with_the_reading() {
     }
 }
 
-/// Without iron u is H, and each error stands alone.
+/// Without iron u is H, and each error can be checked alone.
 #[test]
 fn noise_counts_by_h_tilt_by_the_dip_and_small_turns_not_at_all() {
     let ship = ShipMagnetism::from_parameters(&Parameters::from_array([0.0; 7]), 1.0);
@@ -170,8 +171,8 @@ fn noise_counts_by_h_tilt_by_the_dip_and_small_turns_not_at_all() {
     near(only(|e| e.alignment_sd_deg = 0.5), 0.0, 0.5);
 }
 
-/// A model that may be wrong in one direction only: then every standard error is
-/// how far its estimate moves as the model goes that way.
+/// With a model uncertain in one direction only, every standard error equals the shift of
+/// its estimate as the model moves along that direction.
 #[test]
 fn every_standard_error_is_the_slope_along_what_the_model_does_not_know() {
     const NO_ERRORS: ReadingErrors = ReadingErrors {
@@ -243,8 +244,8 @@ fn a_true_heading_less_its_variation_is_the_heading_to_give() {
     }
 }
 
-/// The heading is known from the reference, κ off; the lubber line lies where the
-/// fit thinks it does.
+/// The heading comes from the reference with offset κ; the lubber line is where the fit
+/// assumes it.
 #[test]
 fn the_constant_is_taken_off_a_heading_of_the_models_own_reference_only() {
     let mut model = model_of(&ship());
@@ -280,7 +281,7 @@ fn a_field_that_points_elsewhere_is_refused_with_what_could_be_wrong() {
     let [Suspect::Heading { too_small_deg }, ..] = suspects[..] else {
         panic!("{suspects:?}");
     };
-    // A compass swings a little less or more than the ship.
+    // A compass turns a little less or more than the ship.
     assert!((4.0..6.0).contains(&too_small_deg), "{too_small_deg}");
     let text = refused.to_string();
     for words in [
@@ -330,7 +331,7 @@ fn an_angle_over_a_degree_passes_only_where_the_errors_explain_it() {
         found(&model, 0.2),
         Err(BerthError::Inconsistent(_))
     ));
-    // Nothing explains it where the model's errors are not known.
+    // Without the model's errors, nothing explains it.
     let mut bare = model;
     bare.covariance = None;
     assert!(matches!(
@@ -368,7 +369,7 @@ fn a_heading_without_directive_force_is_named() {
     assert!(
         matches!(refused, BerthError::NoDirectiveForce { magnetic_deg, .. } if magnetic_deg == 0.0)
     );
-    // The other way round there is force enough.
+    // On the opposite heading there is force enough.
     let south = lambda_at_berth(&model, BISCAY, &reading(180.0, [-43_000.0, 0.0]));
     assert!((south.unwrap().lambda.value - 43.0 / 47.9).abs() < 1e-9);
 }

@@ -1,12 +1,12 @@
-//! Why something is no binnacle.
+//! Error of an invalid binnacle.
 
-/// Names the field, as in JSON, and says what is wrong with it.
+/// Error of an invalid binnacle, with the field as in JSON.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{field}: {what}")]
 pub struct BinnacleError {
-    /// The path of the field, such as `athwartship.holes[2].below_card_mm`.
+    /// Path of the field, such as `athwartship.holes[2].below_card_mm`.
     pub field: String,
-    /// What is wrong.
+    /// Description of the error.
     pub what: String,
 }
 

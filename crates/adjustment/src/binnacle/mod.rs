@@ -1,65 +1,64 @@
-//! Binnacles: which correctors a design has, which of them are on board, and
-//! how they stand.
+//! Binnacles: design, correctors on board, and their setting.
 //!
-//! What always holds: a [`Design`] or [`Binnacle`] that exists was checked, so that
-//! every hole, scale mark and magnet that it or its setting names is there, holes are
-//! numbered from the bottom, and nothing is nearer the card than it can be. The
-//! written form (docs/binnacle.md) is the value itself: both read as the form they
-//! were made from, and cannot be changed but by making another.
+//! Invariants: a [`Design`] or [`Binnacle`] is always valid. Every hole, scale mark and
+//! magnet that it or its setting names exists, holes are numbered from the bottom, and
+//! nothing is closer to the card than physically possible. The written form
+//! (docs/binnacle.md) is the value itself: both types read as the form they were made from,
+//! and cannot be changed except by making another.
 
-mod aboard;
-mod calibration;
-mod check;
+mod axis;
+
 mod design;
-mod error;
-mod setting;
 mod shipped;
-mod stock;
 
-pub use aboard::{Aboard, BinnacleForm, Lot};
+mod calibration;
+mod inventory;
+mod setting;
+
+mod binnacle_form;
+mod checks;
+
+mod error;
+mod nearly_equal;
+mod value_checks;
+
+pub use axis::{Axis, Red};
+pub use binnacle_form::BinnacleForm;
 pub use calibration::Calibrated;
 pub use design::{
-    Carrier, CompassKind, DesignForm, Flinders, Heeling, Hole, IronSize, MagnetKind, Mark,
+    Carrier, CompassKind, Design, DesignForm, Flinders, Heeling, Hole, IronSize, MagnetKind, Mark,
     Quadrantal, Rack, Shape, Side,
 };
 pub use error::BinnacleError;
-pub(crate) use setting::same;
-pub use setting::{Axis, BarSetting, HeelingSetting, PairSetting, Red, Setting, Soft, Tray};
+pub use inventory::{Inventory, Lot};
+pub(crate) use nearly_equal::nearly_equal;
+pub use setting::{BarSetting, HeelingSetting, PairSetting, Setting, Soft, Tray};
 pub use shipped::SHIPPED;
+pub use value_checks::VERSION;
 
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 
-/// The version of the written forms of this module.
-pub const VERSION: u32 = 1;
-
-/// A maker's binnacle, as all of its kind are: where correctors may stand.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "DesignForm", into = "DesignForm")]
-pub struct Design(DesignForm);
-
-/// One binnacle on board: its design, serial, the correctors there are, how they
-/// stand, and what was measured of them.
+/// One binnacle on board: its design, serial number, correctors, setting, and calibration.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "BinnacleForm", into = "BinnacleForm")]
 pub struct Binnacle(BinnacleForm);
 
 impl Binnacle {
-    /// The same binnacle with its correctors standing otherwise.
+    /// Returns the binnacle with another setting.
     ///
     /// # Errors
-    /// Names what is not there, or not on board.
+    /// When the setting names something that does not exist or is not on board.
     pub fn with_setting(&self, setting: Setting) -> Result<Binnacle, BinnacleError> {
         let mut form = self.0.clone();
         form.setting = setting;
         Binnacle::try_from(form)
     }
 
-    /// The same binnacle with another moment for a lot of magnets, as it was found
-    /// out on the way.
+    /// Returns the binnacle with another tested moment for a lot of magnets.
     ///
     /// # Errors
-    /// When there is no such lot, or the moment is none.
+    /// When there is no such lot, or the moment is invalid.
     pub fn with_moment(
         &self,
         magnet: &str,
@@ -67,7 +66,11 @@ impl Binnacle {
         sd: f64,
     ) -> Result<Binnacle, BinnacleError> {
         let mut form = self.0.clone();
-        let lot = form.aboard.magnets.iter_mut().find(|l| l.magnet == magnet);
+        let lot = form
+            .inventory
+            .magnets
+            .iter_mut()
+            .find(|l| l.magnet == magnet);
         let Some(lot) = lot else {
             let what = format!("no magnets {magnet:?} are on board");
             return Err(BinnacleError::new("aboard.magnets", what));
@@ -77,19 +80,12 @@ impl Binnacle {
         Binnacle::try_from(form)
     }
 
-    /// Refuses to have written what no magnet of its kind can have.
+    /// Checks that tested moments are plausible for magnets of their kind.
     ///
     /// # Errors
-    /// Names the lot whose tested moment it is, A·m².
-    pub fn must_be_credible(&self) -> Result<(), BinnacleError> {
-        stock::credible(&self.0)
-    }
-}
-
-impl Deref for Design {
-    type Target = DesignForm;
-    fn deref(&self) -> &DesignForm {
-        &self.0
+    /// Names the lot with an implausible tested moment.
+    pub fn check_tested_moments(&self) -> Result<(), BinnacleError> {
+        checks::check_tested_moments(&self.0)
     }
 }
 
@@ -100,27 +96,11 @@ impl Deref for Binnacle {
     }
 }
 
-impl TryFrom<DesignForm> for Design {
-    type Error = BinnacleError;
-    fn try_from(form: DesignForm) -> Result<Design, BinnacleError> {
-        check::design(&form)?;
-        Ok(Design(form))
-    }
-}
-
 impl TryFrom<BinnacleForm> for Binnacle {
     type Error = BinnacleError;
     fn try_from(form: BinnacleForm) -> Result<Binnacle, BinnacleError> {
-        stock::check(&form)?;
-        calibration::check(&form)?;
-        setting::check(&form, &form.setting)?;
+        checks::check_binnacle(&form)?;
         Ok(Binnacle(form))
-    }
-}
-
-impl From<Design> for DesignForm {
-    fn from(design: Design) -> DesignForm {
-        design.0
     }
 }
 

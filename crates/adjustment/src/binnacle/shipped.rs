@@ -1,7 +1,7 @@
-//! The designs that come with the product. They are ideal shapes after the formulas
-//! of docs/science.md, not any maker's data, and say so in their provenance.
+//! Designs shipped with the product: ideal shapes by the formulas of docs/science.md, not
+//! any maker's data. Their provenance says so.
 
-/// Name and written form of each.
+/// Name and written form of each design.
 pub const SHIPPED: [(&str, &str); 2] = [
     (
         "class_a_trays",

@@ -1,6 +1,6 @@
 use super::*;
 
-/// The larger of the designs shipped, well stocked, with something of everything set.
+/// The larger shipped design, well stocked, with every kind of corrector set.
 pub(crate) fn class_a() -> Binnacle {
     let design: Design = serde_json::from_str(SHIPPED[0].1).unwrap();
     Binnacle::try_from(form(design)).unwrap()
@@ -23,7 +23,7 @@ fn form(design: Design) -> BinnacleForm {
         version: VERSION,
         serial: "1234".to_owned(),
         design,
-        aboard: Aboard {
+        inventory: Inventory {
             magnets: vec![lot("200 mm", 12), lot("heeling 150 mm", 2)],
             quadrantal: ["5 inch", "7 inch", "8.5 inch"].map(str::to_owned).to_vec(),
             flinders_pieces_mm: vec![300.0, 150.0, 75.0, 75.0],
@@ -106,20 +106,20 @@ fn a_test_that_no_magnet_of_its_kind_can_have_is_refused() {
     let nominal = class_a().design.magnets[0].moment_am2;
     let tested = |moment| {
         let mut form: BinnacleForm = class_a().into();
-        form.aboard.magnets[0].tested_moment_am2 = Some(moment);
+        form.inventory.magnets[0].tested_moment_am2 = Some(moment);
         Binnacle::try_from(form)
     };
     let field = "aboard.magnets[0].tested_moment_am2";
     // What was written of old is read, and is not to be written again.
     for moment in [50.0, 2.1 * nominal, 0.09 * nominal] {
-        let error = tested(moment).unwrap().must_be_credible().unwrap_err();
+        let error = tested(moment).unwrap().check_tested_moments().unwrap_err();
         assert_eq!(error.field, field);
     }
     for moment in [-nominal, f64::NAN] {
         assert_eq!(tested(moment).unwrap_err().field, field);
     }
     for moment in [0.4 * nominal, nominal, 1.3 * nominal] {
-        tested(moment).unwrap().must_be_credible().unwrap();
+        tested(moment).unwrap().check_tested_moments().unwrap();
     }
 }
 
@@ -190,21 +190,21 @@ fn positions_that_stand_twice_or_upside_down_are_named() {
 
 #[test]
 fn a_setting_with_what_is_not_on_board_is_named() {
-    let error = refused(|f| f.aboard.magnets[0].count = 3);
+    let error = refused(|f| f.inventory.magnets[0].count = 3);
     assert!(
         error
             .what
-            .starts_with("4 magnets \"200 mm\" are set and 3 on board"),
+            .starts_with("4 magnets \"200 mm\" are set, but 3 are on board"),
         "{error}"
     );
     assert_eq!(
-        refused(|f| f.aboard.quadrantal.clear()).field,
+        refused(|f| f.inventory.quadrantal.clear()).field,
         "setting.quadrantal.size"
     );
-    let error = refused(|f| f.aboard.flinders_pieces_mm.clear());
+    let error = refused(|f| f.inventory.flinders_pieces_mm.clear());
     assert_eq!(error.field, "setting.flinders.length_mm");
     let error = refused(|f| f.setting.fore_and_aft[0].red = Red::Port);
-    assert_eq!(error.what, "port where it is forward or aft");
+    assert_eq!(error.what, "port instead of forward or aft");
     let error = refused(|f| f.setting.heeling.as_mut().unwrap().red = Red::Aft);
     assert_eq!(error.field, "setting.heeling.red");
     let error = refused(|f| f.setting.quadrantal.as_mut().unwrap().slew_deg = 7.0);

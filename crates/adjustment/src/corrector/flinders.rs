@@ -1,7 +1,7 @@
-//! A Flinders bar: an upright cylinder of soft iron, its top pole at the card's
-//! height.
+//! Flinders bar: an upright cylinder of soft iron, its top pole at the card's height.
 
-use super::{BarMagnet, Effect, Vector};
+use super::effect::{Effect, Vector};
+use super::magnet::BarMagnet;
 use std::f64::consts::PI;
 
 /// 1/χ of the bar's iron.
@@ -18,10 +18,10 @@ const DEMAGNETISING: [(f64, f64); 7] = [
     (12.0, 0.0156),
 ];
 
-/// The factor for any ratio: a power of the ratio between the values known, and
-/// beyond them as between the nearest two.
+/// Interpolates the demagnetising factor as a power of the ratio of length to diameter;
+/// beyond the table, extrapolates from the nearest two values.
 pub fn demagnetising(length_over_diameter: f64) -> f64 {
-    // A sphere's third is the greatest that a body this long can have.
+    // No body of this length exceeds a sphere's factor of one third.
     let ratio = length_over_diameter.max(0.8);
     let after = DEMAGNETISING
         .iter()
@@ -33,20 +33,20 @@ pub fn demagnetising(length_over_diameter: f64) -> f64 {
     (n0 * (n1 / n0).powf(share)).min(1.0 / 3.0)
 }
 
-/// A bar where it stands.
+/// A Flinders bar in its position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
-    /// χ13 that it would give before the card.
+    /// χ13 of the bar in its forward position.
     c: f64,
     length_m: f64,
     diameter_m: f64,
     axis_m: f64,
-    /// From the card to the bar: forward, starboard.
+    /// Direction from the card to the bar: forward, starboard.
     towards: [f64; 2],
 }
 
 impl Bar {
-    /// A bar of a length and diameter with its axis at a distance from the card,
+    /// Makes a bar of a length and diameter with its axis at a distance from the card,
     /// metres, at an angle clockwise from forward.
     pub fn new(length_m: f64, diameter_m: f64, axis_m: f64, azimuth_deg: f64) -> Bar {
         let (sin, cos) = azimuth_deg.to_radians().sin_cos();
@@ -62,17 +62,18 @@ impl Bar {
         Bar { c, ..bar }
     }
 
-    /// The same with its χ13 as it was measured.
+    /// Returns the bar with a measured χ13.
     pub fn measured(self, c: f64) -> Bar {
         Bar { c, ..self }
     }
 
-    /// χ13 that it gives before the card.
+    /// Returns χ13 of the bar in its forward position.
     pub fn c(&self) -> f64 {
         self.c
     }
 
-    /// From pole to pole, and the square of the lower one's distance from the card.
+    /// Returns the distance of the poles, and the squared distance of the lower one from
+    /// the card.
     fn poles(&self) -> (f64, f64) {
         let poles_m = 5.0 / 6.0 * self.length_m;
         (poles_m, self.axis_m.powi(2) + poles_m.powi(2))
@@ -82,22 +83,22 @@ impl Bar {
         PI / 4.0 * self.diameter_m.powi(2) * self.length_m
     }
 
-    /// Its moment along the axis for a unit of vertical field, over 4π.
+    /// Returns the moment along the axis per unit of vertical field, over 4π.
     fn strength(&self) -> f64 {
         let factor = demagnetising(self.length_m / self.diameter_m);
         self.volume() / (factor + INVERSE_SUSCEPTIBILITY) / (4.0 * PI)
     }
 
-    /// What the card has, forward, to starboard and down, of a unit of vertical field
-    /// in the bar (docs/science.md, eq. 21).
+    /// Returns the field at the card, forward, starboard and down, per unit of vertical
+    /// field in the bar (docs/science.md, eq. 21).
     fn of_vertical(&self) -> Vector {
         let (_, squared) = self.poles();
-        // From the lower pole upwards, for a field that points down.
+        // Upwards from the lower pole, for a field that points down.
         let up = self.strength() / squared.powf(1.5);
         [self.c * self.towards[0], self.c * self.towards[1], -up]
     }
 
-    /// What it does to the earth's field: along its axis, and across it as a line of
+    /// Returns the effect in the earth's field: along the bar, and across it as a line of
     /// dipoles (docs/science.md, eq. 22).
     pub fn effect(&self) -> Effect {
         let mut effect = Effect::default();
@@ -119,7 +120,7 @@ impl Bar {
         effect
     }
 
-    /// ∫ds/s³ and ∫ds/s⁵ over the bar's length, s the distance from the card.
+    /// Integrates ∫ds/s³ and ∫ds/s⁵ over the bar's length, s the distance from the card.
     fn along_the_line(&self) -> (f64, f64) {
         let d2 = self.axis_m.powi(2);
         let up_to = |z: f64| {
@@ -134,8 +135,8 @@ impl Bar {
         (bottom.0 - top.0, bottom.1 - top.1)
     }
 
-    /// What it adds at the card to a magnet's field, nT: magnetised by the mean
-    /// vertical field along it.
+    /// Returns the field added to a magnet's field at the card, nT, by the mean vertical
+    /// field along the bar.
     pub fn reflected(&self, magnet: &BarMagnet) -> Vector {
         const PARTS: i32 = 8;
         let mut vertical_nt = 0.0;

@@ -1,25 +1,25 @@
-//! A bar magnet as two poles.
+//! Bar magnet as two poles.
 
-use super::Vector;
+use super::effect::Vector;
 
 /// µ0/4π in nT·m³/(A·m²): 10⁻⁷ tesla.
 pub const MAGNETIC: f64 = 100.0;
 
-/// A magnet: two poles at its ends.
+/// A bar magnet with two poles at its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BarMagnet {
-    /// Its middle, metres from the card's centre.
+    /// Centre, metres from the card's centre.
     pub centre: Vector,
-    /// Magnetic moment, A·m², towards the red (north-seeking) end. Not nil.
+    /// Magnetic moment, A·m², towards the red (north-seeking) end. Not zero.
     pub moment: Vector,
-    /// From pole to pole, metres.
+    /// Distance of the poles, metres.
     pub length_m: f64,
 }
 
 impl BarMagnet {
-    /// Its field at a place, nT (docs/science.md, eq. 19).
+    /// Computes the field at a place, nT (docs/science.md, eq. 19).
     ///
-    /// Broadside it comes to 10⁻⁷ m/(ρ² + L²/4)^1.5 against the moment, end-on to
+    /// Broadside, the field is 10⁻⁷ m/(ρ² + L²/4)^1.5 against the moment; end-on, it is
     /// 2·10⁻⁷ m h/(h² − L²/4)² along it.
     pub fn field_nt(&self, at: Vector) -> Vector {
         let size = self.moment.iter().map(|m| m * m).sum::<f64>().sqrt();

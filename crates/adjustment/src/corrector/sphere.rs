@@ -1,7 +1,7 @@
-//! A pair of spheres of soft iron on either side of the card.
+//! Kelvin spheres: a pair of soft-iron spheres on either side of the card.
 
-use super::magnet::MAGNETIC;
-use super::{BarMagnet, Effect, Vector};
+use super::effect::{Effect, Vector};
+use super::magnet::{BarMagnet, MAGNETIC};
 
 /// (µ − 1)/(µ + 2) of soft iron with a relative permeability of 200.
 pub const KAPPA: f64 = 0.985;
@@ -9,16 +9,16 @@ pub const KAPPA: f64 = 0.985;
 /// Two equal spheres at the card's height, opposite each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// q = κ (a/r)³ (docs/science.md, eq. 20).
+    /// Effect q = κ (a/r)³ (docs/science.md, eq. 20).
     q: f64,
-    /// From the card's centre to either one's, metres.
+    /// Distance from the card's centre to either sphere, metres.
     distance_m: f64,
-    /// Towards the one that is to starboard when not slewed: forward, starboard.
+    /// Direction of the sphere that is to starboard without slew: forward, starboard.
     towards: [f64; 2],
 }
 
 impl Pair {
-    /// Spheres of a radius at a distance from the card, metres, slewed clockwise from
+    /// Makes spheres of a radius at a distance from the card, metres, slewed clockwise from
     /// athwartships.
     pub fn new(radius_m: f64, distance_m: f64, slew_deg: f64) -> Pair {
         let (sin, cos) = slew_deg.to_radians().sin_cos();
@@ -29,17 +29,17 @@ impl Pair {
         }
     }
 
-    /// The same with q as it was measured.
+    /// Returns the pair with a measured q.
     pub fn measured(self, q: f64) -> Pair {
         Pair { q, ..self }
     }
 
-    /// q: a third of what the pair takes off λD.
+    /// Returns q, a third of the pair's reduction of λD.
     pub fn q(&self) -> f64 {
         self.q
     }
 
-    /// What it does to the earth's field, and with needles of this moment, A·m².
+    /// Returns the effect in the earth's field, and with needles of this moment, A·m².
     pub fn effect(&self, needle_am2: f64) -> Effect {
         let mut effect = Effect::default();
         let n = [self.towards[0], self.towards[1], 0.0];
@@ -49,8 +49,8 @@ impl Pair {
                 effect.chi[row][column] = self.q * (6.0 * n[row] * n[column] - unit);
             }
         }
-        // What the needles induce along themselves does not turn them: of 3nn + 1 only
-        // 3nn − 3/2 does, which is quadrantal and leaves λ as it is.
+        // A field that the needles induce along themselves does not turn them: of 3nn + 1
+        // only 3nn − 3/2 does, which is quadrantal and leaves λ unchanged.
         let needle_nt = 6.0 * self.q * MAGNETIC * needle_am2 / self.distance_m.powi(3);
         for row in 0..2 {
             for column in 0..2 {
@@ -61,7 +61,7 @@ impl Pair {
         effect
     }
 
-    /// What it adds at the card to a magnet's field, nT.
+    /// Returns the field added to a magnet's field at the card, nT.
     pub fn reflected(&self, magnet: &BarMagnet) -> Vector {
         let mut sum = [0.0; 3];
         let n = [self.towards[0], self.towards[1], 0.0];

@@ -1,6 +1,8 @@
 use super::*;
 use crate::binnacle::tests::class_a;
-use crate::binnacle::{BarSetting, Binnacle, PairSetting, Red};
+use crate::binnacle::{
+    Axis, BarSetting, Binnacle, BinnacleForm, HeelingSetting, PairSetting, Red, Side, Soft, Tray,
+};
 use proptest::prelude::*;
 
 fn broadside_ut(distance_m: f64) -> f64 {
@@ -77,7 +79,7 @@ fn a_bar_of_75_mm_at_30_cm_gives_the_published_c_and_some_d() {
     assert!(demagnetising(0.1) <= 1.0 / 3.0 && demagnetising(100.0) > 0.0);
 }
 
-/// Every corrector's sense, as the adjuster knows it.
+/// Direction of every corrector, as an adjuster knows it.
 #[test]
 fn every_corrector_cures_what_it_is_for() {
     let binnacle = class_a();
@@ -129,11 +131,11 @@ fn every_corrector_cures_what_it_is_for() {
     assert!(Bar::new(0.3, 0.075, 0.3, 180.0).effect().chi[0][2] < 0.0);
 }
 
-/// The worked adjustment of Basterretxea-Iribar et al.: with holes 20 mm apart and
-/// hole 5 at 0.42 m, one moment explains both of its moves.
+/// The worked adjustment of Basterretxea-Iribar et al.: with holes 20 mm apart and hole 5
+/// at 0.42 m, one moment explains both moves.
 #[test]
 fn the_papers_own_adjustment_is_of_one_moment() {
-    // Long magnets' L is not printed; far below the card it hardly counts.
+    // The magnets' length is not printed, and hardly counts far below the card.
     let per_am2 = |hole: f64| {
         let magnet = BarMagnet {
             centre: [0.0, 0.0, 0.42 + 0.02 * (5.0 - hole)],
@@ -172,10 +174,10 @@ fn spheres_weaken_a_magnet_below_the_card_and_a_bar_takes_part() {
         pair: None,
         bar: Some(Bar::new(0.4, 0.075, 0.3, 0.0)),
     };
-    // Red forward: the lines go down before the card, into the bar's length.
+    // Red forward: the field lines go down forward of the card, into the bar's length.
     let seen = magnet_field(&binnacle, &bar, Axis::ForeAndAft, "200 mm", 10).unwrap();
     assert!((seen[0] - bare[0]).abs() > 1.0, "{seen:?} {bare:?}");
-    // An athwartship magnet stands square to a bar before the card.
+    // An athwartship magnet is at right angles to a bar forward of the card.
     let bare = magnet_field(&binnacle, &Iron::default(), Axis::Athwartship, "200 mm", 10).unwrap();
     let seen = magnet_field(&binnacle, &bar, Axis::Athwartship, "200 mm", 10).unwrap();
     assert!((seen[1] - bare[1]).abs() < 1e-6);
@@ -221,7 +223,7 @@ fn what_was_measured_wins() {
 }
 
 proptest! {
-    /// Seen in a mirror along the keel, athwartship parts change their sign.
+    /// In a mirror along the keel, athwartship parts change their sign.
     #[test]
     fn the_mirror_image_of_iron_does_the_mirror_image(
         slew in -90.0..90.0_f64, azimuth in -180.0..180.0_f64, length in 0.1..0.6_f64,
@@ -251,7 +253,7 @@ proptest! {
         prop_assert!((one.0.needle_nt[0][1] + other.0.needle_nt[0][1]).abs() < 1e-9);
     }
 
-    /// Turned a quarter, what was forward is to starboard.
+    /// A quarter turn moves forward to starboard.
     #[test]
     fn iron_turned_a_quarter_does_the_same_a_quarter_on(
         slew in -90.0..90.0_f64, azimuth in -180.0..180.0_f64,
@@ -271,7 +273,7 @@ proptest! {
         prop_assert!((one[1][2] + turned[0][2]).abs() < 1e-12);
     }
 
-    /// A setting's effect is the sum of its parts': magnets once the iron stands.
+    /// A setting's effect is the sum of its magnets' effects once the iron is set.
     #[test]
     fn magnets_with_red_ends_turned_do_the_opposite(hole in 1_u16..=20, count in 1_u8..=4) {
         let binnacle = class_a();

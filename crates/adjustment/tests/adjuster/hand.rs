@@ -1,8 +1,8 @@
-//! A hand that does what a step's words say, and knows nothing else of the step.
+//! A hand that follows a step's words, and knows nothing else of the step.
 
 use super::world::Binnacle;
 
-/// Moves what the words say from where they say to where they say.
+/// Moves correctors as the words say.
 pub(crate) fn done(binnacle: &mut Binnacle, words: &str) {
     let (corrector, rest) = words.split_once(": ").unwrap();
     let (from, to) = match rest.split_once(' ').unwrap() {

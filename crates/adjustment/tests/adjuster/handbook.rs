@@ -1,5 +1,5 @@
-//! What a handbook's table says is put into an empty binnacle for each coefficient
-//! alone (Pub. 226, "mechanics of magnetic compass adjustment"; ISO 25862 for red).
+//! Each row of a handbook's table is applied to an empty binnacle, one coefficient at a
+//! time (Pub. 226, "mechanics of magnetic compass adjustment"; ISO 25862 for red).
 
 use super::world::Ship;
 use super::{Case, NORTHERN, SOUTHERN, water};
@@ -21,7 +21,7 @@ fn soft(a: f64, bd: f64, e: f64, c: f64, f: f64) -> Ship {
     }
 }
 
-/// What is fitted, in words, at one berth.
+/// Fitted correctors, in words, at one berth.
 fn fitted(ship: Ship, berth: (f64, f64)) -> Vec<String> {
     let case = Case::new(ship, &json!({}), berth, 55.0);
     let plan = case.plan(&[water("north", NORTHERN), water("south", SOUTHERN)]);
@@ -82,7 +82,7 @@ fn each_coefficient_alone_is_cured_as_the_handbook_says() {
             "quadrantal",
             "starboard one 70 degrees forward",
         ),
-        // Vertical iron abaft the card, as on most ships, wants the bar before it.
+        // Vertical iron abaft the card, as on most ships, needs the bar forward of it.
         (
             soft(0.0, 0.0, 0.0, -0.07, 0.0),
             "Flinders bar",
@@ -113,7 +113,7 @@ fn each_coefficient_alone_is_cured_as_the_handbook_says() {
             "Flinders bar",
             "abaft the card, 20 degrees to port",
         ),
-        // The ship pulls north down: red up pushes it back.
+        // The ship pulls north down; red up cancels it.
         (hard([0.0, 0.0, 3_000.0]), "heeling magnets", "red up"),
         (hard([0.0, 0.0, -3_000.0]), "heeling magnets", "red down"),
     ];

@@ -1,6 +1,6 @@
-//! An adjuster who knows only the words of the steps, at a binnacle that knows only
-//! where north-seeking poles point: whatever the signs of the ship, the compass then
-//! shows what each step foretold, and in the end what the plan did.
+//! An adjuster who knows only the words of the steps, at a binnacle that knows only the
+//! direction of north-seeking poles. For all signs of the ship, the compass then shows each
+//! step's prediction, and in the end the plan's.
 
 #![allow(clippy::unwrap_used)] // a test's
 
@@ -23,7 +23,7 @@ use world::{Hardware, Lying, Ship, compass_deg};
 const NORTHERN: (f64, f64) = (22_000.0, 41_000.0);
 const SOUTHERN: (f64, f64) = (19_000.0, -33_000.0);
 
-/// A class A binnacle with a tray an axis, a pair of spheres and a bar of two pieces, all
+/// A class A binnacle with a tray per axis, a pair of spheres and a bar of two pieces, all
 /// of which slew.
 fn written(setting: &Value) -> (Binnacle, Hardware) {
     let mut design: Value = serde_json::from_str(SHIPPED[0].1).unwrap();
@@ -75,7 +75,7 @@ fn written(setting: &Value) -> (Binnacle, Hardware) {
     (serde_json::from_value(form).unwrap(), hardware)
 }
 
-/// The same setting as one would note it down.
+/// Converts the setting to the notes of an observer.
 fn noted(setting: &Value) -> world::Binnacle {
     let mut noted = world::Binnacle::default();
     for (axis, field) in [("forward", "fore_and_aft"), ("starboard", "athwartship")] {
@@ -96,7 +96,7 @@ fn noted(setting: &Value) -> world::Binnacle {
     noted
 }
 
-/// A ship at a berth, with the binnacle as it stands.
+/// A ship at a berth, with the binnacle in its setting.
 struct Case {
     ship: Ship,
     binnacle: Binnacle,
@@ -124,7 +124,7 @@ impl Case {
         compass_deg(&self.ship, standing, &self.hardware, place, lying)
     }
 
-    /// What a fit without errors says of her headings.
+    /// Model of the ship by a fit without errors.
     fn model(&self) -> Model {
         let head_north = Lying {
             magnetic_deg: 0.0,
@@ -209,7 +209,8 @@ impl Case {
         }
     }
 
-    /// Degrees of deviation, east positive, for each degree of heel to starboard, on north.
+    /// Heeling error on north, degrees of deviation, east positive, per degree of heel to
+    /// starboard.
     fn heeling_error(&self, standing: &world::Binnacle) -> f64 {
         let heeled = |heel_deg: f64| {
             let lying = Lying {
@@ -222,7 +223,7 @@ impl Case {
         (heeled(0.5) - heeled(-0.5)) / 1.0
     }
 
-    /// The deviation on a compass heading.
+    /// Returns the deviation on a compass heading.
     fn deviation(&self, standing: &world::Binnacle, place: (f64, f64), compass_deg: f64) -> f64 {
         let mut deviation = 0.0;
         for _ in 0..60 {
@@ -252,7 +253,7 @@ fn water(name: &str, (h_nt, z_nt): (f64, f64)) -> Water {
 
 /// Every sign of hard and soft iron, in both hemispheres, on headings all round.
 #[test]
-fn whatever_the_signs_the_compass_shows_what_the_words_foretold() {
+fn whatever_the_signs_the_compass_shows_what_the_words_predict() {
     let standing = json!({
         "fore_and_aft": [{ "hole": 6, "magnet": "200 mm", "count": 2, "red": "aft" }],
         "athwartship": [{ "hole": 7, "magnet": "200 mm", "count": 1, "red": "port" }],
@@ -264,7 +265,7 @@ fn whatever_the_signs_the_compass_shows_what_the_words_foretold() {
     let mut seen = std::collections::BTreeSet::new();
     for signs in 0..16_u32 {
         let sign = |bit: u32| if signs & (1 << bit) == 0 { 1.0 } else { -1.0 };
-        // The fifth sign of those that a plan takes is of the others together.
+        // The fifth sign of a plan's coefficients is determined by the others.
         let odd = sign(0) * sign(1) * sign(2);
         let (weak, strong) = (-0.06, -0.17);
         let (fore, across) = if odd > 0.0 {
@@ -275,7 +276,7 @@ fn whatever_the_signs_the_compass_shows_what_the_words_foretold() {
         let e = 0.02 * sign(3);
         let ship = Ship {
             hard_nt: [3_000.0 * sign(0), 2_600.0 * sign(1), 2_400.0 * sign(2)],
-            // Induced by the earth's field along each axis.
+            // Induction by the earth's field along each axis.
             soft: [
                 [fore, e, 0.0],
                 [e, across, 0.0],
@@ -309,15 +310,15 @@ fn whatever_the_signs_the_compass_shows_what_the_words_foretold() {
             }
         }
         assert!(after < 0.5 * before, "{signs:04b}: {after} of {before}");
-        for (standing, foretold) in [
+        for (standing, predicted) in [
             (&case.found, plan.heeling.before_deg_per_deg.unwrap()),
             (&binnacle, plan.heeling.after_deg_per_deg.unwrap()),
         ] {
             let truth = case.heeling_error(standing);
-            let off = (truth - foretold).abs();
+            let off = (truth - predicted).abs();
             assert!(
                 off < 0.04 + 0.2 * truth.abs(),
-                "{signs:04b}: J {truth} {foretold}"
+                "{signs:04b}: J {truth} {predicted}"
             );
         }
     }
@@ -332,7 +333,7 @@ fn whatever_the_signs_the_compass_shows_what_the_words_foretold() {
     }
 }
 
-/// What a step's words were about, so that all of them come up.
+/// Kind of corrector of a step, so that all of them occur.
 fn kinds(words: &str) -> String {
     let to = words.rsplit(" to ").next().unwrap();
     let kind = match words.split_once(':').unwrap().0 {

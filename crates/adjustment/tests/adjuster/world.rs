@@ -1,37 +1,36 @@
 //! A compass among magnets and iron, in the world's axes: north, east, down.
 //!
-//! The ship's own axes are three vectors that turn with her; every pole and sphere has
-//! its place along them, and the card lies in the horizontal with its north along the
-//! sum of all fields. Nothing here comes from the crate.
+//! The ship's own axes are three vectors that turn with it. Every pole and sphere has its
+//! place along them, and the card is horizontal with its north along the sum of all fields.
+//! Nothing here comes from the crate.
 
 use std::collections::BTreeMap;
 
 pub(crate) type Vector = [f64; 3];
 
-/// A ship without correctors: the field of her hard iron, and that of her soft iron for
-/// the earth's field along each of her axes; forward, starboard, down, nT.
+/// A ship without correctors: field of its hard iron, and field of its soft iron for the
+/// earth's field along each of its axes; forward, starboard, down, nT.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Ship {
     pub(crate) hard_nt: Vector,
     pub(crate) soft: [Vector; 3],
 }
 
-/// What stands in the binnacle, as one would note it down.
+/// Correctors in the binnacle, as an observer would note them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Binnacle {
-    /// By `forward` or `starboard`, whichever the hole's axis is, and by hole: how many
-    /// magnets, and where their red ends point.
+    /// Magnets by the hole's axis, `forward` or `starboard`, and by hole: number and
+    /// direction of the red ends.
     pub(crate) magnets: BTreeMap<(&'static str, u16), (u8, String)>,
-    /// Distance of the spheres' middles, m, and by how many degrees the starboard one
-    /// is aft.
+    /// Distance of the spheres' centres, m, and slew of the starboard one aft, degrees.
     pub(crate) spheres: Option<(f64, f64)>,
-    /// Length of the bar, m, and where it stands, degrees clockwise from forward.
+    /// Length of the bar, m, and its position, degrees clockwise from forward.
     pub(crate) bar: Option<(f64, f64)>,
-    /// Position, how many, red ends.
+    /// Position, number and red ends.
     pub(crate) bucket: Option<(u16, u8, String)>,
 }
 
-/// What the correctors are like.
+/// Properties of the correctors.
 #[derive(Clone, Debug)]
 pub(crate) struct Hardware {
     pub(crate) moment_am2: f64,
@@ -40,11 +39,11 @@ pub(crate) struct Hardware {
     pub(crate) depths_m: [Vec<f64>; 3],
     pub(crate) sphere_radius_m: f64,
     pub(crate) bar_axis_m: f64,
-    /// χ13 by the bar's length, mm: as calibrated.
+    /// χ13 by the bar's length, mm, from its calibration.
     pub(crate) bar_c: BTreeMap<u32, f64>,
 }
 
-/// How she lies: magnetic heading, and heel to starboard, degrees.
+/// Attitude of the ship: magnetic heading, and heel to starboard, degrees.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lying {
     pub(crate) magnetic_deg: f64,
@@ -52,19 +51,19 @@ pub(crate) struct Lying {
 }
 
 impl Lying {
-    /// Her axes in the world: forward, starboard, down.
+    /// Axes of the ship in the world: forward, starboard, down.
     fn axes(self) -> [Vector; 3] {
         let (east, north) = self.magnetic_deg.to_radians().sin_cos();
         let (sin, cos) = self.heel_deg.to_radians().sin_cos();
         let level = [-east, north, 0.0];
-        // Heeled to starboard her starboard side points down.
+        // Heeled to starboard, the starboard side points down.
         let starboard = sum(&[scaled(level, cos), [0.0, 0.0, sin]]);
         let down = sum(&[scaled(level, -sin), [0.0, 0.0, cos]]);
         [[north, east, 0.0], starboard, down]
     }
 }
 
-/// What the compass reads, degrees, where the earth's field is this: horizontal and down.
+/// Compass heading, degrees, in the earth's field: horizontal and down.
 pub(crate) fn compass_deg(
     ship: &Ship,
     binnacle: &Binnacle,
@@ -73,11 +72,11 @@ pub(crate) fn compass_deg(
     lying: Lying,
 ) -> f64 {
     let [north, east, _] = field(ship, binnacle, hardware, [earth.0, 0.0, earth.1], lying);
-    // North on the card is where the field points: the bow's angle from there.
+    // North on the card is the field's direction; the bow's angle counts from there.
     (lying.magnetic_deg - east.atan2(north).to_degrees()).rem_euclid(360.0)
 }
 
-/// The field at the card along the ship's axes, nT: what a magnetometer reads there.
+/// Field at the card along the ship's axes, nT, as a magnetometer measures it.
 pub(crate) fn read(
     ship: &Ship,
     binnacle: &Binnacle,
@@ -130,8 +129,8 @@ fn field(
         let (d, l) = (hardware.bar_axis_m, length_m * 5.0 / 6.0);
         let c = hardware.bar_c[&((length_m * 1e3).round() as u32)];
         let pole = c / (1.0 / (d * d) - d / (d * d + l * l).powf(1.5));
-        // A field that points down makes the lower end north-seeking, and the upper one,
-        // level with the card, draws the card's north.
+        // A field that points down makes the lower end north-seeking. The upper end, level
+        // with the card, attracts the card's north.
         all.push(of_pole((at(0.0), -pole * met_nt), [0.0; 3]));
         all.push(of_pole((at(l), pole * met_nt), [0.0; 3]));
     }

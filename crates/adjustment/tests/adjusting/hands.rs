@@ -1,5 +1,5 @@
-//! Hands that carry out a plan step by step, rightly or with one slip, and do what the
-//! recheck of each step says; and that read the magnetometer once more at the end, or do not.
+//! Hands that carry out a plan step by step, correctly or with one slip, and follow the
+//! check of each step; with or without a second magnetometer reading at the end.
 
 #![allow(clippy::unwrap_used)] // a study
 
@@ -8,8 +8,8 @@ use super::adjusting::scene::Scene;
 use super::adjusting::wrap;
 use super::tally::{mean, quantile};
 use binnacle_adjustment::adjust::{
-    Adjustment, Done, Outcome, Place, PredictedTable, Recheck, Step, Unit, Verdict,
-    VerticalReading, by_compass, plan, read_again, recheck,
+    Adjustment, CompletedStep, Outcome, Place, PredictedTable, Step, StepCheck, Unit, Verdict,
+    VerticalReading, check_second_reading, check_step, plan, predict_by_compass,
 };
 use binnacle_adjustment::berth::BerthReading;
 use binnacle_adjustment::binnacle::{Axis, Binnacle, Setting, Tray};
@@ -17,46 +17,46 @@ use binnacle_compass::model::Model;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// How well a card is read, degrees.
+/// Standard deviation of a card reading, degrees.
 const CARD_SD_DEG: f64 = 0.2;
-/// Then the adjuster gives up.
+/// Number of steps after which the adjuster gives up.
 const MOST_STEPS: usize = 40;
-/// So often the magnetometer is read in vain, and no more.
+/// Greatest number of second readings.
 const MOST_READINGS: usize = 4;
 
-/// What is done wrong in one of the steps with magnets.
+/// Slip in one of the steps with magnets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Slip {
-    /// Nothing.
+    /// No slip.
     None,
-    /// All magnets have this share of the moment that they are said to have.
+    /// All magnets have this share of their stated moment.
     Moment(f64),
-    /// The magnets go in with the wrong end.
+    /// Magnets with the wrong end.
     WrongEnd,
-    /// The magnets go so many holes too high.
+    /// Magnets some holes too high.
     Hole(i32),
 }
 
-/// What is looked at when the steps are done.
+/// Verification after the steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Ending {
-    /// Nothing more than the compass at each step.
+    /// The compass at each step alone.
     ByCompass,
-    /// The magnetometer, once more.
+    /// A second magnetometer reading.
     ReadAgain,
 }
 
-/// What came of many adjustments.
+/// Statistics of many adjustments.
 #[derive(Default)]
 pub(crate) struct Hands {
     pub(crate) ships: u64,
-    /// Verdicts of second readings: rightly done, and with a slip that still stands.
+    /// Verdicts of second readings: without a slip, and with one that remains.
     pub(crate) again: [BTreeMap<&'static str, u64>; 2],
-    /// Verdicts on steps that were done rightly.
+    /// Verdicts on correct steps.
     pub(crate) right: BTreeMap<&'static str, u64>,
-    /// Verdicts on slips, by how far the compass is from what was expected, in classes.
+    /// Verdicts on slips, by the difference from the expected turn, in classes.
     pub(crate) slips: BTreeMap<(usize, &'static str), u64>,
-    /// How they ended: at the end of a plan, refused, or sent to look for the cause.
+    /// Endings: at the end of a plan, refused, or sent to look for the cause.
     pub(crate) ended: BTreeMap<&'static str, u64>,
     pub(crate) held: Vec<f64>,
     /// Mean half-width of the band, degrees.
@@ -67,19 +67,19 @@ pub(crate) struct Hands {
 /// Upper ends of the classes of slips, degrees.
 pub(crate) const CLASSES_DEG: [f64; 5] = [0.5, 1.0, 2.0, 4.0, f64::INFINITY];
 
-/// What the hands believe and what is.
+/// Believed and actual work.
 struct Work {
     binnacle: Binnacle,
     standing: Setting,
-    /// The tray that stands otherwise than believed, and how it truly stands.
+    /// The tray that differs from the belief, with its intended and actual place.
     slipped: Option<(Axis, Tray, Tray)>,
     slip: Slip,
-    /// The step that it is still to happen at.
+    /// Step of the pending slip.
     slips_at: Option<u32>,
-    /// Steps that were taken for done.
-    done: Vec<Done>,
+    /// Steps counted as done.
+    done: Vec<CompletedStep>,
     readings: usize,
-    /// The model after a second reading that called for another plan, and that reading.
+    /// Model after a second reading that required another plan, with that reading.
     learnt: Option<(Model, BerthReading, f64)>,
 }
 
@@ -94,7 +94,7 @@ impl Work {
         truly
     }
 
-    /// What is known, the correctors standing so.
+    /// Input of a plan with this setting.
     fn adjustment<'a>(&'a self, scene: &'a Scene, now: &'a Setting) -> Adjustment<'a> {
         let adjustment = Adjustment {
             binnacle: &self.binnacle,
@@ -113,19 +113,19 @@ impl Work {
         }
     }
 
-    /// Whether a slip of this adjustment is still in what stands.
+    /// Returns true while a slip of this adjustment remains in the setting.
     fn is_slipped(&self) -> bool {
         self.truly(&self.standing) != self.standing
     }
 }
 
-/// How an adjustment goes on.
+/// Continuation of an adjustment.
 enum Next {
-    /// With the plan's next step.
+    /// The plan's next step.
     Step,
-    /// With another plan.
+    /// Another plan.
     Plan(Outcome),
-    /// It has ended.
+    /// End.
     Ended(&'static str),
 }
 
@@ -189,11 +189,11 @@ impl Hands {
                 at += 1;
                 self.step(scene, &step.clone(), work)
             } else if ending == Ending::ReadAgain {
-                self.read_again(scene, work)
+                self.check_second_reading(scene, work)
             } else {
                 let standing = work.standing.clone();
                 let adjustment = work.adjustment(scene, &standing);
-                let learnt = by_compass(&adjustment, &work.done).unwrap();
+                let learnt = predict_by_compass(&adjustment, &work.done).unwrap();
                 self.end(scene, &learnt.after, work);
                 Next::Ended("done")
             };
@@ -218,10 +218,10 @@ impl Hands {
         let truly = work.truly(&step.setting_after);
         let after_deg = shown(scene, &truly);
         let adjustment = work.adjustment(scene, &now);
-        let found = recheck(&adjustment, step, before_deg, after_deg).unwrap();
+        let found = check_step(&adjustment, step, before_deg, after_deg).unwrap();
         let turned_deg = wrap(after_deg - before_deg);
         let off_deg = wrap(turned_deg - step.change_deg).abs();
-        // Magnets of another moment make every step with them a slip.
+        // With magnets of another moment, every step with them is a slip.
         let of_lot = matches!(work.slip, Slip::Moment(_))
             && [&step.from, &step.to]
                 .iter()
@@ -236,26 +236,26 @@ impl Hands {
             *self.right.entry(name(&found)).or_default() += 1;
         }
         let (setting, binnacle, anew) = match found {
-            Recheck::Confirmed { .. } | Recheck::NotSeen { .. } => {
+            StepCheck::Confirmed { .. } | StepCheck::NotSeen { .. } => {
                 work.standing = step.setting_after.clone();
                 let turned_deg = Some(turned_deg);
                 let step = step.clone();
-                work.done.push(Done { step, turned_deg });
+                work.done.push(CompletedStep { step, turned_deg });
                 return Next::Step;
             }
-            Recheck::WrongEnd {
+            StepCheck::WrongEnd {
                 setting, outcome, ..
             } => (setting, None, outcome),
-            Recheck::OtherStrength {
+            StepCheck::OtherStrength {
                 setting,
                 binnacle,
                 outcome,
                 ..
             } => (setting, Some(binnacle), outcome),
-            Recheck::Unexplained { .. } => return Next::Ended("sent to look"),
+            StepCheck::Unexplained { .. } => return Next::Ended("sent to look"),
         };
         if setting != step.setting_after {
-            // What stands the wrong way round is known now.
+            // Reversed magnets are known from here on.
             work.slipped = None;
         }
         work.standing = setting;
@@ -266,7 +266,7 @@ impl Hands {
         Next::Plan(*anew)
     }
 
-    fn read_again(&mut self, scene: &mut Scene, work: &mut Work) -> Next {
+    fn check_second_reading(&mut self, scene: &mut Scene, work: &mut Work) -> Next {
         work.readings += 1;
         if work.readings > MOST_READINGS {
             return Next::Ended("never confirmed");
@@ -277,21 +277,21 @@ impl Hands {
         let adjustment = work.adjustment(scene, &work.standing);
         let vertical = Some(VerticalReading { down_nt });
         let unit = Unit::Nanotesla;
-        let found = read_again(&adjustment, &work.done, &reading, vertical, None, unit);
+        let found = check_second_reading(&adjustment, &work.done, &reading, vertical, None, unit);
         let found = found.unwrap().verdict;
         let slipped = usize::from(work.is_slipped());
         let (word, next) = match found {
-            Verdict::AsPlanned { learnt } => {
-                self.end(scene, &learnt.after, work);
+            Verdict::AsPlanned { updated } => {
+                self.end(scene, &updated.after, work);
                 ("as planned", Next::Ended("done"))
             }
             Verdict::Replan {
-                learnt,
+                updated,
                 binnacle,
                 outcome,
                 ..
             } => {
-                work.learnt = Some((learnt.model_after, reading, down_nt));
+                work.learnt = Some((updated.model_after, reading, down_nt));
                 work.binnacle = *binnacle;
                 work.done.clear();
                 ("beyond limits", Next::Plan(*outcome))
@@ -301,7 +301,7 @@ impl Hands {
                 let meant = work.slipped.as_ref().map(|(_, meant, _)| meant.clone());
                 let found = suspected == meant.map(Place::Magnets) && slipped == 1;
                 if found {
-                    // Whoever looks sees how they stand, and puts them right.
+                    // An inspection finds the actual setting, and corrects it.
                     work.slipped = None;
                     ("the step suspected", Next::Step)
                 } else {
@@ -334,14 +334,14 @@ impl Hands {
     }
 }
 
-/// What the card shows at the berth, degrees.
+/// Card reading at the berth, degrees.
 fn shown(scene: &mut Scene, setting: &Setting) -> f64 {
     let standing = scene.truth.with(setting);
     let truly = standing.compass_deg(scene.place(), scene.berthed.magnetic_deg);
     (truly + CARD_SD_DEG * scene.rng.gaussian()).rem_euclid(360.0)
 }
 
-/// Where the step's magnets are put instead; nowhere else where there is no such hole.
+/// Returns the wrong place of the step's magnets; `None` without such a hole.
 fn slipped(binnacle: &Binnacle, step: &Step, slip: Slip) -> Option<(Axis, Tray, Tray)> {
     let Some(Place::Magnets(meant)) = &step.to else {
         return None;
@@ -364,13 +364,13 @@ fn slipped(binnacle: &Binnacle, step: &Step, slip: Slip) -> Option<(Axis, Tray, 
     Some((axis, meant.clone(), done))
 }
 
-fn name(found: &Recheck) -> &'static str {
+fn name(found: &StepCheck) -> &'static str {
     match found {
-        Recheck::Confirmed { .. } => "confirmed",
-        Recheck::NotSeen { .. } => "not seen",
-        Recheck::WrongEnd { .. } => "wrong end",
-        Recheck::OtherStrength { .. } => "other strength",
-        Recheck::Unexplained { .. } => "unexplained",
+        StepCheck::Confirmed { .. } => "confirmed",
+        StepCheck::NotSeen { .. } => "not seen",
+        StepCheck::WrongEnd { .. } => "wrong end",
+        StepCheck::OtherStrength { .. } => "other strength",
+        StepCheck::Unexplained { .. } => "unexplained",
     }
 }
 

@@ -1,11 +1,11 @@
-//! What correctors truly do: each is a little off what the catalogue says.
+//! True effects of correctors, each a little off the catalogue's.
 
 use super::random::Random;
 use binnacle_adjustment::binnacle::{Axis, Binnacle, Setting, Side, Tray};
 
 type Vector = [f64; 3];
 
-/// How many small dipoles a magnet is made of.
+/// Number of small dipoles in a magnet.
 const PARTS: usize = 12;
 /// 10⁻⁷ tesla in nT.
 const MU: f64 = 100.0;
@@ -15,14 +15,14 @@ pub(crate) struct Fitted {
     binnacle: Binnacle,
     /// Relative error of each magnet, by axis.
     moments: [Vec<f64>; 2],
-    /// Of each hole's height, mm, by axis.
+    /// Error of each hole's height, mm, by axis.
     heights_mm: [Vec<f64>; 2],
     bucket: f64,
-    /// Of each size's pair.
+    /// Error of each size's pair.
     pairs: Vec<f64>,
     bar: f64,
     pub(crate) needle_am2: f64,
-    /// What all magnets but the heeling ones have of the moment that they are said to have.
+    /// Share of the stated moment that all magnets except the heeling ones have.
     pub(crate) lot_share: f64,
 }
 
@@ -61,7 +61,7 @@ impl Fitted {
         }
     }
 
-    /// What all correctors make of the earth's field at the card, nT.
+    /// Field of all correctors at the card in the earth's field, nT.
     pub(crate) fn field(&self, setting: &Setting, earth: Vector) -> Vector {
         let magnets = self.dipoles(setting);
         let direct = |at: Vector| {
@@ -74,7 +74,7 @@ impl Fitted {
             for side in [1.0, -1.0] {
                 let at = n.map(|part| side * r * part);
                 let met = add(earth, direct(at));
-                // A sphere's dipole, in units in which MU is one.
+                // A sphere's dipole, in units with MU of one.
                 let induced = met.map(|part| strength / MU * part);
                 sum = add(sum, dipole(induced, at.map(|part| -part)));
             }
@@ -85,7 +85,8 @@ impl Fitted {
         sum
     }
 
-    /// What the spheres answer to the needles, nT, with the card's north pointing so.
+    /// Field induced in the spheres by the needles, nT, for this direction of the card's
+    /// north.
     pub(crate) fn of_needles(&self, setting: &Setting, card: [f64; 2]) -> [f64; 2] {
         let Some((strength, n, r)) = self.pair(setting) else {
             return [0.0; 2];
@@ -151,7 +152,7 @@ impl Fitted {
         row(middle, moment, kind.length_mm / 1e3)
     }
 
-    /// a³κ of each sphere, the way to one of them, and its distance.
+    /// a³κ of each sphere, the vector to one of them, and its distance.
     fn pair(&self, setting: &Setting) -> Option<(f64, Vector, f64)> {
         let set = setting.quadrantal.as_ref()?;
         let iron = self.binnacle.design.quadrantal.as_ref()?;
@@ -214,7 +215,7 @@ impl TrueBar {
             pole([self.ahead, 0.0, 0.0], -1.0),
             pole([self.ahead, 0.0, poles], 1.0),
         );
-        // Across it, a string of dipoles.
+        // Induction across the bar, as a string of dipoles.
         let across = (1.0 - demagnetising(self.length / self.diameter)) / 2.0 + 6e-4;
         let each = self.share * volume / f64::from(steps) / across / (4.0 * std::f64::consts::PI);
         let moment = [earth[0] * each / MU, earth[1] * each / MU, 0.0];
@@ -225,7 +226,7 @@ impl TrueBar {
     }
 }
 
-/// Straight lines between logarithms of the values in print.
+/// Linear interpolation between logarithms of the printed values.
 fn demagnetising(ratio: f64) -> f64 {
     let known = [
         (1.0_f64, 0.27_f64),

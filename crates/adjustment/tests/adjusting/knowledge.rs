@@ -1,4 +1,4 @@
-//! What a model and a berth reading come to know of a true ship.
+//! Knowledge of a true ship from a model and a berth reading.
 
 use super::random::Random;
 use super::{Place, Standing};
@@ -8,18 +8,18 @@ use binnacle_compass::angle::MagneticHeading;
 use binnacle_compass::model::{Identifiable, Model, Parameters};
 use nalgebra::{SMatrix, SVector};
 
-/// How a ship and her instruments are measured.
+/// Errors of the ship's instruments.
 #[derive(Clone, Copy)]
 pub(crate) struct Instruments {
-    /// Of the magnetometer and what the berth's field is not known to, nT.
+    /// Noise of the magnetometer and unknown field of the berth, nT.
     pub(crate) field_sd_nt: f64,
     pub(crate) scale_sd: f64,
     pub(crate) heading_sd_deg: f64,
-    /// Of its alignment, and of its tilt in roll and in pitch, degrees.
+    /// Errors of its alignment, and of its tilt in roll and in pitch, degrees.
     pub(crate) turned_sd_deg: f64,
 }
 
-/// As docs/plan.md takes one, with a quay of usual steel.
+/// A fluxgate of docs/plan.md, with the usual steel of a quay.
 pub(crate) const FLUXGATE: Instruments = Instruments {
     field_sd_nt: 141.0,
     scale_sd: 0.003,
@@ -27,7 +27,7 @@ pub(crate) const FLUXGATE: Instruments = Instruments {
     turned_sd_deg: 0.3,
 };
 
-/// The same.
+/// A telephone of docs/plan.md.
 pub(crate) const PHONE: Instruments = Instruments {
     field_sd_nt: 1_005.0,
     scale_sd: 0.03,
@@ -35,7 +35,7 @@ pub(crate) const PHONE: Instruments = Instruments {
     turned_sd_deg: 1.0,
 };
 
-/// The waters of a ship, the berth's first: over this share of what there is.
+/// The ship's waters, the berth's first: over this share of all.
 pub(crate) fn waters(rng: &mut Random, share: f64) -> Vec<Water> {
     let count = 2 + rng.below(3);
     let (low, high) = ([17_000.0, -25_000.0], [36_000.0, 47_000.0]);
@@ -53,19 +53,18 @@ pub(crate) fn waters(rng: &mut Random, share: f64) -> Vec<Water> {
         .collect()
 }
 
-/// What a reference is off all the time, degrees: no heading tells it.
+/// Constant error of the reference, degrees, which no heading shows.
 pub(crate) const REFERENCE_SD_DEG: f64 = 0.35;
-/// Standard deviations over ships, as an estimator takes them.
+/// Prior standard deviations over ships, as in an estimator.
 const PRIOR: [f64; 8] = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008, 0.5];
 
-/// A model with the errors that headings in these waters would leave, and their
-/// covariance.
+/// A model with the errors and covariance that headings in these waters would leave.
 pub(crate) fn model(rng: &mut Random, truth: &Standing, waters: &[Water]) -> Model {
     let reference_deg = REFERENCE_SD_DEG * rng.gaussian();
     model_by(rng, truth, waters, reference_deg)
 }
 
-/// The same by a reference that is off so much.
+/// A model from a reference with this error.
 pub(crate) fn model_by(
     rng: &mut Random,
     truth: &Standing,
@@ -86,9 +85,8 @@ pub(crate) fn model_by(
     model
 }
 
-/// The model that headings without any error would give, and the covariance that they
-/// leave: one heading of each 15° in a water, twice, good to 0.7°, weighted by the time
-/// there.
+/// Model from headings without errors, with the covariance that they leave: one heading in
+/// each 15° of a water, twice, precise to 0.7°, weighted by the time there.
 pub(crate) fn exactly(truth: &Standing, waters: &[Water]) -> Model {
     let weights: f64 = waters.iter().map(|w| w.weight).sum();
     let mean_h = weights / waters.iter().map(|w| w.weight / w.h_nt).sum::<f64>();
@@ -116,8 +114,8 @@ pub(crate) fn exactly(truth: &Standing, waters: &[Water]) -> Model {
         information += row.weight * row.slope * row.slope.transpose();
     }
     let inverse = information.try_inverse().unwrap();
-    // A card that is turned by what its own needles induce is not quite one of seven
-    // parameters: what is nearest is fitted to its headings.
+    // With needles' induction the card does not exactly follow seven parameters: the
+    // nearest are fitted to its headings.
     let mut fitted = SVector::<f64, 8>::from_fn(|i, _| ratios.get(i).copied().unwrap_or(0.0));
     let start = fitted;
     for _ in 0..12 {
@@ -150,7 +148,7 @@ pub(crate) fn exactly(truth: &Standing, waters: &[Water]) -> Model {
     }
 }
 
-/// One heading: slopes of its deviation, and how far it is from a model's.
+/// One heading: slopes of its deviation, and its residual from a model.
 struct Row {
     slope: SVector<f64, 8>,
     off_deg: f64,
@@ -178,31 +176,31 @@ fn slopes(ratios: &[f64; 7], place: Place, magnetic_deg: f64) -> SVector<f64, 8>
     })
 }
 
-/// What was read at a berth, and how she truly lay.
+/// Reading at a berth, with the true heading.
 pub(crate) struct Berthed {
     pub(crate) reading: BerthReading,
     pub(crate) down_nt: f64,
     pub(crate) magnetic_deg: f64,
-    /// What the magnetometer makes of one.
+    /// Gain of the magnetometer.
     scale: f64,
-    told_deg: f64,
+    given_deg: f64,
     noise_nt: [f64; 3],
 }
 
 impl Berthed {
-    /// The same by somebody who says so of his instruments.
+    /// Returns the reading with other stated errors.
     pub(crate) fn said_by(self, instruments: Instruments) -> Berthed {
         Berthed {
-            reading: read(self.reading.field_nt(), self.told_deg, instruments),
+            reading: read(self.reading.field_nt(), self.given_deg, instruments),
             ..self
         }
     }
 }
 
-/// Half of the noise's variance is steel that does not go away.
+/// Share of the noise that is steady steel, as a standard deviation.
 const STEEL_SHARE: f64 = 0.5;
 
-/// A reading at the berth on a heading from ashore.
+/// Makes a reading at the berth on a random heading from ashore.
 pub(crate) fn reading(
     rng: &mut Random,
     truth: &Standing,
@@ -213,7 +211,7 @@ pub(crate) fn reading(
     reading_on(rng, truth, place, heading, instruments)
 }
 
-/// The same on this one.
+/// Makes a reading on this heading.
 pub(crate) fn reading_on(
     rng: &mut Random,
     truth: &Standing,
@@ -232,21 +230,21 @@ pub(crate) fn reading_on(
     let noise = |rng: &mut Random| errors.field_sd_nt * rng.gaussian();
     let across_nt = [noise(rng), noise(rng)];
     let read_nt = [0, 1].map(|axis| scale * (turned[axis] + tilt[axis] * z) + across_nt[axis]);
-    let told = heading + errors.heading_sd_deg * rng.gaussian();
+    let given = heading + errors.heading_sd_deg * rng.gaussian();
     let upright = z - tilt[0] * x - tilt[1] * y;
     let down_nt = noise(rng);
     Berthed {
-        reading: read(read_nt, told, instruments),
+        reading: read(read_nt, given, instruments),
         down_nt: scale * upright + down_nt,
         magnetic_deg: heading,
         scale,
-        told_deg: told,
+        given_deg: given,
         noise_nt: [across_nt[0], across_nt[1], down_nt],
     }
 }
 
-/// What the same magnetometer reads on the same heading when it is put there again, the
-/// correctors standing otherwise: forward, to starboard and down, nT.
+/// Makes another reading of the same magnetometer on the same heading with other
+/// correctors: forward, to starboard and down, nT.
 pub(crate) fn again(
     rng: &mut Random,
     truth: &Standing,
@@ -268,11 +266,11 @@ pub(crate) fn again(
     let [forward, starboard, down] = [0, 1, 2].map(|axis| {
         first.scale * tilted[axis] + STEEL_SHARE * first.noise_nt[axis] + new * rng.gaussian()
     });
-    let reading = read([forward, starboard], first.told_deg, instruments);
+    let reading = read([forward, starboard], first.given_deg, instruments);
     (reading, down)
 }
 
-/// A reading that says this.
+/// Makes a reading of this field.
 pub(crate) fn read(
     field_nt: [f64; 2],
     magnetic_deg: f64,

@@ -1,7 +1,7 @@
-//! Ships, binnacles and berths that share no code with the planner, or with the
-//! formulas that it believes in: magnets are rows of small dipoles each with a moment and
-//! a place of its own, spheres two separate ones, the card settles where its needles,
-//! which the spheres answer, are at rest.
+//! Ships, binnacles and berths that share no code with the planner or with its formulas.
+//! Magnets are rows of small dipoles, each with a moment and a place of its own, and
+//! spheres are separate. The card settles where its needles, with their induction in the
+//! spheres, are at rest.
 
 #![allow(clippy::unwrap_used)] // a study
 
@@ -11,7 +11,7 @@ pub(crate) mod random;
 pub(crate) mod scene;
 
 use binnacle_adjustment::binnacle::{
-    Aboard, BarSetting, Binnacle, BinnacleForm, Design, DesignForm, HeelingSetting, Lot,
+    BarSetting, Binnacle, BinnacleForm, Design, DesignForm, HeelingSetting, Inventory, Lot,
     PairSetting, Red, SHIPPED, Setting, Side, Tray, VERSION,
 };
 use iron::Fitted;
@@ -20,21 +20,22 @@ use random::Random;
 /// The earth's field: horizontal and vertical, nT.
 pub(crate) type Place = (f64, f64);
 
-/// A ship as she is, with the correctors that stand.
+/// A true ship with its correctors.
 pub(crate) struct Truth {
     pub(crate) bare_chi: [[f64; 3]; 3],
     pub(crate) bare_b_nt: [f64; 3],
-    /// What her compass's lubber line is off, degrees.
+    /// Error of the compass's lubber line, degrees.
     pub(crate) alignment_deg: f64,
-    /// Each corrector's own strength and place.
+    /// True strength and place of each corrector.
     pub(crate) fitted: Fitted,
 }
 
-/// She with one setting of her correctors: everything is linear in the earth's field.
+/// A true ship with one setting of its correctors; everything is linear in the earth's
+/// field.
 pub(crate) struct Standing {
     chi: [[f64; 3]; 3],
     b_nt: [f64; 3],
-    /// What the needles get back from the spheres, by the card's direction, nT.
+    /// Field induced in the spheres by the needles, by the card's direction, nT.
     needle_nt: [[f64; 2]; 2],
     alignment_deg: f64,
 }
@@ -62,11 +63,11 @@ impl Truth {
 }
 
 impl Standing {
-    /// What the compass reads on a magnetic heading, degrees.
+    /// Compass heading on a magnetic heading, degrees.
     pub(crate) fn compass_deg(&self, place: Place, magnetic_deg: f64) -> f64 {
         let [x, y, _] = self.field(place, magnetic_deg);
         let (mut north, mut across) = (x / x.hypot(y), y / x.hypot(y));
-        // The spheres answer the needles, which turn until they are at rest.
+        // The needles turn with their induction in the spheres until they are at rest.
         for _ in 0..30 {
             let [[a, b], [c, d]] = self.needle_nt;
             let (fx, fy) = (x + a * north + b * across, y + c * north + d * across);
@@ -85,7 +86,7 @@ impl Standing {
         })
     }
 
-    /// Deviation on a compass heading, degrees, alignment included.
+    /// Deviation on a compass heading, including alignment, degrees.
     pub(crate) fn deviation_deg(&self, place: Place, compass_deg: f64) -> f64 {
         let off = |magnetic: f64| wrap(self.compass_deg(place, magnetic) - compass_deg);
         let (mut low, mut high) = (compass_deg - 60.0, compass_deg + 60.0);
@@ -100,23 +101,23 @@ impl Standing {
         wrap(f64::midpoint(low, high) - compass_deg)
     }
 
-    /// Degrees of deviation for each degree of heel to starboard, on north: the field
-    /// across the ship that heel brings in, over the mean directive force.
+    /// Heeling error on north, degrees per degree of heel to starboard: the field across
+    /// the ship from heel, over the mean directive force.
     pub(crate) fn heeling_error(&self, place: Place) -> f64 {
         let lambda = self.lambda();
         let across = (self.chi[1][1] - self.chi[2][2]) * place.1 - self.b_nt[2];
         across / (lambda * place.0)
     }
 
-    /// The mean share of the earth's horizontal field that reaches the compass.
+    /// Mean share of the earth's horizontal field that reaches the compass.
     pub(crate) fn lambda(&self) -> f64 {
         1.0 + f64::midpoint(self.chi[0][0], self.chi[1][1])
     }
 
-    /// The seven ratios to λ, as headings in a mean field have them.
+    /// Seven ratios to λ, as determined by headings in a mean field.
     pub(crate) fn ratios(&self, h_nt: f64) -> [f64; 7] {
-        // What the needles get back along themselves turns nothing, and what turns them
-        // does so by the same force whatever the directive force is.
+        // The needles' induction along themselves turns nothing, and the rest turns them
+        // with the same force at any directive force.
         let along = f64::midpoint(self.needle_nt[0][0], self.needle_nt[1][1]);
         let whole = |row: usize, column: usize| {
             let unit = if row == column { along } else { 0.0 };
@@ -135,7 +136,7 @@ impl Standing {
         .map(|part| part / lambda)
     }
 
-    /// The greatest deviation on any heading, degrees.
+    /// Greatest deviation on any heading, degrees.
     pub(crate) fn worst_deg(&self, place: Place) -> f64 {
         (0..72)
             .map(|i| self.deviation_deg(place, f64::from(i) * 5.0).abs())
@@ -153,7 +154,7 @@ pub(crate) fn wrap(degrees: f64) -> f64 {
     }
 }
 
-/// A binnacle of one of the designs shipped, its correctors where chance put them.
+/// A binnacle of one of the shipped designs, with random correctors.
 pub(crate) fn binnacle(rng: &mut Random, which: usize) -> Binnacle {
     let design: Design = serde_json::from_str(SHIPPED[which].1).unwrap();
     let large = which == 0;
@@ -198,7 +199,7 @@ pub(crate) fn binnacle(rng: &mut Random, which: usize) -> Binnacle {
     Binnacle::try_from(BinnacleForm {
         version: VERSION,
         serial: "study".to_owned(),
-        aboard: Aboard {
+        inventory: Inventory {
             magnets: vec![lot(magnet, 12), lot(bucket, 1)],
             quadrantal: sizes.iter().map(|size| size.name.clone()).collect(),
             flinders_pieces_mm: pieces,
@@ -220,7 +221,7 @@ pub(crate) fn binnacle(rng: &mut Random, which: usize) -> Binnacle {
     .unwrap()
 }
 
-/// The same binnacle with correctors that do what is said of them.
+/// Returns the binnacle without tolerances.
 pub(crate) fn without_tolerances(binnacle: Binnacle) -> Binnacle {
     let mut form: BinnacleForm = binnacle.into();
     let mut design: DesignForm = form.design.into();
@@ -244,7 +245,7 @@ pub(crate) fn without_tolerances(binnacle: Binnacle) -> Binnacle {
     Binnacle::try_from(form).unwrap()
 }
 
-/// A ship for such a binnacle.
+/// A random ship for such a binnacle.
 pub(crate) fn ship(rng: &mut Random, binnacle: &Binnacle) -> Truth {
     let mut chi = [[0.0; 3]; 3];
     for row in &mut chi {
@@ -257,7 +258,7 @@ pub(crate) fn ship(rng: &mut Random, binnacle: &Binnacle) -> Truth {
     chi[0][2] = -0.02 + 0.012 * rng.gaussian();
     let mut fitted = Fitted::new(rng, binnacle);
     let of_magnets = fitted.field(&binnacle.setting, [0.0; 3]);
-    // Magnets that were once right, and a ship that has changed since.
+    // Once correct magnets, and a ship that has changed since.
     let b = |axis: usize, rng: &mut Random| -0.8 * of_magnets[axis] + 1_500.0 * rng.gaussian();
     let bare_b_nt = [b(0, rng), b(1, rng), 2_000.0 * rng.gaussian()];
     fitted.needle_am2 = binnacle.design.needle_moment_am2 * (1.0 + 0.1 * rng.gaussian());

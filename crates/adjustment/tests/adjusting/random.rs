@@ -1,4 +1,4 @@
-//! Chance, repeatably.
+//! Repeatable random numbers.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,4 +1,4 @@
-//! One ship at one berth, with all that is known of her.
+//! One ship at one berth, with all knowledge of it.
 
 use super::knowledge::{
     Berthed, Instruments, REFERENCE_SD_DEG, model_by, reading, reading_on, waters,
@@ -12,47 +12,48 @@ use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_compass::model::Model;
 use binnacle_compass::time::Timestamp;
 
-/// How well a card is read before the bowl is taken out, with its friction, degrees.
+/// Standard deviation of a card reading before the bowl is taken out, including friction,
+/// degrees.
 const CARD_SD_DEG: f64 = 0.4;
 
-/// As chance made them.
+/// A random scene.
 pub(crate) struct Scene {
     pub(crate) rng: Random,
     pub(crate) binnacle: Binnacle,
     pub(crate) truth: Truth,
-    /// She as she came to the berth.
+    /// The ship as it came to the berth.
     pub(crate) standing: Standing,
     pub(crate) waters: Vec<Water>,
     pub(crate) model: Model,
-    /// What the reference of the model is off.
+    /// Error of the model's reference.
     pub(crate) reference_deg: f64,
     pub(crate) berthed: Berthed,
-    /// What the compass read there, correctors as they were.
+    /// Compass heading there with the first setting.
     compass_deg: f64,
     scale_sd: f64,
     earlier_lambda: Option<EarlierLambda>,
 }
 
 impl Scene {
-    /// A ship with a binnacle of one of the designs shipped.
+    /// Makes a ship with a binnacle of one of the shipped designs.
     pub(crate) fn new(seed: u64, which: usize, instruments: Instruments) -> Scene {
         Scene::with_lot(seed, which, instruments, 1.0)
     }
 
-    /// The same whose magnets all have this share of the moment that they are said to have.
+    /// Makes a ship whose magnets all have this share of their stated moment.
     pub(crate) fn with_lot(seed: u64, which: usize, instruments: Instruments, share: f64) -> Scene {
         let mut rng = Random::new(seed);
         let binnacle = super::binnacle(&mut rng, which);
         let mut truth = super::ship(&mut rng, &binnacle);
         truth.fitted.lot_share = share;
-        // Small binnacles, which have no Flinders bar, keep to one sea.
+        // Small binnacles, without a Flinders bar, stay in one sea.
         let waters = waters(&mut rng, if which == 0 { 1.0 } else { 0.15 });
         let standing = truth.with(&binnacle.setting);
         let reference_deg = REFERENCE_SD_DEG * rng.gaussian();
         let model = model_by(&mut rng, &standing, &waters, reference_deg);
         let place = (waters[0].h_nt, waters[0].z_nt);
         let berthed = reading(&mut rng, &standing, place, instruments);
-        // A draw of its own, so that all else is as it was without it.
+        // A separate generator keeps everything else unchanged.
         let misread_deg = CARD_SD_DEG * Random::new(!seed).gaussian();
         let compass_deg = standing.compass_deg(place, berthed.magnetic_deg) + misread_deg;
         Scene {
@@ -70,8 +71,8 @@ impl Scene {
         }
     }
 
-    /// Changes her permanent field since the model, along the needle and across it, nT, and
-    /// has the berth read anew by instruments of which somebody says something else.
+    /// Changes the permanent field since the model, along the needle and across it, nT, and
+    /// reads the berth again, with other stated errors.
     pub(crate) fn changed(
         mut self,
         [along_nt, across_nt]: [f64; 2],
@@ -93,8 +94,8 @@ impl Scene {
         self
     }
 
-    /// Has her λ been told, so well, at an earlier berth.
-    pub(crate) fn told_before(&mut self, standard_error: f64) {
+    /// Adds λ of an earlier berth with this standard error.
+    pub(crate) fn add_earlier_lambda(&mut self, standard_error: f64) {
         self.earlier_lambda = Some(EarlierLambda {
             at: Timestamp::parse("2026-05-01T00:00:00Z").unwrap(),
             lambda: self.standing.lambda() + standard_error * self.rng.gaussian(),
@@ -102,12 +103,12 @@ impl Scene {
         });
     }
 
-    /// The field at the berth.
+    /// Field at the berth.
     pub(crate) fn place(&self) -> Place {
         (self.waters[0].h_nt, self.waters[0].z_nt)
     }
 
-    /// What a planner is given.
+    /// Input of the planner.
     pub(crate) fn adjustment(&self) -> Adjustment<'_> {
         Adjustment {
             model: &self.model,

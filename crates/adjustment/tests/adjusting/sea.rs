@@ -1,34 +1,35 @@
-//! Headings at sea after adjustments that were right, or wrong by so much.
+//! Headings at sea after correct and incorrect adjustments.
 
 #![allow(clippy::unwrap_used)] // a study
 
 use super::adjusting::knowledge::FLUXGATE;
 use super::adjusting::scene::Scene;
 use super::tally::quantile;
-use binnacle_adjustment::adjust::{Plan, Settled, Verification, plan, verify};
+use binnacle_adjustment::adjust::{Plan, SettledHeading, Verification, plan, verify};
 use binnacle_compass::angle::CompassHeading;
 use std::fmt;
 
-/// What a heading at sea is good for, degrees.
+/// Standard deviation of a heading at sea, degrees.
 const HEADING_SD_DEG: f64 = 0.7;
-/// Nobody sails more.
+/// Greatest number of headings.
 const MOST_HEADINGS: usize = 60;
 
-/// What became of many adjustments.
+/// Statistics of many adjustments.
 #[derive(Default)]
 pub(crate) struct Sea {
-    /// Headings that it took to pass.
+    /// Headings until a pass.
     pub(crate) passed: Vec<f64>,
-    /// To raise the alarm.
+    /// Headings until an alarm.
     pub(crate) alarmed: Vec<f64>,
     pub(crate) undecided: u64,
-    /// Of those that passed, how many have more than so left than was foretold anywhere.
+    /// Passed adjustments with more than this difference from the prediction on any
+    /// heading.
     pub(crate) passed_beyond_2_deg: u64,
 }
 
 impl Sea {
-    /// Ships whose permanent magnetism is so much from what the plan takes it for, on
-    /// the worst heading at the berth, degrees: one tally for each.
+    /// Ships with these errors of permanent magnetism in the plan, on the worst heading at
+    /// the berth, degrees: one tally for each.
     pub(crate) fn of(seeds: std::ops::Range<u64>, wrong_deg: &[f64]) -> Vec<Sea> {
         let mut seas: Vec<Sea> = wrong_deg.iter().map(|_| Sea::default()).collect();
         for seed in seeds {
@@ -54,7 +55,7 @@ impl Sea {
         scene.truth.bare_b_nt[1] += size_nt * towards.sin();
         let adjusted = scene.truth.with(&best.setting);
         let earth = scene.waters[0].earth();
-        let mut settled: Vec<Settled> = Vec::new();
+        let mut settled: Vec<SettledHeading> = Vec::new();
         loop {
             let needed = match verify(&best.model_after, &settled, earth).unwrap() {
                 Verification::Passed { headings, .. } => {
@@ -76,12 +77,12 @@ impl Sea {
                 self.undecided += 1;
                 return;
             }
-            // Any heading within the sector that was asked for will do.
+            // Any heading within the requested sector suffices.
             let within = scene.rng.between(-7.0, 7.0);
             let compass = CompassHeading::new(needed.compass_deg[0] + within).unwrap();
             let truth = adjusted.deviation_deg(place, compass.degrees());
             let error = scene.reference_deg + HEADING_SD_DEG * scene.rng.gaussian();
-            settled.push(Settled {
+            settled.push(SettledHeading {
                 compass,
                 deviation_deg: truth + error,
                 sd_deg: HEADING_SD_DEG,
@@ -90,7 +91,7 @@ impl Sea {
         }
     }
 
-    /// How many there were.
+    /// Number of adjustments.
     pub(crate) fn ships(&self) -> f64 {
         self.passed.len() as f64 + self.alarmed.len() as f64 + self.undecided as f64
     }

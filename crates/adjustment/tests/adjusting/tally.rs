@@ -1,4 +1,4 @@
-//! Plans held against the truth.
+//! Plans compared with the truth.
 
 #![allow(clippy::unwrap_used)] // a study
 
@@ -9,22 +9,22 @@ use binnacle_adjustment::adjust::plan;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// What became of many ships.
+/// Statistics of many ships.
 #[derive(Default)]
 pub(crate) struct Tally {
     pub(crate) ships: u64,
     pub(crate) planned: u64,
-    /// Refusals by their first words.
+    /// Number of refusals by kind.
     pub(crate) refused: BTreeMap<String, u64>,
-    /// Share of headings on which the band held, of each plan.
+    /// Coverage of each plan's band over headings.
     pub(crate) held: Vec<f64>,
     /// Mean half-width of the band, of each plan, degrees.
     pub(crate) half_width_deg: Vec<f64>,
     /// Worst true residual of each plan, degrees.
     pub(crate) worst_deg: Vec<f64>,
     pub(crate) before_deg: Vec<f64>,
-    /// Heeling error at the berth as it was, as it is, and what is foretold less that,
-    /// degrees for each degree.
+    /// Heeling error at the berth before, after, and predicted less true, degrees per
+    /// degree.
     pub(crate) heel_before: Vec<f64>,
     pub(crate) heel_after: Vec<f64>,
     pub(crate) heel_off: Vec<f64>,
@@ -42,14 +42,14 @@ impl Tally {
         tally
     }
 
-    /// Ships whose permanent field has changed since the model, along the needle and across it,
-    /// by so much of the field that is read as these angles turn it by; their λ was told so
-    /// well at an earlier berth, if it was.
+    /// Ships whose permanent field changed since the model, along and across the needle, by
+    /// the tangents of these angles times the measured field; with or without an earlier λ.
     pub(crate) fn changed(
         seeds: std::ops::Range<u64>,
         [along_deg, across_deg]: [std::ops::Range<f64>; 2],
-        (instruments, said): (Instruments, Instruments),
-        told_before: Option<f64>,
+        instruments: Instruments,
+        said: Instruments,
+        earlier_lambda_sd: Option<f64>,
     ) -> Tally {
         let mut tally = Tally::default();
         for seed in seeds {
@@ -60,8 +60,8 @@ impl Tally {
             };
             let [x, y] = scene.berthed.reading.field_nt();
             let change = [size(&along_deg), size(&across_deg)].map(|share| share * x.hypot(y));
-            if let Some(error) = told_before {
-                scene.told_before(error);
+            if let Some(error) = earlier_lambda_sd {
+                scene.add_earlier_lambda(error);
             }
             tally.add(&scene.changed(change, instruments, said));
         }
@@ -102,26 +102,26 @@ impl Tally {
         self.held.push(f64::from(held) / f64::from(headings));
         self.half_width_deg.push(widths / f64::from(headings));
         let after = adjusted.heeling_error(berth);
-        let foretold = best.heeling.after_deg_per_deg.unwrap();
+        let predicted = best.heeling.after_deg_per_deg.unwrap();
         let before = scene.standing.heeling_error(berth);
         self.heel_before.push(before.abs());
         self.heel_after.push(after.abs());
-        self.heel_off.push((foretold - after).abs());
+        self.heel_off.push((predicted - after).abs());
     }
 
-    /// Share of headings on which the band held, of an average plan.
+    /// Mean coverage of the band over headings.
     pub(crate) fn coverage(&self) -> f64 {
         mean(&self.held)
     }
 
-    /// Standard error of that: headings of one plan err together.
+    /// Standard error of the coverage: headings of one plan have common errors.
     pub(crate) fn coverage_sd(&self) -> f64 {
         let average = self.coverage();
         let squares: f64 = self.held.iter().map(|held| (held - average).powi(2)).sum();
         squares.sqrt() / self.held.len() as f64
     }
 
-    /// Share of plans whose worst true residual is 3° at most.
+    /// Share of plans whose worst true residual is at most 3°.
     pub(crate) fn within_3_deg(&self) -> f64 {
         let within = self.worst_deg.iter().filter(|worst| **worst <= 3.0);
         within.count() as f64 / self.worst_deg.len() as f64
@@ -152,7 +152,7 @@ impl fmt::Display for Tally {
             f,
             "{} ships, {} planned, refused {:?}; band held {:.1} % (standard error {:.1}), mean \
              half-width {:.2}; worst true residual median / 95 % {} (before {}), within 3 degrees \
-             {:.1} %; heeling error median / 95 % {} (before {}), off what was foretold {}; \
+             {:.1} %; heeling error median / 95 % {} (before {}), off the prediction {}; \
              moves {}; nodes {}; not proven {}",
             self.ships,
             self.planned,

@@ -19,12 +19,12 @@ const NO_STEP_UT: f64 = 0.1;
 const REMEMBERED: f64 = 3.0;
 /// Runs of fewer hours are not judged.
 const YOUNG_HOURS: usize = 6;
-/// Runs less likely than this, nats, are given up.
+/// Log probability below which a run is dropped.
 const GIVEN_UP: f64 = -14.0;
-/// Hours before the watch that the first run is fed with.
+/// Hours before the watch that the first run reads.
 const FED_HOURS: usize = 240;
 
-/// By a threshold in nats.
+/// Returns the alarms by a threshold on the log-likelihood ratio.
 pub(crate) fn alarms(ship: &Ship, threshold: f64) -> Vec<usize> {
     let noise_deg = REMEMBERED * ship.usual_hour_deg();
     let watched = ship.hours.partition_point(|hour| hour.last < ship.watched);
@@ -44,7 +44,7 @@ pub(crate) fn alarms(ship: &Ship, threshold: f64) -> Vec<usize> {
     )
 }
 
-/// Hours without a change, and what they tell of the step.
+/// Hours without a change, and their knowledge of the step.
 struct Run {
     log_weight: f64,
     hours: usize,
@@ -82,7 +82,7 @@ impl Runs {
         }
     }
 
-    /// Takes in an hour whose residual is `deg_per_ut` times the step, and noise.
+    /// Reads an hour whose residual is `deg_per_ut` times the step, and noise.
     pub(crate) fn take(&mut self, residual_deg: f64, deg_per_ut: Vector2<f64>) {
         for run in &mut self.runs {
             let covariance = run.covariance();
@@ -110,8 +110,8 @@ impl Runs {
         young.map(|run| run.log_weight.exp()).sum()
     }
 
-    /// How far the step is from none: half its square, in variances of what is not
-    /// known of it and of what is no step, on the average over runs.
+    /// Returns the distance of the step from none: half its square, in variances of its
+    /// uncertainty and of no step, averaged over runs.
     pub(crate) fn off(&self) -> f64 {
         let none = Matrix2::identity() * (NO_STEP_UT * NO_STEP_UT);
         let off = |run: &Run| {

@@ -1,10 +1,9 @@
-//! Page's cumulative sums on innovations: residuals from which an autoregression,
-//! learnt before the watch, has taken what the rows before tell of them.
+//! Page's cumulative sums on innovations: residuals of an autoregression learnt before the
+//! watch.
 //!
-//! Two sums for each quadrant of heading find a change of any shape, and found more
-//! than sums tuned to steps of (bx, by) in eight directions did. Order and slack are
-//! the best of those tried on other ships, 1 to 12 rows and 0.25 to 1 standard
-//! deviations.
+//! Two sums for each quadrant of heading find a change of any shape, and found more than
+//! sums tuned to steps of (bx, by) in eight directions did. Order and slack are the best of
+//! those tried on other ships, 1 to 12 rows and 0.25 to 1 standard deviations.
 
 use crate::score::listen;
 use crate::ship::{Ship, spread};
@@ -12,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Rows that the autoregression looks back.
 const ORDER: usize = 3;
-/// What a mean must exceed to count, standard deviations.
+/// Excess of a mean that counts, standard deviations.
 const SLACK: f64 = 0.5;
 /// Residuals and innovations beyond so many standard deviations count for that many.
 const WILD_RESIDUAL: f64 = 5.0;
@@ -41,7 +40,8 @@ pub(crate) fn alarms(ship: &Ship, threshold: f64) -> Vec<usize> {
 pub(crate) struct Sums([[f64; 2]; 4]);
 
 impl Sums {
-    /// Takes in an innovation in standard deviations; the larger sum of its quadrant.
+    /// Reads an innovation in standard deviations, and returns the larger sum of its
+    /// quadrant.
     pub(crate) fn take(&mut self, compass_deg: f64, innovation: f64) -> f64 {
         let quadrant = (compass_deg / 90.0) as usize % 4;
         let [up, down] = &mut self.0[quadrant];
@@ -51,7 +51,7 @@ impl Sums {
     }
 }
 
-/// What of a residual the rows before do not tell.
+/// Autoregression of the residuals.
 struct Whitening {
     weights: Vec<f64>,
     wild_deg: f64,
@@ -78,7 +78,7 @@ impl Whitening {
         }
     }
 
-    /// In standard deviations; after a pause only by the rows since.
+    /// Returns the innovation in standard deviations; after a pause only by the rows since.
     fn innovation(&self, ship: &Ship, row: usize) -> f64 {
         let value = |row: usize| {
             let residual = ship.rows[row].residual_deg;

@@ -1,9 +1,9 @@
-//! How soon changes of magnetism are found, beside simpler detectors and the least
-//! delay that there can be, as the tables of BENCHMARKS.md.
+//! Delays of detection of the product, of simpler detectors, and of the theoretical
+//! bound, as the tables of BENCHMARKS.md.
 //!
-//! What always holds: all detectors see the same ships; each but the product's has its
-//! threshold set, on ships of their own, to the same rate of false alarms; and delays
-//! and false alarms of all are counted by the same code on ships that none was set on.
+//! All detectors see the same ships. The threshold of each but the product's is set, on
+//! ships of their own, to the same rate of false alarms. Delays and false alarms of all
+//! are counted by the same code on ships that none was set on.
 //!
 //! `make bench-changes`, or `cargo run --release -p binnacle-analysis --example
 //! changes_baselines [SHIPS [PYTHON]]` with the number of ships of each kind and a

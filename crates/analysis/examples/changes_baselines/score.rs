@@ -4,8 +4,7 @@ use crate::FALSE_ALARMS_A_YEAR;
 use crate::ship::Ship;
 
 const DAY_S: f64 = 86_400.0;
-/// After an alarm someone is looking: a detector is not heard for so long, and then
-/// begins anew.
+/// Time after an alarm for which a detector is ignored, before it begins again.
 pub(crate) const UNHEARD_S: f64 = 3.0 * DAY_S;
 /// Rows in an hour of settled sailing.
 const ROWS_AN_HOUR: f64 = 6.0;
@@ -15,8 +14,8 @@ pub(crate) fn ln_run_length() -> f64 {
     (365.25 * 24.0 * ROWS_AN_HOUR / FALSE_ALARMS_A_YEAR).ln()
 }
 
-/// The alarms of a detector that looks at `items`, each known from its row on: `step`
-/// says whether one is an alarm, and is told when to begin anew.
+/// Returns the alarms of a detector that reads `items`, each known from its row on: `step`
+/// returns whether one is an alarm, and learns when to begin again.
 pub(crate) fn listen<T>(
     ship: &Ship,
     items: impl Iterator<Item = T>,
@@ -63,13 +62,13 @@ pub(crate) fn false_alarms(ships: &[Ship], found: &[Vec<usize>]) -> (f64, f64) {
     (count / years, count.max(1.0).sqrt() / years)
 }
 
-/// How long it took to find what happened to one ship.
+/// Time until the event of one ship was found.
 struct Delay {
     /// Days by the clock; infinite where it was not found.
     days: f64,
     /// Hours of settled sailing.
     hours: f64,
-    /// The same of Lorden's bound; infinite where the voyage ends before.
+    /// Delay of Lorden's bound, hours; infinite where the voyage ends before.
     bound_hours: f64,
 }
 
@@ -81,12 +80,12 @@ impl Delays {
     pub(crate) fn of(ships: &[Ship], found: &[Vec<usize>]) -> Delays {
         let delay = |(ship, alarms): (&Ship, &Vec<usize>)| {
             let (event, changed) = ship.event.zip(ship.changed_row())?;
-            let told = alarms.iter().copied().find(|row| *row >= changed);
+            let reported = alarms.iter().copied().find(|row| *row >= changed);
             let hours = |rows: usize| rows as f64 / ROWS_AN_HOUR;
             let days = |row: usize| ship.rows[row].time.seconds_since(event) / DAY_S;
             Some(Delay {
-                days: told.map_or(f64::INFINITY, days),
-                hours: told.map_or(f64::INFINITY, |row| hours(row + 1 - changed)),
+                days: reported.map_or(f64::INFINITY, days),
+                hours: reported.map_or(f64::INFINITY, |row| hours(row + 1 - changed)),
                 bound_hours: ship.bound_rows.map_or(f64::INFINITY, hours),
             })
         };

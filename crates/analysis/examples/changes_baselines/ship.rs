@@ -1,14 +1,16 @@
 //! A simulated ship as a detector sees her: residuals of the deviation from the
 //! product's own fit.
 //!
-//! What always holds: a residual of a watched row is from a fit of earlier rows
+//! A residual of a watched row is from a fit of earlier rows
 //! only, renewed every thirty days.
 
 use crate::score::median;
 use crate::voyages::fleet::{Event, Log, Name, Plan, sail_log};
 use crate::voyages::{Variety, lorden, predicted};
 use binnacle_analysis::analyse::analyse;
-use binnacle_analysis::fit::{HeadingReading, Observation, RobustOptions, fit_robust, refer};
+use binnacle_analysis::fit::{
+    HeadingReading, Observation, RobustOptions, fit_robust, observe_readings,
+};
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::field::{FieldAt, FieldModel};
 use binnacle_compass::model::Model;
@@ -32,18 +34,18 @@ const GAP_S: f64 = 1800.0;
 /// that the ship has not met, residuals count for less.
 const NOISE_DEG: f64 = 0.2;
 const HOUR_MICROS: i64 = 3_600_000_000;
-/// What lies further from an hour's median, in standard deviations, is wild.
+/// Distance from an hour's median, in standard deviations, from which a residual is wild.
 const WILD: f64 = 3.0;
 
-/// A sample's deviation held against the fit.
+/// Deviation of a sample against the fit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
     pub(crate) time: Timestamp,
     pub(crate) residual_deg: f64,
     pub(crate) compass_deg: f64,
-    /// By how many degrees a microtesla more of bx, and of by, would turn it.
+    /// Slopes of the deviation by bx and by, degrees per microtesla.
     pub(crate) deg_per_ut: [f64; 2],
-    /// Whether it follows directly on the row before.
+    /// True if it follows directly on the previous row.
     pub(crate) follows: bool,
 }
 
@@ -63,7 +65,7 @@ pub(crate) struct Ship {
     pub(crate) hours: Vec<Hour>,
     /// The first row that is watched.
     pub(crate) watched: usize,
-    /// What happened to her, and how many rows Lorden's bound asks for to tell it.
+    /// Time of the event, and the number of rows that Lorden's bound requires to detect it.
     pub(crate) event: Option<Timestamp>,
     pub(crate) bound_rows: Option<usize>,
     samples: Vec<Sample>,
@@ -124,10 +126,11 @@ impl Ship {
         }
     }
 
-    /// Rows at which the product tells of a change of her own magnetism for certain.
+    /// Returns the rows at which the product reports a certain change of the vessel's
+    /// magnetism.
     pub(crate) fn product_alarms(&self) -> Vec<usize> {
-        let told = analyse(&self.samples, &[], &AnalysisSettings::default());
-        let alarms = told.changes.iter().filter(|c| is_alarm(c));
+        let reported = analyse(&self.samples, &[], &AnalysisSettings::default());
+        let alarms = reported.changes.iter().filter(|c| is_alarm(c));
         let row = |c: &Change| self.rows.partition_point(|row| row.time < c.detected_at);
         let mut rows: Vec<usize> = alarms.map(row).filter(|row| *row >= self.watched).collect();
         rows.sort_unstable();
@@ -152,7 +155,7 @@ impl Ship {
         spread(self.rows[..self.watched].iter().map(|row| row.residual_deg))
     }
 
-    /// The same of an hour's means.
+    /// Returns the standard deviation of an hour's means.
     pub(crate) fn usual_hour_deg(&self) -> f64 {
         let learnt = self.hours.iter().filter(|hour| hour.last < self.watched);
         spread(learnt.map(|hour| hour.mean_deg))
@@ -160,7 +163,7 @@ impl Ship {
 }
 
 pub(crate) fn is_alarm(change: &Change) -> bool {
-    change.confirmed && change.cause.is_the_ships()
+    change.confirmed && change.cause.changes_deviation()
 }
 
 fn variety(seed: u64) -> Variety {
@@ -177,7 +180,7 @@ fn observations(samples: &[Sample]) -> Vec<Observation> {
         .map(|sample| {
             let of = sample.time.micros().div_euclid(86_400_000_000);
             if std::mem::replace(&mut day, of) != of {
-                field = FieldAt::time(FieldModel::Igrf14, sample.time).ok();
+                field = FieldAt::from_time(FieldModel::Igrf14, sample.time).ok();
             }
             let here = field.as_ref().unwrap().at(sample.position, 0.0).unwrap();
             HeadingReading {
@@ -197,12 +200,13 @@ fn observations(samples: &[Sample]) -> Vec<Observation> {
             }
         })
         .collect();
-    let referred = refer(&readings, REFERENCE_CONSTANT_SD_DEG).expect("two good references");
+    let referred =
+        observe_readings(&readings, REFERENCE_CONSTANT_SD_DEG).expect("two good references");
     referred.observations.into_iter().flatten().collect()
 }
 
-/// The product's model, the variance of the reference's constant error left out: what
-/// is constant is no change.
+/// Returns the product's model without the variance of the reference's constant error: a
+/// constant is no change.
 fn fit(observations: &[Observation]) -> Model {
     let options = RobustOptions::default();
     let fitted = fit_robust(observations, &options);

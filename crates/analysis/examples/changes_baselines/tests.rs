@@ -1,4 +1,4 @@
-//! What can be told beforehand of the bound and of the detectors.
+//! Predictions of the bound and of the detectors.
 
 use crate::bocpd::Runs;
 use crate::cusum::Sums;
@@ -38,12 +38,12 @@ fn in_white_noise_every_row_tells_half_the_square_of_the_shift_in_variances() {
         white_deg: [1.0, 2.0, 2.0],
         multipath_deg: 0.0,
     };
-    let told = information(&rows, &[], &nothing, readings);
+    let reported = information(&rows, &[], &nothing, readings);
     // Means of ten; the compass's noise in both references, the mean of which is best.
     let variance = (1.0 + (4.0 + 4.0) / 4.0) / 10.0;
-    for (k, nats) in told.into_iter().enumerate() {
+    for (k, ratio) in reported.into_iter().enumerate() {
         let expected = (k + 1) as f64 * 0.3 * 0.3 / (2.0 * variance);
-        assert!((nats - expected).abs() < 1e-9, "{nats} is not {expected}");
+        assert!((ratio - expected).abs() < 1e-9, "{ratio} is not {expected}");
     }
 }
 
@@ -77,15 +77,15 @@ fn by_a_gyro_alone_the_information_is_that_of_the_dense_covariance() {
         white_deg: [0.35, 0.15, 1e6],
         ..Readings::USUAL
     };
-    let told = information(&rows, &voyage.turns, &voyage.sizes, blind);
+    let reported = information(&rows, &voyage.turns, &voyage.sizes, blind);
     for until in [changed + 1, changed + 10, o.len()] {
         let covariance = noise(&voyage).view((0, 0), (until, until)).into_owned();
         let shift = DVector::from_fn(until, |k, _| rows[k].shift_deg);
         let expected = shift.dot(&covariance.cholesky().unwrap().solve(&shift)) / 2.0;
-        let found = told[until - 1];
+        let found = reported[until - 1];
         assert!(
             (found / expected - 1.0).abs() < 0.05,
-            "after {until} rows {found} nats, not {expected}"
+            "after {until} rows {found} log-likelihood ratio, not {expected}"
         );
     }
 }
@@ -144,12 +144,12 @@ fn what_the_product_is_said_to_tell_at_a_time_it_tells_from_the_samples_so_far()
     };
     let samples = sail_log(1, &plan).samples;
     let run = |samples: &[Sample]| analyse(samples, &[], &AnalysisSettings::default());
-    let told_at = |samples: &[Sample]| {
-        let told = run(samples).changes;
-        told.iter().find(|c| is_alarm(c)).map(|c| c.detected_at)
+    let reported_at = |samples: &[Sample]| {
+        let reported = run(samples).changes;
+        reported.iter().find(|c| is_alarm(c)).map(|c| c.detected_at)
     };
-    let at = told_at(&samples).expect("a step of 2 µT is told");
+    let at = reported_at(&samples).expect("a step of 2 µT is reported");
     let until = samples.partition_point(|s| s.time <= at);
-    assert_eq!(told_at(&samples[..until]), Some(at));
-    assert_eq!(told_at(&samples[..until - 1]), None);
+    assert_eq!(reported_at(&samples[..until]), Some(at));
+    assert_eq!(reported_at(&samples[..until - 1]), None);
 }

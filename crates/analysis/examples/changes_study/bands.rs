@@ -1,5 +1,5 @@
-//! Whether the band holds the truth in the first hours after a step, when she has sailed on
-//! one course or two: along her needle then a step shows on none of them.
+//! Band in the first hours after a step, on one course or two: none of them shows the step
+//! along the needle.
 
 use crate::voyages::fleet::{Event, Log, Name, Plan, START, sail_log};
 use crate::voyages::{deviation_by_compass, predicted, true_deviation};
@@ -12,18 +12,18 @@ use binnacle_compass::time::Timestamp;
 const SIZES: [f64; 4] = [2000.0, 4000.0, 8000.0, 12_000.0];
 /// Hours after the first sample since the step at which the band is looked at.
 const LOOKS_H: [f64; 4] = [1.0, 6.0, 12.0, 24.0];
-/// A band of no more than this that is off by more than [`ASTRAY_DEG`] runs a ship aground.
+/// Width of a band that, with an error above [`LARGE_ERROR_DEG`], runs a ship aground.
 const NARROW_DEG: f64 = 5.0;
-const ASTRAY_DEG: f64 = 10.0;
-/// A step has shown when it moved so many samples by so many degrees.
+const LARGE_ERROR_DEG: f64 = 10.0;
+/// Samples, and their change in degrees, from which a step has shown.
 const SHOWN_SAMPLES: usize = 6;
 const SHOWN_DEG: f64 = 2.5;
 
-/// What is known of one ship at one time.
+/// Knowledge of one ship at one time.
 #[derive(Clone, Default)]
 struct Look {
-    told: bool,
-    /// Whether the courses since have shown that something happened.
+    reported: bool,
+    /// True if the courses since have shown the step.
     shown: bool,
     /// Error of the deviation and its standard error, on every tenth degree of the
     /// compass that she can show; none where there is no model.
@@ -41,7 +41,7 @@ impl Look {
     }
 
     fn is_wrong(&self) -> bool {
-        let wrong = |(off, se): &(f64, f64)| off.abs() > ASTRAY_DEG && 1.96 * se < NARROW_DEG;
+        let wrong = |(off, se): &(f64, f64)| off.abs() > LARGE_ERROR_DEG && 1.96 * se < NARROW_DEG;
         self.off_deg.iter().any(wrong)
     }
 }
@@ -62,8 +62,8 @@ pub(crate) fn bands(ships: u64) {
     }
 }
 
-/// How wide the band is, and how often it holds the truth, on ships to whom nothing happened
-/// but storms and anomalies: every so many hours of ten days.
+/// Prints width and coverage of the band on ships without events but storms and anomalies:
+/// every so many hours of ten days.
 pub(crate) fn undisturbed(ships: u64) {
     const EVERY_H: f64 = 7.0;
     let found = each(seeds(860_000, ships), |seed| {
@@ -90,9 +90,9 @@ pub(crate) fn undisturbed(ships: u64) {
     let with: Vec<&Look> = looks.iter().filter(|l| !l.off_deg.is_empty()).collect();
     let mean = with.iter().map(|l| l.se_deg()).sum::<f64>() / with.len() as f64;
     println!(
-        "nothing happened: {}; mean se {mean:.2}; told {:.2} %; se over 2 degrees {:.2} %",
+        "nothing happened: {}; mean se {mean:.2}; reported {:.2} %; se over 2 degrees {:.2} %",
         summary(&looks),
-        share(&with, |l| l.told),
+        share(&with, |l| l.reported),
         share(&with, |l| l.se_deg() > 2.0)
     );
 }
@@ -114,12 +114,13 @@ fn steps(name: &str, nt: f64, ships: u64) {
     let found: Vec<Vec<Look>> = found.into_iter().flatten().collect();
     for (n, hours) in LOOKS_H.into_iter().enumerate() {
         let looks: Vec<Look> = found.iter().map(|looks| looks[n].clone()).collect();
-        let (told, untold): (Vec<Look>, Vec<Look>) = looks.into_iter().partition(|l| l.told);
-        let (shown, hidden): (Vec<Look>, Vec<Look>) = untold.into_iter().partition(|l| l.shown);
+        let (reported, unreported): (Vec<Look>, Vec<Look>) =
+            looks.into_iter().partition(|l| l.reported);
+        let (shown, hidden): (Vec<Look>, Vec<Look>) = unreported.into_iter().partition(|l| l.shown);
         let size = nt / 1000.0;
         println!(
-            "{size:3.0} uT {name:6} {hours:3.0} h, told      {}",
-            summary(&told)
+            "{size:3.0} uT {name:6} {hours:3.0} h, reported  {}",
+            summary(&reported)
         );
         println!("                   shown     {}", summary(&shown));
         println!("                   not shown {}", summary(&hidden));
@@ -154,10 +155,10 @@ fn looks(seed: u64, plan: &Plan) -> Option<Vec<Look>> {
     Some(looks.to_vec())
 }
 
-/// What is known of her by the first samples of a log.
+/// Returns the knowledge by the first samples of a log.
 fn look(seed: u64, plan: &Plan, log: &Log, from: Timestamp, until: usize) -> Look {
     let analysis = run(&log.samples[..until]);
-    // The same ship as she was then: she drifts.
+    // The state at that time: the vessel drifts.
     let last = log.samples[until - 1].time;
     let days = last.seconds_since(Timestamp::parse(START).unwrap()) / DAY_S + 0.001;
     let truth = sail_log(seed, &Plan { days, ..*plan }).truth;
@@ -186,7 +187,7 @@ fn look(seed: u64, plan: &Plan, log: &Log, from: Timestamp, until: usize) -> Loo
     });
     Look {
         shown: showing.count() >= SHOWN_SAMPLES,
-        told: epoch.begun_by_change.is_some(),
+        reported: epoch.begun_by_change.is_some(),
         off_deg,
     }
 }

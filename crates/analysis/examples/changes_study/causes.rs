@@ -1,11 +1,11 @@
-//! What each kind of happening is taken for.
+//! Causes that each kind of event is attributed to.
 
 use crate::voyages::fleet::{Event, Happened, Log, Name, Plan, sail_log};
-use crate::voyages::lorden::nats_while_laden;
+use crate::voyages::lorden::information_while_laden;
 use crate::{
     DAY_S, HOUR_S, alarms, each, planned, run, seeds, share, telling, variety, was_withdrawn,
 };
-use binnacle_compass::result::{Analysis, Cause, Change, Elsewhere, in_fleet};
+use binnacle_compass::result::{Analysis, Cause, Change, FleetDisturbance, weigh_with_fleet};
 use binnacle_compass::time::Timestamp;
 use std::collections::BTreeMap;
 
@@ -46,11 +46,11 @@ pub(crate) fn causes(ships: u64) {
             let log = sail_log(seed, &plan);
             let happened = planned(&log, name)?;
             let analysis = run(&log.samples);
-            let told = telling(&analysis, &happened);
-            if told.is_none_or(|c| c.cause != cause) {
+            let reported = telling(&analysis, &happened);
+            if reported.is_none_or(|c| c.cause != cause) {
                 print_wrong(seed, &log, &analysis, &happened);
             }
-            Some(name_of(told))
+            Some(name_of(reported))
         });
         let mut counts = Counts::new();
         for called in found.into_iter().flatten() {
@@ -60,7 +60,7 @@ pub(crate) fn causes(ships: u64) {
     }
 }
 
-/// What was said of a happening that was not named rightly, and when she lay in port around it.
+/// Prints the report of an event with a wrong cause, and the port calls around it.
 fn print_wrong(seed: u64, log: &Log, analysis: &Analysis, happened: &Happened) {
     let hours = |at: Timestamp| at.seconds_since(happened.from) / HOUR_S;
     println!(
@@ -69,8 +69,8 @@ fn print_wrong(seed: u64, log: &Log, analysis: &Analysis, happened: &Happened) {
         happened.to.map(hours)
     );
     println!(
-        "    by the samples with cargo {:.1?} nats at most",
-        nats_while_laden(log)
+        "    by the samples with cargo {:.1?} log-likelihood ratio at most",
+        information_while_laden(log)
     );
     let gaps = log.samples.windows(2);
     let gaps = gaps.filter(|leg| leg[1].time.seconds_since(leg[0].time) > 2.5 * HOUR_S);
@@ -98,7 +98,7 @@ fn print_wrong(seed: u64, log: &Log, analysis: &Analysis, happened: &Happened) {
     for c in &analysis.changes {
         if c.detected_at >= happened.from && hours(c.from) < 40.0 * 24.0 {
             println!(
-                "    at {:.1} h ({:.1} to {:.1}), told {:.1} h, confirmed {}, until {:?}: {:?} {:?}",
+                "    at {:.1} h ({:.1} to {:.1}), reported {:.1} h, confirmed {}, until {:?}: {:?} {:?}",
                 hours(c.from),
                 hours(c.from_earliest),
                 hours(c.from_latest),
@@ -112,8 +112,7 @@ fn print_wrong(seed: u64, log: &Log, analysis: &Analysis, happened: &Happened) {
     }
 }
 
-/// Storms that all ships of a fleet meet: by each ship alone, and in the light of the
-/// others.
+/// Prints storms that all ships of a fleet meet: by each ship alone, and with the others.
 pub(crate) fn storms(ships: u64) {
     let (mut alone, mut together) = (Counts::new(), Counts::new());
     for fleet in seeds(600_000, ships.div_ceil(FLEET)) {
@@ -130,7 +129,7 @@ pub(crate) fn storms(ships: u64) {
             let others = elsewhere(&fleet, ship);
             let until = log.samples.last().unwrap().time;
             let seen = analysis.changes.iter();
-            let seen = seen.map(|c| in_fleet(c, position(log, c.from), until, &others));
+            let seen = seen.map(|c| weigh_with_fleet(c, position(log, c.from), until, &others));
             let by_fleet = Analysis {
                 changes: seen.collect(),
                 ..analysis.clone()
@@ -138,8 +137,8 @@ pub(crate) fn storms(ships: u64) {
             let storms = log.happened.iter();
             for storm in storms.filter(|h| h.what == Name::Storm && at_sea(log, h)) {
                 for (analysis, counts) in [(analysis, &mut alone), (&by_fleet, &mut together)] {
-                    let told = telling(analysis, storm).or_else(|| covering(analysis, storm));
-                    *counts.entry(name_of(told)).or_default() += 1;
+                    let reported = telling(analysis, storm).or_else(|| covering(analysis, storm));
+                    *counts.entry(name_of(reported)).or_default() += 1;
                 }
             }
         }
@@ -148,7 +147,7 @@ pub(crate) fn storms(ships: u64) {
     print(&format!("Storm, in a fleet of {FLEET}"), &together);
 }
 
-/// What began before the storm and was taken to go on through most of it.
+/// Returns a change from before the storm that covers most of it.
 fn covering<'a>(analysis: &'a Analysis, storm: &Happened) -> Option<&'a Change> {
     let to = storm.to?;
     analysis.changes.iter().find(|c| {
@@ -160,15 +159,15 @@ fn covering<'a>(analysis: &'a Analysis, storm: &Happened) -> Option<&'a Change> 
     })
 }
 
-/// What the other ships tell, as the server keeps it.
-fn elsewhere(fleet: &[(Log, Analysis)], but: usize) -> Vec<Elsewhere> {
+/// Returns the evidence of the other ships, as the server keeps it.
+fn elsewhere(fleet: &[(Log, Analysis)], but: usize) -> Vec<FleetDisturbance> {
     let others = fleet.iter().enumerate().filter(|(ship, _)| *ship != but);
-    let told = others.flat_map(|(ship, (log, analysis))| {
+    let reported = others.flat_map(|(ship, (log, analysis))| {
         let passing = analysis.changes.iter();
-        let passing = passing.filter(|c| c.confirmed && c.cause.passes_by());
+        let passing = passing.filter(|c| c.confirmed && c.cause.is_transient());
         passing.filter_map(move |c| {
             let last = log.samples.last().unwrap().time;
-            Some(Elsewhere {
+            Some(FleetDisturbance {
                 ship,
                 from: c.from,
                 until: c.ended.unwrap_or(last).max(c.from),
@@ -176,7 +175,7 @@ fn elsewhere(fleet: &[(Log, Analysis)], but: usize) -> Vec<Elsewhere> {
             })
         })
     });
-    told.collect()
+    reported.collect()
 }
 
 fn position(log: &Log, at: Timestamp) -> Option<binnacle_compass::position::Position> {
@@ -184,7 +183,7 @@ fn position(log: &Log, at: Timestamp) -> Option<binnacle_compass::position::Posi
     log.samples.get(next).map(|s| s.position)
 }
 
-/// Whether samples were taken through most of it.
+/// Returns true if samples were taken through most of it.
 fn at_sea(log: &Log, h: &Happened) -> bool {
     let to = h.to.unwrap_or(h.from);
     let during = log
@@ -194,13 +193,13 @@ fn at_sea(log: &Log, h: &Happened) -> bool {
     during.count() as f64 * 600.0 > 0.7 * to.seconds_since(h.from)
 }
 
-/// What is over within an hour and a half to three, at sea.
+/// Prints events that are over within an hour and a half to three, at sea.
 pub(crate) fn brief(ships: u64) {
     let kinds = [
         ("a magnet of 2 uT by the compass", Event::Magnet(2000.0)),
         ("a magnet of 3 uT by the compass", Event::Magnet(3000.0)),
-        ("variation off by 4 degrees", Event::Astray(4.0)),
-        ("variation off by 8 degrees", Event::Astray(8.0)),
+        ("variation off by 4 degrees", Event::VariationError(4.0)),
+        ("variation off by 8 degrees", Event::VariationError(8.0)),
     ];
     println!("over within 1.5 to 3 hours at sea, taken for:");
     for (name, event) in kinds {
@@ -211,15 +210,15 @@ pub(crate) fn brief(ships: u64) {
             for c in alarms(&analysis) {
                 let hours = |to: Timestamp| to.seconds_since(happened.from) / HOUR_S;
                 println!(
-                    "  seed {seed} alarm at {:.1} h, told {:.1} h, of {:.1?}: {:?}",
+                    "  seed {seed} alarm at {:.1} h, reported {:.1} h, of {:.1?}: {:?}",
                     hours(c.from),
                     hours(c.detected_at),
                     happened.to.map(hours),
                     c.ended.map(hours)
                 );
             }
-            let told = telling(&analysis, &happened);
-            Some((name_of(told), told.is_some_and(was_withdrawn)))
+            let reported = telling(&analysis, &happened);
+            Some((name_of(reported), reported.is_some_and(was_withdrawn)))
         });
         let found: Vec<_> = found.into_iter().flatten().collect();
         let mut counts = Counts::new();
@@ -234,7 +233,7 @@ pub(crate) fn brief(ships: u64) {
     }
 }
 
-/// What grows for weeks: one drift, and nothing else.
+/// Prints changes that grow for weeks: each should be one drift.
 pub(crate) fn ramps(ships: u64) {
     println!("what grows for weeks, taken for:");
     for (nt, days) in [(2000.0, 20.0), (3000.0, 30.0), (4000.0, 30.0)] {
@@ -243,22 +242,22 @@ pub(crate) fn ramps(ships: u64) {
             let log = sail_log(seed, &plan);
             let began = planned(&log, Name::Ramp)?.from;
             let analysis = run(&log.samples);
-            let told: Vec<&Change> = alarms(&analysis)
+            let reported: Vec<&Change> = alarms(&analysis)
                 .filter(|c| c.detected_at > began)
                 .collect();
-            let drifts = told.iter().filter(|c| c.cause == Cause::Drift).count();
-            Some((told.len(), drifts))
+            let drifts = reported.iter().filter(|c| c.cause == Cause::Drift).count();
+            Some((reported.len(), drifts))
         });
         let found: Vec<_> = found.into_iter().flatten().collect();
-        let told = found.iter().map(|f| f.0).sum::<usize>() as f64;
+        let reported = found.iter().map(|f| f.0).sum::<usize>() as f64;
         println!(
             "  {nt} nT in {days} days, {} ships: a drift {:.0} %, one drift and nothing else {:.0} %, \
-             nothing {:.0} %; changes told {:.1} a ship",
+             nothing {:.0} %; changes reported {:.1} a ship",
             found.len(),
             share(&found, |f| f.1 > 0),
             share(&found, |f| *f == (1, 1)),
             share(&found, |f| f.0 == 0),
-            told / found.len() as f64,
+            reported / found.len() as f64,
         );
     }
 }

@@ -1,5 +1,5 @@
-//! What a compass that fails is taken for: a card that jams, a zero that moved, a needle
-//! that swings. None of it is a strike, and each is one fault.
+//! Faults of a compass: a card that jams, an alignment change, a needle that oscillates.
+//! None of them is a strike, and each is one fault.
 
 use crate::voyages::fleet::{Event, Log, Plan, sail_log};
 use crate::voyages::{Truth, gauss, predicted, true_deviation};
@@ -11,17 +11,17 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
-/// When it fails, and how long the ship sails on after that.
+/// Day of the fault, and the time sailed after it.
 const FAILS_DAY: f64 = 30.0;
 const DAYS: f64 = 45.0;
 
 #[derive(Clone, Copy)]
 enum Fault {
-    /// The card stands, but for a trembling.
+    /// The card stands still, but for a small oscillation.
     Stuck,
-    /// It is off by so many degrees on every heading.
+    /// It has a constant error in degrees.
     Zero(f64),
-    /// It swings to and fro by so many degrees.
+    /// It oscillates by so many degrees.
     Swings(f64),
 }
 
@@ -46,27 +46,27 @@ const FAULTS: [(&str, Fault, f64); 17] = [
     ("swings by 30", Fault::Swings(30.0), 12.0),
 ];
 
-/// What a ship was told at one time.
-struct Told {
-    /// How many changes that were certain.
+/// Report to a ship at one time.
+struct Report {
+    /// Number of certain changes.
     times: usize,
     a_fault: bool,
     a_strike: bool,
-    /// Of how many headings the band holds what the compass shows, and of how many it is
-    /// narrow and wrong; none while it shows nothing, or without a model.
+    /// Numbers of headings on which the band holds the compass's reading, and on which it
+    /// is narrow and wrong; none while it shows nothing, or without a model.
     held: Option<(usize, usize)>,
 }
 
-/// A band of no more than this that is off by more than that runs a ship aground.
+/// Width and error of a band that runs a ship aground.
 const NARROW_DEG: f64 = 5.0;
-const ASTRAY_DEG: f64 = 10.0;
+const LARGE_ERROR_DEG: f64 = 10.0;
 
 /// With gyro and satellite compass, nothing else happening.
 pub(crate) fn jams(ships: u64) {
     let only = std::env::var("FAULT").ok();
     let wanted = |name: &str| only.as_ref().is_none_or(|only| name.starts_with(only));
     for (name, fault, hours) in FAULTS.into_iter().filter(|fault| wanted(fault.0)) {
-        let found = each(seeds(870_000, ships), |seed| told(seed, fault, hours));
+        let found = each(seeds(870_000, ships), |seed| reported(seed, fault, hours));
         let lasts = if hours.is_finite() {
             format!("for {hours} h")
         } else {
@@ -77,9 +77,10 @@ pub(crate) fn jams(ships: u64) {
             .iter()
             .enumerate()
         {
-            let all: Vec<&Told> = found.iter().map(|looks| &looks[look]).collect();
-            let times: usize = all.iter().map(|told| told.times).sum();
-            let held: Vec<(usize, usize)> = all.iter().filter_map(|told| told.held).collect();
+            let all: Vec<&Report> = found.iter().map(|looks| &looks[look]).collect();
+            let times: usize = all.iter().map(|reported| reported.times).sum();
+            let held: Vec<(usize, usize)> =
+                all.iter().filter_map(|reported| reported.held).collect();
             let of_headings = |part: fn(&(usize, usize)) -> usize| {
                 100.0 * held.iter().map(part).sum::<usize>() as f64 / (36 * held.len()) as f64
             };
@@ -90,21 +91,21 @@ pub(crate) fn jams(ships: u64) {
                 format!("; band holds {held:.0} %, narrow and wrong {wrong:.0} %")
             };
             println!(
-                "  {when:11} a fault {:3.0} %, a strike {:3.0} %, nothing {:3.0} %; told {:.2} \
+                "  {when:11} a fault {:3.0} %, a strike {:3.0} %, nothing {:3.0} %; reported {:.2} \
                  times a ship, {} at most{band}",
-                share(&all, |told| told.a_fault && !told.a_strike),
-                share(&all, |told| told.a_strike),
-                share(&all, |told| told.times == 0),
+                share(&all, |reported| reported.a_fault && !reported.a_strike),
+                share(&all, |reported| reported.a_strike),
+                share(&all, |reported| reported.times == 0),
                 times as f64 / ships as f64,
-                all.iter().map(|told| told.times).max().unwrap_or(0),
+                all.iter().map(|reported| reported.times).max().unwrap_or(0),
             );
         }
     }
 }
 
-/// What is told three hours after it failed, as it ends or a day after it began, a day after
-/// that, and in the end.
-fn told(seed: u64, fault: Fault, hours: f64) -> [Told; 4] {
+/// Returns the reports three hours after the fault, as it ends or a day after it began, a
+/// day after that, and in the end.
+fn reported(seed: u64, fault: Fault, hours: f64) -> [Report; 4] {
     let mut plan = Plan::of(Event::Nothing, variety(seed));
     (plan.days, plan.gyro_faults, plan.anomalies) = (DAYS, 0.0, 0.0);
     plan.faults.storms_per_month = 0.0;
@@ -139,7 +140,7 @@ fn told(seed: u64, fault: Fault, hours: f64) -> [Told; 4] {
             _ => 0.0,
         };
         let is_zero = matches!(fault, Fault::Zero(_));
-        Told {
+        Report {
             held: is_zero
                 .then(|| held(&analysis, &log.truth, off_deg))
                 .flatten(),
@@ -149,13 +150,13 @@ fn told(seed: u64, fault: Fault, hours: f64) -> [Told; 4] {
                 .any(|c| matches!(c.cause, Cause::CompassFault | Cause::Alignment)),
             a_strike: since
                 .iter()
-                .any(|c| c.cause.is_the_ships() && c.cause != Cause::Alignment),
+                .any(|c| c.cause.changes_deviation() && c.cause != Cause::Alignment),
         }
     })
 }
 
-/// On how many headings of 36 the band holds a compass that is off by so much, and on how
-/// many it is narrow and wrong. What she drifts to the end is nothing beside it.
+/// Returns the number of headings of 36 on which the band holds a compass with this error,
+/// and on which it is narrow and wrong. The drift to the end is negligible beside it.
 fn held(analysis: &Analysis, truth: &Truth, off_deg: f64) -> Option<(usize, usize)> {
     let place = analysis.last_place?;
     let model = analysis.current_epoch()?.model.as_ref()?;
@@ -166,12 +167,12 @@ fn held(analysis: &Analysis, truth: &Truth, off_deg: f64) -> Option<(usize, usiz
         let (predicted_deg, se_deg) = predicted(model, compass_deg, place.h_nt, place.z_nt);
         let error_deg = wrap_180(sound_deg - off_deg - predicted_deg).abs();
         held += usize::from(error_deg < 1.96 * se_deg);
-        wrong += usize::from(error_deg > ASTRAY_DEG && 1.96 * se_deg < NARROW_DEG);
+        wrong += usize::from(error_deg > LARGE_ERROR_DEG && 1.96 * se_deg < NARROW_DEG);
     }
     Some((held, wrong))
 }
 
-/// Makes the compass fail at sea; when it did, and to which side.
+/// Makes the compass fail at sea, and returns the time and the side.
 fn fail(log: &mut Log, seed: u64, fault: Fault, hours: f64) -> (Timestamp, f64) {
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0x1A3);
     let day = FAILS_DAY + 2.0 * rng.random::<f64>();
@@ -180,7 +181,7 @@ fn fail(log: &mut Log, seed: u64, fault: Fault, hours: f64) -> (Timestamp, f64) 
         .partition_point(|s| s.time.seconds_since(log.start) < day * DAY_S);
     let from = log.samples[first].time;
     let side = if rng.random::<bool>() { 1.0 } else { -1.0 };
-    // Two swings whose periods have nothing in common: of 35 to 70 min, and of 90 to 180.
+    // Two oscillations with unrelated periods: of 35 to 70 min, and of 90 to 180.
     let octave = 1.0 + rng.random::<f64>();
     let [quick, slow] = [35.0, 90.0].map(|minutes| (minutes * octave, TAU * rng.random::<f64>()));
     let jammed = log.samples[first].compass.degrees();

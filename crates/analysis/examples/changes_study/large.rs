@@ -1,4 +1,4 @@
-//! What becomes of a ship that is struck hard: lightning of 4 to 20 µT.
+//! Severe lightning strikes of 4 to 20 µT.
 
 use crate::returns::{Then, after};
 use crate::voyages::fleet::{Event, Name, Plan, sail_log};
@@ -7,18 +7,18 @@ use binnacle_compass::result::Cause;
 
 /// Sizes, nT.
 const SIZES: [f64; 5] = [4000.0, 6000.0, 8000.0, 12_000.0, 20_000.0];
-/// When the ship is looked at, days after the strike.
+/// Days after the strike at which the ship is evaluated.
 const LOOKS_DAYS: [f64; 3] = [0.5, 1.0, 2.0];
 const SOON_DAYS: f64 = 0.5 / 24.0;
 
 struct Struck {
     delay_s: f64,
-    /// Whether it was told, certain or not, half an hour after, and on how many headings of 36
-    /// the band held the truth then, if there was one.
+    /// True if it was reported, certain or not, half an hour after, and the number of
+    /// headings of 36 on which the band held the truth then, if there was one.
     soon: (bool, Option<usize>),
-    /// Whether the cause is right, a day after.
+    /// True if the cause is right, a day after.
     named: bool,
-    /// Lasting changes told within two days, beside the first.
+    /// Lasting changes reported within two days, beside the first.
     more: usize,
     looks: Vec<(usize, f64)>,
 }
@@ -38,15 +38,15 @@ pub(crate) fn large(ships: u64) {
             let from = planned(&log, Name::Step)?.from;
             let looks: Vec<Then> = LOOKS_DAYS
                 .iter()
-                .map_while(|days| after(seed, &plan, (&log, &[]), from, *days))
+                .map_while(|days| after(seed, &plan, &log, &[], from, *days))
                 .collect();
             let [_, day, last] = &looks[..] else {
                 return None;
             };
-            let told: Vec<_> = alarms(&last.analysis)
+            let reports: Vec<_> = alarms(&last.analysis)
                 .filter(|c| c.detected_at >= from)
                 .collect();
-            let delay_s = told
+            let delay_s = reports
                 .first()
                 .map_or(f64::INFINITY, |c| c.detected_at.seconds_since(from));
             let near = |c: &&binnacle_compass::result::Change| {
@@ -54,14 +54,14 @@ pub(crate) fn large(ships: u64) {
             };
             let a_day_after = day.analysis.changes.iter().find(near);
             let named = a_day_after.is_some_and(|c| c.cause == Cause::LightningOrShock);
-            let then = after(seed, &plan, (&log, &[]), from, SOON_DAYS)?;
+            let then = after(seed, &plan, &log, &[], from, SOON_DAYS)?;
             let mut soon = then.analysis.changes.iter();
             let soon = soon.any(|c| from.seconds_since(c.from) < HOUR_S);
             let struck = Struck {
                 delay_s,
                 soon: (soon, (then.se_deg > 0.0).then_some(then.held)),
                 named,
-                more: told.len().saturating_sub(1),
+                more: reports.len().saturating_sub(1),
                 looks: looks.iter().map(|then| (then.held, then.se_deg)).collect(),
             };
             if !named
@@ -107,9 +107,9 @@ pub(crate) fn large(ships: u64) {
         };
         let soon: Vec<usize> = found.iter().filter_map(|f| f.soon.1).collect();
         println!(
-            "{} uT, {} ships: told as possible half an hour after {:.0} % (the band holds the truth on {:.0} %); \
+            "{} uT, {} ships: reported as possible half an hour after {:.0} % (the band holds the truth on {:.0} %); \
              certain after {:.0} min (median; 90 % {:.1} h), within a day {:.0} %; cause right \
-             a day after {:.0} %; other changes told {}; the band holds the truth on {} \
+             a day after {:.0} %; other changes reported {}; the band holds the truth on {} \
              half a day after (standard error {:.1} degrees, median), on {} two days after ({:.1})",
             nt / 1000.0,
             found.len(),

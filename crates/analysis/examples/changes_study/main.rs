@@ -93,7 +93,7 @@ fn main() {
     }
 }
 
-/// Does a piece of work for every ship, on all cores, results in order.
+/// Runs a piece of work for every ship, on all cores, with the results in order.
 fn each<T: Send>(seeds: std::ops::Range<u64>, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
     let threads = std::env::var("THREADS").map_or(1, |n| n.parse().unwrap());
     let seeds: Vec<u64> = seeds.collect();
@@ -130,10 +130,10 @@ fn run(samples: &[Sample]) -> Analysis {
 
 fn alarms(analysis: &Analysis) -> impl Iterator<Item = &Change> {
     let changes = analysis.changes.iter();
-    changes.filter(|c| c.confirmed && c.cause.is_the_ships())
+    changes.filter(|c| c.confirmed && c.cause.changes_deviation())
 }
 
-/// Whether a change can be this happening.
+/// Returns true if a change can be this event.
 fn near(h: &Happened, c: &Change) -> bool {
     let end = h.to.unwrap_or(h.from).plus_seconds(0.5 * DAY_S);
     let begin = h.from.plus_seconds(-0.5 * DAY_S);
@@ -141,17 +141,19 @@ fn near(h: &Happened, c: &Change) -> bool {
     ended >= begin && c.from_earliest <= end
 }
 
-/// The change that tells of a happening, if one does.
+/// Returns the change that reports an event, if there is one.
 fn telling<'a>(analysis: &'a Analysis, h: &Happened) -> Option<&'a Change> {
-    let mut told = analysis.changes.iter().filter(|c| {
+    let mut reports = analysis.changes.iter().filter(|c| {
         c.confirmed && c.detected_at >= h.from && near(h, c) && h.from.seconds_since(c.from) < DAY_S
     });
-    let first = told.next()?;
-    // A disturbance that was taken back for a change counts as the change.
-    Some(if first.cause.is_the_ships() {
+    let first = reports.next()?;
+    // A disturbance withdrawn in favour of a change counts as the change.
+    Some(if first.cause.changes_deviation() {
         first
     } else {
-        told.find(|c| c.cause.is_the_ships()).unwrap_or(first)
+        reports
+            .find(|c| c.cause.changes_deviation())
+            .unwrap_or(first)
     })
 }
 
@@ -165,11 +167,11 @@ fn settled_hours(log: &Log, from: Timestamp, to: Timestamp) -> f64 {
     between.count() as f64 / 6.0
 }
 
-/// Whether it was told as the ship's until it passed.
+/// Returns true if it was reported as the vessel's until it passed.
 fn was_withdrawn(c: &Change) -> bool {
     c.evidence
         .iter()
-        .any(|line| line.contains("at first taken for a change of the ship"))
+        .any(|line| line.contains("at first taken for a change of the vessel"))
 }
 
 /// Per cent.

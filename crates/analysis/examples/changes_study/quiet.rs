@@ -12,12 +12,12 @@ pub(crate) fn quiet(ships: u64) {
         };
         let log = sail_log(seed, &plan);
         let analysis = run(&log.samples);
-        // What was told and then withdrawn was told.
-        let told = || {
+        // A withdrawn report was a report.
+        let reported = || {
             let changes = analysis.changes.iter();
-            changes.filter(|c| (c.confirmed || c.withdrawn) && c.cause.is_the_ships())
+            changes.filter(|c| (c.confirmed || c.withdrawn) && c.cause.changes_deviation())
         };
-        for c in told() {
+        for c in reported() {
             println!(
                 "  seed {seed} {:?}{} {} +{:.1} h {:?}",
                 c.cause,
@@ -27,7 +27,7 @@ pub(crate) fn quiet(ships: u64) {
                 c.evidence
             );
         }
-        for c in told() {
+        for c in reported() {
             for h in log.happened.iter().filter(|h| near(h, c)) {
                 println!(
                     "    {:?} {} {:?}",
@@ -67,12 +67,12 @@ pub(crate) fn quiet(ships: u64) {
         let passed: Vec<&Change> = analysis.changes.iter().filter(passing).collect();
         let false_passing = passed.iter().filter(|c| !truly(c)).count();
         [
-            told().count(),
+            reported().count(),
             references.count(),
             passed.len(),
             false_passing,
             passed.iter().filter(|c| was_withdrawn(c)).count(),
-            told().filter(|c| c.withdrawn).count(),
+            reported().filter(|c| c.withdrawn).count(),
             compass.count(),
         ]
     });

@@ -1,5 +1,5 @@
-//! Whether the band holds the truth while one of two references is off for long, and what is
-//! told of it: looked at every ten days, as the shore would.
+//! Band and reports while one of two references is wrong for long, evaluated every ten
+//! days, as at the server.
 
 use crate::voyages::fleet::{Event, Plan, sail_log};
 use crate::voyages::{Truth, predicted, true_deviation};
@@ -8,17 +8,17 @@ use binnacle_compass::angle::{TrueHeading, wrap_180};
 use binnacle_compass::result::{Analysis, Cause};
 use binnacle_compass::sample::Sample;
 
-/// The last look, and the days between looks.
+/// Day of the last evaluation, and days between evaluations.
 const DAYS: u32 = 120;
 const EVERY: u32 = 10;
-/// A look at which the band holds fewer headings of 36 than nine in ten is a bad one.
+/// Number of headings of 36 held by the band below which an evaluation is bad.
 const HELD: usize = 33;
 
 /// The constant error of a sound reference, standard deviation in degrees.
 const SOUND_DEG: f64 = 0.2;
 
-/// Which reference is off, by how many degrees, and from which day on; the slow wander of the
-/// gyro is so many times as large as usual.
+/// The wrong reference, its error in degrees, the first day of the error, and the factor on
+/// the slow wander of the gyro.
 struct Case {
     which: Which,
     off_deg: f64,
@@ -60,15 +60,15 @@ const CASES: [Case; 16] = [
     case(Which::Gyro, 3.0, 40.0, 2.0),
 ];
 
-/// What was known of one ship on one day.
+/// Knowledge of one ship on one day.
 struct Look {
     day: u32,
     seed: u64,
     /// Of 36 headings, the worst error and the usual standard error, degrees; none without
     /// a model.
     band: Option<(usize, f64, f64)>,
-    /// Changes that were certain, and of these the faults of the reference that is off.
-    told: Vec<Cause>,
+    /// Certain changes, and of these the faults of the wrong reference.
+    reported: Vec<Cause>,
     faults: Vec<String>,
 }
 
@@ -85,13 +85,15 @@ pub(crate) fn references(ships: u64) {
         let held: usize = with.clone().map(|band| band.0).sum();
         let worst = with.clone().map(|band| band.1).fold(0.0, f64::max);
         let se = with.clone().map(|band| band.2).sum::<f64>() / with.clone().count() as f64;
-        let told = |such: fn(&Cause) -> bool| {
+        let reported = |such: fn(&Cause) -> bool| {
             let last = looks.iter().filter(|look| look.day == DAYS);
-            last.flat_map(|look| &look.told).filter(|c| such(c)).count()
+            last.flat_map(|look| &look.reported)
+                .filter(|c| such(c))
+                .count()
         };
         println!(
             "{number:2} {:?} off by {:+.0} from day {:.0}, gyro's wander x {:.0}: {} of {} looks below \
-             90 %, headings held {:.1} %, worst error {worst:.1}, se {se:.2}; told at last: {} \
+             90 %, headings held {:.1} %, worst error {worst:.1}, se {se:.2}; reported at last: {} \
              reference faults, {} of the ship",
             case.which,
             case.off_deg,
@@ -100,14 +102,14 @@ pub(crate) fn references(ships: u64) {
             looks.iter().filter(bad).count(),
             looks.len(),
             100.0 * held as f64 / (36 * with.count()) as f64,
-            told(|c| *c == Cause::ReferenceFault),
-            told(|c| c.is_the_ships()),
+            reported(|c| *c == Cause::ReferenceFault),
+            reported(|c| c.changes_deviation()),
         );
         if std::env::var("WORDS").is_ok() {
             for look in &looks {
                 println!(
                     "   {} day {:3}: {:.2?} {:?} {:?}",
-                    look.seed, look.day, look.band, look.told, look.faults
+                    look.seed, look.day, look.band, look.reported, look.faults
                 );
             }
         }
@@ -120,12 +122,12 @@ fn looks(seed: u64, case: &Case) -> Vec<Look> {
     days.map(|day| look(seed, case, day)).collect()
 }
 
-/// The same voyage up to a day.
+/// Returns the voyage up to a day.
 fn look(seed: u64, case: &Case, day: u32) -> Look {
     let mut plan = Plan::of(Event::Nothing, variety(seed));
     (plan.days, plan.gyro_faults) = (f64::from(day), 0.0);
     plan.faults.slow_gyro_deg *= case.wander;
-    // What the references' own constants leave is another question, and one of many ships.
+    // The references' own constants are another question, of many ships.
     plan.faults.gyro_constant_deg = SOUND_DEG;
     let mut log = sail_log(seed, &plan);
     let fails = log.start.plus_seconds(case.from_day * DAY_S);
@@ -139,7 +141,7 @@ fn look(seed: u64, case: &Case, day: u32) -> Look {
         day,
         seed,
         band: band(&analysis, &log.truth),
-        told: certain().map(|c| c.cause).collect(),
+        reported: certain().map(|c| c.cause).collect(),
         faults: faults
             .map(|c| {
                 let at = |t: binnacle_compass::time::Timestamp| t.seconds_since(log.start) / DAY_S;
@@ -164,7 +166,8 @@ fn turn(sample: &mut Sample, case: &Case) {
     }
 }
 
-/// On how many headings of 36 the band holds, the worst error, and the usual standard error.
+/// Returns the number of headings of 36 that the band holds, the worst error, and the usual
+/// standard error.
 fn band(analysis: &Analysis, truth: &Truth) -> Option<(usize, f64, f64)> {
     let place = analysis.last_place?;
     let model = analysis.current_epoch()?.model.as_ref()?;
@@ -172,8 +175,8 @@ fn band(analysis: &Analysis, truth: &Truth) -> Option<(usize, f64, f64)> {
     for k in 0..36 {
         let compass_deg = 10.0 * f64::from(k);
         let true_deg = true_deviation(truth, compass_deg, place.h_nt, place.z_nt);
-        let (told_deg, se_deg) = predicted(model, compass_deg, place.h_nt, place.z_nt);
-        let off_deg = wrap_180(true_deg - told_deg).abs();
+        let (predicted_deg, se_deg) = predicted(model, compass_deg, place.h_nt, place.z_nt);
+        let off_deg = wrap_180(true_deg - predicted_deg).abs();
         held += usize::from(off_deg < 1.96 * se_deg);
         worst = worst.max(off_deg);
         sum += se_deg / 36.0;

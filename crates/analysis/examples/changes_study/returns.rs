@@ -1,7 +1,7 @@
-//! What becomes of the base model after cargo is discharged, and of what stays.
+//! Base model after cargo is discharged, and lasting changes.
 
 use crate::voyages::fleet::{Event, Happened, Log, Name, Plan, START, sail_log};
-use crate::voyages::lorden::nats_of_discharge;
+use crate::voyages::lorden::information_of_discharge;
 use crate::voyages::{gauss, predicted, true_deviation};
 use crate::{DAY_S, HOUR_S, alarms, each, near, planned, run, seeds, share, variety};
 use binnacle_analysis::analyse::analyse;
@@ -13,15 +13,14 @@ use binnacle_compass::time::Timestamp;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// How often what stays is looked at for being taken for a return, days after it.
+/// Days after a lasting change at which it is tested for being taken for a return.
 const LOOKS_DAYS: [f64; 4] = [1.0, 4.0, 10.0, 30.0];
 
-/// Officers write down when cargo came and went within so many hours, a standard
-/// deviation.
+/// Standard deviation of the times in officers' entries of cargo, hours.
 const WRITTEN_H: f64 = 3.0;
 
-/// What becomes of the base model after cargo is discharged, by samples alone and with
-/// the officers' report.
+/// Prints the base model after cargo is discharged, by samples alone and with the officers'
+/// report.
 pub(crate) fn returns(ships: u64) {
     returned("nobody having reported it", ships, |_, _| Vec::new());
     returned("reported", ships, |seed, cargo| {
@@ -39,26 +38,26 @@ pub(crate) fn returns(ships: u64) {
     ideal(ships);
 }
 
-/// How often a day's samples would tell that the cargo is gone to one who knew the ship
-/// with cargo and without, and the sizes of all noise, but not which she is.
+/// Prints how often a day's samples would show the discharge to an observer who knew the
+/// ship with cargo and without, and all noise levels, but not the present state.
 fn ideal(ships: u64) {
-    let nats = each(seeds(400_000, ships), |seed| {
+    let ratio = each(seeds(400_000, ships), |seed| {
         let mut plan = Plan::of(Event::Cargo, variety(seed));
         plan.days = 130.0;
-        nats_of_discharge(&sail_log(seed, &plan))
+        information_of_discharge(&sail_log(seed, &plan))
     });
-    let nats: Vec<f64> = nats.into_iter().flatten().collect();
+    let ratio: Vec<f64> = ratio.into_iter().flatten().collect();
     let mean = |of: fn(f64) -> f64| {
-        100.0 * nats.iter().map(|nats| of(*nats)).sum::<f64>() / nats.len() as f64
+        100.0 * ratio.iter().map(|ratio| of(*ratio)).sum::<f64>() / ratio.len() as f64
     };
     // The log of the likelihoods' ratio is Gaussian about the information, with twice
     // that as its variance.
     println!(
-        "an observer who knows both ships and all noise: rather without cargo than with, a day          after sailing, {:.0} % of {} ships; nine times likelier {:.0} %; a day tells less than 3          nats on {:.0} %",
-        mean(|nats| normal((nats / 2.0).sqrt())),
-        nats.len(),
-        mean(|nats| normal((nats - 9.0_f64.ln()) / (2.0 * nats).sqrt())),
-        share(&nats, |nats| *nats < 3.0),
+        "an observer who knows both ships and all noise: rather without cargo than with, a day          after sailing, {:.0} % of {} ships; nine times likelier {:.0} %; a log-likelihood ratio below 3          on {:.0} %",
+        mean(|ratio| normal((ratio / 2.0).sqrt())),
+        ratio.len(),
+        mean(|ratio| normal((ratio - 9.0_f64.ln()) / (2.0 * ratio).sqrt())),
+        share(&ratio, |ratio| *ratio < 3.0),
     );
 }
 
@@ -85,7 +84,7 @@ fn returned(how: &str, ships: u64, logbook: impl Fn(u64, &Happened) -> Vec<Logbo
         let cargo = planned(&log, Name::Cargo)?;
         let discharged = cargo.to?;
         let known = logbook(seed, &cargo);
-        let then = after(seed, &plan, (&log, &known), discharged, 1.0)?;
+        let then = after(seed, &plan, &log, &known, discharged, 1.0)?;
         let noticed = then
             .analysis
             .changes
@@ -93,10 +92,10 @@ fn returned(how: &str, ships: u64, logbook: impl Fn(u64, &Happened) -> Vec<Logbo
             .any(|c| c.cause == Cause::MagneticCargo);
         if then.of == Of::Another {
             println!(
-                "  seed {seed}: on board {} to {discharged}, {:.1} nats, not back: {:?}",
+                "  seed {seed}: on board {} to {discharged}, log-likelihood ratio {:.1}, not back: {:?}",
                 planned(&log, Name::Cargo)?.from,
-                nats_of_discharge(&log).unwrap_or(f64::NAN),
-                then.told()
+                information_of_discharge(&log).unwrap_or(f64::NAN),
+                then.reports()
             );
         }
         Some((then.of, then.held, noticed))
@@ -119,22 +118,22 @@ fn returned(how: &str, ships: u64, logbook: impl Fn(u64, &Happened) -> Vec<Logbo
     );
 }
 
-/// Which model is in force.
+/// Model in force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Of {
-    /// That of the base, which a return resumed.
+    /// Model of the base, which a return resumed.
     Resumed,
-    /// That of the base, no change having been found.
+    /// Model of the base, without any change found.
     NeverLeft,
-    /// That of either, the base's being the likelier.
+    /// Mixture in which the base is the likelier.
     Likely,
     Another,
 }
 
-/// What was known some time after the ship sailed from a port.
+/// Knowledge some time after the ship sailed from a port.
 pub(crate) struct Then {
     of: Of,
-    /// On how many headings of 36 the band held the truth.
+    /// Number of headings of 36 on which the band held the truth.
     pub(crate) held: usize,
     /// The mean of the band's standard error over the headings, degrees.
     pub(crate) se_deg: f64,
@@ -142,12 +141,12 @@ pub(crate) struct Then {
 }
 
 impl Then {
-    fn told(&self) -> Vec<String> {
+    fn reports(&self) -> Vec<String> {
         let of_ship = self
             .analysis
             .changes
             .iter()
-            .filter(|c| c.cause.is_the_ships());
+            .filter(|c| c.cause.changes_deviation());
         of_ship
             .map(|c| {
                 format!(
@@ -165,7 +164,8 @@ impl Then {
 pub(crate) fn after(
     seed: u64,
     plan: &Plan,
-    (log, logbook): (&Log, &[LogbookEntry]),
+    log: &Log,
+    logbook: &[LogbookEntry],
     port: Timestamp,
     days: f64,
 ) -> Option<Then> {
@@ -174,7 +174,7 @@ pub(crate) fn after(
         .samples
         .partition_point(|s| s.time.seconds_since(sailed) < days * DAY_S);
     let analysis = analyse(&log.samples[..until], logbook, &AnalysisSettings::default());
-    // The same ship, as she was at that time.
+    // The state of the ship at that time.
     let begun = Timestamp::parse(START).unwrap();
     let last = log.samples[until - 1].time;
     let days = last.seconds_since(begun) / DAY_S + 0.001;
@@ -208,7 +208,7 @@ pub(crate) fn after(
     })
 }
 
-/// Whether the last change is rather over than not.
+/// Returns true if the last change is rather over than not.
 fn may_have_ended(analysis: &Analysis) -> bool {
     let evidence = analysis.changes.iter().flat_map(|c| &c.evidence);
     let mut likely = evidence.filter_map(|line| {
@@ -218,8 +218,8 @@ fn may_have_ended(analysis: &Analysis) -> bool {
     likely.next_back().is_some_and(|per_cent| per_cent >= 50.0)
 }
 
-/// What looks like cargo, and stays: it must not pass for discharged, though the ship
-/// calls at ports.
+/// Prints changes that look like cargo and stay: they must not pass for discharged at port
+/// calls.
 pub(crate) fn permanent(ships: u64) {
     let found = each(seeds(410_000, ships), |seed| {
         let mut plan = Plan::of(Event::Refit, variety(seed));
@@ -227,20 +227,20 @@ pub(crate) fn permanent(ships: u64) {
         let log = sail_log(seed, &plan);
         let refit = planned(&log, Name::Refit)?;
         let analysis = run(&log.samples);
-        let told = alarms(&analysis).find(|c| near(&refit, c));
+        let reports = alarms(&analysis).find(|c| near(&refit, c));
         let looks: Vec<Then> = LOOKS_DAYS
             .iter()
-            .filter_map(|days| after(seed, &plan, (&log, &[]), refit.from, *days))
+            .filter_map(|days| after(seed, &plan, &log, &[], refit.from, *days))
             .collect();
         let ever = looks.iter().any(|then| then.of == Of::Resumed);
-        let at_last = told.is_some_and(|c| c.ended.is_some());
+        let at_last = reports.is_some_and(|c| c.ended.is_some());
         if ever || at_last {
             println!(
                 "  seed {seed} changed {}, taken for ended: at last {at_last}",
                 refit.from
             );
             for look in &looks {
-                println!("    {:?} {:?}", look.of, look.told());
+                println!("    {:?} {:?}", look.of, look.reports());
             }
             println!(
                 "    {:?}",
@@ -248,7 +248,7 @@ pub(crate) fn permanent(ships: u64) {
             );
         }
         Some((
-            told.is_some(),
+            reports.is_some(),
             ever || at_last,
             at_last,
             looks.first()?.held,
@@ -266,8 +266,8 @@ pub(crate) fn permanent(ships: u64) {
     );
 }
 
-/// How wide the band is after a port call at which nothing happened, and how often it holds
-/// the truth: hours after sailing.
+/// Prints width and coverage of the band hours after sailing from a port call without any
+/// event.
 pub(crate) fn calm(ships: u64) {
     for hours in [3.0, 12.0, 24.0] {
         let found = each(seeds(430_000, ships), |seed| {
@@ -280,7 +280,7 @@ pub(crate) fn calm(ships: u64) {
                 leg[0].time.seconds_since(begun) > 60.0 * DAY_S
                     && leg[1].time.seconds_since(leg[0].time) > 12.0 * HOUR_S
             })?;
-            after(seed, &plan, (&log, &[]), port[0].time, hours / 24.0)
+            after(seed, &plan, &log, &[], port[0].time, hours / 24.0)
         });
         let found: Vec<_> = found.into_iter().flatten().collect();
         let held = found.iter().map(|then| then.held).sum::<usize>();
@@ -295,7 +295,7 @@ pub(crate) fn calm(ships: u64) {
     }
 }
 
-/// How good the band is after lightning, which partly fades.
+/// Prints the band after lightning, which partly decays.
 pub(crate) fn lightning(ships: u64) {
     for weeks in [1.0, 4.0] {
         let found = each(seeds(420_000, ships), |seed| {
@@ -305,7 +305,8 @@ pub(crate) fn lightning(ships: u64) {
             after(
                 seed,
                 &plan,
-                (&log, &[]),
+                &log,
+                &[],
                 struck.plus_seconds(7.0 * DAY_S * weeks),
                 1.0,
             )

@@ -1,4 +1,4 @@
-//! How soon steps are found, and how they are dated.
+//! Delay and date of steps.
 
 use crate::voyages::fleet::{Event, Name, Plan, sail_log};
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
 
 use binnacle_compass::time::Timestamp;
 
-/// What became of one step.
+/// Outcome of one step.
 struct Found {
     /// By the clock; infinite where it was not found.
     delay_s: f64,
@@ -23,12 +23,12 @@ pub(crate) fn steps(name: &str, event: Event, ships: u64) {
         let log = sail_log(seed, &Plan::of(event, variety(seed)));
         let from = planned(&log, Name::Step)?.from;
         let analysis = run(&log.samples);
-        let told = alarms(&analysis)
+        let reported = alarms(&analysis)
             .find(|c| c.detected_at >= from && c.from.seconds_since(from).abs() < 3.0 * DAY_S);
         let near = |at: Timestamp| at.seconds_since(from).abs() < 3.0 * DAY_S;
         let mut changes = analysis.changes.iter();
         let was_withdrawn = changes.any(|c| c.withdrawn && near(c.from));
-        let Some(told) = told else {
+        let Some(reported) = reported else {
             let since = analysis.changes.iter().filter(|c| c.detected_at >= from);
             println!(
                 "  seed {seed} missed {from}: {:?}",
@@ -45,10 +45,10 @@ pub(crate) fn steps(name: &str, event: Event, ships: u64) {
             });
         };
         Some(Found {
-            delay_s: told.detected_at.seconds_since(from),
-            settled_h: settled_hours(&log, from, told.detected_at),
-            date_off_s: told.from.seconds_since(from).abs(),
-            was_called_off: told.ended.is_some(),
+            delay_s: reported.detected_at.seconds_since(from),
+            settled_h: settled_hours(&log, from, reported.detected_at),
+            date_off_s: reported.from.seconds_since(from).abs(),
+            was_called_off: reported.ended.is_some(),
             was_withdrawn,
         })
     });
@@ -90,8 +90,9 @@ pub(crate) fn gyro_alone(ships: u64) {
         let from = planned(&log, Name::Step)?.from;
         let analysis = run(&log.samples);
         let before = alarms(&analysis).filter(|c| c.detected_at < from).count();
-        let told = alarms(&analysis).find(|c| c.detected_at >= from);
-        let settled_h = told.map_or(f64::INFINITY, |c| settled_hours(&log, from, c.detected_at));
+        let reported = alarms(&analysis).find(|c| c.detected_at >= from);
+        let settled_h =
+            reported.map_or(f64::INFINITY, |c| settled_hours(&log, from, c.detected_at));
         Some((settled_h, before))
     });
     let found: Vec<_> = found.into_iter().flatten().collect();
@@ -112,10 +113,10 @@ pub(crate) fn gyro_alone(ships: u64) {
             .map(|c| {
                 let after_h = c.from.seconds_since(fault.from) / HOUR_S;
                 let before_end_h = fault.to.map(|to| to.seconds_since(c.from) / HOUR_S);
-                let told_h = c.detected_at.seconds_since(c.from) / HOUR_S;
+                let reported_h = c.detected_at.seconds_since(c.from) / HOUR_S;
                 format!(
-                    "{:?} {after_h:.1} h after it began, {before_end_h:.1?} before it ended, told after \
-                     {told_h:.1}, ended {:?}",
+                    "{:?} {after_h:.1} h after it began, {before_end_h:.1?} before it ended, reported after \
+                     {reported_h:.1}, ended {:?}",
                     c.cause,
                     c.ended.map(|e| e.to_string())
                 )

@@ -1,9 +1,9 @@
-//! What is known of a ship's deviation, and what a watch would add to it.
+//! Knowledge of a vessel's deviation, and the gain of a watch.
 //!
-//! What always holds: learning never widens a band, and the reference's
-//! constant error, which no heading can show, is never learnt.
+//! Learning never widens a band. The reference's constant error, which no heading can show,
+//! is never learnt.
 
-use super::AdviceError;
+use super::question::AdviceError;
 use binnacle_compass::coverage::HEADING_STEP_DEG;
 use binnacle_compass::deviation::{DeviationError, NORMAL_95, linearised_at_compass};
 use binnacle_compass::model::Model;
@@ -11,19 +11,19 @@ use binnacle_compass::result::Band;
 use binnacle_compass::ship::{EarthField, PARAMETERS};
 use nalgebra::{Matrix3, SMatrix, SVector};
 
-/// Sectors of heading.
+/// Number of sectors of heading.
 pub(super) const SECTORS: usize = 360 / HEADING_STEP_DEG as usize;
 
-/// Parameters and constant, as the covariance has them.
+/// Number of unknowns: parameters and constant, as in the covariance.
 const UNKNOWNS: usize = PARAMETERS + 1;
 type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 /// Slopes of a deviation in degrees by parameters and constant.
 pub(super) type Slope = SVector<f64, UNKNOWNS>;
 
-/// The slopes of deviation in the middle of each sector.
+/// Returns the slopes of deviation in the middle of each sector.
 ///
 /// # Errors
-/// When the field is none to steer by or headings are ambiguous in it.
+/// Fails when the field is too weak for a compass or headings are ambiguous in it.
 pub(super) fn slopes(model: &Model, earth: EarthField) -> Result<[Slope; SECTORS], DeviationError> {
     let mut slopes = [Slope::zeros(); SECTORS];
     for (sector, slope) in slopes.iter_mut().enumerate() {
@@ -38,16 +38,16 @@ pub(super) fn slopes(model: &Model, earth: EarthField) -> Result<[Slope; SECTORS
     Ok(slopes)
 }
 
-/// Where the band is to be narrow: every heading in some waters.
+/// Waters in which the band is to be narrow, on every heading.
 pub(super) struct Waters {
     slopes: Vec<Slope>,
-    /// Mean of slope times slope: the mean variance over the waters is the
-    /// trace of this times the covariance.
+    /// Mean of slope times slope: the mean variance over the waters is the trace of this
+    /// times the covariance.
     moments: Matrix,
 }
 
 impl Waters {
-    /// At least one slope.
+    /// Makes waters of at least one slope.
     pub(super) fn new(slopes: Vec<Slope>) -> Waters {
         let sum: Matrix = slopes.iter().map(|g| g * g.transpose()).sum();
         Waters {
@@ -57,7 +57,7 @@ impl Waters {
     }
 }
 
-/// The covariance, without what cannot be learnt.
+/// Covariance without what cannot be learnt.
 #[derive(Clone, Debug)]
 pub(super) struct Knowledge {
     covariance: Matrix,
@@ -74,7 +74,7 @@ impl Knowledge {
             .cholesky()
             .ok_or(AdviceError::NotACovariance)?
             .inverse();
-        // No more can be the reference's than the covariance has room for.
+        // The reference's part is limited by the covariance.
         let most = 1.0 / information[(PARAMETERS, PARAMETERS)];
         let reference = constant_sd_deg.powi(2).min(most);
         if !(reference.is_finite() && covariance.iter().all(|v| v.is_finite())) {
@@ -87,7 +87,7 @@ impl Knowledge {
         })
     }
 
-    /// What is left of the band when everything is learnt, degrees.
+    /// Returns the half-width of the band when everything is learnt, degrees.
     pub(super) fn floor_deg(&self) -> f64 {
         NORMAL_95 * self.reference.sqrt()
     }
@@ -106,13 +106,13 @@ impl Knowledge {
         }
     }
 
-    /// How much a row of variance 1 takes off the mean variance over the waters.
+    /// Returns the reduction of the mean variance over the waters by a row of variance 1.
     fn gain(&self, row: &Slope, waters: &Waters) -> f64 {
         let learnt = self.covariance * row;
         learnt.dot(&(waters.moments * learnt)) / (row.dot(&learnt) + 1.0)
     }
 
-    /// Takes in a row of variance 1 (docs/science.md, eq. 15).
+    /// Adds a row of variance 1 (docs/science.md, eq. 15).
     fn learn(&mut self, row: &Slope) {
         let learnt = self.covariance * row;
         let share = 1.0 / (row.dot(&learnt) + 1.0);
@@ -120,7 +120,7 @@ impl Knowledge {
     }
 }
 
-/// Watches one after another in one field, whose errors have something in common.
+/// Successive watches in one field, whose errors are correlated.
 #[derive(Clone)]
 pub(super) struct Visit {
     pub(super) knowledge: Knowledge,
@@ -130,7 +130,7 @@ pub(super) struct Visit {
 }
 
 impl Visit {
-    /// None when `errors` is no covariance.
+    /// Makes a visit; none when `errors` is not positive definite.
     pub(super) fn new(knowledge: &Knowledge, errors: Matrix3<f64>) -> Option<Visit> {
         Some(Visit {
             knowledge: knowledge.clone(),
@@ -139,12 +139,12 @@ impl Visit {
         })
     }
 
-    /// What the next watch would gain.
+    /// Returns the gain of the next watch.
     pub(super) fn gain(&self, slope: &Slope, waters: &Waters) -> f64 {
         self.knowledge.gain(&self.whitened(slope), waters)
     }
 
-    /// Stands a watch.
+    /// Adds a watch.
     pub(super) fn watch(&mut self, slope: &Slope) {
         let row = self.whitened(slope);
         self.knowledge.learn(&row);
@@ -187,7 +187,7 @@ mod tests {
         ])
     }
 
-    /// Watch by watch is the same as all at once by the information.
+    /// Successive watches give the same result as all at once by the information.
     #[test]
     fn a_visits_watches_add_their_joint_information() {
         let errors = Matrix3::new(0.1, 0.06, 0.05, 0.06, 0.1, 0.06, 0.05, 0.06, 0.1);

@@ -1,73 +1,30 @@
-//! What to sail next: on which headings here, and in which magnetic latitude,
-//! a watch would narrow the band most.
+//! Advice on what to sail next: the headings here, and the magnetic latitude, in which a
+//! watch would narrow the band most.
 //!
-//! A watch is four hours on one compass heading; what it tells is the mean
-//! deviation there, with the error that the noise levels give a mean of four
-//! hours. What it would do to the band follows from the covariance alone: where
-//! the deviation measured turns out to lie does not matter (docs/science.md,
-//! §8). Three watches are on three successive days, so that the gyro's slow
-//! wander is nearly the same in all of them.
+//! A watch is four hours on one compass heading. It shows the mean deviation there, with
+//! the error that the noise levels give a mean of four hours. Its effect on the band
+//! follows from the covariance alone: the measured deviation does not matter
+//! (docs/science.md, §8). Three watches are on three successive days, so that the gyro's
+//! slow wander is nearly the same in all of them.
 //!
-//! What always holds: no watch widens a band, and none narrows it below what
-//! the reference's own constant error leaves, which no heading can show.
+//! No watch widens a band. None narrows it below what the reference's own constant error
+//! leaves, which no heading can show.
 
 mod knowledge;
+mod question;
 mod ranges;
 mod rank;
 mod watch;
 
+pub use question::{AdviceError, NOTICEABLE_DEG, Question};
 pub use watch::{WATCH_HOURS, WATCHES};
 
-use binnacle_compass::coverage::Coverage;
-use binnacle_compass::deviation::DeviationError;
-use binnacle_compass::model::Model;
-use binnacle_compass::result::{Analysis, NoiseLevels, SailNext};
+use binnacle_compass::result::{Analysis, SailNext};
 use binnacle_compass::ship::EarthField;
 use knowledge::{Knowledge, slopes};
 use rank::{heading_advice, latitude_advice, waters_elsewhere};
 
-/// A suggestion whose three watches narrow the band by less is not made, degrees.
-pub const NOTICEABLE_DEG: f64 = 0.05;
-
-/// What advice is asked about.
-#[derive(Clone, Copy, Debug)]
-pub struct Question<'a> {
-    /// What is known; it must have a covariance.
-    pub model: &'a Model,
-    /// How large each kind of noise is.
-    pub noise: &'a NoiseLevels,
-    /// Standard deviation of the reference's constant error that stands in the
-    /// model's covariance, degrees.
-    pub reference_constant_sd_deg: f64,
-    /// 1 where the reference is a gyro, 0 where it is a satellite compass.
-    pub gyro_share: f64,
-    /// Where the ship is.
-    pub here: EarthField,
-    /// Other waters in which the band is to be narrow; if none are given, those
-    /// of every magnetic latitude that ships sail in.
-    pub elsewhere: &'a [EarthField],
-    /// Where the data are: it gives the fields of the bands they lie in.
-    pub coverage: &'a Coverage,
-}
-
-/// Why there is no advice.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum AdviceError {
-    /// A model without a covariance does not say what it knows.
-    #[error("the model has no covariance")]
-    NoCovariance,
-    /// The covariance given could not be anyone's.
-    #[error("the model's covariance is not positive definite")]
-    NotACovariance,
-    /// The noise levels are not finite.
-    #[error("the noise levels are not finite numbers")]
-    NotNoise,
-    /// The model says nothing in the waters asked about.
-    #[error(transparent)]
-    Deviation(#[from] DeviationError),
-}
-
-/// What to sail after an analysis; none while there is no model.
+/// Returns the advice after an analysis; none while there is no model.
 pub fn sail_next(analysis: &Analysis) -> Option<SailNext> {
     let epoch = analysis.current_epoch()?;
     let place = analysis.last_place?;
@@ -92,11 +49,11 @@ pub fn sail_next(analysis: &Analysis) -> Option<SailNext> {
     .ok()
 }
 
-/// What to sail next.
+/// Answers a question for advice.
 ///
 /// # Errors
-/// When the model does not say how sure it is, or headings are ambiguous where
-/// the ship is or in the waters given.
+/// Fails when the model has no known uncertainty, or headings are ambiguous where the
+/// vessel is or in the waters given.
 pub fn advise(question: &Question<'_>) -> Result<SailNext, AdviceError> {
     let known = Knowledge::new(question.model, question.reference_constant_sd_deg)?;
     let own = slopes(question.model, question.here)?;

@@ -1,21 +1,21 @@
-//! Neighbours that are nearly as good, put together.
+//! Ranges of neighbours that are nearly as good.
 
-/// A neighbour with this part of the best's gain is as good.
-const NEAR: f64 = 0.8;
-/// A range with less than this part of the best one's gain is not worth a line.
-const WORTH_A_LINE: f64 = 0.5;
-/// So many ranges at most.
-const MOST: usize = 3;
+/// Least part of the best's gain of a neighbour in its range.
+const NEIGHBOUR_SHARE: f64 = 0.8;
+/// Least part of the best range's gain of another range.
+const OTHER_RANGE_SHARE: f64 = 0.5;
+/// Greatest number of ranges.
+const MAX_RANGES: usize = 3;
 
-/// Whether the last and the first are neighbours.
+/// True if the last and the first are neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ends {
     Joined,
     Apart,
 }
 
-/// Runs of neighbours around the peaks of `gains`, the best first, each in its
-/// own order. Gains that are not positive are in none.
+/// Returns runs of neighbours around the peaks of `gains`, the best first, each in its own
+/// order. Gains that are not positive are in none.
 pub(super) fn ranges(gains: &[f64], ends: Ends) -> Vec<Vec<usize>> {
     let n = gains.len();
     let step = |at: usize, by: usize| match ends {
@@ -30,7 +30,8 @@ pub(super) fn ranges(gains: &[f64], ends: Ends) -> Vec<Vec<usize>> {
     let mut found: Vec<Vec<usize>> = Vec::new();
     for peak in by_gain {
         let best = found.first().map_or(0.0, |run| peak_of(gains, run));
-        if found.len() == MOST || gains[peak] <= 0.0 || gains[peak] < WORTH_A_LINE * best {
+        if found.len() == MAX_RANGES || gains[peak] <= 0.0 || gains[peak] < OTHER_RANGE_SHARE * best
+        {
             break;
         }
         let higher = |at: Option<usize>| at.is_some_and(|at| gains[at] > gains[peak]);
@@ -42,7 +43,7 @@ pub(super) fn ranges(gains: &[f64], ends: Ends) -> Vec<Vec<usize>> {
         for by in [1, n - 1] {
             let mut at = peak;
             while let Some(next) = step(at, by) {
-                if taken[next] || gains[next] < NEAR * gains[peak] {
+                if taken[next] || gains[next] < NEIGHBOUR_SHARE * gains[peak] {
                     break;
                 }
                 taken[next] = true;

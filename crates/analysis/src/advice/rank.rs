@@ -1,10 +1,10 @@
-//! Candidates and their ranking: the sectors of heading here, and the bands of
-//! magnetic latitude with the best three headings in each.
+//! Ranking of candidates: the sectors of heading here, and the bands of magnetic latitude
+//! with the best three headings in each.
 
 use super::knowledge::{Knowledge, SECTORS, Slope, Visit, Waters, slopes};
+use super::question::{AdviceError, NOTICEABLE_DEG, Question};
 use super::ranges::{Ends, ranges};
 use super::watch::{WATCHES, errors_of_watches};
-use super::{AdviceError, NOTICEABLE_DEG, Question};
 use binnacle_compass::coverage::{
     Coverage, HEADING_STEP_DEG, MAGNETIC_LATITUDE_STEP_DEG, magnetic_latitude_band_deg,
 };
@@ -14,12 +14,12 @@ use binnacle_compass::ship::EarthField;
 
 /// Bands of magnetic latitude that ships sail in, by their southern edges.
 const SAILED_DEG: std::ops::RangeInclusive<i16> = -60..=50;
-/// Horizontal field of the dipole at its equator, nT (IGRF-14, 2025:
-/// √(g₁₀² + g₁₁² + h₁₁²)); the vertical field at its pole is twice that.
+/// Horizontal field of the dipole at its equator, nT (IGRF-14, 2025: √(g₁₀² + g₁₁² +
+/// h₁₁²)); the vertical field at its pole is twice that.
 const DIPOLE_NT: f64 = 29_700.0;
 
-/// The waters in which the band is to be narrow besides here; none where
-/// headings are ambiguous in all of those that were not asked for by name.
+/// Returns the other waters in which the band is to be narrow; none where headings are
+/// ambiguous in all of those that were not asked for by name.
 pub(super) fn waters_elsewhere(question: &Question<'_>) -> Result<Option<Waters>, DeviationError> {
     let mut all: Vec<Slope> = Vec::new();
     for earth in question.elsewhere {
@@ -34,7 +34,7 @@ pub(super) fn waters_elsewhere(question: &Question<'_>) -> Result<Option<Waters>
     Ok((!all.is_empty()).then(|| Waters::new(all)))
 }
 
-/// The bands of magnetic latitude, from south to north, with the field in the
+/// Returns the bands of magnetic latitude, from south to north, with the field in the
 /// middle of the data there, or of a dipole where there are none.
 fn sailed(coverage: &Coverage) -> impl Iterator<Item = (i16, EarthField)> + '_ {
     let step = MAGNETIC_LATITUDE_STEP_DEG;
@@ -72,7 +72,7 @@ pub(super) fn heading_advice(
     let suggestions = ranges(&gains, Ends::Joined).into_iter().map(|run| {
         let outcomes = run.iter().map(|&sector| {
             let mut visit = fresh.clone();
-            stand(&mut visit, [&own[sector]; WATCHES], &waters)
+            bands_after(&mut visit, [&own[sector]; WATCHES], &waters)
         });
         let (after_one, after_three) = worst_of(outcomes);
         HeadingSuggestion {
@@ -153,7 +153,7 @@ fn visit(
     Visit::new(known, errors).ok_or(AdviceError::NotNoise)
 }
 
-/// A visit's headings, each the best after those before, and what they do.
+/// Headings of a visit, each the best after those before, and their effect.
 struct BestVisit {
     sectors: [usize; WATCHES],
     after_one: Band,
@@ -172,7 +172,7 @@ fn best_visit(mut visit: Visit, slopes: &[Slope; SECTORS], waters: &Waters) -> B
         planned.watch(&slopes[best]);
         best
     });
-    let (after_one, after_three) = stand(&mut visit, sectors.map(|s| &slopes[s]), waters);
+    let (after_one, after_three) = bands_after(&mut visit, sectors.map(|s| &slopes[s]), waters);
     BestVisit {
         sectors,
         after_one,
@@ -180,8 +180,8 @@ fn best_visit(mut visit: Visit, slopes: &[Slope; SECTORS], waters: &Waters) -> B
     }
 }
 
-/// The band after the first and after the last of some watches.
-fn stand(visit: &mut Visit, watches: [&Slope; WATCHES], waters: &Waters) -> (Band, Band) {
+/// Returns the band after the first and after the last of some watches.
+fn bands_after(visit: &mut Visit, watches: [&Slope; WATCHES], waters: &Waters) -> (Band, Band) {
     let after = watches.map(|slope| {
         visit.watch(slope);
         visit.knowledge.band(waters)
@@ -189,7 +189,7 @@ fn stand(visit: &mut Visit, watches: [&Slope; WATCHES], waters: &Waters) -> (Ban
     (after[0], after[WATCHES - 1])
 }
 
-/// What every one of some outcomes keeps to.
+/// Returns the widest bands of some outcomes.
 fn worst_of(outcomes: impl Iterator<Item = (Band, Band)>) -> (Band, Band) {
     let wider = |a: Band, b: Band| Band {
         rms_deg: a.rms_deg.max(b.rms_deg),
@@ -200,7 +200,7 @@ fn worst_of(outcomes: impl Iterator<Item = (Band, Band)>) -> (Band, Band) {
         .expect("a range is not empty")
 }
 
-/// The range of neighbouring sectors in their order.
+/// Returns the range of neighbouring sectors in their order.
 fn heading_range(run: &[usize]) -> HeadingRange {
     if run.len() == SECTORS {
         return HeadingRange {

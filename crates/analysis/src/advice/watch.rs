@@ -1,5 +1,5 @@
-//! How well a watch's mean deviation is known: the variance of the mean error
-//! over four hours on one heading, and what the watches of a visit share.
+//! Errors of watches: the variance of the mean error over four hours on one heading, and
+//! the covariance between the watches of a visit.
 //!
 //! The processes are those of docs/science.md, §7; the means are eq. 16.
 
@@ -9,54 +9,54 @@ use binnacle_compass::result::NoiseLevels;
 use binnacle_compass::ship::EarthField;
 use nalgebra::{Complex, Matrix3};
 
-/// A watch, hours.
+/// Length of a watch, hours.
 pub const WATCH_HOURS: f64 = 4.0;
-/// A visit's watches stand a day apart, so many of them.
+/// Number of watches in a visit, a day apart.
 pub const WATCHES: usize = 3;
 
 const WATCH_S: f64 = WATCH_HOURS * 3600.0;
 const DAY_S: f64 = 86_400.0;
-/// Knots taken for a ship on passage.
+/// Speed of a ship on passage, knots.
 const SPEED_KN: f64 = 12.0;
-/// Rows of ten minutes in a watch.
+/// Number of ten-minute rows in a watch.
 const ROWS: f64 = WATCH_HOURS * 6.0;
-/// No mean is known better, variance in degrees squared: a card cannot be read
-/// to a hundredth of a degree.
+/// Least variance of a mean, degrees squared: a card cannot be read to a hundredth of a
+/// degree.
 const LEAST_VARIANCE: f64 = 1e-4;
 
-/// An error that is forgotten: its autocorrelation is Re[start · exp(−rate t)].
+/// Error with a limited memory: its autocorrelation is Re[start · exp(−rate t)].
 #[derive(Clone, Copy, Debug)]
-struct Memory {
+struct ErrorMemory {
     start: Complex<f64>,
     rate_per_s: Complex<f64>,
 }
 
-impl Memory {
-    fn fading(seconds: f64) -> Memory {
-        Memory {
+impl ErrorMemory {
+    fn fading(seconds: f64) -> ErrorMemory {
+        ErrorMemory {
             start: Complex::new(1.0, 0.0),
             rate_per_s: Complex::new(1.0 / seconds, 0.0),
         }
     }
 
-    /// The Schuler swing.
-    fn schuler() -> Memory {
+    /// Returns the memory of the Schuler swing.
+    fn schuler() -> ErrorMemory {
         let damped = (1.0 - SCHULER_DAMPING * SCHULER_DAMPING).sqrt();
-        Memory {
+        ErrorMemory {
             start: Complex::new(1.0, -SCHULER_DAMPING / damped),
             rate_per_s: Complex::new(SCHULER_DAMPING, -damped) * SCHULER_PER_S,
         }
     }
 
-    /// Variance of a watch's mean, as a part of the error's own.
-    fn of_mean(self) -> f64 {
+    /// Returns the variance of a watch's mean, as a part of the error's own.
+    fn variance_of_mean(self) -> f64 {
         let x = self.rate_per_s * WATCH_S;
         let share = (x - 1.0 + (-x).exp()) * 2.0 / (x * x);
         (self.start * share).re
     }
 
-    /// Covariance of two watches' means that begin `apart_s` after one another.
-    fn between(self, apart_s: f64) -> f64 {
+    /// Returns the covariance of two watches' means that begin `apart_s` after one another.
+    fn covariance_between(self, apart_s: f64) -> f64 {
         let x = self.rate_per_s * WATCH_S;
         // exp(x) itself overflows where the memory is short beside a watch.
         let later = self.rate_per_s * (apart_s - WATCH_S);
@@ -65,16 +65,16 @@ impl Memory {
     }
 }
 
-/// Covariance, degrees squared, of the mean errors of a visit's watches in a
-/// field; `gyro_share` is 1 where the reference is a gyro, 0 where it is a
-/// satellite compass.
+/// Returns the covariance, degrees squared, of the mean errors of a visit's watches in a
+/// field; `gyro_share` is 1 where the reference is a gyro, 0 where it is a satellite
+/// compass.
 pub(super) fn errors_of_watches(
     noise: &NoiseLevels,
     gyro_share: f64,
     earth: EarthField,
 ) -> Matrix3<f64> {
-    // Where the ship will be is known as a field only; on the average magnetic
-    // and geographic latitude are the same.
+    // The vessel's place is known as a field only; on average magnetic and geographic
+    // latitude are the same.
     let lat = magnetic_latitude_deg(earth.h_nt, earth.z_nt).to_radians();
     let gyro = gyro_share / lat.cos().max(0.17);
     let variation = (24_000.0 / earth.h_nt).clamp(0.5, 4.0);
@@ -82,20 +82,23 @@ pub(super) fn errors_of_watches(
         // A watch on another heading begins with a turn.
         (
             noise.schuler_deg.hypot(noise.turn_deg) * gyro,
-            Memory::schuler(),
+            ErrorMemory::schuler(),
         ),
-        (noise.slow_gyro_deg * gyro, Memory::fading(SLOW_GYRO_S)),
-        (noise.compass_swing_deg, Memory::fading(COMPASS_SWING_S)),
+        (noise.slow_gyro_deg * gyro, ErrorMemory::fading(SLOW_GYRO_S)),
+        (
+            noise.compass_swing_deg,
+            ErrorMemory::fading(COMPASS_SWING_S),
+        ),
         (
             noise.variation_deg * variation,
-            Memory::fading(VARIATION_NM / SPEED_KN * 3600.0),
+            ErrorMemory::fading(VARIATION_NM / SPEED_KN * 3600.0),
         ),
     ];
-    let sum = |of: &dyn Fn(Memory) -> f64| -> f64 {
+    let sum = |of: &dyn Fn(ErrorMemory) -> f64| -> f64 {
         parts.iter().map(|(sd, memory)| sd * sd * of(*memory)).sum()
     };
-    let own = sum(&Memory::of_mean) + noise.white_deg.powi(2) / ROWS + LEAST_VARIANCE;
-    let shared = |days: f64| sum(&|memory: Memory| memory.between(days * DAY_S));
+    let own = sum(&ErrorMemory::variance_of_mean) + noise.white_deg.powi(2) / ROWS + LEAST_VARIANCE;
+    let shared = |days: f64| sum(&|memory: ErrorMemory| memory.covariance_between(days * DAY_S));
     let (next_day, day_after) = (shared(1.0), shared(2.0));
     Matrix3::new(
         own, next_day, day_after, //
@@ -108,8 +111,8 @@ pub(super) fn errors_of_watches(
 mod tests {
     use super::*;
 
-    /// The mean's variance as a sum over pairs of minutes.
-    fn by_the_minute(memory: Memory, apart_s: f64) -> f64 {
+    /// Returns the mean's variance as a sum over pairs of minutes.
+    fn by_the_minute(memory: ErrorMemory, apart_s: f64) -> f64 {
         let minutes = (WATCH_S / 60.0) as i32;
         let correlation = |t: f64| (memory.start * (-memory.rate_per_s * t).exp()).re;
         let mut sum = 0.0;
@@ -125,14 +128,14 @@ mod tests {
     fn means_vary_as_their_minutes_say() {
         let day = 3.0 * DAY_S;
         for memory in [
-            Memory::schuler(),
-            Memory::fading(day),
-            Memory::fading(18_000.0),
-            Memory::fading(1200.0),
+            ErrorMemory::schuler(),
+            ErrorMemory::fading(day),
+            ErrorMemory::fading(18_000.0),
+            ErrorMemory::fading(1200.0),
         ] {
-            assert!((memory.of_mean() - by_the_minute(memory, 0.0)).abs() < 1e-3);
+            assert!((memory.variance_of_mean() - by_the_minute(memory, 0.0)).abs() < 1e-3);
             for days in [1.0, 2.0] {
-                let between = memory.between(days * DAY_S);
+                let between = memory.covariance_between(days * DAY_S);
                 let expected = by_the_minute(memory, days * DAY_S);
                 assert!((between - expected).abs() < 1e-4, "{between} {expected}");
             }

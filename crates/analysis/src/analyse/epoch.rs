@@ -1,12 +1,12 @@
-//! Intervals of constant magnetism, and the fit of each.
+//! Epochs of constant magnetism, and their fits.
 
-use super::one_course::open_along;
 use super::reading::Reading;
 use super::reading::heading_reading;
+use super::single_heading::widen_along_needle;
 use crate::estimate::{Prior, unseen_sd_nt};
 use crate::fit::{
     HeadingReading, Observation, REJECTED_BELOW, RobustFit, RobustOptions, fit_known_ship,
-    fit_robust, refer,
+    fit_robust, observe_readings,
 };
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::model::Model;
@@ -15,19 +15,17 @@ use binnacle_compass::ship::PARAMETERS;
 use binnacle_compass::time::Timestamp;
 use std::ops::Range;
 
-/// As many times as large as what has been seen a step that was no strike may be in what has
-/// not been.
+/// Ratio of the unseen to the seen part of a step, at most, where no strike was reported.
 const BEYOND_SEEN: f64 = 1.2;
-/// Rounds in which a prior is widened to what its model says: the first may be far too
-/// narrow.
+/// Rounds in which a prior is widened to its model: the first may be far too narrow.
 const WIDENINGS: usize = 2;
-/// By how much a compass's zero may have moved, standard deviation in degrees.
+/// Standard deviation of an alignment change, degrees.
 const ZERO_MOVED_DEG: f64 = 5.0;
-/// And what of a step may go with it unseen, standard deviation of bx and by in nT: the
-/// headings sailed by when it is told are few.
+/// Standard deviation of bx and by of a step that may go with it unseen, nT: few headings
+/// are sailed by the time of detection.
 const BESIDE_ZERO_NT: f64 = 300.0;
 
-/// The epochs that the logbook tells of, in order of time and without gaps.
+/// Returns the epochs of the logbook, in order of time and without gaps.
 pub(super) fn epochs(logbook: &[LogbookEntry]) -> Vec<Epoch> {
     let mut boundaries: Vec<(Timestamp, LogbookKind)> = logbook
         .iter()
@@ -62,48 +60,48 @@ pub(super) fn empty_epoch(from: Option<Timestamp>, begun_by: Option<LogbookKind>
     }
 }
 
-/// What the epoch before tells of this one: nothing after correctors or the
-/// compass itself were moved, for then everything may be another.
+/// Returns the prior of an epoch by the one before: none of its knowledge after correctors
+/// or the compass itself were moved, because everything may have changed.
 pub(super) fn prior(
     epoch: &Epoch,
     before: Option<&Epoch>,
     reference_constant_sd_deg: f64,
 ) -> Prior {
-    let leaves_the_iron = match epoch.begun_by {
-        Some(kind) => kind.leaves_the_iron(),
+    let preserves_soft_iron = match epoch.begun_by {
+        Some(kind) => kind.preserves_soft_iron(),
         None => epoch.begun_by_change.is_some(),
     };
     before
-        .filter(|_| leaves_the_iron)
+        .filter(|_| preserves_soft_iron)
         .and_then(|before| {
-            let stood_in_it = before.references.as_ref()?.constant_sd_deg;
+            let reference_sd_deg = before.references.as_ref()?.constant_sd_deg;
             let model = before.model.as_ref()?;
-            let mut upset = Prior::after_upset(model, stood_in_it)?;
+            let mut widened = Prior::after_jump(model, reference_sd_deg)?;
             if epoch.begun_by_change == Some(Cause::Alignment) {
-                // The ship is the magnet that she was, but for the small step that would
-                // pass for part of it.
-                let constant = upset.covariance[PARAMETERS][PARAMETERS];
-                upset.covariance = model.covariance?;
+                // The vessel is the same, but for a small step that would pass for part of
+                // it.
+                let constant = widened.covariance[PARAMETERS][PARAMETERS];
+                widened.covariance = model.covariance?;
                 for j in [0, 2] {
-                    upset.covariance[j][j] += BESIDE_ZERO_NT.powi(2);
+                    widened.covariance[j][j] += BESIDE_ZERO_NT.powi(2);
                 }
-                upset.covariance[PARAMETERS][PARAMETERS] = constant + ZERO_MOVED_DEG.powi(2);
+                widened.covariance[PARAMETERS][PARAMETERS] = constant + ZERO_MOVED_DEG.powi(2);
             }
-            Some(upset)
+            Some(widened)
         })
         .unwrap_or_else(|| Prior::population(reference_constant_sd_deg))
 }
 
-/// The readings of one epoch of the logbook held against their references, once:
-/// parts of it have the same reference, so that a change between them is the ship's.
+/// Readings of one epoch of the logbook compared with their references, once. Parts of the
+/// epoch share the reference, so that a change between them is the vessel's.
 pub(super) struct Reference {
-    /// For each reading of the epoch, in order; none where there was no reference
-    /// or none to be believed.
+    /// Observation of each reading of the epoch, in order; none without a trusted
+    /// reference.
     pub(super) observations: Vec<Option<Observation>>,
     pub(super) check: ReferenceCheck,
 }
 
-/// Holds readings against their references.
+/// Compares readings with their references.
 pub(super) fn reference(
     readings: &[Reading],
     one_constant_sd_deg: f64,
@@ -116,7 +114,7 @@ pub(super) fn reference(
     }
     let mut known: Vec<HeadingReading> = Vec::with_capacity(readings.len());
     known.extend(readings.iter().filter_map(heading_reading));
-    let referred = refer(&known, one_constant_sd_deg)?;
+    let referred = observe_readings(&known, one_constant_sd_deg)?;
     let mut observed = referred.observations.into_iter();
     let observations = readings
         .iter()
@@ -127,8 +125,8 @@ pub(super) fn reference(
     })
 }
 
-/// Says of every reading with a reference that no model can be had of it.
-pub(super) fn refuse(epoch: &mut Epoch, readings: &mut [Reading], refusal: FitError) {
+/// Marks every reading with a reference as unable to carry a model.
+pub(super) fn refuse_epoch(epoch: &mut Epoch, readings: &mut [Reading], refusal: FitError) {
     epoch.data_from = readings.first().map(|r| r.sample().time);
     epoch.data_until = readings.last().map(|r| r.sample().time);
     let referred = readings.iter_mut().filter(|r| heading_reading(r).is_some());
@@ -139,26 +137,25 @@ pub(super) fn refuse(epoch: &mut Epoch, readings: &mut [Reading], refusal: FitEr
     epoch.refusal = Some(refusal);
 }
 
-/// What an epoch's model is fitted to: places among the readings of one epoch of
-/// the logbook.
-pub(super) struct Stretch<'a> {
-    /// Those of earlier epochs in which the ship was the same.
+/// Input of an epoch's fit: places among the readings of one epoch of the logbook.
+pub(super) struct FitInput<'a> {
+    /// Readings of earlier epochs with the same state.
     pub(super) earlier: Vec<Range<usize>>,
     pub(super) own: Range<usize>,
     pub(super) prior: Prior,
-    /// Whether the prior is of this very ship.
+    /// True if the prior is of this very vessel.
     pub(super) is_known: bool,
-    /// Whether she was struck since: by what size, only the courses that show it tell.
-    pub(super) is_struck: bool,
-    /// Whether her compass's zero moved.
-    pub(super) is_turned: bool,
+    /// True if lightning struck it since: only the courses that show it give the size.
+    pub(super) has_strike: bool,
+    /// True if the compass's alignment changed.
+    pub(super) is_alignment_changed: bool,
     pub(super) reference: &'a Reference,
 }
 
-/// Fits an epoch's model, and notes in each of its own readings what became of it.
-pub(super) fn fit_epoch(epoch: &mut Epoch, readings: &mut [Reading], stretch: &Stretch<'_>) {
-    let reference = stretch.reference;
-    let own = &stretch.own;
+/// Fits an epoch's model, and records the outcome in each of its own readings.
+pub(super) fn fit_epoch(epoch: &mut Epoch, readings: &mut [Reading], fit_input: &FitInput<'_>) {
+    let reference = fit_input.reference;
+    let own = &fit_input.own;
     epoch.references = Some(reference.check);
     epoch.data_from = readings[own.clone()].first().map(|r| r.sample().time);
     epoch.data_until = readings[own.clone()].last().map(|r| r.sample().time);
@@ -175,15 +172,18 @@ pub(super) fn fit_epoch(epoch: &mut Epoch, readings: &mut [Reading], stretch: &S
             None => {}
         }
     }
-    let (taken, fitted) = stretch.fit(readings);
+    let (usable_observations, fitted) = fit_input.fit(readings);
     match fitted {
         Ok(fit) => {
-            note(&fit, &taken, own, readings);
+            record_outcomes(&fit, &usable_observations, own, readings);
             epoch.noise = Some(fit.noise);
-            epoch.model = Some(stretch.count(fit.model));
+            epoch.model = Some(fit_input.count_rejected(fit.model));
         }
         Err(refusal) => {
-            for index in taken.into_iter().filter(|index| own.contains(index)) {
+            for index in usable_observations
+                .into_iter()
+                .filter(|index| own.contains(index))
+            {
                 readings[index].diagnostic.reason = Some(SampleReason::NoModel);
             }
             epoch.refusal = Some(refusal);
@@ -191,54 +191,58 @@ pub(super) fn fit_epoch(epoch: &mut Epoch, readings: &mut [Reading], stretch: &S
     }
 }
 
-impl Stretch<'_> {
-    /// The fit, and the places of what it was given.
+impl FitInput<'_> {
+    /// Returns the fit, and the places of its readings.
     fn fit(&self, readings: &[Reading]) -> (Vec<usize>, Result<RobustFit, FitError>) {
-        let (taken, observations) = self.taken(readings);
+        let (usable_observations, observations) = self.usable_observations(readings);
         let mut options = RobustOptions {
             prior: self.prior.clone(),
             reference_constant_sd_deg: self.reference.check.constant_sd_deg,
         };
         if !self.is_known {
-            return (taken, fit_robust(&observations, &options));
+            return (usable_observations, fit_robust(&observations, &options));
         }
         let mut fitted = fit_known_ship(&observations, &options);
-        // A ship that was struck so hard as the headings so far show may have been struck as
-        // hard in what they do not show.
+        // A strike as large as the headings so far show may be as large in what they do not
+        // show.
         for _ in 0..WIDENINGS {
-            let Some(wider) = fitted.as_ref().ok().and_then(|f| self.wider(&f.model)) else {
+            let Some(wider_prior) = fitted
+                .as_ref()
+                .ok()
+                .and_then(|f| self.wider_prior(&f.model))
+            else {
                 break;
             };
-            options.prior = wider;
+            options.prior = wider_prior;
             fitted = fit_known_ship(&observations, &options);
         }
         if let Ok(fit) = &mut fitted
-            && self.is_struck
+            && self.has_strike
         {
             let known = options.prior.covariance;
             let unseen_nt = known[0][0].max(known[2][2]).sqrt();
-            open_along(fit, &observations, unseen_nt);
+            widen_along_needle(fit, &observations, unseen_nt);
         }
-        (taken, fitted)
+        (usable_observations, fitted)
     }
 
-    /// A prior that allows for a step of bx and by as large as the model has, each, or, of a
-    /// strike, as large as it may yet be, of a compass turned as far as that has it; none
-    /// where the stretch's own does.
-    fn wider(&self, model: &Model) -> Option<Prior> {
+    /// Returns a prior that allows for a step of bx and by as large as the model's, or, for
+    /// a strike, as large as it may yet be, and for the model's alignment change; none
+    /// where the own prior does.
+    fn wider_prior(&self, model: &Model) -> Option<Prior> {
         let mut prior = self.prior.clone();
-        if self.is_turned {
-            prior = prior.by_turned_compass(model.constant_deg - prior.mean[PARAMETERS]);
+        if self.is_alignment_changed {
+            prior = prior.with_compass_turned(model.constant_deg - prior.mean[PARAMETERS]);
         }
         let now = model.parameters_over_lambda.to_array();
         let moved = |j: usize| now[j] - prior.mean[j];
         let seen = moved(0).hypot(moved(2));
-        let size = if self.is_struck {
+        let size = if self.has_strike {
             unseen_sd_nt(seen)
         } else {
             BEYOND_SEEN * seen
         };
-        let mut is_new = self.is_turned;
+        let mut is_new = self.is_alignment_changed;
         for j in [0, 2] {
             let variance = &mut prior.covariance[j][j];
             is_new |= size * size > *variance;
@@ -247,28 +251,28 @@ impl Stretch<'_> {
         is_new.then_some(prior)
     }
 
-    /// The model alone.
+    /// Returns the model alone.
     pub(super) fn model(&self, readings: &[Reading]) -> Option<Model> {
         let (_, fitted) = self.fit(readings);
-        fitted.ok().map(|fit| self.count(fit.model))
+        fitted.ok().map(|fit| self.count_rejected(fit.model))
     }
 
-    /// Samples that were not offered to the fit are rejected, too.
-    fn count(&self, mut model: Model) -> Model {
+    /// Counts samples that were not offered to the fit as rejected.
+    fn count_rejected(&self, mut model: Model) -> Model {
         let earlier = self.earlier.iter().map(ExactSizeIterator::len);
         let offered = earlier.sum::<usize>() + self.own.len();
         model.samples_rejected = offered as u64 - model.samples_used;
         model
     }
 
-    /// The places and observations of the readings that a fit may take.
-    fn taken(&self, readings: &[Reading]) -> (Vec<usize>, Vec<Observation>) {
+    /// Returns the places and observations of the readings that a fit may use.
+    fn usable_observations(&self, readings: &[Reading]) -> (Vec<usize>, Vec<Observation>) {
         let all = self.earlier.iter().cloned().flatten();
         all.chain(self.own.clone())
             .filter_map(|index| {
                 let usable = match readings[index].diagnostic.reason {
                     None => true,
-                    // An earlier fit may have doubted it; this one judges for itself.
+                    // An earlier fit may have rejected it: this one decides for itself.
                     Some(SampleReason::Outlier) => !self.own.contains(&index),
                     Some(_) => false,
                 };
@@ -279,8 +283,13 @@ impl Stretch<'_> {
     }
 }
 
-fn note(fit: &RobustFit, taken: &[usize], own: &Range<usize>, readings: &mut [Reading]) {
-    for (&index, row) in taken.iter().zip(&fit.rows) {
+fn record_outcomes(
+    fit: &RobustFit,
+    usable_observations: &[usize],
+    own: &Range<usize>,
+    readings: &mut [Reading],
+) {
+    for (&index, row) in usable_observations.iter().zip(&fit.rows) {
         if !own.contains(&index) {
             continue;
         }

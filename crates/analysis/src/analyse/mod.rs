@@ -1,39 +1,38 @@
-//! The whole analysis of one compass: from its samples and the ship's logbook
-//! to epochs and their models.
+//! Analysis of one compass: from its samples and the vessel's logbook to epochs and their
+//! models.
 //!
-//! What always holds: [`analyse`] is a pure function. The order of the samples
-//! and repeated samples change nothing, to the last bit; no sample is lost
-//! without a reason; and a set of samples that does not carry a model yields a
-//! refusal that says what is missing.
+//! [`analyse`] is a pure function. The order of the samples and repeated samples change
+//! nothing, to the last bit. No sample is left out without a reason. Samples that do not
+//! carry a model yield a refusal that names what is missing.
 
-mod alongside;
-mod cargo;
+mod berth_stays;
+mod cargo_entries;
 mod changes;
-mod course;
-mod either;
 mod epoch;
-mod logbook;
-mod one_course;
+mod epoch_builder;
+mod logbook_rules;
+mod mixture;
 mod reading;
-mod stuck;
+mod single_heading;
+mod stuck_compass;
 
-use alongside::{berths, mark_alongside};
+use berth_stays::{add_berth_changes, mark_alongside};
 use binnacle_compass::coverage::coverage;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{Analysis, ESTIMATOR, Epoch};
 use binnacle_compass::sample::Sample;
 use binnacle_compass::settings::AnalysisSettings;
-use cargo::notices;
+use cargo_entries::notices;
 use changes::merge_faults;
-use course::Course;
 use epoch::epochs;
+use epoch_builder::EpochBuilder;
 use reading::{Reading, readings};
-use stuck::mark_stuck;
+use stuck_compass::mark_stuck;
 
-/// Said where nothing can be watched for.
-const UNWATCHED: &str = "so far too little is known of the ship to tell a change of her \
-                         magnetism from her own: one would not be noticed. Steady courses on \
-                         more headings, by gyro or satellite compass, will tell";
+/// Notice while changes cannot be detected.
+const UNWATCHED: &str = "too little is known of the vessel so far to detect a change of its \
+                         magnetism: one would not be noticed. Steady courses on more \
+                         headings, by gyro or satellite compass, are needed";
 
 /// Analyses all samples of one compass.
 pub fn analyse(
@@ -42,23 +41,24 @@ pub fn analyse(
     settings: &AnalysisSettings,
 ) -> Analysis {
     let mut readings = readings(samples, logbook, settings);
-    let mut course = Course::after(mark_stuck(&mut readings));
+    let mut builder = EpochBuilder::after(mark_stuck(&mut readings));
     let stays = mark_alongside(&mut readings);
-    let mut begun = None;
+    let mut corrected_start = None;
     for epoch in epochs(logbook) {
-        let from = begun.or(epoch.from);
-        begun = course.follow(Epoch { from, ..epoch }, &mut readings, logbook, settings);
+        let from = corrected_start.or(epoch.from);
+        corrected_start =
+            builder.add_logbook_epoch(Epoch { from, ..epoch }, &mut readings, logbook, settings);
     }
-    let mut notices = notices(&readings, logbook, &course);
-    if course.is_unwatched {
+    let mut notices = notices(&readings, logbook, &builder.contradicted);
+    if builder.is_unwatched {
         notices.push(UNWATCHED.to_owned());
     }
-    let Course {
+    let EpochBuilder {
         epochs,
         mut changes,
         ..
-    } = course;
-    berths(&stays, &readings, &epochs, &mut changes);
+    } = builder;
+    add_berth_changes(&stays, &readings, &epochs, &mut changes);
     changes.sort_by_key(|change| (change.from, change.detected_at));
     merge_faults(&mut changes, &epochs);
     let with_deviation = readings

@@ -1,7 +1,8 @@
-//! Samples put in order, each with the earth's field around it.
+//! Samples in order of time, each with the earth's field around it.
 
-use super::logbook::{excludes, exclusion};
-use crate::fit::{HeadingReading, gyro_speed_error_deg};
+use super::logbook_rules::{exclusion_by_entry, exclusion_by_kind};
+use crate::fit::HeadingReading;
+use crate::gyro_speed_error::gyro_speed_error_deg;
 use binnacle_compass::angle::{TrueHeading, Variation};
 use binnacle_compass::field::{FieldAt, FieldModel};
 use binnacle_compass::logbook::LogbookEntry;
@@ -14,10 +15,10 @@ use std::cmp::Ordering;
 
 const DAY_MICROS: i64 = 86_400_000_000;
 
-/// A sample on its way through the analysis.
+/// A sample with what the analysis derives from it.
 #[derive(Clone)]
 pub(super) struct Reading {
-    /// The gyro's heading with its speed error taken out.
+    /// Gyro heading, corrected for speed error.
     pub(super) gyro: Option<TrueHeading>,
     pub(super) variation: Option<Variation>,
     pub(super) earth: Option<EarthField>,
@@ -29,7 +30,7 @@ impl Reading {
         &self.diagnostic.sample
     }
 
-    /// The field where it was taken; none outside the field model's years.
+    /// Returns the place with its field; none outside the field model's years.
     pub(super) fn place(&self) -> Option<LastPlace> {
         let (variation, earth) = self.variation.zip(self.earth)?;
         Some(LastPlace {
@@ -42,8 +43,8 @@ impl Reading {
     }
 }
 
-/// All distinct samples in order of time, with the field and the reasons
-/// against their use that do not need a fit.
+/// Returns the distinct samples in order of time, with the field and the reasons against
+/// their use that need no fit.
 pub(super) fn readings(
     samples: &[Sample],
     logbook: &[LogbookEntry],
@@ -52,8 +53,10 @@ pub(super) fn readings(
     let mut sorted = samples.to_vec();
     sorted.sort_by(in_order);
     sorted.dedup_by(|a, b| in_order(a, b) == Ordering::Equal);
-    let excluding = logbook.iter().filter(|e| exclusion(e.kind).is_some());
-    // An end yet to come, or of a year mistaken, is none.
+    let excluding = logbook
+        .iter()
+        .filter(|e| exclusion_by_kind(e.kind).is_some());
+    // An end in the future, or in a mistaken year, does not count.
     let excluding: Vec<LogbookEntry> = sorted.last().map_or_else(Vec::new, |last| {
         excluding.map(|entry| entry.as_of(last.time)).collect()
     });
@@ -62,10 +65,10 @@ pub(super) fn readings(
         .into_iter()
         .map(|sample| {
             let mut reading = reading(sample, &mut field, settings);
-            // Of several reasons the first in their order, whatever the entries'.
+            // The first reason in their order, whatever the order of the entries.
             let reported = excluding
                 .iter()
-                .filter_map(|entry| excludes(entry, &sample));
+                .filter_map(|entry| exclusion_by_entry(entry, &sample));
             let reason = &mut reading.diagnostic.reason;
             *reason = reason.or(reported.min());
             reading
@@ -111,7 +114,7 @@ fn corrected_gyro(sample: &Sample, speed_error: GyroSpeedError) -> Option<TrueHe
     TrueHeading::new(gyro.degrees() - error).or(Some(gyro))
 }
 
-/// What the reading says of headings; none without a reference or a field.
+/// Returns the headings of a reading; none without a reference or a field.
 pub(super) fn heading_reading(reading: &Reading) -> Option<HeadingReading> {
     let sample = reading.sample();
     let (variation, earth) = reading.variation.zip(reading.earth)?;
@@ -135,8 +138,8 @@ pub(super) fn heading_reading(reading: &Reading) -> Option<HeadingReading> {
     })
 }
 
-/// The field model at noon of the day that was asked for last: over half a day
-/// the field changes by far less than the model is good for.
+/// Field model at noon of the last day asked for: the field changes by far less in half a
+/// day than the model's error.
 struct DailyField {
     model: FieldModel,
     day: Option<i64>,
@@ -158,17 +161,17 @@ impl DailyField {
             self.day = Some(day);
             self.at_noon = Timestamp::from_micros(day * DAY_MICROS + DAY_MICROS / 2)
                 .ok()
-                .and_then(|noon| FieldAt::time(self.model, noon).ok());
+                .and_then(|noon| FieldAt::from_time(self.model, noon).ok());
         }
         self.at_noon.as_ref()?.at(sample.position, 0.0).ok()
     }
 }
 
-/// By time, and where times are equal by everything else, so that the order in
-/// which samples arrived leaves no trace.
+/// Orders samples by time and then by everything else, so that the order in which they
+/// arrived changes nothing.
 fn in_order(a: &Sample, b: &Sample) -> Ordering {
     let numbers = |s: &Sample| {
-        // Nothing sorts before anything.
+        // A missing value sorts first.
         let or_first = |x: Option<f64>| x.unwrap_or(f64::NEG_INFINITY);
         [
             s.position.lat_deg(),

@@ -1,36 +1,34 @@
-//! What is known of a ship's magnetism before her first sample.
+//! Prior knowledge of a vessel's magnetism.
 
 use binnacle_compass::ship::PARAMETERS;
 use nalgebra::{SMatrix, SVector};
 
-/// Standard deviations over ships of bx, χ13, by, χ23, χ11−χ22, χ12 and χ21,
-/// all over λ; fields in nT. Of the size of the ship in Basterretxea-Iribar,
-/// Sotés & Uriarte 2016.
+/// Standard deviations over ships of bx, χ13, by, χ23, χ11−χ22, χ12 and χ21, all over λ;
+/// fields in nT. Of the size of the ship in Basterretxea-Iribar, Sotés & Uriarte 2016.
 pub(crate) const POPULATION_SD: [f64; PARAMETERS] =
     [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008];
 
-/// Most compasses are bolted down to half a degree; that some are a few degrees
-/// askew is what the prior's tail is for.
+/// Standard deviation of the alignment: most compasses are bolted down to half a degree.
+/// The prior's tail allows for a few degrees.
 const ALIGNMENT_SD_DEG: f64 = 0.5;
 
-/// Degrees of freedom of Student's distribution over ships: the seven parameters
-/// together, and the constant. A ship far out in the tail is believed.
-const FREEDOM: [f64; 2] = [6.0, 3.0];
+/// Degrees of freedom of Student's distribution over ships: the seven parameters together,
+/// and the constant. Such a tail accepts a vessel far out.
+const DEGREES_OF_FREEDOM: [f64; 2] = [6.0, 3.0];
 
-/// How far the induced parts may move when the permanent ones are upset, as a
-/// part of the population's standard deviations.
-const INDUCED_UPSET: f64 = 0.4;
+/// Standard deviation of the induced parameters after a jump of the permanent ones, as a
+/// part of the population's.
+const INDUCED_JUMP_SHARE: f64 = 0.4;
 
-/// The largest step of permanent magnetism that lightning is known to leave, nT.
+/// Largest step of permanent magnetism that lightning is known to leave, nT.
 const LARGEST_STEP_NT: f64 = 20_000.0;
-/// A step may be so many times as large in what has not been seen as in what has, however
-/// large that was.
+/// Least ratio of a step's unseen part to its seen part, however large that is.
 const BEYOND_SEEN: f64 = 1.2;
 /// Two-sided 95 % of a normal distribution, in standard deviations.
 const NORMAL_95: f64 = 1.959_964;
 
-/// What is known beforehand: of ships at large, or of the same ship's epoch
-/// before. The constant is as headings show it, the reference's own in it.
+/// Prior knowledge: of ships at large, or of the same vessel's previous epoch. The constant
+/// is as headings show it, with the reference's own error in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {
     /// The seven parameters and the constant, in the order of
@@ -41,7 +39,7 @@ pub struct Prior {
 }
 
 impl Prior {
-    /// Ships at large, whose reference has a constant error of
+    /// Returns the prior of ships at large, whose reference has a constant error of
     /// `reference_constant_sd_deg`.
     pub fn population(reference_constant_sd_deg: f64) -> Prior {
         let mut covariance = [[0.0; 8]; 8];
@@ -56,11 +54,10 @@ impl Prior {
         }
     }
 
-    /// A ship whose permanent magnetism was upset after `model` was fitted with
-    /// a reference of the given constant error: bx and by may be anything, what
-    /// the iron's shape induces is much as it was. None when the model has no
-    /// covariance.
-    pub fn after_upset(
+    /// Returns the prior of a vessel whose permanent magnetism jumped after `model` was
+    /// fitted with a reference of the given constant error: bx and by may be anything, and
+    /// the induced parameters are much as before. None when the model has no covariance.
+    pub fn after_jump(
         model: &binnacle_compass::model::Model,
         reference_constant_sd_deg: f64,
     ) -> Option<Prior> {
@@ -69,27 +66,27 @@ impl Prior {
         mean[..PARAMETERS].copy_from_slice(&model.parameters_over_lambda.to_array());
         mean[PARAMETERS] = model.constant_deg;
         for (j, sd) in POPULATION_SD.iter().enumerate() {
-            let upset = if matches!(j, 0 | 2) {
+            let interruption = if matches!(j, 0 | 2) {
                 *sd
             } else {
-                INDUCED_UPSET * sd
+                INDUCED_JUMP_SHARE * sd
             };
-            covariance[j][j] += upset * upset;
+            covariance[j][j] += interruption * interruption;
         }
-        // The reference errs now as it did then: what headings will show of the
-        // constant is known better than the constant itself.
+        // The reference's error stays the same: headings show the constant better than it
+        // is known in itself.
         let constant = &mut covariance[PARAMETERS][PARAMETERS];
         *constant = (*constant - reference_constant_sd_deg.powi(2)).max(0.01);
         Some(Prior { mean, covariance })
     }
 
-    /// The same ship by a compass whose zero moved so that the constant is more by so much,
-    /// degrees.
-    pub(crate) fn by_turned_compass(&self, moved_deg: f64) -> Prior {
+    /// Returns the prior after an alignment change by which the constant is larger by
+    /// `moved_deg`.
+    pub(crate) fn with_compass_turned(&self, moved_deg: f64) -> Prior {
         let mut mean = self.mean;
         let parameters = std::array::from_fn(|j| mean[j]);
         let turned = binnacle_compass::model::Parameters::from_array(parameters)
-            .by_turned_compass(-moved_deg.to_radians());
+            .with_compass_turned(-moved_deg.to_radians());
         mean[..PARAMETERS].copy_from_slice(&turned.to_array());
         mean[PARAMETERS] += moved_deg;
         Prior {
@@ -98,8 +95,8 @@ impl Prior {
         }
     }
 
-    /// Mean and information in units of the population's standard deviations;
-    /// none when the covariance is not positive definite.
+    /// Returns mean and information in units of the population's standard deviations; none
+    /// when the covariance is not positive definite.
     pub(crate) fn in_population_units(&self) -> Option<([f64; 8], SMatrix<f64, 8, 8>)> {
         let scale = scales();
         let mut mean = self.mean;
@@ -115,12 +112,12 @@ impl Prior {
     }
 }
 
-/// Standard deviation, nT, of what a step left where no heading has shown it, when `seen_nt`
-/// of it have been: across the needle on one course, and along it as yet nothing.
+/// Returns the standard deviation, nT, of a step's unseen part, of which `seen_nt` was
+/// seen: on one course the part across the needle, and nothing along it.
 ///
-/// Steps go in any direction, and as many are from 1 to 2 µT as from 5 to 10: then what is
-/// unseen has the density 1/(seen² + unseen²), up to the largest step there is. The 95 % of
-/// that are those of the normal distribution which this is of.
+/// Steps have any direction, and as many are from 1 to 2 µT as from 5 to 10. The unseen
+/// part then has the density 1/(seen² + unseen²), up to the largest known step. The normal
+/// distribution returned has the same 95 %.
 pub(crate) fn unseen_sd_nt(seen_nt: f64) -> f64 {
     let seen = seen_nt.abs().max(1.0);
     let most = (LARGEST_STEP_NT.powi(2) - seen * seen).max(0.0).sqrt();
@@ -128,10 +125,9 @@ pub(crate) fn unseen_sd_nt(seen_nt: f64) -> f64 {
     (within_95 / NORMAL_95).max(BEYOND_SEEN * seen)
 }
 
-/// How far a solution lies out in the prior's tail: factors for the standard
-/// deviations of the seven parameters and of the constant, from the solution's
-/// distance to the mean with its covariance.
-pub(crate) fn tail(
+/// Returns factors on the standard deviations of the seven parameters and of the constant
+/// for a solution in the prior's tail, from its distance to the mean with its covariance.
+pub(crate) fn tail_factors(
     off: &SVector<f64, 8>,
     covariance: &SMatrix<f64, 8, 8>,
     information: &SMatrix<f64, 8, 8>,
@@ -147,13 +143,13 @@ pub(crate) fn tail(
     let factor = |freedom: f64, size: f64, distance: f64| {
         ((freedom + distance.max(0.0)) / (freedom + size)).sqrt()
     };
-    let mut out = [factor(FREEDOM[0], 7.0, distance(0, PARAMETERS)); 8];
-    out[PARAMETERS] = factor(FREEDOM[1], 1.0, distance(PARAMETERS, 8));
+    let mut out = [factor(DEGREES_OF_FREEDOM[0], 7.0, distance(0, PARAMETERS)); 8];
+    out[PARAMETERS] = factor(DEGREES_OF_FREEDOM[1], 1.0, distance(PARAMETERS, 8));
     out
 }
 
-/// The population's standard deviations, the constant's (one degree) last: the
-/// units in which the estimator works, so that its matrices are well scaled.
+/// Returns the population's standard deviations, the constant's (one degree) last: the
+/// estimator's units, in which its matrices are well scaled.
 pub(crate) fn scales() -> [f64; 8] {
     let mut scale = [1.0; 8];
     scale[..PARAMETERS].copy_from_slice(&POPULATION_SD);
@@ -169,14 +165,14 @@ mod tests {
         let times = |seen_nt: f64| unseen_sd_nt(seen_nt) / seen_nt;
         assert!((3.5..4.5).contains(&times(1000.0)), "{}", times(1000.0));
         assert!((1.6..2.2).contains(&times(4000.0)), "{}", times(4000.0));
-        // What is as large as any step yet has no more to hide.
+        // A step as large as any known has no more to hide.
         assert!((times(20_000.0) - BEYOND_SEEN).abs() < 1e-9);
         assert!(unseen_sd_nt(0.0) < 10.0);
     }
 
     #[test]
     fn of_many_steps_in_any_direction_the_band_holds_what_is_unseen_of_95_in_100() {
-        // Sizes with the density 1/size from 0.02 to 20 µT, directions evenly.
+        // Sizes with the density 1/size from 0.02 to 20 µT, in even directions.
         let (mut all, mut held) = (0.0, 0.0);
         for size in 0..300 {
             let nt = 20.0 * 1000_f64.powf(f64::from(size) / 299.0);

@@ -1,14 +1,14 @@
-//! Sums of weighted products of columns, as normal equations want them.
+//! Sums of weighted products of columns for normal equations.
 
 use nalgebra::SMatrix;
 
-/// Σ w v vᵀ over vectors v of an even length `N`. Only the lower triangle is kept,
-/// in blocks of two by two: processors multiply two numbers at a time.
+/// Σ w v vᵀ over vectors v of an even length `N`. Only the lower triangle is kept, in
+/// blocks of two by two: processors multiply two numbers at a time.
 #[derive(Clone, Debug)]
 pub(crate) struct Products<const N: usize>([[f64; N]; N]);
 
 impl<const N: usize> Products<N> {
-    /// Nothing yet.
+    /// Makes an empty sum.
     pub(crate) fn new() -> Products<N> {
         const { assert!(N.is_multiple_of(2)) };
         Products([[0.0; N]; N])
@@ -30,7 +30,7 @@ impl<const N: usize> Products<N> {
         }
     }
 
-    /// Adds another such sum.
+    /// Adds another sum.
     pub(crate) fn add_all(&mut self, other: &Products<N>) {
         for (row, other) in self.0.iter_mut().zip(&other.0) {
             for (cell, other) in row.iter_mut().zip(other) {
@@ -39,12 +39,12 @@ impl<const N: usize> Products<N> {
         }
     }
 
-    /// The sum's element in row `i` and column `j`.
+    /// Returns the element in row `i` and column `j`.
     pub(crate) fn at(&self, i: usize, j: usize) -> f64 {
         self.0[i.max(j)][i.min(j)]
     }
 
-    /// The whole sum.
+    /// Returns the whole sum.
     pub(crate) fn to_matrix(&self) -> SMatrix<f64, N, N> {
         SMatrix::from_fn(|i, j| self.at(i, j))
     }

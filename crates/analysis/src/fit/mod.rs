@@ -1,25 +1,24 @@
-//! From observations of deviation to a [`Model`](binnacle_compass::model::Model): as it was
-//! published ([`fit_paper`]), as today's tools do it ([`fit_ols`]), and as the
-//! product does ([`fit_robust`]).
+//! Fits of observations to a [`Model`](binnacle_compass::model::Model): as published
+//! ([`fit_paper`]), as by today's tools ([`fit_ols`]), and the product's own
+//! ([`fit_robust`]).
 
 mod csv_row;
-mod headings;
-mod normal;
-mod observation;
+mod heading_check;
+mod normal_equations;
 mod ols;
 mod paper;
 mod reference;
+mod residual_check;
 mod robust;
-mod soundness;
-mod stray;
+mod time_outliers;
 
+pub use crate::gyro_speed_error::gyro_speed_error_deg;
+pub use crate::observation::Observation;
 pub use csv_row::{CsvRow, CsvRowError, check_columns, readings_from_csv};
-pub use observation::Observation;
 pub use ols::fit_ols;
 pub use paper::fit_paper;
-pub(crate) use reference::northerly_speed_error_deg;
-pub use reference::{HeadingReading, Referred, gyro_speed_error_deg, refer};
-pub(crate) use robust::learn;
+pub use reference::{HeadingReading, ObservedReadings, observe_readings};
+pub(crate) use robust::fit_roughly;
 pub use robust::{
     REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, fit_known_ship, fit_robust,
 };

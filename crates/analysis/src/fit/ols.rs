@@ -1,44 +1,43 @@
-//! Ordinary least squares, for comparison: what a careful user of today's tools
-//! would do with the same samples.
+//! Ordinary least squares, for comparison: the fit of a careful user of today's tools with
+//! the same samples.
 //!
-//! The deviation is the exact one and residuals are in angle, but every sample
-//! counts alike, rows are taken at the compass heading as it was read, noise is
-//! held to be independent from row to row, and nothing is known beforehand. The
-//! product's own fit is [`fit_robust`](super::fit_robust).
+//! The deviation is exact and residuals are in angle. But every sample counts alike, rows
+//! are taken at the compass heading as read, noise is assumed independent from row to row,
+//! and there is no prior. The product's own fit is [`fit_robust`](super::fit_robust).
 
-use super::Observation;
-use super::headings::check_headings;
-use super::normal::{Matrix, Vector, check_number, covariance, identifiable, invert};
+use super::heading_check::check_headings;
+use super::normal_equations::{Matrix, Vector, check_number, covariance, identifiable, invert};
 use super::robust::{check_field, is_usable};
+use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::linearised_at_compass;
 use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::result::FitError;
 use binnacle_compass::ship::{EarthField, PARAMETERS};
 
-/// Gauss–Newton needs five or six for a ship, more among wild outliers.
+/// Greatest number of Gauss–Newton steps: five or six suffice for a ship, more among wild
+/// outliers.
 const ITERATIONS: u32 = 100;
-/// A step that is no better after this many halvings leads nowhere.
+/// Greatest number of halvings of a step.
 const HALVINGS: u32 = 30;
-/// A step that moves the samples' predictions by less, root mean square, is none.
+/// Root-mean-square move of the predictions below which the fit has settled.
 const SETTLED_DEG: f64 = 1e-9;
-/// Near the end a step changes the sum of squares by less than its rounding.
+/// Relative rounding of the sum of squares near the end.
 const ROUNDING: f64 = 1e-12;
 
 /// Fits the exact deviation to observations by least squares in angle.
 ///
-/// The unknowns are the seven ratios. The constant is held at zero: no set of
-/// headings tells it from A = (χ21 − χ12)/2 (docs/science.md, §3), so that
-/// χ12 and χ21 take it up with nothing lost from the deviation.
+/// The unknowns are the seven ratios. The constant is held at zero: no set of headings
+/// separates it from A = (χ21 − χ12)/2 (docs/science.md, §3), so that χ12 and χ21 take it
+/// up with no loss to the deviation.
 ///
-/// An observation's weight divides the variance of its noise; those of weight
-/// zero, and those in a field too weak for a compass, are left out and counted as
-/// rejected.
+/// An observation's weight divides the variance of its noise. Observations of weight zero,
+/// and those in a field too weak for a compass, are left out and counted as rejected.
 ///
 /// # Errors
-/// When there are too few samples or headings, all lie at one magnetic
-/// latitude, the fitted ship's headings are ambiguous at a sample's field, or
-/// the iteration does not settle.
+/// Fails when there are too few samples or headings, all lie at one magnetic latitude, the
+/// fitted ship's headings are ambiguous at a sample's field, or the iteration does not
+/// settle.
 pub fn fit_ols(observations: &[Observation]) -> Result<Model, FitError> {
     check_field(observations)?;
     let mut rows = observations.to_vec();
@@ -63,16 +62,16 @@ pub fn fit_ols(observations: &[Observation]) -> Result<Model, FitError> {
     })
 }
 
-/// The normal equations at a ship.
+/// Normal equations for some parameters.
 struct Linearised {
     normal: Matrix,
-    /// What the step has to answer.
+    /// Right side for the step.
     score: Vector,
     /// Weighted squares of the residuals, degrees².
     squares: f64,
 }
 
-/// Gauss–Newton with halved steps, from a ship without magnetism.
+/// Runs Gauss–Newton with halved steps, from a ship without magnetism.
 fn settle(rows: &[Observation], weights: f64) -> Result<(Parameters, Linearised), FitError> {
     let mut parameters = Parameters::from_array([0.0; PARAMETERS]);
     let mut at = linearise(rows, &parameters)?;
@@ -82,13 +81,13 @@ fn settle(rows: &[Observation], weights: f64) -> Result<(Parameters, Linearised)
         if moves_deg < SETTLED_DEG {
             return Ok((parameters, at));
         }
-        (parameters, at) = downhill(rows, &parameters, &at, step)?;
+        (parameters, at) = halve_until_no_worse(rows, &parameters, &at, step)?;
     }
     Err(FitError::NotConverged)
 }
 
-/// The first of the step, its half, its quarter, … that is no worse.
-fn downhill(
+/// Returns the first of the step, its half, its quarter, … that is no worse.
+fn halve_until_no_worse(
     rows: &[Observation],
     from: &Parameters,
     at: &Linearised,
@@ -108,7 +107,7 @@ fn downhill(
     Err(why)
 }
 
-/// The rows' residuals and slopes in degrees (docs/science.md, eq. 8 and 10).
+/// Returns the rows' residuals and slopes in degrees (docs/science.md, eq. 8 and 10).
 fn linearise(rows: &[Observation], parameters: &Parameters) -> Result<Linearised, FitError> {
     let mut sums = Linearised {
         normal: Matrix::zeros(),

@@ -1,28 +1,27 @@
-//! The fit as it was published, for comparison: Basterretxea-Iribar, Sotés &
-//! Uriarte 2016, J. Navigation 69, eq. 11.
+//! Published fit, for comparison: Basterretxea-Iribar, Sotés & Uriarte 2016, J. Navigation
+//! 69, eq. 11.
 //!
-//! Ordinary least squares in force: every sample counts alike whatever the
-//! earth's field, the row is taken at the compass heading as it was read, and
-//! noise is held to be independent. The product's own fit is
-//! [`fit_robust`](super::fit_robust).
+//! Ordinary least squares in force: every sample counts alike whatever the earth's field,
+//! the row is taken at the compass heading as read, and noise is assumed independent. The
+//! product's own fit is [`fit_robust`](super::fit_robust).
 
-use super::Observation;
-use super::headings::check_headings;
-use super::normal::{Matrix, Vector, check_number, covariance, identifiable, invert};
+use super::heading_check::check_headings;
+use super::normal_equations::{Matrix, Vector, check_number, covariance, identifiable, invert};
 use super::robust::{check_field, is_usable};
+use crate::observation::Observation;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::result::FitError;
 use binnacle_compass::ship::{EarthField, PARAMETERS};
 
-/// Fits eq. 11 by least squares. The model has no constant. Observations of weight
-/// zero, and those in a field too weak for a compass, are left out and counted as
-/// rejected; all others count alike.
+/// Fits eq. 11 by least squares. The model has no constant. Observations of weight zero,
+/// and those in a field too weak for a compass, are left out and counted as rejected; all
+/// others count alike.
 ///
 /// # Errors
-/// When there are too few samples or headings, or all lie at one magnetic
-/// latitude, where eq. 11 has no unique solution.
+/// Fails when there are too few samples or headings, or all lie at one magnetic latitude,
+/// where eq. 11 has no unique solution.
 pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
     check_field(observations)?;
     let mut rows = observations.to_vec();
@@ -58,7 +57,7 @@ pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
     })
 }
 
-/// Eq. 11's row for M/λ and its right side H sin δ, nT.
+/// Returns eq. 11's row for M/λ and its right side H sin δ, nT.
 fn equation_11(o: &Observation) -> (Vector, f64) {
     let (sin, cos) = o.compass.radians().sin_cos();
     let deviation = o.deviation.degrees_east().to_radians();
@@ -76,7 +75,7 @@ fn equation_11(o: &Observation) -> (Vector, f64) {
     (row, o.h_nt * deviation.sin())
 }
 
-/// Measured less predicted on the compass heading, root mean square.
+/// Returns the root mean square of measured less predicted at the compass heading.
 fn rms_deg(p: &Parameters, observations: &[Observation]) -> Result<f64, FitError> {
     let mut squares = 0.0;
     for o in observations {

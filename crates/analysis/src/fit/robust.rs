@@ -1,10 +1,10 @@
-//! The product's fit: exact model, residuals in angle, robust weights, noise
-//! that remembers, and a prior for what headings cannot tell.
+//! The product's fit: exact model, residuals in angle, robust weights, correlated noise,
+//! and a prior for what headings cannot show.
 
-use super::Observation;
-use super::headings::check_headings;
-use super::{soundness, stray};
-use crate::estimate::{Options, Prior, Rough, estimate, rough};
+use super::heading_check::check_headings;
+use super::{residual_check, time_outliers};
+use crate::estimate::{Options, Prior, RoughEstimate, estimate, estimate_roughly};
+use crate::observation::Observation;
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::result::{FitError, NoiseLevels};
@@ -12,25 +12,25 @@ use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
 use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
 use std::borrow::Cow;
 
-/// Fewer samples than this carry no fit of eight unknowns worth having.
+/// Least number of samples for a fit of eight unknowns.
 const NEEDED_SAMPLES: u64 = 12;
-/// The same where the ship is known but for her permanent magnetism.
-const NEEDED_OF_A_KNOWN_SHIP: u64 = 6;
-/// A row of less weight than this is counted as rejected.
+/// Least number of samples for a vessel known but for its permanent magnetism.
+const NEEDED_SAMPLES_KNOWN_VESSEL: u64 = 6;
+/// Weight below which a row counts as rejected.
 pub const REJECTED_BELOW: f64 = 0.5;
 
-/// What a robust fit starts from beside the observations.
+/// Options of a robust fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobustOptions {
-    /// What is known of the ship; ships at large when nothing is.
+    /// Prior knowledge of the vessel; ships at large when there is none.
     pub prior: Prior,
     /// Standard deviation of the reference's constant error, degrees.
     pub reference_constant_sd_deg: f64,
 }
 
 impl RobustOptions {
-    /// For a ship of which nothing is known yet.
-    pub fn of_any_ship(reference_constant_sd_deg: f64) -> RobustOptions {
+    /// Returns the options for a vessel of which nothing is known yet.
+    pub fn for_unknown_vessel(reference_constant_sd_deg: f64) -> RobustOptions {
         RobustOptions {
             prior: Prior::population(reference_constant_sd_deg),
             reference_constant_sd_deg,
@@ -40,34 +40,34 @@ impl RobustOptions {
 
 impl Default for RobustOptions {
     fn default() -> RobustOptions {
-        RobustOptions::of_any_ship(REFERENCE_CONSTANT_SD_DEG)
+        RobustOptions::for_unknown_vessel(REFERENCE_CONSTANT_SD_DEG)
     }
 }
 
-/// A model with what became of every observation.
+/// A model with the outcome of every observation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobustFit {
     /// The model.
     pub model: Model,
-    /// How large the estimator found each kind of noise.
+    /// Noise levels found by the estimator.
     pub noise: NoiseLevels,
-    /// One for each observation, in the order given.
+    /// Outcome of each observation, in the order given.
     pub rows: Vec<RowOutcome>,
 }
 
-/// What a fit made of one observation.
+/// Outcome of one observation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowOutcome {
-    /// Measured less predicted, degrees; none where the row was not looked at.
+    /// Measured less predicted, degrees; none where the row was not used.
     pub residual_deg: Option<f64>,
-    /// Its weight, 0 to 1: 0 where the field is too weak for a compass.
+    /// Weight, 0 to 1: 0 where the field is too weak for a compass.
     pub weight: f64,
 }
 
-/// Fits a model to observations; their order does not matter.
+/// Fits a model to observations in any order.
 ///
 /// # Errors
-/// When the observations cannot carry a model, with what is missing.
+/// Fails when the observations cannot carry a model, with what is missing.
 pub fn fit_robust(
     observations: &[Observation],
     options: &RobustOptions,
@@ -80,11 +80,11 @@ pub fn fit_robust(
     fit_usable(observations, &usable, &rows, options)
 }
 
-/// Fits a model of a ship of which much is known beforehand, so that few
-/// observations on few headings do: the prior says the rest, and the band how well.
+/// Fits a model of a vessel of which much is known, so that few observations on few
+/// headings suffice: the prior adds the rest, and the band shows how well it is known.
 ///
 /// # Errors
-/// When the observations cannot carry a model, with what is missing.
+/// Fails when the observations cannot carry a model, with what is missing.
 pub fn fit_known_ship(
     observations: &[Observation],
     options: &RobustOptions,
@@ -92,36 +92,36 @@ pub fn fit_known_ship(
     let usable = usable(observations);
     let rows = chosen(observations, &usable);
     check_field(observations)?;
-    check_number(&rows, NEEDED_OF_A_KNOWN_SHIP)?;
+    check_number(&rows, NEEDED_SAMPLES_KNOWN_VESSEL)?;
     fit_usable(observations, &usable, &rows, options)
 }
 
-/// The levels of noise, and about what the parameters are, where [`fit_robust`] would
-/// fit a model; `before` are levels from which there is not far to go.
-pub(crate) fn learn(
+/// Returns the noise levels, and roughly the parameters, where [`fit_robust`] would fit a
+/// model; `before` are levels close to them.
+pub(crate) fn fit_roughly(
     observations: &[Observation],
     prior: &Prior,
     before: Option<&NoiseLevels>,
-) -> Option<Rough> {
+) -> Option<RoughEstimate> {
     let mut rows = observations.to_vec();
     rows.retain(is_usable);
     check_number(&rows, NEEDED_SAMPLES).ok()?;
     check_headings(&rows).ok()?;
-    let learnt = rough(&rows, prior, before)?;
+    let learnt = estimate_roughly(&rows, prior, before)?;
     check_needle(&learnt.parameters, &rows).ok()?;
     Some(learnt)
 }
 
-/// Those that a fit may take.
+/// Returns the places of the observations that a fit may use.
 fn usable(observations: &[Observation]) -> Vec<usize> {
     let mut usable: Vec<usize> = (0..observations.len())
         .filter(|&i| is_usable(&observations[i]))
         .collect();
-    stray::leave_out_early(observations, &mut usable);
+    time_outliers::leave_out_early(observations, &mut usable);
     usable
 }
 
-/// Those in these places, which are in order.
+/// Returns the observations in these places, which are in order.
 fn chosen<'a>(observations: &'a [Observation], places: &[usize]) -> Cow<'a, [Observation]> {
     if places.len() == observations.len() {
         return Cow::Borrowed(observations);
@@ -129,7 +129,7 @@ fn chosen<'a>(observations: &'a [Observation], places: &[usize]) -> Cow<'a, [Obs
     places.iter().map(|&i| observations[i]).collect()
 }
 
-/// In a field that a compass can work in, and not left out by its weight.
+/// Returns true if a compass can work in the field, and the weight is above zero.
 pub(super) fn is_usable(o: &Observation) -> bool {
     o.h_nt >= WEAKEST_H_NT && o.weight > 0.0
 }
@@ -149,11 +149,11 @@ fn fit_usable(
     )
     .ok_or(FitError::NotConverged)?;
     let residuals = fitted.rows.iter().map(|row| row.residual_deg);
-    let caution = soundness::judge(residuals, &fitted.levels)?;
+    let caution = residual_check::check_residuals(residuals, &fitted.levels)?;
     check_needle(&fitted.parameters, rows)?;
     let mut quality = fitted.quality;
     quality.cautions.extend(caution);
-    quality.cautions.extend(stray::long_gap(rows));
+    quality.cautions.extend(time_outliers::long_gap(rows));
 
     let mut outcomes = vec![
         RowOutcome {
@@ -188,7 +188,7 @@ fn fit_usable(
     })
 }
 
-/// Refuses observations of which none has weight and a field for a compass.
+/// Fails when no observation has weight and a field for a compass.
 pub(super) fn check_field(all: &[Observation]) -> Result<(), FitError> {
     let weighed = all.iter().filter(|o| o.weight > 0.0).map(|o| o.h_nt);
     match weighed.reduce(f64::max) {
@@ -211,7 +211,7 @@ fn check_number(rows: &[Observation], needed: u64) -> Result<(), FitError> {
     Err(FitError::TooFewSamples { found, needed })
 }
 
-/// One compass heading must stand for one course where the ship is mostly.
+/// Fails when one compass heading stands for several courses in the usual field.
 fn check_needle(p: &Parameters, rows: &[Observation]) -> Result<(), FitError> {
     let mut fields: Vec<(f64, f64)> = rows.iter().map(|o| (o.h_nt, o.z_nt)).collect();
     let middle = fields.len() / 2;

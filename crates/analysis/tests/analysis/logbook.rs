@@ -1,4 +1,4 @@
-//! What the ship's logbook does to an analysis.
+//! Effects of the logbook on an analysis.
 
 use super::*;
 
@@ -47,7 +47,7 @@ fn an_adjustment_begins_an_epoch_and_cargo_is_left_out() {
     );
 }
 
-/// An entry over a stretch of the voyage, in minutes.
+/// Makes an entry for a stretch of the voyage, in minutes.
 fn entry(kind: LogbookKind, from: i64, to: Option<i64>) -> LogbookEntry {
     LogbookEntry {
         from: time(from),
@@ -146,13 +146,13 @@ fn an_entry_is_read_as_it_always_was_and_refused_where_it_cannot_be() {
 
     let refusal = |json: &str| read(json).unwrap_err().to_string();
     let turned = plain.replace("kind", r#"to":"2026-02-28T00:00:00Z","kind"#);
-    let told = refusal(&turned);
+    let reported = refusal(&turned);
     assert!(
-        told.starts_with("to: 2026-02-28T00:00:00Z is before from"),
-        "{told}"
+        reported.starts_with("to: 2026-02-28T00:00:00Z is before from"),
+        "{reported}"
     );
-    let told = refusal(&steel.replace("magnetic_cargo", "shock"));
-    assert!(told.starts_with("cargo: "), "{told}");
+    let reported = refusal(&steel.replace("magnetic_cargo", "shock"));
+    assert!(reported.starts_with("cargo: "), "{reported}");
     assert!(read(&plain.replace("magnetic_cargo", "ufo")).is_err());
 }
 

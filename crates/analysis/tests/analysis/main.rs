@@ -1,4 +1,4 @@
-//! The whole analysis: the same whatever the order, and never at a loss.
+//! The whole analysis: independent of the order of samples, and always with a result.
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
@@ -87,9 +87,15 @@ fn a_perfect_voyage_gives_the_ship_back() {
     }
     assert!(model.constant_deg.abs() < 0.05);
     assert_eq!((model.samples_used, model.samples_rejected), (1000, 0));
-    let told = model.identifiable.unwrap();
-    assert!(told.bx_nt && told.chi13 && told.by_nt && told.chi23 && told.chi11_minus_chi22);
-    assert!(!told.constant_deg);
+    let reported = model.identifiable.unwrap();
+    assert!(
+        reported.bx_nt
+            && reported.chi13
+            && reported.by_nt
+            && reported.chi23
+            && reported.chi11_minus_chi22
+    );
+    assert!(!reported.constant_deg);
     assert_eq!(
         analysis
             .coverage

@@ -1,9 +1,9 @@
-//! One reference, two, and what becomes of their faults.
+//! One reference, two, and their faults.
 
 use super::*;
 
 #[test]
-fn a_wild_gyro_reading_is_doubted_and_named() {
+fn a_wild_gyro_reading_is_rejected_and_named() {
     let mut samples = voyage();
     for index in [200, 500, 800] {
         let gyro = samples[index].gyro.unwrap().degrees();
@@ -95,8 +95,8 @@ fn two_references_narrow_the_constant_and_their_quarrel_widens_it() {
     assert!(sd(&quarrel) > 0.95, "{}", sd(&quarrel));
 }
 
-/// The constant of two references is known better than that of one: what stood in the
-/// model before is taken off, not what stands in the one after.
+/// The constant of two references is known better than that of one: the earlier model's
+/// part is removed, not the later one's.
 #[test]
 fn after_a_repair_with_one_reference_left_the_epoch_is_fitted_all_the_same() {
     let both_then_one: Vec<Sample> = with_satellite()

@@ -1,4 +1,4 @@
-//! Samples taken alongside, by iron that stays there.
+//! Samples taken alongside, near steel on the quay.
 
 use crate::voyages::fleet::{Event, Log, Name, sail_log};
 use crate::voyages::{Truth, gauss, true_deviation};
@@ -11,7 +11,7 @@ use binnacle_compass::time::Timestamp;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// The first port call after day 25: the places of the samples before and after it.
+/// Returns the first port call after day 25: the places of the samples before and after it.
 fn call(log: &Log) -> (usize, usize) {
     let is_past = |k: &usize| log.samples[*k].time.seconds_since(log.start) > 25.0 * 86_400.0;
     let gap_s = |k: usize| log.samples[k].time.seconds_since(log.samples[k - 1].time);
@@ -20,14 +20,14 @@ fn call(log: &Log) -> (usize, usize) {
     (sailed - 1, sailed)
 }
 
-/// Samples all through that call, the compass off by so much: by the ship as she was until
-/// some time, and as she is from then on.
+/// Adds samples all through that call with an error of the compass, by the vessel's state
+/// at each time.
 fn lie_alongside(log: &mut Log, steel_deg: f64, ship: impl Fn(Timestamp) -> Truth) {
     const HEADING: f64 = 70.0;
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     let (arrived, sailed) = call(log);
     let (first, last) = (log.samples[arrived], log.samples[sailed]);
-    let field = FieldAt::time(FieldModel::Igrf14, first.time).unwrap();
+    let field = FieldAt::from_time(FieldModel::Igrf14, first.time).unwrap();
     let here = field.at(first.position, 0.0).unwrap();
     let minutes = last.time.seconds_since(first.time) / 60.0;
     let lying = (3..(minutes / 10.0) as i32 - 3).map(|k| {
@@ -67,19 +67,27 @@ fn what_comes_with_a_berth_and_is_left_there_is_its_steel() {
         lie_alongside(&mut log, steel_deg, |_| truth);
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let told = confirmed(&analysis);
-        let causes: Vec<Cause> = told.iter().map(|c| c.cause).collect();
-        assert_eq!(causes, [Cause::BerthSteel], "seed {seed}: {told:?}");
-        assert!(told[0].causes[0].probability > 0.8, "{told:?}");
-        let (arrived, sailed) = (log.samples[call_before(&log, told[0])].time, told[0].ended);
-        assert!(told[0].from > arrived && sailed.is_some());
-        assert!(told[0].evidence.iter().all(|line| !line.contains("at sea")));
+        let reported = confirmed(&analysis);
+        let causes: Vec<Cause> = reported.iter().map(|c| c.cause).collect();
+        assert_eq!(causes, [Cause::BerthSteel], "seed {seed}: {reported:?}");
+        assert!(reported[0].causes[0].probability > 0.8, "{reported:?}");
+        let (arrived, sailed) = (
+            log.samples[call_before(&log, reported[0])].time,
+            reported[0].ended,
+        );
+        assert!(reported[0].from > arrived && sailed.is_some());
+        assert!(
+            reported[0]
+                .evidence
+                .iter()
+                .all(|line| !line.contains("at sea"))
+        );
         assert!(taken_alongside(&analysis) > 50);
         assert_eq!(analysis.epochs.len(), 1);
     }
 }
 
-/// The last sample under way before a change.
+/// Returns the last sample under way before a change.
 fn call_before(log: &Log, change: &Change) -> usize {
     let before = log.samples.partition_point(|s| s.time < change.from);
     let is_under_way = |k: &usize| log.samples[*k].sog_kn.is_some_and(|kn| kn > 5.0);
@@ -87,7 +95,7 @@ fn call_before(log: &Log, change: &Change) -> usize {
 }
 
 #[test]
-fn a_berth_without_steel_is_not_told() {
+fn a_berth_without_steel_is_not_reported() {
     for seed in 70..73 {
         let mut log = sail_log(seed, &calm(Event::Nothing));
         let truth = log.truth;
@@ -107,14 +115,14 @@ fn while_she_lies_there_it_may_be_the_berths_or_hers() {
     let analysis = run(&log.samples[..=lying.unwrap()]);
     is_sound(&analysis);
     assert_eq!(confirmed(&analysis).len(), 0);
-    let told = analysis.changes.last().unwrap();
+    let reported = analysis.changes.last().unwrap();
     let share = |cause: Cause| {
-        let of = told.causes.iter().find(|c| c.cause == cause);
+        let of = reported.causes.iter().find(|c| c.cause == cause);
         of.map_or(0.0, |c| c.probability)
     };
-    assert!(share(Cause::BerthSteel) > 0.3, "{told:?}");
-    assert!(share(Cause::MagneticCargo) > 0.1, "{told:?}");
-    assert!(told.ended.is_none());
+    assert!(share(Cause::BerthSteel) > 0.3, "{reported:?}");
+    assert!(share(Cause::MagneticCargo) > 0.1, "{reported:?}");
+    assert!(reported.ended.is_none());
 }
 
 #[test]
@@ -130,11 +138,11 @@ fn cargo_that_comes_on_board_among_samples_is_loaded_in_port() {
         });
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let told = confirmed(&analysis);
-        let causes: Vec<Cause> = told.iter().map(|c| c.cause).collect();
-        assert_eq!(causes, [Cause::MagneticCargo], "seed {seed}: {told:?}");
+        let reported = confirmed(&analysis);
+        let causes: Vec<Cause> = reported.iter().map(|c| c.cause).collect();
+        assert_eq!(causes, [Cause::MagneticCargo], "seed {seed}: {reported:?}");
         assert!(
-            told[0]
+            reported[0]
                 .evidence
                 .contains(&"it began at a port call".to_owned())
         );

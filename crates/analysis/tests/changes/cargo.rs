@@ -1,4 +1,4 @@
-//! Magnetic cargo: the base model is back when it is discharged, and not before.
+//! Magnetic cargo: the base model returns with the discharge, and not before.
 
 use crate::named::with_step;
 use crate::voyages::Variety;
@@ -31,7 +31,7 @@ fn after_discharge_the_base_model_is_resumed() {
     assert!(used(2) > used(0), "the base's samples count again");
 }
 
-/// The officer's report of the cargo, written down hours later.
+/// Returns the officer's report of the cargo, written hours later.
 fn reported(cargo: &Happened) -> LogbookEntry {
     let late = |time: Timestamp| time.plus_seconds(5.0 * HOUR_S);
     entry(
@@ -109,7 +109,7 @@ fn cargo_that_stays_on_board_by_the_logbook_is_not_over_at_a_call() {
     let analysis = analyse(&log.samples[..=sailed], &[stays], &settings);
     is_sound(&analysis);
     assert_eq!(analysis.current_epoch().unwrap().resumes, None);
-    // Whatever was written, a day's samples without it are believed in the end.
+    // A day's samples without cargo outweigh any entry in the end.
     let stays = [LogbookEntry {
         to: Some(discharged.plus_seconds(20.0 * 86_400.0)),
         ..reported(cargo)
@@ -130,7 +130,7 @@ fn cargo_that_is_noticed_days_after_a_disturbance_at_sea_came_on_board_at_the_ca
         let loaded = began(&log, Name::Cargo);
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let passed = |c: &&Change| c.confirmed && !c.cause.is_the_ships() && c.from > loaded;
+        let passed = |c: &&Change| c.confirmed && !c.cause.changes_deviation() && c.from > loaded;
         let passed = analysis.changes.iter().find(passed).unwrap();
         let found = of_the_ship(&analysis)[0];
         assert!(passed.from < found.detected_at, "seed {seed}");
@@ -191,8 +191,8 @@ fn what_may_have_changed_in_port_unnoticed_widens_the_band() {
     }
 }
 
-/// A quiet voyage with cargo in the logbook from one port call to another, struck at sea two
-/// days after the first; when the second ended.
+/// Returns a quiet voyage with cargo in the logbook between two port calls and a strike at
+/// sea two days after the first, and the end of the second.
 fn struck_laden(seed: u64) -> (Log, LogbookEntry, Timestamp, usize) {
     let mut plan = calm(Event::Nothing);
     plan.days = 90.0;
@@ -237,7 +237,7 @@ fn what_struck_her_at_sea_does_not_leave_with_her_cargo() {
 
 #[test]
 fn what_passes_in_the_first_hours_at_sea_is_no_cargo_for_an_entry_of_some() {
-    let mut told = Vec::new();
+    let mut reports = Vec::new();
     for seed in 40..52 {
         let mut plan = calm(Event::Nothing);
         plan.days = 60.0;
@@ -264,10 +264,10 @@ fn what_passes_in_the_first_hours_at_sea_is_no_cargo_for_an_entry_of_some() {
         is_sound(&analysis);
         let found = of_the_ship(&analysis);
         if !found.is_empty() {
-            told.push(seed);
+            reports.push(seed);
         }
     }
-    assert!(told.len() <= 3, "{told:?}");
+    assert!(reports.len() <= 3, "{reports:?}");
 }
 
 #[test]
@@ -288,7 +288,7 @@ fn a_change_at_a_discharge_in_the_logbook_is_not_cargo_that_lasts() {
     plan.days = 90.0;
     let log = sail_log(40, &plan);
     let cargo = log.happened.iter().find(|h| h.what == Name::Cargo).unwrap();
-    // The log begins when she was laden already.
+    // The log begins with cargo on board.
     let since: Vec<Sample> = log
         .samples
         .iter()
@@ -307,7 +307,7 @@ fn a_change_at_a_discharge_in_the_logbook_is_not_cargo_that_lasts() {
     assert!(found[0].ended.is_some(), "{found:?}");
 }
 
-/// What was loaded does not move the compass, and nobody wrote down that it was discharged.
+/// The cargo does not move the compass, and nobody recorded its discharge.
 #[test]
 fn cargo_that_nobody_closed_is_said_to_leave_samples_out_and_after_weeks_leaves_out_none() {
     let log = sail_log(11, &calm(Event::Nothing));
@@ -323,12 +323,12 @@ fn cargo_that_nobody_closed_is_said_to_leave_samples_out_and_after_weeks_leaves_
     assert_eq!(soon.notices.len(), 1, "{:?}", soon.notices);
     let count = format!("{} samples are left out", left_out(&soon));
     assert!(soon.notices[0].contains(&count), "{:?}", soon.notices);
-    assert!(soon.notices[0].contains("give the entry its end"));
+    assert!(soon.notices[0].contains("record the end of the entry"));
     let late = sailed(29.0);
     is_sound(&late);
     assert_eq!(left_out(&late), 0);
     assert_eq!(late.epochs.len(), 1);
-    assert!(late.notices[0].contains("taken for the ship as she is"));
+    assert!(late.notices[0].contains("used for the model"));
     let used = |analysis: &Analysis| analysis.epochs[0].model.as_ref().unwrap().samples_used;
     assert!(used(&late) as f64 > 0.9 * late.samples.len() as f64);
     let closed = analyse(&log.samples, &[], &AnalysisSettings::default());
@@ -387,11 +387,14 @@ fn cargo_that_left_by_the_samples_leaves_out_none_for_ever_though_nobody_closed_
     is_sound(&late);
     assert!(since(&soon) < 0.1, "{}", since(&soon));
     assert!(since(&late) > 0.9, "{}", since(&late));
-    let told = &late.notices[0];
-    assert!(told.contains("those of the ship without it"), "{told}");
+    let reports = &late.notices[0];
+    assert!(
+        reports.contains("those of the vessel without it"),
+        "{reports}"
+    );
 }
 
-/// A year mistaken is no reason to leave out a year's samples without a word.
+/// A mistaken year must not leave out a year's samples without a notice.
 #[test]
 fn an_end_after_the_last_sample_is_none_yet() {
     let log = sail_log(11, &calm(Event::Nothing));
@@ -406,18 +409,22 @@ fn an_end_after_the_last_sample_is_none_yet() {
         )
     };
     let left_out = |analysis: &Analysis| {
-        let told = analysis.samples.iter().filter_map(|s| s.reason);
+        let reports = analysis.samples.iter().filter_map(|s| s.reason);
         let of_the_logbook = [SampleReason::MagneticCargo, SampleReason::Berth];
-        told.filter(|reason| of_the_logbook.contains(reason))
+        reports
+            .filter(|reason| of_the_logbook.contains(reason))
             .count()
     };
     let soon = run(LogbookKind::MagneticCargo, 25.0);
     assert!(left_out(&soon) > 300);
-    let told = &soon.notices;
-    assert!(told[0].contains("samples are left out"), "{told:?}");
-    assert!(told[0].contains("only after the last sample"), "{told:?}");
+    let reports = &soon.notices;
+    assert!(reports[0].contains("samples are left out"), "{reports:?}");
+    assert!(
+        reports[0].contains("only after the last sample"),
+        "{reports:?}"
+    );
     let late = run(LogbookKind::MagneticCargo, 44.0);
     assert_eq!(left_out(&late), 0, "{:?}", late.notices);
-    // A ship under way has left her berth, whatever was written down.
+    // A vessel under way has left its berth, whatever the logbook says.
     assert_eq!(left_out(&run(LogbookKind::Berth, 44.0)), 0);
 }

@@ -1,4 +1,4 @@
-//! Instruments that fail: none of it is the ship's magnetism.
+//! Instrument faults: none of them is the vessel's magnetism.
 
 use crate::voyages::fleet::{Event, Log, sail_log};
 use crate::voyages::{predicted, true_deviation};
@@ -43,8 +43,8 @@ fn a_jammed_card_that_trembles_is_a_stuck_compass() {
         }
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let told: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
-        assert_eq!(told, [Cause::CompassFault], "seed {seed}");
+        let reported: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
+        assert_eq!(reported, [Cause::CompassFault], "seed {seed}");
         let fault = certain(&analysis)[0];
         let jammed_at = log.samples[first].time;
         let late_h = fault.from.seconds_since(jammed_at) / HOUR_S;
@@ -72,8 +72,8 @@ fn a_gyro_that_is_wild_now_and_then_makes_no_stuck_compass_of_a_steady_one() {
     assert!(causes.all(|cause| cause != Cause::CompassFault));
 }
 
-/// On a steady course the gyro is off by 9° from when on, and the satellite compass drops out
-/// soon after: by the only one that is left the ship turned.
+/// On a steady course the gyro gets an error of 9°, and the satellite compass drops out
+/// soon after: by the remaining reference the vessel turned.
 #[test]
 fn a_gyros_fault_while_the_satellite_compass_is_silent_makes_no_stuck_compass() {
     for seed in [61, 62, 64] {
@@ -107,14 +107,14 @@ fn a_compass_whose_zero_moved_is_no_struck_ship() {
         let (log, moved) = zero_moved(seed, moved_deg);
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let told = of_the_ship(&analysis);
-        assert_eq!(told.len(), 1, "seed {seed}: {told:?}");
-        assert_eq!(told[0].cause, Cause::Alignment);
-        assert!(told[0].evidence[0].contains("the compass's own zero moved"));
-        assert!(told[0].step.is_none());
-        let off_h = told[0].from.seconds_since(log.samples[moved].time) / HOUR_S;
+        let reported = of_the_ship(&analysis);
+        assert_eq!(reported.len(), 1, "seed {seed}: {reported:?}");
+        assert_eq!(reported[0].cause, Cause::Alignment);
+        assert!(reported[0].evidence[0].contains("the compass's own alignment"));
+        assert!(reported[0].step.is_none());
+        let off_h = reported[0].from.seconds_since(log.samples[moved].time) / HOUR_S;
         assert!(off_h.abs() < 36.0, "seed {seed}: {off_h} h");
-        let size_deg = told[0].deviation_change_deg.unwrap();
+        let size_deg = reported[0].deviation_change_deg.unwrap();
         assert!((size_deg - moved_deg.abs()).abs() < 0.7, "{size_deg}");
         let constant = |i: usize| analysis.epochs[i].model.as_ref().unwrap().constant_deg;
         let learnt = constant(1) - constant(0);
@@ -122,7 +122,7 @@ fn a_compass_whose_zero_moved_is_no_struck_ship() {
     }
 }
 
-/// A calm voyage whose compass is off by so much on every heading from day 25 on.
+/// Returns a calm voyage whose compass has an error on every heading from day 25 on.
 fn zero_moved(seed: u64, moved_deg: f64) -> (Log, usize) {
     let mut log = sail_log(seed, &calm(Event::Nothing));
     let is_past = |s: &Sample| day(&log, s) > 25.0;
@@ -149,9 +149,9 @@ fn by_one_reference_a_zero_that_moved_may_be_either_and_the_band_holds_both() {
         }
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let told = certain(&analysis);
-        let fault = told.iter().find(|c| c.cause == Cause::ReferenceFault);
-        let fault = fault.unwrap_or_else(|| panic!("seed {seed}: {told:?}"));
+        let reported = certain(&analysis);
+        let fault = reported.iter().find(|c| c.cause == Cause::ReferenceFault);
+        let fault = fault.unwrap_or_else(|| panic!("seed {seed}: {reported:?}"));
         let share = |cause: Cause| {
             let of = fault.causes.iter().find(|c| c.cause == cause);
             of.map_or(0.0, |c| c.probability)
@@ -169,8 +169,8 @@ fn by_one_reference_a_zero_that_moved_may_be_either_and_the_band_holds_both() {
         let held = |shown_deg: f64, moved_deg: f64| {
             let (h, z) = (place.h_nt, place.z_nt);
             let sound_deg = true_deviation(&log.truth, shown_deg - moved_deg, h, z);
-            let (told_deg, se_deg) = predicted(model, shown_deg, h, z);
-            wrap_180(sound_deg - moved_deg - told_deg).abs() <= 1.96 * se_deg
+            let (predicted_deg, se_deg) = predicted(model, shown_deg, h, z);
+            wrap_180(sound_deg - moved_deg - predicted_deg).abs() <= 1.96 * se_deg
         };
         let headings = || (0..36).map(|k| 10.0 * f64::from(k));
         assert!(
@@ -206,8 +206,8 @@ fn by_one_reference_a_zero_that_moved_twice_may_be_off_by_both() {
         let held = |shown_deg: f64, moved_deg: f64| {
             let (h, z) = (place.h_nt, place.z_nt);
             let sound_deg = true_deviation(&log.truth, shown_deg - moved_deg, h, z);
-            let (told_deg, se_deg) = predicted(model, shown_deg, h, z);
-            wrap_180(sound_deg - moved_deg - told_deg).abs() <= 1.96 * se_deg
+            let (predicted_deg, se_deg) = predicted(model, shown_deg, h, z);
+            wrap_180(sound_deg - moved_deg - predicted_deg).abs() <= 1.96 * se_deg
         };
         let headings = (0..36).map(|k| 10.0 * f64::from(k));
         let count = headings.filter(|deg| held(*deg, 11.0)).count();
@@ -228,8 +228,12 @@ fn a_zero_that_moved_by_much_is_told_once() {
         let (log, _) = zero_moved(seed, moved_deg);
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let told: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
-        assert_eq!(told, [Cause::Alignment], "seed {seed}, {moved_deg} degrees");
+        let reported: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
+        assert_eq!(
+            reported,
+            [Cause::Alignment],
+            "seed {seed}, {moved_deg} degrees"
+        );
         let size_deg = certain(&analysis)[0].deviation_change_deg.unwrap();
         assert!((size_deg - moved_deg.abs()).abs() < 1.0, "{size_deg}");
     }
@@ -241,10 +245,10 @@ fn on_one_course_a_zero_that_moved_may_be_a_strike_and_the_band_holds_either() {
     for seed in 60..66 {
         let moved_deg = 12.0;
         let (log, moved) = zero_moved(seed, moved_deg);
-        // What the compass shows three hours later, and what it showed before.
+        // State three hours later, and before.
         let analysis = run(&log.samples[..moved + 18]);
-        let told = certain(&analysis);
-        let zero = told.iter().flat_map(|c| &c.causes);
+        let reported = certain(&analysis);
+        let zero = reported.iter().flat_map(|c| &c.causes);
         let zero = zero.filter(|c| c.cause == Cause::Alignment);
         if zero.map(|c| c.probability).sum::<f64>() > 0.05 {
             open += 1;
@@ -255,8 +259,8 @@ fn on_one_course_a_zero_that_moved_may_be_a_strike_and_the_band_holds_either() {
             let shown_deg = 10.0 * f64::from(k);
             let (h, z) = (place.h_nt, place.z_nt);
             let sound_deg = true_deviation(&log.truth, shown_deg - moved_deg, h, z);
-            let (told_deg, se_deg) = predicted(epoch.model.as_ref().unwrap(), shown_deg, h, z);
-            let off_deg = wrap_180(sound_deg - moved_deg - told_deg).abs();
+            let (predicted_deg, se_deg) = predicted(epoch.model.as_ref().unwrap(), shown_deg, h, z);
+            let off_deg = wrap_180(sound_deg - moved_deg - predicted_deg).abs();
             headings += 1;
             held += usize::from(off_deg < 1.96 * se_deg);
         }
@@ -267,7 +271,7 @@ fn on_one_course_a_zero_that_moved_may_be_a_strike_and_the_band_holds_either() {
 
 #[test]
 fn a_card_that_jams_for_hours_is_no_strike_for_all_that_she_turns_once() {
-    let mut told_as_stuck = 0;
+    let mut reported_as_stuck = 0;
     for seed in 60..72 {
         let mut log = sail_log(seed, &calm(Event::Nothing));
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -279,13 +283,13 @@ fn a_card_that_jams_for_hours_is_no_strike_for_all_that_she_turns_once() {
             sample.compass = CompassHeading::new(jammed + off).unwrap();
         }
         let analysis = run(&log.samples);
-        let told = of_the_ship(&analysis);
-        assert!(told.is_empty(), "seed {seed}: {told:?}");
+        let reported = of_the_ship(&analysis);
+        assert!(reported.is_empty(), "seed {seed}: {reported:?}");
         let mut causes = certain(&analysis).into_iter().map(|c| c.cause);
-        told_as_stuck += usize::from(causes.any(|cause| cause == Cause::CompassFault));
+        reported_as_stuck += usize::from(causes.any(|cause| cause == Cause::CompassFault));
     }
     // Some have not turned meanwhile.
-    assert!(told_as_stuck >= 5, "{told_as_stuck}");
+    assert!(reported_as_stuck >= 5, "{reported_as_stuck}");
 }
 
 #[test]
@@ -303,10 +307,10 @@ fn a_gyro_that_sticks_is_one_fault_that_goes_on_through_ports() {
         }
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let told = certain(&analysis);
-        assert_eq!(told.len(), 1, "seed {seed}: {told:?}");
-        assert_eq!(told[0].cause, Cause::ReferenceFault);
-        assert_eq!(told[0].ended, None, "seed {seed}");
+        let reported = certain(&analysis);
+        assert_eq!(reported.len(), 1, "seed {seed}: {reported:?}");
+        assert_eq!(reported[0].cause, Cause::ReferenceFault);
+        assert_eq!(reported[0].ended, None, "seed {seed}");
     }
 }
 
@@ -338,8 +342,8 @@ fn a_gyro_that_stays_wrong_is_not_right_again_with_the_end_of_a_worse_fault() {
         }
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let told = certain(&analysis);
-        let faults: Vec<&&Change> = told
+        let reported = certain(&analysis);
+        let faults: Vec<&&Change> = reported
             .iter()
             .filter(|c| c.cause == Cause::ReferenceFault)
             .collect();
@@ -363,12 +367,15 @@ fn a_jammed_card_that_trembles_much_is_told_once() {
         }
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let told: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
-        let jams = told.iter().filter(|c| **c == Cause::CompassFault);
-        assert_eq!(jams.count(), 1, "seed {seed}: {told:?}");
-        // Its first hours may be taken for something that passes.
-        assert!(told.len() <= 2, "seed {seed}: {told:?}");
-        assert!(of_the_ship(&analysis).is_empty(), "seed {seed}: {told:?}");
+        let reported: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
+        let jams = reported.iter().filter(|c| **c == Cause::CompassFault);
+        assert_eq!(jams.count(), 1, "seed {seed}: {reported:?}");
+        // The first hours may look like a transient.
+        assert!(reported.len() <= 2, "seed {seed}: {reported:?}");
+        assert!(
+            of_the_ship(&analysis).is_empty(),
+            "seed {seed}: {reported:?}"
+        );
     }
 }
 
@@ -388,7 +395,7 @@ fn that_a_ship_on_one_course_is_not_watched_is_said() {
     assert!(!said(&log.samples));
 }
 
-/// By two or three degrees, with the gyro and the ship's own past against it.
+/// The errors are two or three degrees, against the gyro and the vessel's own past.
 #[test]
 fn a_reference_off_for_good_is_told_and_bends_no_model() {
     for (seed, gyro_deg, satellite_deg) in [
@@ -412,25 +419,28 @@ fn a_reference_off_for_good_is_told_and_bends_no_model() {
         let analysis = run(&log.samples);
         is_sound(&analysis);
         assert!(of_the_ship(&analysis).is_empty(), "seed {seed}");
-        let mut told = certain(&analysis);
-        told.retain(|c| c.cause == Cause::ReferenceFault);
-        assert_eq!(told.len(), 1, "seed {seed}: {told:?}");
-        assert_eq!(told[0].ended, None, "seed {seed}");
+        let mut reported = certain(&analysis);
+        reported.retain(|c| c.cause == Cause::ReferenceFault);
+        assert_eq!(reported.len(), 1, "seed {seed}: {reported:?}");
+        assert_eq!(reported[0].ended, None, "seed {seed}");
         let failed = if satellite_deg == 0.0 {
             "the gyro had failed"
         } else {
             "the satellite compass had failed"
         };
         let said = |line: &String| line.contains(failed);
-        assert!(told[0].evidence.iter().any(said), "seed {seed}: {told:?}");
+        assert!(
+            reported[0].evidence.iter().any(said),
+            "seed {seed}: {reported:?}"
+        );
         let place = analysis.last_place.unwrap();
         let model = analysis.current_epoch().unwrap().model.as_ref().unwrap();
         let held = (0..36).filter(|k| {
             let shown_deg = 10.0 * f64::from(*k);
             let (h, z) = (place.h_nt, place.z_nt);
             let true_deg = true_deviation(&log.truth, shown_deg, h, z);
-            let (told_deg, se_deg) = predicted(model, shown_deg, h, z);
-            wrap_180(true_deg - told_deg).abs() < 1.96 * se_deg
+            let (predicted_deg, se_deg) = predicted(model, shown_deg, h, z);
+            wrap_180(true_deg - predicted_deg).abs() < 1.96 * se_deg
         });
         let held = held.count();
         assert!(held >= 33, "seed {seed}: {held} of 36");

@@ -1,4 +1,4 @@
-//! Changes of a ship's magnetism: found, dated, named, and not made up.
+//! Changes of a vessel's magnetism: detected, dated, named, and no false alarms.
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
@@ -26,7 +26,7 @@ use voyages::{Faults, Variety};
 
 const HOUR_S: f64 = 3600.0;
 
-/// A ship to which nothing happens but what is planned.
+/// Returns a plan of nothing but one event.
 fn calm(event: Event) -> Plan {
     let usual = Plan::of(event, Variety::Medium);
     Plan {
@@ -49,7 +49,7 @@ fn run(samples: &[Sample]) -> Analysis {
 fn of_the_ship(analysis: &Analysis) -> Vec<&Change> {
     let changes = analysis.changes.iter();
     changes
-        .filter(|c| c.confirmed && c.cause.is_the_ships())
+        .filter(|c| c.confirmed && c.cause.changes_deviation())
         .collect()
 }
 
@@ -67,7 +67,7 @@ fn entry(kind: LogbookKind, from: Timestamp, to: Option<Timestamp>) -> LogbookEn
     }
 }
 
-/// Every probability between 0 and 1, their sum 1, every date in order.
+/// Asserts probabilities between 0 and 1 with the sum 1, and dates in order.
 fn is_sound(analysis: &Analysis) {
     for c in &analysis.changes {
         let sum: f64 = c.causes.iter().map(|cause| cause.probability).sum();
@@ -112,7 +112,7 @@ fn a_step_of_two_microtesla_is_found_within_hours_and_dated() {
     }
 }
 
-/// Ships that lead by so much by chance that they once raised an alarm.
+/// Ships with leads by chance that once raised an alarm.
 #[test]
 fn what_leads_by_little_raises_no_alarm() {
     let varieties = [Variety::Rich, Variety::Medium, Variety::Poor];
@@ -133,7 +133,7 @@ fn what_leads_by_little_raises_no_alarm() {
     }
 }
 
-/// A ship whose step led for a day, and to whom nothing had happened.
+/// A ship whose step led for a day, without any event.
 #[test]
 fn what_later_samples_do_not_bear_out_is_withdrawn() {
     let plan = Plan {
@@ -144,15 +144,17 @@ fn what_later_samples_do_not_bear_out_is_withdrawn() {
     let analysis = run(&log.samples);
     is_sound(&analysis);
     let changes = &analysis.changes;
-    let was_one = |c: &&Change| c.withdrawn && c.cause.is_the_ships();
-    let told = changes.iter().find(was_one).unwrap();
-    assert!(!told.confirmed && told.ended > Some(told.detected_at));
-    assert!(told.evidence.iter().any(|e| e.contains("is withdrawn")));
-    assert_eq!((told.step, told.deviation_change_deg), (None, None));
+    let was_one = |c: &&Change| c.withdrawn && c.cause.changes_deviation();
+    let reported = changes.iter().find(was_one).unwrap();
+    assert!(!reported.confirmed && reported.ended > Some(reported.detected_at));
+    assert!(reported.evidence.iter().any(|e| e.contains("is withdrawn")));
+    assert_eq!((reported.step, reported.deviation_change_deg), (None, None));
     assert!(of_the_ship(&analysis).is_empty(), "{changes:?}");
     assert_eq!(analysis.epochs.len(), 1);
     // In between it was certain.
-    let before = log.samples.partition_point(|s| s.time <= told.detected_at);
+    let before = log
+        .samples
+        .partition_point(|s| s.time <= reported.detected_at);
     let then = run(&log.samples[..before]);
     assert_eq!(of_the_ship(&then).len(), 1, "{:?}", then.changes);
     assert_eq!(then.epochs.len(), 2);
@@ -162,7 +164,7 @@ fn what_later_samples_do_not_bear_out_is_withdrawn() {
 fn on_a_quiet_voyage_nothing_changes() {
     for seed in 10..13 {
         let analysis = run(&sail_log(seed, &calm(Event::Nothing)).samples);
-        assert!(analysis.changes.iter().all(Change::is_faint));
+        assert!(analysis.changes.iter().all(Change::is_weak_transient));
         assert_eq!(analysis.epochs.len(), 1);
     }
 }
@@ -176,19 +178,19 @@ fn evidence_is_in_words_that_an_officer_knows() {
     for (seed, event) in [
         (1, Event::Step(2000.0)),
         (31, Event::GyroFault(4.0)),
-        (2, Event::Astray(4.0)),
+        (2, Event::VariationError(4.0)),
     ] {
         let analysis = run(&sail_log(seed, &calm(event)).samples);
         let evidence = analysis.changes.iter().flat_map(|c| &c.evidence);
-        let told = evidence.cloned().collect::<Vec<_>>().join("; ");
+        let reported = evidence.cloned().collect::<Vec<_>>().join("; ");
         for jargon in ["nat", "log likelihood", "NaN", "inf"] {
-            let words = || told.split(|c: char| !c.is_alphabetic());
+            let words = || reported.split(|c: char| !c.is_alphabetic());
             assert!(
                 !words().any(|word| word == jargon || word == format!("{jargon}s")),
-                "{told}"
+                "{reported}"
             );
         }
-        assert!(!told.is_empty());
+        assert!(!reported.is_empty());
     }
     let analysis = run(&sail_log(1, &calm(Event::Step(2000.0))).samples);
     let evidence = &analysis.changes[0].evidence;
@@ -208,7 +210,7 @@ fn the_order_of_arrival_changes_nothing() {
     assert_eq!(serde_json::to_string(&run(&shuffled)).unwrap(), expected);
 }
 
-/// Turns every compass reading from a time on by so much.
+/// Turns every compass reading from a time on.
 fn turned(samples: &mut [Sample], from: Timestamp, degrees: f64) {
     for sample in samples.iter_mut().filter(|s| s.time >= from) {
         sample.compass = CompassHeading::new(sample.compass.degrees() + degrees).unwrap();
@@ -216,7 +218,7 @@ fn turned(samples: &mut [Sample], from: Timestamp, degrees: f64) {
 }
 
 #[test]
-fn three_changes_in_a_day_end_the_search_and_are_told() {
+fn three_changes_in_a_day_end_the_search_and_are_reported() {
     let mut samples = sail_log(50, &calm(Event::Nothing)).samples;
     let day = samples[samples.len() / 2].time;
     for (hour, degrees) in [(0.0, 6.0), (8.0, -12.0), (16.0, 9.0)] {
@@ -242,7 +244,7 @@ fn a_change_inside_a_gap_is_dated_within_it() {
     assert!(found[0].from_earliest <= stepped && stepped <= found[0].from_latest);
 }
 
-/// What drifts does so on the way, too.
+/// A drift happens on the way, too.
 #[test]
 fn a_change_inside_a_gap_of_days_is_no_drift_of_weeks() {
     for seed in 1..13 {
@@ -315,12 +317,15 @@ fn a_gyro_alone_that_is_off_for_days_costs_those_days_and_is_not_taken_for_the_s
             "{seed} {size_deg}: {:?}",
             analysis.changes
         );
-        let told = analysis
+        let reported = analysis
             .changes
             .iter()
             .find(|c| c.cause == Cause::ReferenceFault);
-        let told = told.unwrap();
-        assert!(told.from.seconds_since(from).abs() < HOUR_S, "{told:?}");
+        let reported = reported.unwrap();
+        assert!(
+            reported.from.seconds_since(from).abs() < HOUR_S,
+            "{reported:?}"
+        );
         let left_out = |s: &&SampleDiagnostic| s.reason == Some(SampleReason::ReferenceFailed);
         let (during, otherwise): (Vec<_>, Vec<_>) = analysis
             .samples
@@ -334,7 +339,7 @@ fn a_gyro_alone_that_is_off_for_days_costs_those_days_and_is_not_taken_for_the_s
     }
 }
 
-/// The same samples with everything from each of some rows on later by so much.
+/// Returns the samples with a delay at each of some rows.
 fn delayed(samples: &[Sample], rows: impl Fn(usize) -> bool, seconds: f64) -> Vec<Sample> {
     let mut late = 0.0;
     let delayed = samples.iter().enumerate().map(|(row, sample)| {

@@ -1,4 +1,4 @@
-//! What a change is taken for.
+//! Causes that changes are attributed to.
 
 use crate::voyages::fleet::{Event, Log, Name, sail_log};
 use crate::{HOUR_S, began, calm, entry, is_sound, of_the_ship, run};
@@ -17,7 +17,7 @@ fn with(log: &Log, logbook: &[binnacle_compass::logbook::LogbookEntry]) -> Analy
     analyse(&log.samples, logbook, &AnalysisSettings::default())
 }
 
-/// The change nearest in time.
+/// Returns the change nearest in time.
 fn nearest(analysis: &Analysis, to: Timestamp) -> &Change {
     let off = |c: &&Change| c.from.seconds_since(to).abs();
     let changes = analysis.changes.iter();
@@ -61,9 +61,9 @@ fn a_compass_that_sticks_is_named_and_its_samples_are_left_out() {
     }
     let analysis = run(&samples);
     is_sound(&analysis);
-    let told: Vec<_> = analysis.changes.iter().map(|c| c.cause).collect();
-    assert_eq!(told, [Cause::CompassFault], "{:?}", analysis.changes);
-    assert!(analysis.changes[0].evidence[0].contains("while the ship turned"));
+    let reported: Vec<_> = analysis.changes.iter().map(|c| c.cause).collect();
+    assert_eq!(reported, [Cause::CompassFault], "{:?}", analysis.changes);
+    assert!(analysis.changes[0].evidence[0].contains("while the vessel turned"));
     assert!(analysis.changes[0].ended.is_none());
     let reasons = analysis.samples[from..].iter().map(|s| s.reason);
     assert!(
@@ -92,17 +92,17 @@ fn a_fault_of_the_satellite_compass_is_named_whichever_way_it_errs() {
         let analysis = run(&log.samples);
         is_sound(&analysis);
         let certain = analysis.changes.iter().filter(|c| c.confirmed);
-        let told: Vec<Cause> = certain.map(|c| c.cause).collect();
-        assert!(!told.is_empty(), "{off_deg}");
+        let reported: Vec<Cause> = certain.map(|c| c.cause).collect();
+        assert!(!reported.is_empty(), "{off_deg}");
         let is_fault = |cause: &Cause| *cause == Cause::ReferenceFault;
-        assert!(told.iter().all(is_fault), "{off_deg}: {told:?}");
+        assert!(reported.iter().all(is_fault), "{off_deg}: {reported:?}");
         assert_eq!(analysis.epochs.len(), 1, "{off_deg}");
     }
 }
 
 #[test]
 fn what_lightning_left_fades_and_hardly_ever_raises_another_alarm() {
-    let told = (60..66).map(|seed| {
+    let reported = (60..66).map(|seed| {
         let mut plan = calm(Event::Lightning(4000.0));
         plan.days = 75.0;
         let log = sail_log(seed, &plan);
@@ -111,8 +111,8 @@ fn what_lightning_left_fades_and_hardly_ever_raises_another_alarm() {
         assert_eq!(nearest(&analysis, struck).cause, Cause::LightningOrShock);
         of_the_ship(&analysis).len()
     });
-    let told: usize = told.sum();
-    assert!(told <= 7, "{told} alarms of 6 strikes");
+    let reported: usize = reported.sum();
+    assert!(reported <= 7, "{reported} alarms of 6 strikes");
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn a_report_dates_what_happened_between_two_samples() {
     assert_eq!(nearest(&analysis, stepped).from, said);
 }
 
-/// The same ship with a step of so much in (bx, by) at a time.
+/// Returns the log with a step of (bx, by) at a time.
 pub(crate) fn with_step(mut log: Log, at: Timestamp, [bx_nt, by_nt]: [f64; 2]) -> Log {
     for sample in log.samples.iter_mut().filter(|s| s.time >= at) {
         let earth = field(FieldModel::Igrf14, sample.position, 0.0, sample.time).unwrap();
@@ -174,14 +174,17 @@ fn steps_within_a_day_are_sudden_however_they_point() {
         assert_eq!(found.len(), 3, "seed {seed}: {found:?}");
         for change in found {
             assert_eq!(change.cause, Cause::LightningOrShock, "seed {seed}");
-            let told = change.evidence.join("; ");
-            assert!(told.contains("one of 3 changes within a day"), "{told}");
-            assert!(!told.contains("went the same way"), "{told}");
+            let reported = change.evidence.join("; ");
+            assert!(
+                reported.contains("one of 3 changes within a day"),
+                "{reported}"
+            );
+            assert!(!reported.contains("had the same direction"), "{reported}");
         }
     }
 }
 
-/// The same ship with a bx that grows by so much over thirty days.
+/// Returns the log with a bx that grows over thirty days.
 fn with_ramp(mut log: Log, from_day: f64, nt: f64) -> Log {
     let start = log.start;
     for sample in &mut log.samples {
@@ -219,18 +222,18 @@ fn what_creeps_is_one_drift_from_early_on() {
     let mut plan = calm(Event::Nothing);
     plan.days = 70.0;
     let mut drifts = 0;
-    let mut told = 0;
+    let mut reported = 0;
     for (seed, nt) in [(81, 3000.0), (82, 3000.0), (83, -3000.0), (84, 2500.0)] {
         let log = with_ramp(sail_log(seed, &plan), 25.0, nt);
         let analysis = run(&log.samples);
         is_sound(&analysis);
         let found = of_the_ship(&analysis);
         assert!(!found.is_empty(), "seed {seed}");
-        told += found.len();
+        reported += found.len();
         let in_time = |c: &&&Change| c.detected_at.seconds_since(log.start) < 42.0 * DAY_S;
         let drift = found.iter().filter(in_time);
         drifts += usize::from(drift.filter(|c| c.cause == Cause::Drift).count() == 1);
     }
     assert!(drifts >= 3, "{drifts}");
-    assert!(told <= 5, "{told} changes of 4 drifts");
+    assert!(reported <= 5, "{reported} changes of 4 drifts");
 }

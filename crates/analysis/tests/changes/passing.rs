@@ -1,4 +1,4 @@
-//! What passes: gales, storms, anomalies and magnets that are gone again.
+//! Transients: gales, storms, anomalies and magnets.
 
 use crate::voyages::fleet::{Event, Log, Name, sail_log};
 use crate::voyages::gauss;
@@ -10,8 +10,8 @@ use binnacle_compass::time::Timestamp;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// Five days of gale from day 20 on: the card swings twice as far, and most windows are
-/// lost.
+/// Adds five days of gale from day 20 on: the card swings twice as far, and most windows
+/// are lost.
 fn in_a_gale(log: &mut Log, seed: u64) {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let since_days = |time: Timestamp| time.seconds_since(log.start) / 86_400.0;
@@ -66,26 +66,30 @@ fn what_is_gone_within_hours_at_sea_is_no_strike() {
     for (seed, event) in [
         (1, Event::Magnet(3000.0)),
         (2, Event::Magnet(3000.0)),
-        (1, Event::Astray(4.0)),
-        (2, Event::Astray(8.0)),
-        (3, Event::Astray(8.0)),
+        (1, Event::VariationError(4.0)),
+        (2, Event::VariationError(8.0)),
+        (3, Event::VariationError(8.0)),
     ] {
         let log = sail_log(seed, &calm(event));
         let began = began(&log, Name::Brief);
         let analysis = run(&log.samples);
         is_sound(&analysis);
         assert!(of_the_ship(&analysis).is_empty(), "{:?}", analysis.changes);
-        let told = analysis.changes.iter().find(|c| c.detected_at >= began);
-        let told = told.unwrap_or_else(|| panic!("seed {seed}: {event:?} went unnoticed"));
-        assert_eq!(told.cause, Cause::LocalAnomaly, "seed {seed}: {told:?}");
-        let lasted_h = told.ended.unwrap().seconds_since(told.from) / HOUR_S;
+        let reported = analysis.changes.iter().find(|c| c.detected_at >= began);
+        let reported = reported.unwrap_or_else(|| panic!("seed {seed}: {event:?} went unnoticed"));
+        assert_eq!(
+            reported.cause,
+            Cause::LocalAnomaly,
+            "seed {seed}: {reported:?}"
+        );
+        let lasted_h = reported.ended.unwrap().seconds_since(reported.from) / HOUR_S;
         assert!((0.5..5.0).contains(&lasted_h), "seed {seed}: {lasted_h} h");
         assert_eq!(analysis.epochs.len(), 1);
         let during = log
             .samples
             .iter()
             .zip(&analysis.samples)
-            .filter(|(s, _)| s.time > told.from && Some(s.time) <= told.ended);
+            .filter(|(s, _)| s.time > reported.from && Some(s.time) <= reported.ended);
         let reasons = during.map(|(_, s)| s.reason).collect::<Vec<_>>();
         assert!(reasons.contains(&Some(SampleReason::Disturbance)));
     }
@@ -93,18 +97,23 @@ fn what_is_gone_within_hours_at_sea_is_no_strike() {
 
 #[test]
 fn a_step_that_was_told_and_is_gone_again_says_so_and_stays_one_change() {
-    let log = sail_log(2, &calm(Event::Astray(8.0)));
+    let log = sail_log(2, &calm(Event::VariationError(8.0)));
     let analysis = run(&log.samples);
-    let told = &analysis.changes[0];
-    assert!(told.evidence[1].contains("at first taken for"), "{told:?}");
+    let reported = &analysis.changes[0];
+    assert!(
+        reported.evidence[1].contains("at first taken for"),
+        "{reported:?}"
+    );
     // In between it had been.
-    let before = log.samples.partition_point(|s| s.time <= told.detected_at);
+    let before = log
+        .samples
+        .partition_point(|s| s.time <= reported.detected_at);
     let then = run(&log.samples[..before]);
     assert_eq!(of_the_ship(&then).len(), 1, "{:?}", then.changes);
 }
 
-/// Turns every compass reading between two times by so much.
-fn turned(log: &mut Log, (from, to): (Timestamp, Timestamp), degrees: f64) {
+/// Turns every compass reading between two times.
+fn turned(log: &mut Log, from: Timestamp, to: Timestamp, degrees: f64) {
     let during = |s: &&mut Sample| (from..to).contains(&s.time);
     for sample in log.samples.iter_mut().filter(during) {
         sample.compass = CompassHeading::new(sample.compass.degrees() + degrees).unwrap();
@@ -116,13 +125,13 @@ fn a_compass_off_on_every_heading_for_hours_is_one_fault_that_passed() {
     for seed in [50, 51, 52, 54] {
         let mut log = sail_log(seed, &calm(Event::Nothing));
         let from = log.samples[log.samples.len() / 2].time;
-        turned(&mut log, (from, from.plus_seconds(5.0 * HOUR_S)), 12.0);
+        turned(&mut log, from, from.plus_seconds(5.0 * HOUR_S), 12.0);
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let told: Vec<_> = analysis.changes.iter().filter(|c| c.confirmed).collect();
-        let causes: Vec<Cause> = told.iter().map(|c| c.cause).collect();
-        assert_eq!(causes, [Cause::CompassFault], "seed {seed}: {told:?}");
-        let lasted_h = told[0].ended.unwrap().seconds_since(told[0].from) / HOUR_S;
+        let reported: Vec<_> = analysis.changes.iter().filter(|c| c.confirmed).collect();
+        let causes: Vec<Cause> = reported.iter().map(|c| c.cause).collect();
+        assert_eq!(causes, [Cause::CompassFault], "seed {seed}: {reported:?}");
+        let lasted_h = reported[0].ended.unwrap().seconds_since(reported[0].from) / HOUR_S;
         assert!((4.0..6.0).contains(&lasted_h), "seed {seed}: {lasted_h} h");
         assert_eq!(analysis.epochs.len(), 1, "seed {seed}");
     }
@@ -134,15 +143,18 @@ fn a_zero_that_is_put_right_after_a_day_ends_its_change() {
         let mut log = sail_log(seed, &calm(Event::Nothing));
         let from = log.samples[log.samples.len() / 2].time;
         let to = from.plus_seconds(30.0 * HOUR_S);
-        turned(&mut log, (from, to), 8.0);
+        turned(&mut log, from, to, 8.0);
         let analysis = run(&log.samples);
         is_sound(&analysis);
-        let told = of_the_ship(&analysis);
-        assert_eq!(told.len(), 1, "seed {seed}: {told:?}");
+        let reported = of_the_ship(&analysis);
+        assert_eq!(reported.len(), 1, "seed {seed}: {reported:?}");
         // On one course a strike does the same.
-        let is_told = matches!(told[0].cause, Cause::Alignment | Cause::LightningOrShock);
-        assert!(is_told, "seed {seed}: {told:?}");
-        let late_h = told[0].ended.unwrap().seconds_since(to) / HOUR_S;
+        let is_reported = matches!(
+            reported[0].cause,
+            Cause::Alignment | Cause::LightningOrShock
+        );
+        assert!(is_reported, "seed {seed}: {reported:?}");
+        let late_h = reported[0].ended.unwrap().seconds_since(to) / HOUR_S;
         assert!(late_h.abs() < 1.0, "seed {seed}: {late_h} h");
         assert_eq!(analysis.epochs[2].resumes, Some(0), "seed {seed}");
     }

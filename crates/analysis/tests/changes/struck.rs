@@ -1,5 +1,5 @@
-//! The band in the first hours after a strike: courses sailed since show what of it lies
-//! across the needle on them, and no more.
+//! Band in the first hours after a strike: the courses sailed since show the part across
+//! the needle on them, and no more.
 
 use crate::voyages::fleet::{Event, Name, Plan, START, sail_log};
 use crate::voyages::{Variety, predicted, true_deviation};
@@ -11,14 +11,14 @@ use binnacle_compass::time::Timestamp;
 
 const DAY_S: f64 = 86_400.0;
 
-/// A calm voyage with a strike, as far as some hours after it.
+/// A calm voyage with a strike, up to some hours after it.
 struct Struck {
     at: Timestamp,
     samples: Vec<Sample>,
     analysis: Analysis,
     /// Error of the deviation and its standard error, degrees, on every tenth degree of the
-    /// compass; none where there is no model. A heading that her compass does not show any
-    /// more is left out.
+    /// compass; none without a model. Headings that the compass no longer shows are left
+    /// out.
     off_deg: Vec<(f64, f64)>,
 }
 
@@ -32,7 +32,7 @@ fn struck(seed: u64, event: Event, hours: f64) -> Struck {
         .partition_point(|s| s.time.seconds_since(sailed) < hours * HOUR_S);
     let analysis = run(&log.samples[..until]);
     is_sound(&analysis);
-    // The same ship as she was then: she drifts.
+    // The state at that time: the vessel drifts.
     let last = log.samples[until - 1].time;
     let days = last.seconds_since(Timestamp::parse(START).unwrap()) / DAY_S + 0.001;
     let truth = sail_log(seed, &Plan { days, ..plan }).truth;
@@ -55,9 +55,9 @@ fn struck(seed: u64, event: Event, hours: f64) -> Struck {
 }
 
 impl Struck {
-    /// Whether she has sailed by one heading since.
+    /// Returns true if the vessel has sailed on one heading since.
     fn is_on_one_course(&self) -> bool {
-        // The first reading is of both ships.
+        // The first reading mixes both states.
         let is_since = |s: &&Sample| s.time.seconds_since(self.at) > 600.0;
         let since = self.samples.iter().filter(is_since);
         let compass: Vec<f64> = since.map(|s| s.compass.degrees()).collect();
@@ -67,7 +67,7 @@ impl Struck {
     }
 }
 
-/// On how many headings the band holds the truth.
+/// Returns the number of headings on which the band holds the truth.
 fn held(off_deg: &[(f64, f64)]) -> usize {
     let held = |(off, se): &&(f64, f64)| off.abs() <= 1.96 * se;
     off_deg.iter().filter(held).count()
@@ -138,8 +138,8 @@ fn what_one_course_does_not_show_of_a_strike_is_open() {
     let (mut on_one_course, mut open) = (0, 0);
     for seed in 1..30 {
         let ship = struck(seed, Event::Step(8000.0), 2.5);
-        let is_told = !of_the_ship(&ship.analysis).is_empty() && !ship.off_deg.is_empty();
-        if !ship.is_on_one_course() || !is_told {
+        let is_reported = !of_the_ship(&ship.analysis).is_empty() && !ship.off_deg.is_empty();
+        if !ship.is_on_one_course() || !is_reported {
             continue;
         }
         on_one_course += 1;
@@ -150,9 +150,9 @@ fn what_one_course_does_not_show_of_a_strike_is_open() {
     assert!(10 * open >= 9 * on_one_course, "{open} of {on_one_course}");
 }
 
-/// The reading in which the first two are struck is of neither ship, and on her next course
-/// the first reading after it would be another strike; on the first two courses of the others
-/// the strike does what a zero that moved would do.
+/// The reading during the first two strikes fits neither state, and on the next course the
+/// first reading after it would be another strike; on the first two courses of the others
+/// the strike looks like an alignment change.
 #[test]
 fn a_strike_is_told_once_whatever_courses_come_after_it() {
     let ships = [
@@ -173,8 +173,8 @@ fn a_strike_is_told_once_whatever_courses_come_after_it() {
             .partition_point(|s| s.time.seconds_since(struck) < 6.0 * DAY_S);
         let analysis = run(&log.samples[..until]);
         let since = |c: &&Change| c.detected_at > struck;
-        let told: Vec<_> = of_the_ship(&analysis).into_iter().filter(since).collect();
-        assert_eq!(told.len(), 1, "{seed}: {told:?}");
-        assert_eq!(told[0].cause, Cause::LightningOrShock, "{seed}");
+        let reported: Vec<_> = of_the_ship(&analysis).into_iter().filter(since).collect();
+        assert_eq!(reported.len(), 1, "{seed}: {reported:?}");
+        assert_eq!(reported[0].cause, Cause::LightningOrShock, "{seed}");
     }
 }

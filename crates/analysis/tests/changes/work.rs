@@ -1,4 +1,4 @@
-//! Work that the logbook tells of, and what happens about that time.
+//! Work in the logbook, and events at about that time.
 
 use crate::voyages::fleet::{Event, Log, Name, sail_log};
 use crate::{HOUR_S, began, calm, entry, is_sound, of_the_ship, run};
@@ -60,13 +60,15 @@ fn work_that_was_planned_for_an_earlier_hour_begins_one_epoch_when_it_was_done()
         let begun = analysis.epochs[1].from.unwrap();
         let sailed = log.samples.iter().find(|s| s.time > worked).unwrap().time;
         assert!(planned < begun && begun <= sailed, "seed {seed}: {begun}");
-        // What was sampled until then is of the ship before it.
+        // Samples until then belong to the state before.
         let before = log.samples.iter().filter(|s| s.time < begun);
         let used = analysis.epochs[0].model.as_ref().unwrap().samples_used;
         assert!(used as f64 > 0.95 * before.count() as f64, "seed {seed}");
-        let told = &analysis.changes;
+        let reported = &analysis.changes;
         assert!(
-            told.iter().all(|c| c.confirmed || c.is_faint()),
+            reported
+                .iter()
+                .all(|c| c.confirmed || c.is_weak_transient()),
             "seed {seed}"
         );
     }

@@ -1,8 +1,6 @@
-//! How well any estimator could do: the Cramér–Rao bound on the deviation's
-//! variance, from the ship's true parameters, the population she is drawn from,
-//! and the true covariance of the noise, turns and drift included, as a dense
-//! matrix. Storms and wild readings are left out, so that no real voyage is
-//! quite so easy.
+//! Cramér–Rao bound on the deviation's variance, from the ship's true parameters, their
+//! population, and the true covariance of the noise, turns and drift included, as a dense
+//! matrix. Storms and wild readings are left out, so that no real voyage is quite so easy.
 
 use super::{Faults, Variety, Voyage, needle, sail};
 use binnacle_analysis::fit::Observation;
@@ -13,11 +11,11 @@ use std::f64::consts::TAU;
 
 /// Headings at which the curve is judged.
 pub(crate) const HEADINGS: usize = 36;
-/// Minutes after which a swing is forgotten.
+/// Minutes after which a swing has decayed.
 const FORGOTTEN: usize = 1440;
 /// Readings of a minute in one observation.
 const MINUTES: usize = 10;
-/// The same as a step in time.
+/// Length of an observation, minutes.
 const WINDOW: i64 = 10;
 
 /// Standard deviations over the generator's ships, the constant (compass and
@@ -31,7 +29,7 @@ fn population(faults: &Faults) -> [f64; 8] {
     sd
 }
 
-/// The bound on the variance of the curve in a field, averaged over headings,
+/// Returns the bound on the variance of the curve in a field, averaged over headings, with
 /// the gyro's constant counted to the curve.
 pub(crate) fn bound(voyage: &Voyage, h_nt: f64, z_nt: f64) -> f64 {
     let left = covariance_of_parameters(voyage);
@@ -95,7 +93,7 @@ fn cos_lat(o: &Observation) -> f64 {
     o.position.unwrap().lat_deg().to_radians().cos()
 }
 
-/// All but swing and drift.
+/// Returns the noise without swing and drift.
 fn other_noise(a: &Observation, b: &Observation, sizes: &Faults) -> f64 {
     let seconds = b.time.unwrap().seconds_since(a.time.unwrap());
     let miles = seconds / 3600.0 * a.sog_kn.unwrap();
@@ -123,7 +121,7 @@ fn other_noise(a: &Observation, b: &Observation, sizes: &Faults) -> f64 {
         + white
 }
 
-/// bx and by walk at random, and it is their last values that are asked for.
+/// bx and by walk at random, and their last values are estimated.
 fn drift(voyage: &Voyage, i: usize, j: usize, slopes: &[[f64; 8]]) -> f64 {
     let last = voyage.observations.last().unwrap().time.unwrap();
     let later = voyage.observations[j].time.unwrap();
@@ -145,7 +143,7 @@ struct Swings {
     later: Vec<RowVector2<f64>>,
 }
 
-/// A minute of the gyro's swing and its rate, and the variances that come to both,
+/// Returns a minute of the gyro's swing and its rate, and the variances that come to both,
 /// as one error, in every minute and at a turn.
 pub(super) fn swing(schuler_deg: f64) -> (Matrix2<f64>, f64, f64) {
     let omega = TAU / 84.4;
@@ -236,7 +234,7 @@ impl Swings {
     }
 }
 
-/// Voyages without storms: those the bound is for.
+/// Returns a voyage without storms, for which the bound holds.
 pub(crate) fn fair(seed: u64, variety: Variety, days: f64, faults: &Faults) -> Voyage {
     let faults = Faults {
         storms_per_month: 0.0,

@@ -1,4 +1,4 @@
-//! What goes wrong with a ship's instruments and the field about her.
+//! Errors of a ship's instruments, and of the field about it.
 
 use super::passage::Passage;
 use super::{Faults, Truth, gauss, needle};
@@ -6,7 +6,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
-/// Everything that goes wrong, stepped by the minute.
+/// All errors, stepped by the minute.
 pub(crate) struct Errors {
     pub(crate) swing: f64,
     rate: f64,
@@ -73,15 +73,17 @@ impl Errors {
         }
     }
 
-    /// What compass, gyro and satellite compass show in the field (variation, H, Z) of the models.
+    /// Returns the readings of compass, gyro and satellite compass in the field (variation,
+    /// H, Z) of the models.
     pub(super) fn read(
         &self,
         truth: &Truth,
         on: &Passage,
         minute: i64,
-        (variation, h, z): (f64, f64, f64),
+        field: (f64, f64, f64),
         rng: &mut ChaCha8Rng,
     ) -> [f64; 3] {
+        let (variation, h, z) = field;
         let true_heading = on.course + gauss(rng);
         let daily = 0.12 * (TAU * (minute as f64 / 1440.0 + on.lon / 360.0)).sin();
         let magnetic = true_heading - variation - (self.crust + daily + self.storm) * 24_000.0 / h;
@@ -101,7 +103,7 @@ impl Errors {
     }
 }
 
-/// One step of a process that forgets `share` of itself and keeps its spread.
+/// Steps a process that forgets `share` of itself and keeps its spread.
 fn step(x: &mut f64, share: f64, sd: f64, rng: &mut ChaCha8Rng) {
     let keep = (-share).exp();
     *x = *x * keep + sd * (1.0 - keep * keep).sqrt() * gauss(rng);

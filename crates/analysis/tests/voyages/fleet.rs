@@ -1,10 +1,10 @@
-//! Ships to which something happens, with the samples that an agent would keep and
-//! the truth of what happened.
+//! Ships with an event, the samples that an agent would keep, and the truth.
 //!
-//! The field is the IGRF's, as the analysis has it; all else is this folder's own.
+//! The field is the IGRF's, as in the analysis; all else is this folder's own.
 
 use super::kept::Kept;
-use super::{Errors, Faults, Passage, Truth, Variety, gauss, needle};
+pub(crate) use super::plan::{Event, Happened, Name, Plan};
+use super::{Errors, Faults, Passage, Truth, gauss, needle};
 use binnacle_compass::angle::{CompassHeading, wrap_180};
 use binnacle_compass::field::{FieldAt, FieldModel};
 use binnacle_compass::model::Parameters;
@@ -15,101 +15,20 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
-/// When every ship sails.
+/// Time at which every ship sails.
 pub(crate) const START: &str = "2026-02-01T00:00:00Z";
-
-/// What is made to happen, once, after the first weeks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Event {
-    Nothing,
-    /// A step of (bx, by) of so many nT in any direction, at sea.
-    Step(f64),
-    /// The same, so many degrees from the way her needle points then.
-    StepBy(f64, f64),
-    /// A step in any direction, of which a third decays over weeks.
-    Lightning(f64),
-    /// All seven parameters, from a port call to the one after the next.
-    Cargo,
-    /// The same for good, and nobody wrote it down.
-    Refit,
-    /// The gyro steps by so many degrees, for some days.
-    GyroFault(f64),
-    /// A magnet of so many nT comes near the compass at sea, and is taken away again
-    /// after an hour and a half to three.
-    Magnet(f64),
-    /// The variation is off by so many degrees for as long.
-    Astray(f64),
-    /// (bx, by) grow by so many nT in any direction, evenly over so many days.
-    Ramp(f64, f64),
-}
-
-/// What sails.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Plan {
-    pub(crate) variety: Variety,
-    pub(crate) days: f64,
-    /// The event is in the week after this day.
-    pub(crate) event_day: f64,
-    pub(crate) event: Event,
-    /// A month.
-    pub(crate) anomalies: f64,
-    /// A year.
-    pub(crate) gyro_faults: f64,
-    /// The sun's seed, if ships of one seed are to meet the same storms.
-    pub(crate) sun: Option<u64>,
-    pub(crate) faults: Faults,
-}
-
-impl Plan {
-    pub(crate) fn of(event: Event, variety: Variety) -> Plan {
-        Plan {
-            variety,
-            days: 100.0,
-            event_day: 60.0,
-            event,
-            anomalies: 1.0,
-            gyro_faults: 1.0,
-            sun: None,
-            faults: Faults {
-                satellite: true,
-                ..Faults::USUAL
-            },
-        }
-    }
-}
-
-/// What happened, and when.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Happened {
-    pub(crate) what: Name,
-    pub(crate) from: Timestamp,
-    pub(crate) to: Option<Timestamp>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Name {
-    Step,
-    Lightning,
-    Cargo,
-    Refit,
-    GyroFault,
-    Brief,
-    Ramp,
-    Storm,
-    Anomaly,
-}
 
 pub(crate) struct Log {
     pub(crate) samples: Vec<Sample>,
-    /// What those are the means of, minute by minute.
+    /// Minutes of which the samples are means.
     pub(crate) minutes: Vec<Sample>,
     pub(crate) happened: Vec<Happened>,
     /// The ship at the end.
     pub(crate) truth: Truth,
-    /// Her magnetism just before the planned step or cargo, and just after.
+    /// Magnetism just before the planned step or cargo, and just after.
     pub(crate) changed: Option<[Parameters; 2]>,
-    /// Her first minute, the sizes of what went wrong, and minutes of the turns that
-    /// upset the gyro.
+    /// First minute, the sizes of the errors, and minutes of the turns that disturb the
+    /// gyro.
     pub(crate) start: Timestamp,
     pub(crate) sizes: Faults,
     pub(crate) turns: Vec<i64>,
@@ -124,7 +43,7 @@ struct Patch {
 }
 
 impl Patch {
-    /// Somewhere the ship will come to in about an hour.
+    /// Makes a patch where the ship will arrive in about an hour.
     fn ahead(on: &Passage, rng: &mut ChaCha8Rng) -> Patch {
         let radius_nm = 3.0 + 9.0 * rng.random::<f64>();
         let ahead_deg = 3.0 * radius_nm / 60.0;
@@ -146,19 +65,29 @@ impl Patch {
     }
 }
 
-/// Everything beside the ship's own errors that the minute brings.
+/// Situation of the ship in a minute.
+#[derive(Clone, Copy)]
+struct Situation {
+    /// True in the first minute in port.
+    arrived: bool,
+    /// Minutes since the last port.
+    at_sea_minutes: i64,
+    compass_deg: f64,
+}
+
+/// Influences beside the ship's own errors, by the minute.
 struct World {
     start: Timestamp,
     happened: Vec<Happened>,
     patch: Option<(Patch, usize)>,
     gyro_fault: Option<(f64, i64)>,
-    /// Degrees of variation, and until when.
-    astray: Option<(f64, i64)>,
+    /// Error of the variation in degrees, and its end.
+    variation_error: Option<(f64, i64)>,
     base: [f64; 7],
     changed: Option<[Parameters; 2]>,
-    /// What lightning left that will fade.
+    /// Decaying part of a lightning strike.
     fading: [f64; 2],
-    /// What a ramp adds a minute, and until when.
+    /// Growth of a ramp by the minute, and its end.
     growing: ([f64; 2], i64),
     state: Stage,
 }
@@ -166,7 +95,7 @@ struct World {
 #[derive(Clone, Copy, PartialEq)]
 enum Stage {
     ToCome,
-    /// Cargo on board for so many port calls yet.
+    /// Cargo on board for this many further port calls.
     Laden(u32),
     /// A magnet of (bx, by) by the compass until some minute.
     Beset([f64; 2], i64),
@@ -195,25 +124,26 @@ impl World {
         }
     }
 
-    /// What is planned, when its time has come.
+    /// Starts the planned event at its time.
     fn plan(
         &mut self,
         plan: &Plan,
         minute: i64,
-        (arrived, at_sea_for, compass_deg): (bool, i64, f64),
+        now: Situation,
         truth: &mut Truth,
         rng: &mut ChaCha8Rng,
     ) {
         let due = minute as f64 >= plan.event_day * 1440.0;
-        let at_sea = at_sea_for > 600;
+        let at_sea = now.at_sea_minutes > 600;
         match (self.state, plan.event) {
             (Stage::ToCome, Event::Step(nt) | Event::StepBy(nt, _) | Event::Lightning(nt))
                 if due && at_sea =>
             {
                 let before = truth.parameters;
                 let (sin, cos) = match plan.event {
-                    // Compass north lies as far to port of the bow as she heads east of it.
-                    Event::StepBy(_, from_needle) => (from_needle - compass_deg).to_radians(),
+                    // Compass north lies as far to port of the bow as the ship heads east
+                    // of it.
+                    Event::StepBy(_, from_needle) => (from_needle - now.compass_deg).to_radians(),
                     _ => TAU * rng.random::<f64>(),
                 }
                 .sin_cos();
@@ -232,7 +162,7 @@ impl World {
                 self.note(name, minute);
                 self.state = Stage::Over;
             }
-            (Stage::ToCome, Event::Cargo | Event::Refit) if due && arrived => {
+            (Stage::ToCome, Event::Cargo | Event::Refit) if due && now.arrived => {
                 let before = truth.parameters;
                 self.base = before.to_array();
                 let sd = [600.0, 0.005, 600.0, 0.0025, 0.008, 0.003, 0.003];
@@ -250,7 +180,7 @@ impl World {
                     Stage::Over
                 };
             }
-            (Stage::Laden(calls), _) if arrived => {
+            (Stage::Laden(calls), _) if now.arrived => {
                 self.state = Stage::Laden(calls - 1);
                 if calls == 1 {
                     truth.parameters = Parameters::from_array(self.base);
@@ -276,9 +206,9 @@ impl World {
                 self.end(Name::Brief, minute);
                 self.state = Stage::Over;
             }
-            (Stage::ToCome, Event::Astray(degrees)) if due && at_sea => {
+            (Stage::ToCome, Event::VariationError(degrees)) if due && at_sea => {
                 let side = if rng.random::<bool>() { 1.0 } else { -1.0 };
-                self.astray = Some((side * degrees, minute + brief_minutes(rng)));
+                self.variation_error = Some((side * degrees, minute + brief_minutes(rng)));
                 self.note(Name::Brief, minute);
                 self.state = Stage::Over;
             }
@@ -296,7 +226,7 @@ impl World {
             truth.parameters.bx_nt += self.growing.0[0];
             truth.parameters.by_nt += self.growing.0[1];
         }
-        // Half of what fades is gone in a fortnight.
+        // Half of the decaying part is gone in a fortnight.
         for (fading, b) in self
             .fading
             .iter_mut()
@@ -315,7 +245,7 @@ impl World {
         self.note(Name::GyroFault, minute);
     }
 
-    /// What comes by chance: the error of the variation and of the gyro.
+    /// Returns the chance errors of variation and gyro.
     fn chance(
         &mut self,
         plan: &Plan,
@@ -347,11 +277,16 @@ impl World {
             self.gyro_fault = None;
             self.end(Name::GyroFault, minute);
         }
-        if self.astray.is_some_and(|(_, until)| until <= minute) {
-            self.astray = None;
+        if self
+            .variation_error
+            .is_some_and(|(_, until)| until <= minute)
+        {
+            self.variation_error = None;
             self.end(Name::Brief, minute);
         }
-        let mut variation = self.astray.map_or(0.0, |astray| astray.0);
+        let mut variation = self
+            .variation_error
+            .map_or(0.0, |variation_error| variation_error.0);
         if let Some((patch, index)) = &self.patch {
             let off = patch.at(on);
             variation += off;
@@ -369,7 +304,7 @@ fn brief_minutes(rng: &mut ChaCha8Rng) -> i64 {
     90 + (90.0 * rng.random::<f64>()) as i64
 }
 
-/// The minutes at which storms begin, and how long they last.
+/// Returns the minutes at which storms begin, and their durations.
 fn storms(sun: u64, days: f64, a_month: f64) -> Vec<(i64, f64)> {
     let mut rng = ChaCha8Rng::seed_from_u64(sun);
     let mut storms: Vec<(i64, f64)> = Vec::new();
@@ -384,7 +319,7 @@ fn storms(sun: u64, days: f64, a_month: f64) -> Vec<(i64, f64)> {
     storms
 }
 
-/// What her compass shows, were nothing wrong but the ship's magnetism.
+/// Returns the compass's reading with no error but the ship's magnetism.
 fn shown_deg(truth: &Truth, passage: &Passage, field: &FieldAt) -> f64 {
     let position = Position::new(passage.lat, passage.lon).unwrap();
     let here = field.at(position, 0.0).unwrap();
@@ -392,7 +327,7 @@ fn shown_deg(truth: &Truth, passage: &Passage, field: &FieldAt) -> f64 {
     needle(&truth.parameters, magnetic, here.h_nt(), here.z_nt)
 }
 
-/// Sails a ship and keeps what her agent would.
+/// Sails a ship and keeps the samples of its agent.
 pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let faults = &plan.faults.of_one_ship(&mut rng);
@@ -408,7 +343,7 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         ..*faults
     };
     let shared = shared.unwrap_or_default();
-    let mut truth = Truth::of_any_ship(faults, &mut rng);
+    let mut truth = Truth::for_unknown_vessel(faults, &mut rng);
     let mut passage = Passage::new(plan.variety, &mut rng);
     let mut errors = Errors::new(faults, &mut rng);
     let start = Timestamp::parse(START).unwrap();
@@ -417,20 +352,20 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         happened: Vec::new(),
         patch: None,
         gyro_fault: None,
-        astray: None,
+        variation_error: None,
         base: [0.0; 7],
         changed: None,
         fading: [0.0; 2],
         growing: ([0.0; 2], 0),
         state: Stage::ToCome,
     };
-    let mut field = FieldAt::time(FieldModel::Igrf14, start).unwrap();
+    let mut field = FieldAt::from_time(FieldModel::Igrf14, start).unwrap();
     let mut kept = Kept::default();
     let mut turns = Vec::new();
     let mut at_sea_for = 0;
     for minute in 0..(plan.days * 1440.0) as i64 {
         if minute % 1440 == 0 {
-            field = FieldAt::time(FieldModel::Igrf14, world.time(minute + 720)).unwrap();
+            field = FieldAt::from_time(FieldModel::Igrf14, world.time(minute + 720)).unwrap();
         }
         let turned = passage.minute(&mut rng);
         if turned.abs() > 20.0 {
@@ -448,13 +383,16 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         let alongside = passage.berth_minutes > 0.0;
         let arrived = alongside && at_sea_for > 0;
         at_sea_for = if alongside { 0 } else { at_sea_for + 1 };
-        let compass_deg = match plan.event {
-            Event::StepBy(..) => shown_deg(&truth, &passage, &field),
-            _ => 0.0,
+        let now = Situation {
+            arrived,
+            at_sea_minutes: at_sea_for,
+            compass_deg: match plan.event {
+                Event::StepBy(..) => shown_deg(&truth, &passage, &field),
+                _ => 0.0,
+            },
         };
-        let now = (arrived, at_sea_for, compass_deg);
         world.plan(plan, minute, now, &mut truth, &mut rng);
-        let (astray, gyro_off) = world.chance(plan, minute, &passage, &errors, &mut rng);
+        let (variation_error, gyro_off) = world.chance(plan, minute, &passage, &errors, &mut rng);
         if alongside || passage.turning_minutes > 0.0 {
             kept.break_off();
             continue;
@@ -462,7 +400,7 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         let position = Position::new(passage.lat, passage.lon).unwrap();
         let here = field.at(position, 0.0).unwrap();
         let (variation, h, z) = (here.declination().degrees_east(), here.h_nt(), here.z_nt);
-        let met = (variation + astray, h, z);
+        let met = (variation + variation_error, h, z);
         let read = errors.read(&truth, &passage, minute, met, &mut rng);
         let at = Sample {
             time: world.time(minute),
@@ -475,7 +413,7 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
             spread_deg: Some(0.4),
             windows: 6,
         };
-        kept.take(at, passage.course, read, gyro_off, (faults, &mut rng));
+        kept.take(at, passage.course, read, gyro_off, faults, &mut rng);
     }
     let last = kept.samples.last().unwrap();
     let here = field.at(last.position, 0.0).unwrap();

@@ -1,4 +1,4 @@
-//! What a ship's readings come to: one a minute, and means of ten.
+//! Samples from a ship's readings: one a minute, and means of ten.
 
 use super::{Faults, Mean, gauss};
 use binnacle_compass::angle::{CompassHeading, TrueHeading};
@@ -15,19 +15,20 @@ pub(super) struct Kept {
 }
 
 impl Kept {
-    /// What was begun of a mean is dropped.
+    /// Drops an incomplete mean.
     pub(super) fn break_off(&mut self) {
         self.mean = Mean::default();
     }
 
-    /// Takes a minute's reading, but for the gyro's fault; ten of them may be wild.
+    /// Adds a minute's reading, without the gyro's fault; ten of them may be wild.
     pub(super) fn take(
         &mut self,
         at: Sample,
         course: f64,
         read: [f64; 3],
         gyro_off: f64,
-        (faults, rng): (&Faults, &mut ChaCha8Rng),
+        faults: &Faults,
+        rng: &mut ChaCha8Rng,
     ) {
         let sample = |[compass, gyro, satellite]: [f64; 3], windows| Sample {
             compass: CompassHeading::new(compass).unwrap(),

@@ -1,4 +1,4 @@
-//! How soon any detector could find a change of magnetism: Lorden's bound.
+//! Least delay of any detector of a change of magnetism: Lorden's bound.
 //!
 //! With one false alarm in γ rows the mean delay cannot, as γ grows, be less than
 //! until the information of the changed rows against unchanged ones reaches ln γ
@@ -44,16 +44,16 @@ pub(crate) struct Row {
     pub(crate) miles: f64,
     pub(crate) cos_lat: f64,
     pub(crate) h_nt: f64,
-    /// A gyro's speed error, were all of it left, degrees.
+    /// Full speed error of a gyro, degrees.
     pub(crate) northerly_deg: f64,
-    /// What the change adds to its deviation, degrees.
+    /// Change of the deviation, degrees.
     pub(crate) shift_deg: f64,
 }
 
-/// What no ship differs in, standard deviations in degrees.
+/// Noise that is the same for all ships, standard deviations in degrees.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Readings {
-    /// New in every minute's reading of compass, gyro and satellite compass.
+    /// White noise of a minute's reading of compass, gyro and satellite compass.
     pub(crate) white_deg: [f64; 3],
     /// The satellite compass's error over some thirty minutes.
     pub(crate) multipath_deg: f64,
@@ -67,8 +67,8 @@ impl Readings {
     };
 }
 
-/// Rows from the change until the information reaches `ln_run_length`; none where
-/// nothing changed or the voyage ends before.
+/// Returns the rows from the change until the information reaches `ln_run_length`; none
+/// without a change or where the voyage ends before.
 pub(crate) fn rows_needed(log: &Log, ln_run_length: f64) -> Option<usize> {
     let changed = log.changed?;
     let event = |name: Name| log.happened.iter().find(|h| h.what == name);
@@ -77,15 +77,15 @@ pub(crate) fn rows_needed(log: &Log, ln_run_length: f64) -> Option<usize> {
     let samples = log.samples.partition_point(|s| s.time < begin);
     let samples = &log.samples[samples..];
     let rows = rows(samples, log.start, at, &changed);
-    let told = information(&rows, &log.turns, &log.sizes, Readings::USUAL);
-    let reached = told.iter().position(|nats| *nats >= ln_run_length)?;
+    let reported = information(&rows, &log.turns, &log.sizes, Readings::USUAL);
+    let reached = reported.iter().position(|ratio| *ratio >= ln_run_length)?;
     let first = rows.iter().position(|row| row.shift_deg != 0.0)?;
     Some(reached + 1 - first)
 }
 
-/// The information of the first day's rows after cargo was discharged for the ship
-/// without it, against the ship with it, nats.
-pub(crate) fn nats_of_discharge(log: &Log) -> Option<f64> {
+/// Returns the information (log-likelihood ratio) of the first day's rows after the
+/// discharge of cargo, for the ship without it against the ship with it.
+pub(crate) fn information_of_discharge(log: &Log) -> Option<f64> {
     let [before, laden] = log.changed?;
     let cargo = log.happened.iter().find(|h| h.what == Name::Cargo)?;
     let at = cargo.to?;
@@ -95,14 +95,14 @@ pub(crate) fn nats_of_discharge(log: &Log) -> Option<f64> {
     let place = |time: Timestamp| log.samples.partition_point(|s| s.time < time);
     let samples = &log.samples[place(begin)..place(until)];
     let rows = rows(samples, log.start, at, &[laden, before]);
-    let told = information(&rows, &log.turns, &log.sizes, Readings::USUAL);
-    told.last().copied()
+    let reported = information(&rows, &log.turns, &log.sizes, Readings::USUAL);
+    reported.last().copied()
 }
 
-/// The information of the rows with cargo on board for the ship with it, against the ship
-/// without it, nats: with less than the logarithm of the rows between two false alarms, no
-/// detector can find it.
-pub(crate) fn nats_while_laden(log: &Log) -> Option<f64> {
+/// Returns the information (log-likelihood ratio) of the rows with cargo on board, for the
+/// ship with it against the ship without it: with less than the logarithm of the rows
+/// between two false alarms, no detector can find it.
+pub(crate) fn information_while_laden(log: &Log) -> Option<f64> {
     let changed = log.changed?;
     let cargo = log.happened.iter().find(|h| h.what == Name::Cargo)?;
     let begin = cargo.from.plus_seconds(-RUN_UP_S);
@@ -114,8 +114,8 @@ pub(crate) fn nats_while_laden(log: &Log) -> Option<f64> {
         cargo.from,
         &changed,
     );
-    let told = information(&rows, &log.turns, &log.sizes, Readings::USUAL);
-    told.last().copied()
+    let reported = information(&rows, &log.turns, &log.sizes, Readings::USUAL);
+    reported.last().copied()
 }
 
 fn rows(
@@ -134,7 +134,7 @@ fn rows(
             let east = wrap_180(here.lon_deg() - last.lon_deg()) * lat.cos();
             60.0 * north.hypot(east)
         });
-        let field = FieldAt::time(FieldModel::Igrf14, sample.time).unwrap();
+        let field = FieldAt::from_time(FieldModel::Igrf14, sample.time).unwrap();
         let field = field.at(here, 0.0).unwrap();
         let (h, z) = (field.h_nt(), field.z_nt);
         // The generator breaks gyros only.
@@ -156,7 +156,8 @@ fn rows(
     samples.iter().map(of).collect()
 }
 
-/// Information for the shift against none in all rows so far, nats, after each.
+/// Returns the information (log-likelihood ratio) for the shift against none in all rows so
+/// far, after each.
 pub(crate) fn information(
     rows: &[Row],
     turns: &[i64],
@@ -167,7 +168,7 @@ pub(crate) fn information(
     let mut minute = rows.first().map_or(0, |row| row.end - MINUTES);
     let begin = minute;
     let mut turns = turns.iter().skip_while(|turn| **turn <= begin).peekable();
-    let mut nats = 0.0;
+    let mut ratio = 0.0;
     let mut after_each = Vec::with_capacity(rows.len());
     for row in rows {
         let minutes = row.end - minute;
@@ -180,8 +181,8 @@ pub(crate) fn information(
                 filter.add_to_mean(row);
             }
         }
-        nats += filter.take(row.shift_deg);
-        after_each.push(nats);
+        ratio += filter.take(row.shift_deg);
+        after_each.push(ratio);
     }
     after_each
 }
@@ -189,9 +190,9 @@ pub(crate) fn information(
 struct Filter<'a> {
     sizes: &'a Faults,
     readings: Readings,
-    /// Of the errors, given the rows so far.
+    /// Covariance of the errors, given the rows so far.
     covariance: SMatrix<f64, STATES, STATES>,
-    /// How far the shift has misled the estimate of each.
+    /// Bias of the estimate of each by the shift.
     misled: SVector<f64, STATES>,
 }
 
@@ -266,8 +267,8 @@ impl Filter<'_> {
         self.misled = adding * self.misled;
     }
 
-    /// Takes in the deviations by both references, and says what the shift in them
-    /// adds to the information.
+    /// Reads the deviations by both references, and returns the information that the shift
+    /// adds.
     fn take(&mut self, shift_deg: f64) -> f64 {
         let [gyro, satellite, compass] = MEANS;
         let mut load = SMatrix::<f64, 2, STATES>::zeros();

@@ -15,6 +15,8 @@ mod kept;
 #[allow(dead_code, reason = "only the comparison of detectors asks for it")]
 pub(crate) mod lorden;
 mod passage;
+#[allow(dead_code, reason = "only what is about changes asks for it")]
+mod plan;
 pub(crate) mod tally;
 
 use binnacle_analysis::fit::Observation;
@@ -32,7 +34,7 @@ pub(crate) use passage::Passage;
 /// The gyro's share of the reference where both are read.
 const GYRO_SHARE_OF_BOTH: f64 = 0.7;
 
-/// How much of the range of magnetic latitudes a voyage sees.
+/// Range of magnetic latitudes on a voyage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Variety {
     /// Both hemispheres.
@@ -43,21 +45,21 @@ pub(crate) enum Variety {
     Poor,
 }
 
-/// What happened on a voyage and what was true of the ship.
+/// A voyage and its truth.
 pub(crate) struct Voyage {
     pub(crate) observations: Vec<Observation>,
     pub(crate) truth: Truth,
     /// Its first minute.
     #[allow(dead_code, reason = "only the bound asks")]
     pub(crate) start: Timestamp,
-    /// The sizes of what went wrong on this ship.
+    /// Sizes of the errors on this ship.
     pub(crate) sizes: Faults,
-    /// Minutes of the turns that upset the gyro.
+    /// Minutes of the turns that disturb the gyro.
     #[allow(dead_code, reason = "only the bound asks")]
     pub(crate) turns: Vec<i64>,
 }
 
-/// The ship as she is.
+/// True state of a ship.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Truth {
     pub(crate) parameters: Parameters,
@@ -65,7 +67,7 @@ pub(crate) struct Truth {
     pub(crate) alignment_deg: f64,
     /// In every measured deviation, but not in the true one.
     pub(crate) gyro_constant_deg: f64,
-    /// The same of the satellite compass, where there is one.
+    /// Constant error of the satellite compass, where there is one.
     pub(crate) satellite_constant_deg: f64,
     /// Field at the end of the voyage.
     pub(crate) h_nt: f64,
@@ -73,7 +75,7 @@ pub(crate) struct Truth {
 }
 
 impl Voyage {
-    /// The constant error of the reference that the deviations were measured by.
+    /// Returns the constant error of the reference that the deviations were measured by.
     pub(crate) fn reference_constant_deg(&self) -> f64 {
         let truth = &self.truth;
         if self.sizes.satellite {
@@ -84,12 +86,11 @@ impl Voyage {
     }
 }
 
-/// The sizes of what goes wrong.
+/// Sizes of errors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Faults {
     pub(crate) ship: f64,
-    /// How far ships differ: standard deviation of the logarithm of each size
-    /// of noise.
+    /// Difference between ships: standard deviation of the logarithm of each noise level.
     pub(crate) variety: f64,
     pub(crate) gyro_constant_deg: f64,
     pub(crate) schuler_deg: f64,
@@ -101,7 +102,7 @@ pub(crate) struct Faults {
     pub(crate) storms_per_month: f64,
     /// Random walk of bx and by, standard deviation in thirty days.
     pub(crate) drift_nt: f64,
-    /// Whether a satellite compass is on board beside the gyro.
+    /// True if a satellite compass is on board beside the gyro.
     pub(crate) satellite: bool,
 }
 
@@ -121,7 +122,7 @@ impl Faults {
         satellite: false,
     };
 
-    /// Those of one ship out of many.
+    /// Returns the sizes of one ship out of many.
     fn of_one_ship(&self, rng: &mut ChaCha8Rng) -> Faults {
         let mut vary = |size: f64| size * (self.variety * gauss(rng)).exp();
         Faults {
@@ -201,8 +202,8 @@ pub(crate) fn sail(seed: u64, variety: Variety, days: f64, faults: &Faults) -> V
     sail_on(|lat, lon, _| dipole(lat, lon), seed, variety, days, faults)
 }
 
-/// The same on an earth whose declination, H and Z follow from latitude,
-/// longitude and time.
+/// Returns a passage on an earth whose declination, H and Z follow from latitude, longitude
+/// and time.
 pub(crate) fn sail_on(
     earth: impl Fn(f64, f64, Timestamp) -> (f64, f64, f64),
     seed: u64,
@@ -214,7 +215,7 @@ pub(crate) fn sail_on(
     let sizes = faults.of_one_ship(&mut rng);
     let faults = &sizes;
     let mut turns = Vec::new();
-    let mut truth = Truth::of_any_ship(faults, &mut rng);
+    let mut truth = Truth::for_unknown_vessel(faults, &mut rng);
     let mut passage = Passage::new(variety, &mut rng);
     let mut errors = Errors::new(faults, &mut rng);
     let start = Timestamp::parse("2026-09-01T00:00:00Z").unwrap();
@@ -290,7 +291,7 @@ pub(crate) fn sail_on(
 }
 
 impl Truth {
-    fn of_any_ship(faults: &Faults, rng: &mut ChaCha8Rng) -> Truth {
+    fn for_unknown_vessel(faults: &Faults, rng: &mut ChaCha8Rng) -> Truth {
         let sd = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008];
         Truth {
             parameters: Parameters::from_array(sd.map(|s| s * faults.ship * gauss(rng))),
@@ -325,7 +326,7 @@ impl Mean {
     }
 }
 
-/// Where the needle settles on a magnetic heading: Poisson's equations over λ.
+/// Returns the needle's heading on a magnetic heading: Poisson's equations over λ.
 fn needle(p: &Parameters, magnetic_deg: f64, h: f64, z: f64) -> f64 {
     let (sin, cos) = magnetic_deg.to_radians().sin_cos();
     let (forward, starboard) = (h * cos, -h * sin);

@@ -1,11 +1,11 @@
-//! Where a ship sails: from port to port, in legs on courses that are about right.
+//! Passage of a ship: from port to port, in legs on courses that are about right.
 
 use super::{Variety, gauss};
 use binnacle_compass::angle::wrap_180;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// Where the ship is and what she does.
+/// Place and motion of the ship.
 pub(crate) struct Passage {
     variety: Variety,
     ports: Vec<(f64, f64)>,
@@ -36,7 +36,7 @@ impl Passage {
         }
     }
 
-    /// One minute on; by how much she turned to a new leg.
+    /// Moves on by a minute, and returns the turn to a new leg.
     pub(crate) fn minute(&mut self, rng: &mut ChaCha8Rng) -> f64 {
         if self.berth_minutes > 0.0 {
             self.berth_minutes -= 1.0;

@@ -1,5 +1,5 @@
-//! What many voyages came to: how often the band held the truth, and how far off
-//! the prediction was.
+//! Tally of many voyages: how often the band held the truth, and the error of the
+//! prediction.
 
 use super::{Faults, Truth, Variety, Voyage, dipole, predicted, sail, true_deviation};
 use binnacle_analysis::fit::{RobustOptions, fit_robust};
@@ -7,7 +7,7 @@ use binnacle_compass::angle::wrap_180;
 use binnacle_compass::model::Model;
 use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
 
-/// Where else the band is looked at: latitude and longitude.
+/// Other places at which the band is tested: latitude and longitude.
 const ELSEWHERE: [(f64, f64); 5] = [
     (60.0, 0.0),
     (30.0, -40.0),
@@ -16,7 +16,7 @@ const ELSEWHERE: [(f64, f64); 5] = [
     (-20.0, 100.0),
 ];
 
-/// Predictions held against the truth.
+/// Predictions compared with the truth.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Held {
     pub(crate) headings: u32,
@@ -57,7 +57,7 @@ impl Held {
     }
 }
 
-/// What a set of voyages came to.
+/// Tally of a set of voyages.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) ships: u32,
@@ -67,8 +67,8 @@ pub(crate) struct Tally {
     /// At the ship's own place, and at other magnetic latitudes.
     pub(crate) own: Held,
     pub(crate) away: Held,
-    /// The same against the truth plus the reference's constant, with the
-    /// constant's part left out of the band.
+    /// Predictions compared with the truth plus the reference's constant, without the
+    /// constant's part in the band.
     pub(crate) own_shape: Held,
     pub(crate) away_shape: Held,
 }
@@ -116,17 +116,18 @@ impl Tally {
     }
 }
 
-/// What is known beforehand of the reference's constant.
+/// Returns options with the prior of the reference's constant.
 pub(crate) fn options(faults: &Faults) -> RobustOptions {
     let one = REFERENCE_CONSTANT_SD_DEG;
-    RobustOptions::of_any_ship(if faults.satellite {
+    RobustOptions::for_unknown_vessel(if faults.satellite {
         one / 2.0_f64.sqrt()
     } else {
         one
     })
 }
 
-fn look(voyage: &Voyage, model: &Model, (h, z): (f64, f64), constant: f64, held: &mut Held) {
+fn look(voyage: &Voyage, model: &Model, field: (f64, f64), constant: f64, held: &mut Held) {
+    let (h, z) = field;
     for heading in 0..36 {
         let compass = f64::from(heading) * 10.0;
         let truth = true_deviation(&voyage.truth, compass, h, z) + constant;

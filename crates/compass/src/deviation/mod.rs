@@ -1,84 +1,86 @@
-//! Deviation, exactly: from compass or magnetic heading, and back.
+//! Exact deviation, from compass or magnetic heading and back.
 //!
-//! The five coefficients are the exact ones of docs/science.md, §3, not the
-//! handbook's approximate ones; both directions are closed forms, so nothing
-//! here iterates. A ship on which some headings are ambiguous is refused by
-//! name: where this module answers, compass and magnetic headings correspond
-//! one to one.
+//! The five coefficients are the exact ones of docs/science.md, §3, not the handbooks'
+//! approximate ones. Both directions are closed forms: nothing here iterates. A ship with
+//! ambiguous headings is refused by name. Every deviation returned belongs to exactly one
+//! pair of compass and magnetic headings.
 
-mod check;
-mod model;
+mod approximate;
+mod model_check;
+mod prediction;
 
-pub use check::{ModelError, NAMES};
-pub use model::{NORMAL_95, Prediction};
+pub use approximate::CoefficientsInDegrees;
+pub use model_check::{ModelError, PARAMETER_NAMES};
+pub use prediction::{NORMAL_95, NORMAL_99, Prediction};
 
 use crate::angle::{CompassHeading, Deviation, MagneticHeading};
 use crate::model::Parameters;
 use crate::ship::{EarthField, PARAMETERS};
 
-/// The exact coefficients A to E at one place: dimensionless; × 57.3 they are
-/// near the handbook's degrees.
+/// Exact coefficients A to E at one place: dimensionless; × 57.3 they are near the
+/// handbook's degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
-    /// (χ21 − χ12)/2λ: the same on every heading, everywhere.
+    /// (χ21 − χ12)/2λ: constant over headings and places.
     pub a: f64,
     /// (bx + χ13 Z)/λH.
     pub b: f64,
     /// (by + χ23 Z)/λH.
     pub c: f64,
-    /// (χ11 − χ22)/2λ, the same everywhere.
+    /// (χ11 − χ22)/2λ, constant over places.
     pub d: f64,
-    /// (χ21 + χ12)/2λ, the same everywhere.
+    /// (χ21 + χ12)/2λ, constant over places.
     pub e: f64,
 }
 
-/// Why there is no deviation to tell.
+/// Error of a deviation that cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum DeviationError {
-    /// The earth's field given is not one that a compass can point by.
-    #[error("horizontal field {h_nt} nT with vertical field {z_nt} nT is no field to steer by")]
-    NoField {
-        /// Horizontal field as given, nT.
+    /// The given earth's field is not finite or has no horizontal part.
+    #[error(
+        "horizontal field {h_nt} nT, vertical field {z_nt} nT: not valid for a magnetic compass"
+    )]
+    InvalidField {
+        /// Given horizontal field, nT.
         h_nt: f64,
-        /// Vertical field as given, nT.
+        /// Given vertical field, nT.
         z_nt: f64,
     },
-    /// The horizontal field is too weak for a compass, whatever the ship.
+    /// The horizontal field is too weak for any ship's compass.
     #[error("horizontal field of {h_nt:.0} nT; a compass needs at least {needed_nt:.0} nT")]
     FieldTooWeak {
-        /// What it is.
+        /// Horizontal field, nT.
         h_nt: f64,
-        /// What there must be.
+        /// Least horizontal field for a compass, nT.
         needed_nt: f64,
     },
     /// A parameter is NaN or infinite.
     #[error("the ship's magnetic parameters are not all finite")]
     NotFinite,
-    /// The ship overcomes the earth's field on some heading: one compass
-    /// heading then stands for several magnetic ones, or for none.
+    /// The ship's field exceeds the earth's on some heading: a compass heading then stands
+    /// for several magnetic headings, or for none.
     #[error(
         "compass headings are ambiguous: on magnetic heading {magnetic_deg:.1} the directive \
          force is {directive_force:.3} of its mean"
     )]
     Ambiguous {
-        /// The magnetic heading with the least directive force, degrees.
+        /// Magnetic heading with the least directive force, degrees.
         magnetic_deg: f64,
-        /// The directive force there as a share of its mean, λH.
+        /// Directive force there as a share of its mean, λH.
         directive_force: f64,
     },
 }
 
 impl Coefficients {
-    /// The exact coefficients of a ship in a given field.
+    /// Computes the exact coefficients of a ship in a given field.
     ///
     /// # Errors
-    /// When the field is not finite with a positive horizontal part, or a
-    /// parameter is not finite. Ambiguity is not looked for here: see
-    /// [`Coefficients::check_unambiguous`].
+    /// When the field is not finite with a positive horizontal part, or a parameter is not
+    /// finite. Ambiguity is not checked here: see [`Coefficients::check_unambiguous`].
     pub fn new(parameters: &Parameters, earth: EarthField) -> Result<Coefficients, DeviationError> {
         let EarthField { h_nt, z_nt } = earth;
         if !(h_nt > 0.0 && h_nt.is_finite() && z_nt.is_finite()) {
-            return Err(DeviationError::NoField { h_nt, z_nt });
+            return Err(DeviationError::InvalidField { h_nt, z_nt });
         }
         let p = parameters;
         let coefficients = Coefficients {
@@ -95,16 +97,15 @@ impl Coefficients {
         Ok(coefficients)
     }
 
-    /// Makes sure that every compass heading stands for one magnetic heading.
+    /// Checks that every compass heading stands for one magnetic heading.
     ///
-    /// While the directive force is positive on every heading, deviation stays
-    /// within 90° and the field at the compass goes once around as the ship
-    /// does.
+    /// While the directive force is positive on every heading, deviation stays within 90°
+    /// and the field at the compass turns once as the ship does.
     ///
     /// # Errors
     /// [`DeviationError::Ambiguous`] with the worst heading otherwise.
     pub fn check_unambiguous(&self) -> Result<(), DeviationError> {
-        // The usual ship is clear of it by far, and this costs nothing.
+        // Most ships pass this cheap sufficient test.
         if self.b.hypot(self.c) + self.d.hypot(self.e) < 1.0 {
             return Ok(());
         }
@@ -118,18 +119,18 @@ impl Coefficients {
         })
     }
 
-    /// Force towards magnetic north at the compass on a magnetic heading, as a
-    /// share of its mean over all headings, λH.
+    /// Computes the force towards magnetic north on a magnetic heading, as a share of its
+    /// mean over all headings, λH.
     pub fn directive_force(&self, magnetic_rad: f64) -> f64 {
         let (s1, c1) = magnetic_rad.sin_cos();
         let (s2, c2) = (2.0 * magnetic_rad).sin_cos();
         1.0 + self.b * c1 - self.c * s1 + self.d * c2 - self.e * s2
     }
 
-    /// Deviation on a magnetic heading, radians (docs/science.md, eq. 7).
+    /// Computes the deviation on a magnetic heading, radians (docs/science.md, eq. 7).
     ///
-    /// Right for any ship whose field at the compass is not nil; unique
-    /// backwards only after [`Coefficients::check_unambiguous`].
+    /// Correct for any ship whose field at the compass is not zero; invertible only after
+    /// [`Coefficients::check_unambiguous`].
     pub fn deviation_at_magnetic_rad(&self, magnetic_rad: f64) -> f64 {
         let (s1, c1) = magnetic_rad.sin_cos();
         let (s2, c2) = (2.0 * magnetic_rad).sin_cos();
@@ -138,9 +139,9 @@ impl Coefficients {
         east.atan2(north)
     }
 
-    /// Deviation on a compass heading, radians, in closed form
-    /// (docs/science.md, eq. 8); `None` where no or more than one magnetic
-    /// heading could give this reading.
+    /// Computes the deviation on a compass heading, radians, in closed form
+    /// (docs/science.md, eq. 8); `None` where no or more than one magnetic heading gives
+    /// this reading.
     pub fn deviation_at_compass_rad(&self, compass_rad: f64) -> Option<f64> {
         let across = AtCompass::new(self, compass_rad)?;
         let deviation =
@@ -148,10 +149,10 @@ impl Coefficients {
         Some(crate::ship::wrap_pi(deviation))
     }
 
-    /// Deviation on a compass heading.
+    /// Computes the deviation on a compass heading.
     ///
     /// # Errors
-    /// [`DeviationError::Ambiguous`] when some heading of this ship is.
+    /// [`DeviationError::Ambiguous`] when some heading of this ship is ambiguous.
     pub fn deviation_at_compass(
         &self,
         compass: CompassHeading,
@@ -163,10 +164,10 @@ impl Coefficients {
         deviation_from(radians)
     }
 
-    /// Deviation on a magnetic heading.
+    /// Computes the deviation on a magnetic heading.
     ///
     /// # Errors
-    /// [`DeviationError::Ambiguous`] when some heading of this ship is.
+    /// [`DeviationError::Ambiguous`] when some heading of this ship is ambiguous.
     pub fn deviation_at_magnetic(
         &self,
         magnetic: MagneticHeading,
@@ -175,18 +176,18 @@ impl Coefficients {
         deviation_from(self.deviation_at_magnetic_rad(magnetic.radians()))
     }
 
-    /// The magnetic heading behind a compass heading.
+    /// Converts a compass heading to magnetic.
     ///
     /// # Errors
-    /// [`DeviationError::Ambiguous`] when some heading of this ship is.
+    /// [`DeviationError::Ambiguous`] when some heading of this ship is ambiguous.
     pub fn magnetic(&self, compass: CompassHeading) -> Result<MagneticHeading, DeviationError> {
         Ok(compass + self.deviation_at_compass(compass)?)
     }
 
-    /// What the compass will read on a magnetic heading.
+    /// Converts a magnetic heading to compass.
     ///
     /// # Errors
-    /// [`DeviationError::Ambiguous`] when some heading of this ship is.
+    /// [`DeviationError::Ambiguous`] when some heading of this ship is ambiguous.
     pub fn compass(&self, magnetic: MagneticHeading) -> Result<CompassHeading, DeviationError> {
         Ok(magnetic - self.deviation_at_magnetic(magnetic)?)
     }
@@ -199,7 +200,8 @@ impl Coefficients {
         }
     }
 
-    /// The magnetic heading, in [0, 2π), with the least directive force, and that force.
+    /// Finds the magnetic heading, in [0, 2π), with the least directive force, and that
+    /// force.
     fn least_directive_force(&self) -> (f64, f64) {
         const STEPS: u32 = 72;
         let step = std::f64::consts::TAU / f64::from(STEPS);
@@ -227,14 +229,14 @@ impl Coefficients {
     }
 }
 
-/// The three sums that decide the deviation on a compass heading ζ: the force
-/// across the card is H (K3 + K2 cos δ − K1 sin δ), nil where it comes to rest.
+/// Sums that determine the deviation on a compass heading ζ: the force across the card is H
+/// (K3 + K2 cos δ − K1 sin δ), zero at rest.
 struct AtCompass {
     k1: f64,
     k2: f64,
     k3: f64,
-    /// √(K1² + K2² − K3²): how firmly the heading is held, positive.
-    firmness: f64,
+    /// √(K1² + K2² − K3²): stability of the heading, positive.
+    stability: f64,
 }
 
 impl AtCompass {
@@ -245,21 +247,21 @@ impl AtCompass {
         let k1 = 1.0 - d * c2 + e * s2;
         let k2 = a + d * s2 + e * c2;
         let k3 = b * s1 + c * c1;
-        let firmness_squared = k1 * k1 + k2 * k2 - k3 * k3;
-        (firmness_squared > 0.0).then(|| AtCompass {
+        let stability_squared = k1 * k1 + k2 * k2 - k3 * k3;
+        (stability_squared > 0.0).then(|| AtCompass {
             k1,
             k2,
             k3,
-            firmness: firmness_squared.sqrt(),
+            stability: stability_squared.sqrt(),
         })
     }
 }
 
-/// Deviation on a compass heading, radians, and its gradient at that fixed
-/// compass heading in the order of [`Parameters`] (docs/science.md, eq. 10).
+/// Computes the deviation on a compass heading, radians, and its gradient at that fixed
+/// compass heading, in the order of [`Parameters`] (docs/science.md, eq. 10).
 ///
 /// # Errors
-/// When the field is none to steer by or headings are ambiguous.
+/// When the field is invalid or headings are ambiguous.
 pub fn linearised_at_compass(
     parameters: &Parameters,
     compass_rad: f64,
@@ -271,12 +273,15 @@ pub fn linearised_at_compass(
     let deviation = coefficients
         .deviation_at_compass_rad(compass_rad)
         .ok_or_else(ambiguous)?;
-    let firmness = AtCompass::new(&coefficients, compass_rad)
+    let stability = AtCompass::new(&coefficients, compass_rad)
         .ok_or_else(ambiguous)?
-        .firmness;
+        .stability;
     let [hx, hy, z] = earth.in_ship_axes(compass_rad + deviation);
     let (sin, cos) = compass_rad.sin_cos();
-    let (s, c) = (sin / (earth.h_nt * firmness), cos / (earth.h_nt * firmness));
+    let (s, c) = (
+        sin / (earth.h_nt * stability),
+        cos / (earth.h_nt * stability),
+    );
     let gradient = [s, z * s, c, z * c, (hx * s - hy * c) / 2.0, hy * s, hx * c];
     Ok((deviation, gradient))
 }

@@ -4,7 +4,7 @@ use crate::ship::wrap_pi;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// A ship whose compass answers on every heading, and where she is.
+/// A ship with unambiguous headings, and the field at its place.
 fn usable_ship(rng: &mut ChaCha8Rng) -> (crate::ship::ShipMagnetism, EarthField, Coefficients) {
     loop {
         let (ship, earth) = (random_ship(rng), random_earth(rng));
@@ -51,8 +51,8 @@ fn compass_to_magnetic_and_back_is_where_it_began() {
     }
 }
 
-/// Turning the compass in its binnacle by ε is a ship with other parameters,
-/// whose readings are all ε less: headings cannot tell the two apart.
+/// A compass turned in its binnacle by ε is equivalent to a ship with other parameters and
+/// all readings less by ε: headings cannot tell the two apart.
 #[test]
 fn a_turned_lubber_line_is_another_ship_with_every_reading_shifted() {
     let mut rng = ChaCha8Rng::seed_from_u64(4);
@@ -108,7 +108,7 @@ fn the_gradient_at_a_fixed_compass_heading_is_that_of_finite_differences() {
     }
 }
 
-/// The refusal begins exactly where the directive force ends.
+/// The refusal begins exactly where the directive force reaches zero.
 #[test]
 fn a_ship_stronger_than_the_earth_is_refused_by_name() {
     let only_b = |b: f64| Coefficients {
@@ -169,7 +169,7 @@ fn no_field_and_no_number_are_refused() {
         (20_000.0, f64::INFINITY),
     ] {
         let refused = Coefficients::new(&parameters, EarthField { h_nt, z_nt }).unwrap_err();
-        assert!(matches!(refused, DeviationError::NoField { .. }));
+        assert!(matches!(refused, DeviationError::InvalidField { .. }));
     }
     let mut broken = parameters;
     broken.chi12 = f64::NAN;
@@ -183,9 +183,9 @@ fn no_field_and_no_number_are_refused() {
     );
 }
 
-/// Table 2 of Basterretxea-Iribar, Sotés & Uriarte 2016, with Dakar's vertical
-/// field as it was computed with (docs/science.md, §6). Parameters are printed
-/// to 1e-4 gauss, deviations to a tenth of a degree.
+/// Table 2 of Basterretxea-Iribar, Sotés & Uriarte 2016, with the vertical field that was
+/// used for Dakar (docs/science.md, §6). Parameters are printed to 1e-4 gauss, deviations
+/// to a tenth of a degree.
 #[test]
 fn the_papers_parameters_give_the_papers_deviations() {
     let parameters =
@@ -201,8 +201,8 @@ fn the_papers_parameters_give_the_papers_deviations() {
             h_nt: number(8) * 1e5,
             z_nt: z_gauss * 1e5,
         };
-        // The table is computed: its true heading, variation and deviation are
-        // exact, its compass column is measured.
+        // True heading, variation and deviation of the table are exact; its compass column
+        // is measured.
         let compass = number(2) - number(7) - number(3);
         let (deviation, _) =
             linearised_at_compass(&parameters, compass.to_radians(), earth).unwrap();

@@ -1,29 +1,29 @@
-//! The models' Gauss coefficients, read once from the embedded files.
+//! Gauss coefficients of the models, read once from the embedded files.
 //!
-//! Terms are kept order by order: all degrees of order 0, then of order 1 and
-//! so on, as the synthesis runs through them. A table's epochs ascend; between
-//! two of them coefficients are linear in the decimal year.
+//! Terms are stored order by order: all degrees of order 0, then of order 1 and so on, the
+//! sequence of the synthesis. A table's epochs ascend. Interpolation two epochs, coefficients are
+//! linear in the decimal year.
 
 use super::FieldModel;
 use std::sync::LazyLock;
 
-/// The highest degree of either model; WMM2025 ends at 12 and has zeros at 13.
+/// Highest degree of either model; WMM2025 ends at 12 and has zeros at 13.
 pub(super) const MAX_DEGREE: usize = 13;
-/// Places for every degree from 0 and order.
+/// Number of terms: every degree from 0, and every order of it.
 pub(super) const TERMS: usize = (MAX_DEGREE + 1) * (MAX_DEGREE + 2) / 2;
 
-/// Where a degree and order stand among the terms.
-pub(super) const fn place(degree: usize, order: usize) -> usize {
-    // Orders below this one take MAX_DEGREE + 1, MAX_DEGREE, … places.
+/// Index of a degree and order among the terms.
+pub(super) const fn term_index(degree: usize, order: usize) -> usize {
+    // Lower orders take MAX_DEGREE + 1, MAX_DEGREE, … terms.
     order * (2 * MAX_DEGREE + 3 - order) / 2 + degree - order
 }
 
 /// Schmidt quasi-normalised Gauss coefficients, nT, at one instant.
 #[derive(Clone, Debug)]
 pub(super) struct Terms {
-    /// Of the cosines.
+    /// Coefficients of the cosines.
     pub(super) g: [f64; TERMS],
-    /// Of the sines.
+    /// Coefficients of the sines.
     pub(super) h: [f64; TERMS],
 }
 
@@ -32,7 +32,7 @@ const NO_TERMS: Terms = Terms {
     h: [0.0; TERMS],
 };
 
-/// A model: coefficients at each of its epochs.
+/// Coefficients of a model at each of its epochs.
 pub(super) struct Table {
     years: Vec<f64>,
     terms: Vec<Terms>,
@@ -47,8 +47,8 @@ impl Table {
         self.years[self.years.len() - 1]
     }
 
-    /// The epochs around a decimal year; `None` outside the model or for NaN.
-    pub(super) fn around(&'static self, year: f64) -> Option<Between> {
+    /// Brackets a decimal year by two epochs; `None` outside the model or for NaN.
+    pub(super) fn bracket(&'static self, year: f64) -> Option<Interpolation> {
         if !(self.first_year()..=self.last_year()).contains(&year) {
             return None;
         }
@@ -56,7 +56,7 @@ impl Table {
         // The last year itself belongs to the interval that it ends.
         let later = later.min(self.years.len() - 1);
         let (from, to) = (self.years[later - 1], self.years[later]);
-        Some(Between {
+        Some(Interpolation {
             before: &self.terms[later - 1],
             after: &self.terms[later],
             share: (year - from) / (to - from),
@@ -65,15 +65,15 @@ impl Table {
 }
 
 /// An instant between two epochs.
-pub(super) struct Between {
+pub(super) struct Interpolation {
     before: &'static Terms,
     after: &'static Terms,
-    /// How much of the way to the later one has gone, 0 to 1.
+    /// Elapsed fraction of the interval, 0 to 1.
     share: f64,
 }
 
-impl Between {
-    /// The coefficients at the instant.
+impl Interpolation {
+    /// Interpolates the coefficients at the instant.
     pub(super) fn terms(&self) -> Terms {
         let between = |before: &[f64; TERMS], after: &[f64; TERMS]| {
             std::array::from_fn(|index| before[index] + self.share * (after[index] - before[index]))
@@ -85,7 +85,7 @@ impl Between {
     }
 }
 
-/// The table of a model, read on first use.
+/// Returns the table of a model, read on first use.
 pub(super) fn table(model: FieldModel) -> &'static Table {
     static IGRF14: LazyLock<Table> = LazyLock::new(|| {
         read_shc(include_str!("../../data/IGRF14.shc")).expect("the embedded IGRF-14 file is whole")
@@ -111,14 +111,14 @@ fn read_shc(text: &str) -> Option<Table> {
         let row = numbers(line)?;
         let (degree, order) = (row.first()?, row.get(1)?);
         let values = row.get(2..2 + years.len())?;
-        let place = place_of(*degree, order.abs())?;
+        let index = parse_index(*degree, order.abs())?;
         for (epoch, value) in terms.iter_mut().zip(values) {
             let side = if *order < 0.0 {
                 &mut epoch.h
             } else {
                 &mut epoch.g
             };
-            side[place] = *value;
+            side[index] = *value;
         }
     }
     (years.len() >= 2).then_some(Table { years, terms })
@@ -133,11 +133,11 @@ fn read_cof(text: &str) -> Option<Table> {
     let mut terms = vec![NO_TERMS; 2];
     for line in lines.take_while(|line| !line.starts_with("9999")) {
         let [degree, order, g, h, g_yearly, h_yearly] = numbers(line)?.try_into().ok()?;
-        let place = place_of(degree, order)?;
-        terms[0].g[place] = g;
-        terms[0].h[place] = h;
-        terms[1].g[place] = g + YEARS_VALID * g_yearly;
-        terms[1].h[place] = h + YEARS_VALID * h_yearly;
+        let index = parse_index(degree, order)?;
+        terms[0].g[index] = g;
+        terms[0].h[index] = h;
+        terms[1].g[index] = g + YEARS_VALID * g_yearly;
+        terms[1].h[index] = h + YEARS_VALID * h_yearly;
     }
     Some(Table {
         years: vec![first_year, first_year + YEARS_VALID],
@@ -151,10 +151,10 @@ fn numbers(line: &str) -> Option<Vec<f64>> {
         .collect()
 }
 
-fn place_of(degree: f64, order: f64) -> Option<usize> {
+fn parse_index(degree: f64, order: f64) -> Option<usize> {
     let (degree, order) = (degree as usize, order as usize);
     (1..=MAX_DEGREE).contains(&degree).then_some(())?;
-    (order <= degree).then(|| place(degree, order))
+    (order <= degree).then(|| term_index(degree, order))
 }
 
 #[cfg(test)]
@@ -162,14 +162,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_degree_and_order_has_its_own_place() {
+    fn every_degree_and_order_has_its_own_index() {
         let mut seen = [false; TERMS];
         for order in 0..=MAX_DEGREE {
             for degree in order..=MAX_DEGREE {
-                assert!(!std::mem::replace(&mut seen[place(degree, order)], true));
+                assert!(!std::mem::replace(
+                    &mut seen[term_index(degree, order)],
+                    true
+                ));
             }
         }
-        assert!(seen.iter().all(|place| *place));
+        assert!(seen.iter().all(|is_taken| *is_taken));
     }
 
     #[test]
@@ -178,17 +181,17 @@ mod tests {
         assert_eq!(igrf.years.len(), 27);
         assert!(igrf.years.is_sorted());
         // 195 numbers of degrees 1 to 13, none of them zero in 2020 but few.
-        let in_2020 = igrf.around(2020.0).unwrap().terms();
+        let in_2020 = igrf.bracket(2020.0).unwrap().terms();
         let count = |side: &[f64]| side.iter().filter(|value| **value != 0.0).count();
         assert!(count(&in_2020.g) + count(&in_2020.h) > 190);
-        let wmm = table(FieldModel::Wmm2025).around(2025.0).unwrap().terms();
+        let wmm = table(FieldModel::Wmm2025).bracket(2025.0).unwrap().terms();
         assert!(count(&wmm.g) + count(&wmm.h) > 160);
     }
 
     #[test]
     fn between_epochs_coefficients_are_linear() {
         let table = table(FieldModel::Igrf14);
-        let dipole = |year| table.around(year).unwrap().terms().g[place(1, 0)];
+        let dipole = |year| table.bracket(year).unwrap().terms().g[term_index(1, 0)];
         assert!((dipole(2025.0) + 29_350.0).abs() < 1e-9);
         assert!((dipole(2030.0) + 29_287.0).abs() < 1e-9);
         assert!((dipole(2027.5) - f64::midpoint(dipole(2025.0), dipole(2030.0))).abs() < 1e-9);

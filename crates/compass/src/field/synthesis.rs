@@ -1,12 +1,12 @@
-//! The sum of spherical harmonics, regular at the poles.
+//! Spherical harmonic synthesis, regular at the poles.
 //!
-//! Schmidt quasi-normalised Legendre functions of order 1 and up are carried
-//! divided by sin θ, Q = P/sin θ, so that no term of the sum is ever divided by
-//! it (docs/science.md, eq. 1–3). Orders run outside, degrees inside: three
-//! numbers of each recursion are all that is remembered.
+//! Schmidt quasi-normalised Legendre functions of order 1 and up are divided by sin θ, Q =
+//! P/sin θ, so that no term of the sum is ever divided by it (docs/science.md, eq. 1–3).
+//! The outer loop runs over orders, the inner over degrees. Each recursion keeps three
+//! numbers.
 
 use super::Field;
-use super::coefficients::{MAX_DEGREE, TERMS, Terms, place};
+use super::coefficients::{MAX_DEGREE, TERMS, Terms, term_index};
 use crate::position::Position;
 use std::sync::LazyLock;
 
@@ -17,7 +17,7 @@ const FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// The models' reference sphere, metres.
 const REFERENCE_M: f64 = 6_371_200.0;
 
-/// Factors of the recursions, which depend on degree and order only.
+/// Factors of the recursions, functions of degree and order alone.
 struct Factors {
     /// (2n + 1)/√((n + 1)² − m²), from n to n + 1.
     cosine: [f64; TERMS],
@@ -43,7 +43,7 @@ static FACTORS: LazyLock<Factors> = LazyLock::new(|| {
         }
         for degree in order..=MAX_DEGREE {
             let n = degree as f64;
-            let index = place(degree, order);
+            let index = term_index(degree, order);
             let root = (n * n - m * m).sqrt();
             factors.root[index] = root;
             let next_root = ((n + 1.0).powi(2) - m * m).sqrt();
@@ -85,7 +85,7 @@ impl Geocentric {
     }
 }
 
-/// The field of these coefficients at a place; finite for every position.
+/// Computes the field at a place; finite for every position.
 pub(super) fn synthesise(terms: &Terms, position: Position, altitude_m: f64) -> Field {
     let place = Geocentric::new(position.lat_deg(), altitude_m);
     let (north, east, down) = geocentric_field(terms, &place, position.lon_deg());
@@ -96,7 +96,7 @@ pub(super) fn synthesise(terms: &Terms, position: Position, altitude_m: f64) -> 
     }
 }
 
-/// North, east and down in the geocentric frame.
+/// Sums north, east and down in the geocentric frame.
 fn geocentric_field(terms: &Terms, at: &Geocentric, lon_deg: f64) -> (f64, f64, f64) {
     let factors = &*FACTORS;
     // (a/r)^(n+2) for each degree.
@@ -122,7 +122,7 @@ fn geocentric_field(terms: &Terms, at: &Geocentric, lon_deg: f64) -> (f64, f64, 
             q_diagonal *= factors.diagonal[order] * at.sin;
         }
         let (mut q_before, mut q) = (0.0, q_diagonal);
-        let range = place(order, order)..=place(MAX_DEGREE, order);
+        let range = term_index(order, order)..=term_index(MAX_DEGREE, order);
         let rows = terms.g[range.clone()]
             .iter()
             .zip(&terms.h[range.clone()])
@@ -151,8 +151,7 @@ fn geocentric_field(terms: &Terms, at: &Geocentric, lon_deg: f64) -> (f64, f64, 
     (north, east, down)
 }
 
-/// The terms of order 0, where the functions have no factor sin θ to spare:
-/// their part of north and down.
+/// Sums the terms of order 0, whose functions have no factor sin θ: north and down parts.
 fn zonal(
     terms: &Terms,
     factors: &Factors,
@@ -166,7 +165,7 @@ fn zonal(
     let mut slope = 0.0;
     for (degree, power) in powers.iter().enumerate().skip(1) {
         let n = degree as f64;
-        let index = place(degree, 0);
+        let index = term_index(degree, 0);
         slope = at.cos * slope + n * p;
         let next = factors.cosine[index - 1] * at.cos * p - factors.before[index - 1] * p_before;
         p_before = p;

@@ -2,7 +2,7 @@ use super::*;
 
 fn at(model: FieldModel, lat: f64, lon: f64, altitude_m: f64, year: f64) -> Field {
     let position = Position::new(lat, lon).unwrap();
-    FieldAt::year(model, year)
+    FieldAt::from_year(model, year)
         .unwrap()
         .at(position, altitude_m)
         .unwrap()
@@ -79,7 +79,7 @@ fn no_component_leaps_at_a_pole_or_beside_it() {
     }
 }
 
-/// At the pole itself every meridian must describe the same horizontal vector.
+/// At the pole itself, all meridians give the same horizontal vector.
 #[test]
 fn all_meridians_agree_on_the_field_at_the_pole() {
     for (pole, turn) in [(90.0, -1.0), (-90.0, 1.0)] {
@@ -156,7 +156,7 @@ fn a_date_outside_the_model_is_refused_by_name() {
     let refused = field(FieldModel::Igrf14, position, 0.0, time).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "igrf14 knows the years 1900 to 2030, not 1850.4137"
+        "igrf14 covers the years 1900 to 2030, not 1850.4137"
     );
     for (model, year) in [
         (FieldModel::Igrf14, 1899.99),
@@ -165,7 +165,7 @@ fn a_date_outside_the_model_is_refused_by_name() {
         (FieldModel::Wmm2025, 2024.99),
         (FieldModel::Wmm2025, f64::INFINITY),
     ] {
-        assert!(FieldAt::year(model, year).is_err(), "{model} {year}");
+        assert!(FieldAt::from_year(model, year).is_err(), "{model} {year}");
     }
     for (model, year) in [
         (FieldModel::Igrf14, 1900.0),
@@ -173,13 +173,13 @@ fn a_date_outside_the_model_is_refused_by_name() {
         (FieldModel::Wmm2025, 2025.0),
         (FieldModel::Wmm2025, 2030.0),
     ] {
-        assert!(FieldAt::year(model, year).is_ok(), "{model} {year}");
+        assert!(FieldAt::from_year(model, year).is_ok(), "{model} {year}");
     }
 }
 
 #[test]
 fn an_absurd_altitude_is_refused() {
-    let model = FieldAt::year(FieldModel::Igrf14, 2026.0).unwrap();
+    let model = FieldAt::from_year(FieldModel::Igrf14, 2026.0).unwrap();
     let position = Position::new(10.0, 20.0).unwrap();
     for altitude in [f64::NAN, f64::INFINITY, -6.4e6, 1e7] {
         let refused = model.at(position, altitude).unwrap_err();

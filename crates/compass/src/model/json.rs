@@ -1,11 +1,10 @@
-//! The written form of a model (docs/model.md): what `fit --json` prints, the
-//! server stores and the bridge is sent.
+//! Written form of a model (docs/model.md), as printed by `fit --json`, stored by the
+//! server and sent on board.
 //!
-//! What always holds: the version stands first; a form without one is version 1,
-//! as models were written before they had it; a form of another version is
-//! refused by its number, because its other fields may mean something else.
-//! A change of what a field means takes the next number; a new
-//! field that may be absent does not.
+//! Invariants: the version comes first. A form without one is version 1, as in models
+//! written before it existed. A form of another version is refused by its number, because
+//! its other fields may have another meaning. A changed meaning takes the next number; a
+//! new optional field does not.
 
 use super::{Covariance, Identifiable, Model, Parameters, Quality};
 use serde::de::Error;
@@ -14,22 +13,31 @@ use serde::{Deserialize, Deserializer, Serialize};
 const VERSION: u32 = 1;
 
 #[derive(Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = Model))]
 #[serde(rename = "Model")]
 pub(super) struct Form {
     #[serde(default = "version", deserialize_with = "known_version")]
+    #[cfg_attr(feature = "openapi", schema(required))]
     version: u32,
     parameters_over_lambda: Parameters,
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
     constant_deg: f64,
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required, value_type = Option<Vec<Vec<f64>>>))]
     covariance: Option<Covariance>,
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
     identifiable: Option<Identifiable>,
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
     rms_deg: Option<f64>,
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
     samples_used: u64,
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
     samples_rejected: u64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     quality: Option<Quality>,
@@ -80,3 +88,6 @@ impl From<Model> for Form {
         }
     }
 }
+
+#[cfg(feature = "openapi")]
+crate::openapi::named_schema!(Model, "Model", Form);

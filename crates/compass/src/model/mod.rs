@@ -1,15 +1,17 @@
-//! A ship's magnetic model as it is fitted, stored and sent to the bridge.
+//! A vessel's fitted magnetic model, as stored and sent on board.
 
 mod json;
 
 use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// The seven ratios that headings alone can tell: Poisson's parameters over λ.
+/// The seven ratios that headings determine: Poisson's parameters over λ.
 ///
 /// Fields are in nanotesla, soft-iron coefficients dimensionless. Ship axes:
 /// x forward, y starboard, z down.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = ParametersOverLambda))]
 pub struct Parameters {
     /// Fore-and-aft permanent field over λ (P), nT, forward positive.
     pub bx_nt: f64,
@@ -27,54 +29,56 @@ pub struct Parameters {
     pub chi21: f64,
 }
 
-/// Variances and covariances of the seven parameters, in the order of
-/// [`Parameters`], and of the constant, last: units are the products of nT, 1
-/// and degrees.
+/// Covariance of the seven parameters, in the order of [`Parameters`], and of the constant,
+/// last. Units are the products of nT, 1 and degrees.
 pub type Covariance = [[f64; 8]; 8];
 
-/// Which of the seven parameters and the constant the data determine; what is
-/// `false` rests on the prior.
+/// Parameters determined by the data; a `false` one rests on the prior.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[allow(clippy::struct_excessive_bools)] // one answer for each parameter, by name
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[allow(clippy::struct_excessive_bools)] // one for each parameter, by name
 pub struct Identifiable {
-    /// bx is known apart from χ13 Z.
+    /// bx separately from χ13 Z.
     pub bx_nt: bool,
-    /// χ13 is known apart from bx.
+    /// χ13 separately from bx.
     pub chi13: bool,
-    /// by is known apart from χ23 Z.
+    /// by separately from χ23 Z.
     pub by_nt: bool,
-    /// χ23 is known apart from by.
+    /// χ23 separately from by.
     pub chi23: bool,
-    /// D is known.
+    /// D.
     pub chi11_minus_chi22: bool,
-    /// χ12 is known.
+    /// χ12.
     pub chi12: bool,
-    /// χ21 is known.
+    /// χ21.
     pub chi21: bool,
-    /// The constant is known apart from A: never from headings alone.
+    /// The constant separately from A: never from headings alone.
     pub constant_deg: bool,
 }
 
-/// What a model rests on.
+/// Evidence behind a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Quality {
-    /// How many samples with independent errors would tell the deviation, where
-    /// the ship was last, as well as all her samples together: a gyro's errors
-    /// last for hours and days, so that samples repeat each other.
+    /// Effective sample size: the number of samples with independent errors that would
+    /// determine the deviation, at the last position, as well as all samples together. A
+    /// gyro's errors last for hours and days, so samples repeat each other.
     pub effective_samples: f64,
-    /// Standard error of the worst known combination of parameters over that of
-    /// the best, by the data alone and in units of what ships differ by; none
-    /// where the data leave one quite open.
+    /// Condition of the fit: standard error of the worst known combination of parameters
+    /// over that of the best, by the data alone and in units of the prior; none where the
+    /// data leave a combination undetermined.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub condition: Option<f64>,
-    /// What part of the knowledge of each parameter is from the data.
+    /// Share of each parameter's knowledge that comes from the data.
     pub from_data: FromData,
-    /// What the model should not be trusted for.
+    /// Uses for which the model should not be trusted.
     pub cautions: Vec<Caution>,
 }
 
-/// For each parameter and the constant the part of its variance before the data
-/// that they have taken away: 0 rests on the prior alone, 1 on the data alone.
+/// Share of the prior variance of each parameter and the constant that the data removed: 0
+/// rests on the prior alone, 1 on the data alone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[allow(missing_docs)] // the names are those of the parameters
 pub struct FromData {
     pub bx_nt: f64,
@@ -87,83 +91,84 @@ pub struct FromData {
     pub constant_deg: f64,
 }
 
-/// What a model should not be trusted for, though it is the best there is.
+/// A limitation of a model that is otherwise the best available.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(tag = "caution", rename_all = "snake_case")]
 pub enum Caution {
-    /// The data come from too narrow a range of magnetic latitudes: only the sums
-    /// bx + χ13 Z and by + χ23 Z are known, so that elsewhere the prior rules.
+    /// The range of magnetic latitudes is too narrow: only the sums bx + χ13 Z and by + χ23
+    /// Z are known, so elsewhere the prior dominates.
     #[error(
-        "the magnetic latitudes sailed tell bx + chi13 Z and by + chi23 Z but not their parts: \
-         far from there the band rests on ships at large"
+        "the magnetic latitudes of the samples determine only the sums bx + chi13 Z and \
+         by + chi23 Z: far from there the band rests on experience with other ships"
     )]
     OneMagneticLatitude,
-    /// The magnetic latitudes would tell the parts of bx + χ13 Z and by + χ23 Z, but
-    /// there are not yet samples enough.
+    /// The range of magnetic latitudes is wide enough to separate bx from χ13 Z and by from
+    /// χ23 Z, but the samples are too few.
     #[error(
-        "too few samples yet to tell the parts of bx + chi13 Z and by + chi23 Z: where the ship \
-         has not been the band rests on ships at large"
+        "too few samples to separate bx from chi13 Z and by from chi23 Z: in other waters the \
+         band rests on experience with other ships"
     )]
     FewSamples,
-    /// Without times nobody knows which samples share one error of a gyro.
+    /// The rows have no times, so samples with a common gyro error are not known.
     #[error(
-        "rows without times of their own: which of them share one error of the reference is not \
-         known; the band takes rows on like headings for half a day's"
+        "the rows have no times, so common errors of the reference are unknown: the band treats \
+         rows on similar headings as those of half a day"
     )]
     NoTimes,
-    /// Residuals are larger than sound instruments leave.
+    /// Residuals are larger than those of sound instruments.
     #[error(
-        "residuals of {residual_deg:.1} degrees are more than sound instruments leave: check \
-         compass, reference and columns before the figures are believed"
+        "residuals of {residual_deg:.1} degrees are larger than those of sound instruments: \
+         check compass, reference and columns before using the figures"
     )]
     LargeResiduals {
         /// Robust standard deviation of the residuals, degrees.
         residual_deg: f64,
     },
-    /// The last samples stand long after the others, and the ship may have changed.
+    /// The last samples follow a long gap, in which the ship may have changed.
     #[error(
-        "no samples for {days:.0} days before the last ones: the model is for {last}, and its \
-         band allows for what a ship may change in such a time"
+        "no samples for {days:.0} days before the last ones: the model applies at {last}, and \
+         its band allows for changes of the ship in that time"
     )]
     LongGap {
-        /// How long there were none.
+        /// Length of the gap, days.
         days: f64,
-        /// When the last sample was taken.
+        /// Time of the last sample.
         last: Timestamp,
     },
-    /// Some samples lie where the horizontal field is so weak that a compass is
-    /// sluggish and small fields disturb it much.
+    /// Some samples are from a weak horizontal field, where a compass is sluggish and small
+    /// fields disturb it.
     #[error("samples from a horizontal field of only {h_nt:.0} nT")]
     WeakField {
-        /// The weakest horizontal field.
+        /// Weakest horizontal field, nT.
         h_nt: f64,
     },
-    /// One that a later version of the program gives, and this one does not know.
-    #[error("a caution that this version of the program does not know")]
+    /// A caution from a later version of the program.
+    #[error("a caution unknown to this version of the program")]
     #[serde(other)]
     Other,
 }
 
-/// A fitted model: what `fit` prints, what the server stores, and what the
-/// bridge steers by. Its JSON is described in docs/model.md.
+/// A fitted model: output of `fit`, stored by the server, and used on board. Its JSON is
+/// described in docs/model.md.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "json::Form", into = "json::Form")]
 pub struct Model {
-    /// The seven ratios to λ.
+    /// Seven ratios to λ.
     pub parameters_over_lambda: Parameters,
-    /// What is added to the exact deviation: alignment, reference and variation
-    /// offsets, degrees, east positive.
+    /// Constant added to the exact deviation: alignment, reference and variation offsets,
+    /// degrees, east positive.
     pub constant_deg: f64,
-    /// 8 × 8, or none when the model came without one.
+    /// Covariance, 8 × 8; none for a model without one.
     pub covariance: Option<Covariance>,
-    /// Which parameters the data determine.
+    /// Parameters determined by the data.
     pub identifiable: Option<Identifiable>,
     /// Root mean square of the residuals, degrees.
     pub rms_deg: Option<f64>,
-    /// Samples that carried weight.
+    /// Number of samples with weight.
     pub samples_used: u64,
-    /// Samples that were left out or held to be outliers.
+    /// Number of samples left out or rejected as outliers.
     pub samples_rejected: u64,
-    /// What it rests on; none when the model came without.
+    /// Evidence behind the model; none for a model without it.
     pub quality: Option<Quality>,
 }

@@ -1,45 +1,51 @@
-//! The advice itself, as it is printed, stored and shown.
+//! Sailing advice, as printed, stored and displayed.
 
 use serde::{Deserialize, Serialize};
 
-/// What to sail next.
+/// Headings and magnetic latitudes that would narrow the band most.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct SailNext {
     /// Length of a watch, hours.
     pub watch_hours: f64,
-    /// What is left of the band when all is learnt that headings can show: half
-    /// of it, from the reference's own constant error, degrees.
+    /// Remaining band after headings have shown everything that they can: half its width,
+    /// from the reference's own constant error, degrees.
     pub floor_deg: f64,
-    /// The headings to sail here, for the band here.
+    /// Headings to sail here, for the band here.
+    #[cfg_attr(feature = "openapi", schema(value_type = HeadingAdvice))]
     pub here: Advice<HeadingSuggestion>,
-    /// The magnetic latitudes to visit, for the band in other waters; none
-    /// where the model holds nowhere else.
+    /// Magnetic latitudes to visit, for the band elsewhere; none where the model holds
+    /// nowhere else.
+    #[cfg_attr(feature = "openapi", schema(required, value_type = Option<LatitudeAdvice>))]
     pub elsewhere: Option<Advice<LatitudeSuggestion>>,
 }
 
-/// The band in some waters and how to narrow it.
+/// Band in some waters, with suggestions that narrow it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Advice<S> {
-    /// The band now.
+    /// Present band.
     pub band: Band,
-    /// Nothing sailed can narrow the band's root mean square by more, degrees.
+    /// Greatest possible reduction of the band's root mean square, degrees.
     pub narrows_at_most_deg: f64,
-    /// What narrows it most, the best first; empty where nothing does noticeably.
+    /// Suggestions, the most effective first; empty where none has a noticeable effect.
     pub suggestions: Vec<S>,
 }
 
 /// Half the width of the 95 % band over all headings in some waters, degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Band {
     /// Root mean square.
     pub rms_deg: f64,
-    /// On the worst heading.
+    /// Band on the worst heading.
     pub worst_deg: f64,
 }
 
-/// A range of compass headings, clockwise from one to the other; it may pass
-/// north, and 0 to 360 is any heading.
+/// A range of compass headings, clockwise from first to last. It may pass north; 0 to 360
+/// is any heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HeadingRange {
     /// First heading, degrees, 0 to 345.
     pub heading_from_deg: u16,
@@ -47,29 +53,45 @@ pub struct HeadingRange {
     pub heading_to_deg: u16,
 }
 
-/// Headings on which a watch is worth having.
+/// A range of headings on which a watch narrows the band.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct HeadingSuggestion {
-    /// Anywhere in this range.
+    /// Range of headings.
     #[serde(flatten)]
+    #[cfg_attr(feature = "openapi", schema(inline))]
     pub range: HeadingRange,
-    /// The band after a watch on any heading of the range, at most.
+    /// Greatest band after one watch on any heading of the range.
     pub after_one: Band,
-    /// The band after three watches on one heading of the range, at most.
+    /// Greatest band after three watches on one heading of the range.
     pub after_three: Band,
 }
 
-/// Magnetic latitudes in which a watch is worth having.
+/// A range of magnetic latitudes in which a watch narrows the band.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct LatitudeSuggestion {
     /// Southern edge, degrees of magnetic latitude, north positive.
     pub magnetic_latitude_from_deg: i16,
     /// Northern edge.
     pub magnetic_latitude_to_deg: i16,
-    /// On which headings to stand three watches there, in this order.
+    /// Headings of three watches there, in this order.
     pub headings: Vec<HeadingRange>,
-    /// The band after the first of them, at most.
+    /// Greatest band after the first watch.
     pub after_one: Band,
-    /// The band after all three, at most.
+    /// Greatest band after all three watches.
     pub after_three: Band,
 }
+
+/// Schema of the advice on headings.
+#[cfg(feature = "openapi")]
+enum HeadingAdvice {}
+
+/// Schema of the advice on magnetic latitudes.
+#[cfg(feature = "openapi")]
+enum LatitudeAdvice {}
+
+#[cfg(feature = "openapi")]
+crate::openapi::named_schema!(HeadingAdvice, "HeadingAdvice", Advice<HeadingSuggestion>);
+#[cfg(feature = "openapi")]
+crate::openapi::named_schema!(LatitudeAdvice, "LatitudeAdvice", Advice<LatitudeSuggestion>);

@@ -1,4 +1,4 @@
-//! An analysis of one compass as it is printed, stored and shown.
+//! Result of the analysis of one compass, as printed, stored and displayed.
 
 use super::change::{Cause, Change};
 use super::diagnostic::SampleDiagnostic;
@@ -12,24 +12,24 @@ use crate::position::Position;
 use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// The name of the estimator behind an analysis, to be kept with its models.
-/// It changes whenever the same input may lead to another model.
+/// Name of the estimator, kept with its models. It changes whenever the same input may lead
+/// to another model.
 pub const ESTIMATOR: &str = "state-space-28";
 
-/// What an analysis found.
+/// Result of an analysis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Analysis {
-    /// [`ESTIMATOR`] of the version that did it.
+    /// [`ESTIMATOR`] of the version that made the analysis.
     pub estimator: String,
-    /// The intervals of constant magnetism in order of time; at least one.
+    /// Intervals of constant magnetism in order of time; at least one.
     pub epochs: Vec<Epoch>,
-    /// What changed the ship's magnetism, or seemed to, in order of time.
+    /// Actual and suspected changes of the ship's magnetism, in order of time.
     #[serde(default)]
     pub changes: Vec<Change>,
-    /// What the logbook does to the samples that people should know, a sentence each.
+    /// Notable effects of the logbook on the samples, a sentence each.
     #[serde(default)]
     pub notices: Vec<String>,
-    /// Every distinct sample in order of time, with what became of it.
+    /// Every distinct sample in order of time, with its diagnosis.
     pub samples: Vec<SampleDiagnostic>,
     /// Headings and magnetic latitudes of the samples with a deviation.
     pub coverage: Coverage,
@@ -37,23 +37,23 @@ pub struct Analysis {
     pub data_from: Option<Timestamp>,
     /// Time of the last sample.
     pub data_until: Option<Timestamp>,
-    /// Where the last sample was taken, and the earth's field there and then.
+    /// Position of the last sample, with the earth's field at that place and time.
     pub last_place: Option<LastPlace>,
 }
 
 impl Analysis {
-    /// The last epoch: the one the ship sails in now.
+    /// Returns the last epoch, which is the present one.
     pub fn current_epoch(&self) -> Option<&Epoch> {
         self.epochs.last()
     }
 }
 
-/// Where and when the last sample was taken, and the earth's field there.
+/// Position and time of the last sample, with the earth's field there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LastPlace {
-    /// When.
+    /// Time of the sample.
     pub time: Timestamp,
-    /// Where.
+    /// Position of the sample.
     #[serde(flatten)]
     pub position: Position,
     /// Variation, degrees, east positive.
@@ -64,34 +64,33 @@ pub struct LastPlace {
     pub z_nt: f64,
 }
 
-/// An interval in which the ship's magnetism is taken for constant, but for
-/// slow drift.
+/// An interval of constant ship's magnetism, except for slow drift.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Epoch {
-    /// Its beginning; none for the first, which reaches back without end.
+    /// Beginning; none for the first epoch, which reaches back without end.
     pub from: Option<Timestamp>,
-    /// Its end; none for the last, which goes on.
+    /// End; none for the last epoch, which continues.
     pub to: Option<Timestamp>,
-    /// The entry of the logbook that ended the epoch before; none for the first,
-    /// and where a change ended it that the samples show.
+    /// Logbook entry that ended the previous epoch; none for the first epoch, and where a
+    /// detected change ended it.
     pub begun_by: Option<LogbookKind>,
-    /// The likeliest cause of the change by which it began, where the samples show
-    /// one; also where that change was over.
+    /// Likeliest cause of the detected change that began it; also set where that change
+    /// ended.
     #[serde(default)]
     pub begun_by_change: Option<Cause>,
-    /// The place in the list of the earlier epoch whose magnetism it is again.
+    /// Index of the earlier epoch with the same magnetism.
     #[serde(default)]
     pub resumes: Option<usize>,
     /// Time of its first sample.
     pub data_from: Option<Timestamp>,
     /// Time of its last sample.
     pub data_until: Option<Timestamp>,
-    /// How gyro and satellite compass compare.
+    /// Comparison of gyro and satellite compass.
     pub references: Option<ReferenceCheck>,
-    /// How large each kind of noise was found to be.
+    /// Estimated standard deviation of each kind of noise.
     pub noise: Option<NoiseLevels>,
-    /// The fit; exactly one of `model` and `refusal` is present.
+    /// Fitted model; exactly one of `model` and `refusal` is present.
     pub model: Option<Model>,
-    /// Why there is no model.
+    /// Reason for the absence of a model.
     pub refusal: Option<FitError>,
 }

@@ -1,86 +1,91 @@
-//! A change as the analysis tells of it.
+//! A change in the result of an analysis.
 
 use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// Something that changed what the compass shows, or seemed to.
+/// An actual or apparent change of the compass's deviation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Change {
-    /// When it most likely happened.
+    /// Likeliest time of the change.
     pub from: Timestamp,
-    /// It hardly happened before this.
+    /// Earliest credible time.
     pub from_earliest: Timestamp,
-    /// Nor after this.
+    /// Latest credible time.
     pub from_latest: Timestamp,
-    /// Time of the sample that told.
+    /// Time of the sample that revealed it.
     pub detected_at: Timestamp,
-    /// Whether it is certain enough to act on; if not, something is up and more
-    /// samples will tell what.
+    /// Confirmed: certain enough to act on. An unconfirmed change needs more samples.
     pub confirmed: bool,
-    /// Whether it had been certain, until what came after did not bear it out: it was none.
+    /// Withdrawn: confirmed once, but contradicted by later samples.
     #[serde(default)]
     pub withdrawn: bool,
-    /// The likeliest cause.
+    /// Likeliest cause.
     pub cause: Cause,
-    /// All causes that may be, the likeliest first.
+    /// All possible causes, the likeliest first.
     pub causes: Vec<CauseProbability>,
-    /// Why, in plain words.
+    /// Evidence for the cause, a sentence each.
     pub evidence: Vec<String>,
-    /// By how much the deviation changed where the ship was, on the heading where it
-    /// changed most, degrees; none where the ship's magnetism did not change.
+    /// Greatest change of the deviation over headings at the ship's position, degrees; none
+    /// where the ship's magnetism did not change.
     pub deviation_change_deg: Option<f64>,
-    /// How the ship's permanent magnetism changed; none where it did not.
+    /// Step of the ship's permanent magnetism; none where it did not change.
     pub step: Option<Step>,
-    /// When it was over; none while it lasts.
+    /// End of the change; none while it lasts.
     pub ended: Option<Timestamp>,
 }
 
 /// A step of permanent magnetism over λ, nT, with its standard errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Step {
     /// Fore and aft, forward positive.
+    #[cfg_attr(feature = "openapi", schema(example = 1850.0))]
     pub bx_nt: f64,
-    /// Athwart, starboard positive.
+    /// Athwartships, starboard positive.
+    #[cfg_attr(feature = "openapi", schema(example = -640.0))]
     pub by_nt: f64,
-    /// Standard error of the first.
+    /// Standard error of `bx_nt`.
+    #[cfg_attr(feature = "openapi", schema(example = 120.0))]
     pub bx_se_nt: f64,
-    /// Standard error of the second.
+    /// Standard error of `by_nt`.
+    #[cfg_attr(feature = "openapi", schema(example = 95.0))]
     pub by_se_nt: f64,
 }
 
-/// What changes what a compass shows.
+/// Cause of a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = ChangeCause))]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
-    /// A strike, or a heavy blow to the hull.
+    /// Lightning strike, or a heavy blow to the hull.
     LightningOrShock,
-    /// Steel, scrap or the like on board.
+    /// Magnetic cargo on board, such as steel or scrap.
     MagneticCargo,
-    /// Correctors, compass or structure were worked on.
+    /// Work on correctors, compass or structure.
     AdjustmentOrRepair,
-    /// The ship's magnetism wandered off.
+    /// Slow drift of the ship's magnetism.
     Drift,
-    /// The magnetic compass sticks, repeats itself or swings.
+    /// Fault of the magnetic compass: sticking, repeating or swinging.
     CompassFault,
-    /// The compass's zero moved: its lubber line, its seat, or the element that sends its
-    /// heading on.
+    /// Moved zero of the compass: lubber line, seat, or heading transmitter.
     Alignment,
-    /// Gyro or satellite compass errs: the magnetic compass is well.
+    /// Fault of gyro or satellite compass; the magnetic compass is sound.
     ReferenceFault,
-    /// The earth's crust, at a place.
+    /// Local anomaly of the earth's crust.
     LocalAnomaly,
-    /// The sun, for hours.
+    /// Magnetic storm, lasting hours.
     MagneticStorm,
-    /// The quay's and its cranes' iron.
+    /// Steel of the quay and its cranes.
     BerthSteel,
     /// None of these is likely.
     Unknown,
 }
 
 impl Cause {
-    /// Whether the deviation is another after it: the ship is another magnet, or her
-    /// compass has another zero.
-    pub fn is_the_ships(self) -> bool {
+    /// Returns true when the deviation is different afterwards: the ship's magnetism or the
+    /// compass's zero has changed.
+    pub fn changes_deviation(self) -> bool {
         matches!(
             self,
             Cause::LightningOrShock
@@ -92,8 +97,8 @@ impl Cause {
         )
     }
 
-    /// Whether it comes from outside the ship and is over within hours or miles.
-    pub fn passes_by(self) -> bool {
+    /// Returns true for an external cause that ends within hours or miles.
+    pub fn is_transient(self) -> bool {
         matches!(
             self,
             Cause::LocalAnomaly | Cause::MagneticStorm | Cause::BerthSteel
@@ -102,18 +107,20 @@ impl Cause {
 }
 
 impl Change {
-    /// Whether it passed by and is too faint to be certain by this ship alone: other ships
-    /// may speak for it.
-    pub fn is_faint(&self) -> bool {
-        !self.confirmed && self.ended.is_some() && self.cause.passes_by()
+    /// Returns true for an ended transient that this ship alone cannot confirm; other ships
+    /// may.
+    pub fn is_weak_transient(&self) -> bool {
+        !self.confirmed && self.ended.is_some() && self.cause.is_transient()
     }
 }
 
-/// A cause and how likely it is.
+/// A cause and its probability.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CauseProbability {
-    /// The cause.
+    /// Cause.
     pub cause: Cause,
-    /// From 0 to 1.
+    /// Probability, 0 to 1.
+    #[cfg_attr(feature = "openapi", schema(example = 0.93))]
     pub probability: f64,
 }

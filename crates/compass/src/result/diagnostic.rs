@@ -1,56 +1,67 @@
-//! What became of each sample.
+//! Diagnosis of each sample.
 
 use crate::sample::Sample;
 use serde::{Deserialize, Serialize};
 
-/// A sample and what became of it. Fields that could not be had are none.
+/// A sample with its diagnosis. Unavailable values are none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = Sample))]
 pub struct SampleDiagnostic {
-    /// The sample as it was.
+    /// Original sample.
     #[serde(flatten)]
+    #[cfg_attr(feature = "openapi", schema(inline))]
     pub sample: Sample,
-    /// The earth's variation, degrees, east positive.
+    /// Variation, degrees, east positive.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub variation_deg: Option<f64>,
     /// Horizontal field, nT.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub h_nt: Option<f64>,
     /// Vertical field, nT, down positive.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub z_nt: Option<f64>,
     /// Reference less variation less compass, degrees.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub deviation_deg: Option<f64>,
-    /// The model's deviation on this compass heading, here, degrees.
+    /// Predicted deviation on this compass heading at this place, degrees.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub predicted_deg: Option<f64>,
     /// Measured less predicted, degrees.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub residual_deg: Option<f64>,
     /// Robust weight, 0 to 1.
     pub weight: f64,
-    /// Whether it carried weight in a model.
+    /// Used: it had weight in a model.
     pub used: bool,
-    /// Why it was left out or doubted; none when it was taken at full weight.
+    /// Reason for rejection or reduced weight; none at full weight.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub reason: Option<SampleReason>,
 }
 
-/// Why a sample was left out, or held to be wrong.
+/// Reason for the rejection or reduced weight of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SampleReason {
-    /// Neither gyro nor satellite compass.
+    /// No gyro or satellite compass heading.
     NoReference,
-    /// Gyro and satellite compass contradict each other and neither could be
-    /// shown to be right, or the only one repeated itself while the ship turned.
+    /// Gyro and satellite compass contradict each other and neither could be confirmed, or
+    /// the only reference was stuck while the ship turned.
     ReferenceFailed,
-    /// The compass repeated itself while the ship turned.
+    /// The compass was stuck while the ship turned.
     CompassStuck,
-    /// Before or after the years that the field model covers.
+    /// Date outside the years of the field model.
     OutsideFieldModel,
     /// The horizontal field is too weak for a compass.
     FieldTooWeak,
     /// Taken with magnetic cargo on board.
     MagneticCargo,
-    /// Taken alongside: by the logbook, or lying still on one heading.
+    /// Taken alongside: by the logbook, or stationary on one heading.
     Berth,
     /// Taken in a magnetic storm, over a local anomaly, or near other iron.
     Disturbance,
-    /// It disagrees with the rest: its weight was lowered by more than half.
+    /// Outlier: its weight was reduced by more than half.
     Outlier,
     /// Its epoch has no model.
     NoModel,

@@ -1,75 +1,89 @@
-//! What other ships tell of a disturbance: one of the same hours in other waters
-//! speaks for a magnetic storm, one of other times at the same place for the place.
+//! Evidence from other ships: a disturbance of the same hours in other waters supports a
+//! magnetic storm, one of other times at the same place supports a local cause.
 //!
-//! What always holds: what is the ship's for certain, and what a reference did, is left
-//! as it was; without evidence so is everything; the probabilities add up to one. No
-//! ship is named, and no place.
+//! Invariants: a confirmed change of the ship itself or of a reference stays unchanged.
+//! Without evidence, everything stays unchanged. Probabilities sum to one. No ship and no
+//! place is identified.
 
 use super::change::{Cause, CauseProbability, Change};
 use crate::position::Position;
 use crate::time::Timestamp;
 
-/// How much likelier a storm is for each other ship that was disturbed in the same
-/// hours, and a place for each that was disturbed there: a ship under way in a storm
-/// most often shows it, while by chance hardly one in twenty is disturbed just then.
-const FOR_EACH_SHIP: f64 = 10.0;
-/// More ships than this add nothing: what misleads one may mislead the next.
-const MOST_SHIPS: i32 = 3;
-/// Ships nearer to each other than this may share a place, nautical miles.
-const APART_NM: f64 = 100.0;
-/// The crust's anomalies and ports are smaller than this, nautical miles.
-const PLACE_NM: f64 = 20.0;
-/// Of the shorter of two disturbances, so large a part must be of the same hours.
-const SHARED: f64 = 0.5;
-/// A storm lasts days: what is closer in time does not speak for the place, seconds.
-const OTHER_TIMES_S: f64 = 2.0 * 86_400.0;
-/// What was too unlikely to be listed may still be.
-const FLOOR: f64 = 0.002;
+/// Likelihood ratio per other disturbed ship: in the same hours for a storm, at the same
+/// place for a local cause. Most ships under way in a storm show it; by chance, fewer than
+/// one in twenty is disturbed at a given time.
+const LIKELIHOOD_RATIO_PER_SHIP: f64 = 10.0;
+/// Greatest number of ships that count: their errors may be common.
+const MAX_SHIPS: i32 = 3;
+/// Greatest distance of ships that may share a local cause, nautical miles.
+const MAX_COMPANY_NM: f64 = 100.0;
+/// Greatest size of a crustal anomaly or a port, nautical miles.
+const MAX_PLACE_NM: f64 = 20.0;
+/// Least overlap of two simultaneous disturbances, as a share of the shorter one.
+const MIN_OVERLAP: f64 = 0.5;
+/// Least separation in time of disturbances with a common local cause, seconds: a storm
+/// lasts days.
+const MIN_SEPARATION_S: f64 = 2.0 * 86_400.0;
+/// Probability of a cause that is not in the list.
+const UNLISTED_PROBABILITY: f64 = 0.002;
 
-/// A passing disturbance of another ship's compass.
+/// A transient disturbance of another ship's compass.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Elsewhere {
-    /// Tells ships apart, and says nothing else of them.
+pub struct FleetDisturbance {
+    /// Anonymous identifier of the ship.
     pub ship: usize,
-    /// When it began.
+    /// Beginning of the disturbance.
     pub from: Timestamp,
-    /// When it was over, or last seen.
+    /// End of the disturbance, or its last observation.
     pub until: Timestamp,
-    /// About where that ship was.
+    /// Approximate position of that ship.
     pub position: Position,
 }
 
-/// The same change in the light of what other ships showed; `position` is about where
-/// this one was, and `until` when it was last seen if it lasts.
-pub fn in_fleet(
+/// Duration of a disturbance.
+#[derive(Clone, Copy)]
+struct Span {
+    from: Timestamp,
+    until: Timestamp,
+}
+
+/// Reweighs the causes of a change by the disturbances of other ships. `position` is this
+/// ship's approximate position; `until` is the last observation of a lasting change.
+pub fn weigh_with_fleet(
     change: &Change,
     position: Option<Position>,
     until: Timestamp,
-    others: &[Elsewhere],
+    others: &[FleetDisturbance],
 ) -> Change {
     let mut change = change.clone();
-    if change.withdrawn || (change.confirmed && !change.cause.passes_by()) {
+    if change.withdrawn || (change.confirmed && !change.cause.is_transient()) {
         return change;
     }
-    let span = (change.from, change.ended.unwrap_or(until).max(change.from));
-    let apart_nm = |other: &Elsewhere| position.map(|here| nautical_miles(here, other.position));
-    let at_once = ships(others, |other| {
-        is_of_the_same_hours(span, other) && apart_nm(other).is_none_or(|nm| nm > APART_NM)
+    let span = Span {
+        from: change.from,
+        until: change.ended.unwrap_or(until).max(change.from),
+    };
+    let apart_nm =
+        |other: &FleetDisturbance| position.map(|here| nautical_miles(here, other.position));
+    let at_once = count_ships(others, |other| {
+        overlaps(span, other) && apart_nm(other).is_none_or(|nm| nm > MAX_COMPANY_NM)
     });
-    let at_the_place = ships(others, |other| {
-        is_of_other_times(span, other) && apart_nm(other).is_some_and(|nm| nm < PLACE_NM)
+    let at_the_place = count_ships(others, |other| {
+        is_separate_in_time(span, other) && apart_nm(other).is_some_and(|nm| nm < MAX_PLACE_NM)
     });
     if at_once + at_the_place == 0 {
         return change;
     }
-    weigh(&mut change.causes, |cause| match cause {
-        Cause::MagneticStorm => FOR_EACH_SHIP.powi(at_once.min(MOST_SHIPS)),
-        Cause::LocalAnomaly | Cause::BerthSteel => FOR_EACH_SHIP.powi(at_the_place.min(MOST_SHIPS)),
+    reweigh(&mut change.causes, |cause| match cause {
+        Cause::MagneticStorm => LIKELIHOOD_RATIO_PER_SHIP.powi(at_once.min(MAX_SHIPS)),
+        Cause::LocalAnomaly | Cause::BerthSteel => {
+            LIKELIHOOD_RATIO_PER_SHIP.powi(at_the_place.min(MAX_SHIPS))
+        }
         _ => 1.0,
     });
     change.cause = change.causes.first().map_or(change.cause, |c| c.cause);
-    if change.cause.passes_by() {
-        change.confirmed |= change.is_faint();
+    if change.cause.is_transient() {
+        change.confirmed |= change.is_weak_transient();
         change.step = None;
         change.deviation_change_deg = None;
     }
@@ -92,34 +106,40 @@ pub fn in_fleet(
     change
 }
 
-/// How many different ships show such a disturbance.
-fn ships(others: &[Elsewhere], such: impl Fn(&Elsewhere) -> bool) -> i32 {
-    let mut found: Vec<usize> = others.iter().filter(|o| such(o)).map(|o| o.ship).collect();
+/// Counts the different ships with such a disturbance.
+fn count_ships(others: &[FleetDisturbance], matches: impl Fn(&FleetDisturbance) -> bool) -> i32 {
+    let mut found: Vec<usize> = others
+        .iter()
+        .filter(|o| matches(o))
+        .map(|o| o.ship)
+        .collect();
     found.sort_unstable();
     found.dedup();
     i32::try_from(found.len()).unwrap_or(i32::MAX)
 }
 
-fn is_of_the_same_hours((from, until): (Timestamp, Timestamp), other: &Elsewhere) -> bool {
+fn overlaps(span: Span, other: &FleetDisturbance) -> bool {
+    let Span { from, until } = span;
     let shared_s = until.min(other.until).seconds_since(from.max(other.from));
     let shorter_s = until
         .seconds_since(from)
         .min(other.until.seconds_since(other.from));
-    shared_s >= 0.0 && shared_s >= SHARED * shorter_s
+    shared_s >= 0.0 && shared_s >= MIN_OVERLAP * shorter_s
 }
 
-fn is_of_other_times((from, until): (Timestamp, Timestamp), other: &Elsewhere) -> bool {
-    from.seconds_since(other.until) > OTHER_TIMES_S
-        || other.from.seconds_since(until) > OTHER_TIMES_S
+fn is_separate_in_time(span: Span, other: &FleetDisturbance) -> bool {
+    let Span { from, until } = span;
+    from.seconds_since(other.until) > MIN_SEPARATION_S
+        || other.from.seconds_since(until) > MIN_SEPARATION_S
 }
 
-/// Bayes' rule with the likelihood of the evidence under each cause.
-fn weigh(causes: &mut Vec<CauseProbability>, likelihood: impl Fn(Cause) -> f64) {
+/// Applies Bayes' rule with the likelihood of the evidence under each cause.
+fn reweigh(causes: &mut Vec<CauseProbability>, likelihood: impl Fn(Cause) -> f64) {
     for cause in [Cause::MagneticStorm, Cause::LocalAnomaly] {
         if causes.iter().all(|known| known.cause != cause) {
             causes.push(CauseProbability {
                 cause,
-                probability: FLOOR,
+                probability: UNLISTED_PROBABILITY,
             });
         }
     }
@@ -133,7 +153,7 @@ fn weigh(causes: &mut Vec<CauseProbability>, likelihood: impl Fn(Cause) -> f64) 
     causes.sort_by(|a, b| b.probability.total_cmp(&a.probability));
 }
 
-/// Nearly, for places that are not far apart.
+/// Approximates the distance of neighbouring places.
 fn nautical_miles(a: Position, b: Position) -> f64 {
     let north = a.lat_deg() - b.lat_deg();
     let east = crate::angle::wrap_180(a.lon_deg() - b.lon_deg());
@@ -154,8 +174,8 @@ mod tests {
         Position::new(lat, lon).unwrap()
     }
 
-    /// Two hours astray: by itself rather a place than the sun.
-    fn astray() -> Change {
+    /// A two-hour disturbance, by itself more likely a local anomaly than a storm.
+    fn disturbance() -> Change {
         Change {
             from: at(10.0),
             from_earliest: at(9.8),
@@ -174,8 +194,8 @@ mod tests {
         }
     }
 
-    fn other(ship: usize, hour: f64, position: Position) -> Elsewhere {
-        Elsewhere {
+    fn other(ship: usize, hour: f64, position: Position) -> FleetDisturbance {
+        FleetDisturbance {
             ship,
             from: at(hour),
             until: at(hour + 3.0),
@@ -183,8 +203,8 @@ mod tests {
         }
     }
 
-    fn seen(change: &Change, others: &[Elsewhere]) -> Change {
-        let seen = in_fleet(change, Some(place(43.0, -4.0)), at(24.0), others);
+    fn seen(change: &Change, others: &[FleetDisturbance]) -> Change {
+        let seen = weigh_with_fleet(change, Some(place(43.0, -4.0)), at(24.0), others);
         let sum: f64 = seen.causes.iter().map(|c| c.probability).sum();
         assert!((sum - 1.0).abs() < 1e-9);
         assert_eq!(seen.cause, seen.causes[0].cause);
@@ -193,7 +213,7 @@ mod tests {
 
     #[test]
     fn two_ships_in_one_storm_name_it_and_one_alone_does_not() {
-        let alone = astray();
+        let alone = disturbance();
         assert_eq!(seen(&alone, &[]), alone);
         let far = place(55.0, 10.0);
         let stormy = seen(&alone, &[other(0, 9.0, far)]);
@@ -207,34 +227,34 @@ mod tests {
     }
 
     #[test]
-    fn what_is_faint_is_certain_once_others_speak_for_it() {
-        let faint = Change {
+    fn a_weak_transient_is_certain_once_others_speak_for_it() {
+        let weak = Change {
             confirmed: false,
-            ..astray()
+            ..disturbance()
         };
-        assert!(faint.is_faint());
-        assert!(seen(&faint, &[]).is_faint());
-        let stormy = seen(&faint, &[other(0, 9.0, place(55.0, 10.0))]);
+        assert!(weak.is_weak_transient());
+        assert!(seen(&weak, &[]).is_weak_transient());
+        let stormy = seen(&weak, &[other(0, 9.0, place(55.0, 10.0))]);
         assert!(stormy.confirmed);
         assert_eq!(stormy.cause, Cause::MagneticStorm);
-        let still_astray = Change {
+        let unfinished = Change {
             ended: None,
-            ..faint
+            ..weak
         };
-        assert!(!seen(&still_astray, &[other(0, 9.0, place(55.0, 10.0))]).confirmed);
+        assert!(!seen(&unfinished, &[other(0, 9.0, place(55.0, 10.0))]).confirmed);
     }
 
     #[test]
-    fn a_ship_in_company_or_at_another_time_elsewhere_tells_nothing() {
-        let alone = astray();
+    fn a_ship_in_company_or_at_another_time_elsewhere_is_no_evidence() {
+        let alone = disturbance();
         let company = other(0, 10.0, place(43.1, -4.1));
         let otherwise = other(1, 200.0, place(55.0, 10.0));
         assert_eq!(seen(&alone, &[company, otherwise]), alone);
     }
 
     #[test]
-    fn what_others_met_at_the_same_place_speaks_for_the_place() {
-        let mut long = astray();
+    fn a_disturbance_of_others_at_the_same_place_speaks_for_the_place() {
+        let mut long = disturbance();
         long.causes.reverse();
         for (known, probability) in long.causes.iter_mut().zip([0.7, 0.3]) {
             known.probability = probability;
@@ -247,8 +267,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_the_ships_for_certain_stays_so_and_doubt_gives_way() {
-        let mut struck = astray();
+    fn a_confirmed_change_of_the_ship_stays_and_an_unconfirmed_one_is_reweighed() {
+        let mut struck = disturbance();
         struck.cause = Cause::LightningOrShock;
         struck.causes = vec![CauseProbability {
             cause: Cause::LightningOrShock,
@@ -258,8 +278,8 @@ mod tests {
         let stormy = [0, 1, 2].map(|ship| other(ship, 10.0, place(55.0, 10.0)));
         assert_eq!(seen(&struck, &stormy), struck);
         struck.confirmed = false;
-        let doubtful = seen(&struck, &stormy);
-        assert_eq!(doubtful.cause, Cause::MagneticStorm);
-        assert_eq!(doubtful.deviation_change_deg, None);
+        let reweighed = seen(&struck, &stormy);
+        assert_eq!(reweighed.cause, Cause::MagneticStorm);
+        assert_eq!(reweighed.deviation_change_deg, None);
     }
 }

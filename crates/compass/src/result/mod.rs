@@ -1,4 +1,4 @@
-//! The result of an analysis and its parts.
+//! Result of an analysis and its parts.
 
 mod advice;
 mod analysis;
@@ -13,7 +13,7 @@ pub use advice::{Advice, Band, HeadingRange, HeadingSuggestion, LatitudeSuggesti
 pub use analysis::{Analysis, ESTIMATOR, Epoch, LastPlace};
 pub use change::{Cause, CauseProbability, Change, Step};
 pub use diagnostic::{SampleDiagnostic, SampleReason};
-pub use fleet::{Elsewhere, in_fleet};
+pub use fleet::{FleetDisturbance, weigh_with_fleet};
 pub use noise::{NOISE_LEVELS, NoiseLevels};
-pub use references::{FAILED_BEYOND_AT_MOST_DEG, ReferenceCheck};
+pub use references::{MAX_FAILURE_THRESHOLD_DEG, ReferenceCheck};
 pub use refusal::FitError;

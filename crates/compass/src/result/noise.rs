@@ -1,39 +1,39 @@
-//! How large the errors of reference, compass and variation are.
+//! Noise levels of reference, compass and variation.
 
 use serde::{Deserialize, Serialize};
 
-/// How many numbers [`NoiseLevels`] holds.
+/// Number of values in [`NoiseLevels`].
 pub const NOISE_LEVELS: usize = 9;
 
-/// Standard deviations of the errors, degrees unless the name says otherwise.
+/// Standard deviations of the errors, degrees unless the name has another unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NoiseLevels {
-    /// What is new in every row: a ten-minute mean of 60 windows that scattered by 0.5°.
+    /// White noise of a row: a ten-minute mean of 60 windows with a scatter of 0.5°.
     pub white_deg: f64,
-    /// The gyro's Schuler swing at the equator while she keeps her course; it
-    /// grows as 1/cos(latitude).
+    /// Gyro's Schuler oscillation on a steady course at the equator; proportional to
+    /// 1/cos(latitude).
     pub schuler_deg: f64,
-    /// What a turn of over 20° adds to the swing at the equator.
+    /// Increase of the Schuler oscillation by a turn of over 20°, at the equator.
     #[serde(default)]
     pub turn_deg: f64,
-    /// The gyro's slow wander at the equator; it grows as 1/cos(latitude).
+    /// Gyro's slow drift at the equator; proportional to 1/cos(latitude).
     pub slow_gyro_deg: f64,
-    /// The compass's swing over some twenty minutes.
+    /// Compass's oscillation over some twenty minutes.
     pub compass_swing_deg: f64,
-    /// The error of variation over some sixty miles, where H is 24 µT.
+    /// Error of variation over some sixty miles, where H is 24 µT.
     pub variation_deg: f64,
-    /// How far bx and by wander in thirty days, nT.
+    /// Drift of bx and by in thirty days, nT.
     pub drift_nt: f64,
-    /// The satellite compass's error over some thirty minutes.
+    /// Satellite compass's error over some thirty minutes.
     #[serde(default)]
     pub satellite_deg: f64,
-    /// What is new in every difference of gyro and satellite compass.
+    /// White noise of the difference of gyro and satellite compass.
     #[serde(default)]
     pub difference_deg: f64,
 }
 
 impl NoiseLevels {
-    /// What ships have on the average; the data move it from here.
+    /// Average levels, the starting point of the estimation.
     pub const TYPICAL: NoiseLevels = NoiseLevels {
         white_deg: 0.2,
         schuler_deg: 0.2,
@@ -46,7 +46,7 @@ impl NoiseLevels {
         difference_deg: 0.2,
     };
 
-    /// For rows without times, which cannot show any memory.
+    /// Levels for rows without times, whose correlations are unknown.
     pub const MEMORYLESS: NoiseLevels = NoiseLevels {
         white_deg: 0.5,
         schuler_deg: 0.0,
@@ -59,7 +59,7 @@ impl NoiseLevels {
         difference_deg: 0.5,
     };
 
-    /// The sizes in their order.
+    /// Returns the levels in the order of the fields.
     pub fn to_array(self) -> [f64; NOISE_LEVELS] {
         [
             self.white_deg,
@@ -74,7 +74,7 @@ impl NoiseLevels {
         ]
     }
 
-    /// From the sizes in their order.
+    /// Makes the levels from an array in the order of the fields.
     pub fn from_array(a: [f64; NOISE_LEVELS]) -> NoiseLevels {
         NoiseLevels {
             white_deg: a[0],
@@ -89,8 +89,8 @@ impl NoiseLevels {
         }
     }
 
-    /// Variance of a single row, degrees squared, all its errors together.
-    pub fn of_a_row(&self) -> f64 {
+    /// Returns the total variance of a single row, degrees squared.
+    pub fn row_variance(&self) -> f64 {
         let parts = [
             self.white_deg,
             self.schuler_deg,

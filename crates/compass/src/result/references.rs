@@ -1,32 +1,37 @@
-//! How gyro and satellite compass compare.
+//! Comparison of gyro and satellite compass.
 
 use serde::{Deserialize, Serialize};
 
-/// Two references that usually differ by more or less may depart no further from that
-/// before one of them has failed, degrees.
-pub const FAILED_BEYOND_AT_MOST_DEG: f64 = 5.0;
+/// Upper limit of [`ReferenceCheck::failed_beyond_deg`], degrees.
+pub const MAX_FAILURE_THRESHOLD_DEG: f64 = 5.0;
 
-/// How a ship's two references compare over all her samples.
+/// Comparison of a vessel's two references over all samples.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = References))]
 pub struct ReferenceCheck {
-    /// Samples with both.
+    /// Number of samples with both references.
     pub pairs: u64,
-    /// Gyro less satellite compass, usually, degrees; none without enough pairs.
+    /// Usual value of gyro less satellite compass, degrees; none without enough pairs.
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub offset_deg: Option<f64>,
-    /// One of the two has failed where their difference departs further than
-    /// this from the usual, degrees.
+    /// Failure threshold: greatest departure of the difference from its usual value before
+    /// one reference counts as failed, degrees.
     #[serde(default = "widest_deg")]
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub failed_beyond_deg: f64,
-    /// Standard deviation of the constant error that is left in the reference.
+    /// Standard deviation of the reference's remaining constant error.
     pub constant_sd_deg: f64,
-    /// Samples whose gyro was dropped.
+    /// Number of samples whose gyro heading was dropped.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub gyro_dropped: u64,
-    /// Samples whose satellite compass was dropped.
+    /// Number of samples whose satellite heading was dropped.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(required))]
     pub satellite_dropped: u64,
 }
 
 fn widest_deg() -> f64 {
-    FAILED_BEYOND_AT_MOST_DEG
+    MAX_FAILURE_THRESHOLD_DEG
 }

@@ -1,117 +1,121 @@
-//! Why no model came out of a set of observations.
+//! Refusal of a fit.
 
 use serde::{Deserialize, Serialize};
 
-/// A refusal to fit; each says what is missing.
+/// Reason for a fit without a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = Refusal))]
 #[serde(tag = "reason", rename_all = "snake_case")]
 pub enum FitError {
-    /// No reading has a heading to hold the compass against.
+    /// No reading has a reference heading.
     #[error("no gyro, satellite or other true heading in any of {readings} readings")]
     NoReference {
-        /// How many readings there are.
+        /// Number of readings.
         readings: u64,
     },
     /// Every observation has the weight 0.
     #[error("the weight is 0 in all of {samples} samples")]
     NoWeight {
-        /// How many there are.
+        /// Number of samples.
         samples: u64,
     },
-    /// Too few observations with a reference, whatever their headings.
+    /// Too few observations with a reference, on any headings.
     #[error("{found} usable samples; at least {needed} are needed")]
     TooFewSamples {
-        /// How many there are.
+        /// Number of usable samples.
         found: u64,
-        /// How many there must be.
+        /// Least number of samples.
         needed: u64,
     },
-    /// The observations lie on too few headings.
+    /// Too few headings.
     #[error(
-        "headings in {found} of 24 sectors of 15 degrees, the widest gap {widest_gap_deg:.0} degrees; \
-         at least {needed} sectors are needed and no gap over {allowed_gap_deg:.0} degrees; \
-         missing: {}", ranges(.missing_deg)
+        "headings in {found} of 24 sectors of 15 degrees, the widest gap {widest_gap_deg:.0} \
+         degrees; at least {needed} sectors are needed and no gap over {allowed_gap_deg:.0} \
+         degrees; missing: {}", ranges(.missing_deg)
     )]
     TooFewHeadings {
-        /// Sectors of 15° with at least one observation.
+        /// Number of 15° sectors with at least one observation.
         found: u32,
-        /// How many there must be.
+        /// Least number of sectors.
         needed: u32,
-        /// The widest range of headings without an observation.
+        /// Widest gap of headings without an observation, degrees.
         widest_gap_deg: f64,
-        /// The widest such range that is allowed.
+        /// Widest allowed gap, degrees.
         allowed_gap_deg: f64,
-        /// The headings without an observation: whole sectors of 15°, each range by
-        /// its first degree and the one after its last, beyond 360 through north.
+        /// Headings without an observation: whole sectors of 15°, each range by its first
+        /// degree and the one after its last, beyond 360 through north.
         #[serde(default)]
+        #[cfg_attr(feature = "openapi", schema(required, value_type = Vec<[u32; 2]>))]
         missing_deg: Vec<(u32, u32)>,
     },
     /// The earth's horizontal field is too weak for a compass.
     #[error(
-        "horizontal field of at most {strongest_nt:.0} nT; a compass needs at least {needed_nt:.0} nT"
+        "horizontal field of at most {strongest_nt:.0} nT; a compass needs at least \
+         {needed_nt:.0} nT"
     )]
     FieldTooWeak {
-        /// The strongest horizontal field among the observations.
+        /// Strongest horizontal field among the observations, nT.
         strongest_nt: f64,
-        /// What there must be.
+        /// Least horizontal field for a compass, nT.
         needed_nt: f64,
     },
-    /// The fitted magnetism leaves no directive force on some heading, so that
-    /// one compass heading may belong to several courses.
+    /// The fitted magnetism leaves no directive force on some heading, so a compass heading
+    /// may stand for several magnetic headings.
     #[error("the fitted magnetism makes headings ambiguous at a horizontal field of {h_nt:.0} nT")]
     AmbiguousHeadings {
-        /// The horizontal field at which it does.
+        /// Horizontal field of the ambiguity, nT.
         h_nt: f64,
     },
-    /// All observations have the same dip, so that the paper's equations have
-    /// no unique solution: bx and χ13 Z, by and χ23 Z are known as sums only.
+    /// All observations have the same dip: only the sums bx + χ13 Z and by + χ23 Z are
+    /// determined, and the paper's equations have no unique solution.
     #[error(
-        "all samples lie at one magnetic latitude: bx and chi13, by and chi23 cannot be told apart"
+        "all samples lie at one magnetic latitude: bx and chi13, by and chi23 cannot be separated"
     )]
     OneMagneticLatitude,
-    /// Gyro and satellite compass differ throughout by more than any alignment
-    /// explains, and headings cannot tell which of them is wrong.
+    /// Gyro and satellite compass differ throughout by more than any misalignment, and
+    /// headings cannot show which is wrong.
     #[error(
-        "gyro and satellite compass differ by {offset_deg:.1} degrees throughout, more than the \
-         {allowed_deg:.0} degrees that any alignment explains: one of them is wrong"
+        "gyro and satellite compass differ by {offset_deg:.1} degrees throughout, more than \
+         any misalignment ({allowed_deg:.0} degrees): one of them is wrong"
     )]
     ReferencesDisagree {
         /// Gyro less satellite compass, degrees.
         offset_deg: f64,
-        /// How far they may differ.
+        /// Greatest allowed difference, degrees.
         allowed_deg: f64,
     },
-    /// The only reference stood still while the ship turned.
+    /// The only reference was stuck while the ship turned.
     #[error(
-        "the reference stands still in {readings} readings while the compass turns: it is stuck, \
-         or the wrong source was taken for it"
+        "the reference does not move in {readings} readings while the compass turns: it is stuck, \
+         or the wrong source is configured"
     )]
     ReferenceStuck {
-        /// In how many readings it did.
+        /// Number of readings with a stuck reference.
         readings: u64,
     },
-    /// What the best ship leaves over is more than instruments do.
+    /// The residuals of the best fit exceed any instrument error.
     #[error(
-        "residuals of {residual_deg:.1} degrees, where no instruments leave more than \
-         {allowed_deg:.0}: no ship explains these; check the sign of the variation, which column \
-         is which, and whether the compass or the reference stood still for days"
+        "residuals of {residual_deg:.1} degrees, more than any instruments' {allowed_deg:.0}: no \
+         ship explains these; check the sign of the variation, the order of the columns, and \
+         whether the compass or the reference was stuck for days"
     )]
     Contradictory {
         /// Robust standard deviation of the residuals, degrees.
         residual_deg: f64,
-        /// How large it may be.
+        /// Greatest allowed value, degrees.
         allowed_deg: f64,
     },
-    /// The iteration did not settle.
+    /// The iteration did not converge.
     #[error(
-        "the fit did not settle: the samples contradict each other or any ship; check the sign of \
-         the variation, which column is which, and whether the compass or the reference stood still \
-         for days"
+        "the fit did not converge: the samples contradict each other or any ship; check the sign \
+         of the variation, the order of the columns, and whether the compass or the reference was \
+         stuck for days"
     )]
     NotConverged,
 }
 
-/// Ranges of headings for people.
+/// Formats ranges of headings.
 fn ranges(missing: &[(u32, u32)]) -> String {
     let range = |&(from, to): &(u32, u32)| format!("{from:03}-{:03}", (to - 1) % 360 + 1);
     let ranges: Vec<String> = missing.iter().map(range).collect();

@@ -1,22 +1,21 @@
-//! A ship's magnetism by Poisson's equations, and what it makes of the earth's field.
+//! A ship's magnetism by Poisson's equations, and the resulting field at the compass.
 //!
-//! `B = h + χ h + b` in ship axes (x forward, y starboard, z down), where `h` is
-//! the earth's field and `B` the field at the compass (docs/science.md, §2).
-//! The card settles along the horizontal part of `B`. Angles are radians here:
-//! this is the inside of the science.
+//! `B = h + χ h + b` in ship axes (x forward, y starboard, z down), where `h` is the
+//! earth's field and `B` the field at the compass (docs/science.md, §2). The card settles
+//! along the horizontal part of `B`. Angles are radians here.
 
 use crate::model::Parameters;
 use serde::{Deserialize, Serialize};
 
-/// Below this a compass is of no use.
+/// Least horizontal field for a usable compass, nT.
 pub const WEAKEST_H_NT: f64 = 2_000.0;
-/// A compass is used with caution where H is below this.
+/// Horizontal field below which a compass needs caution, nT.
 pub const CAUTION_H_NT: f64 = 6_000.0;
 
-/// How many numbers [`Parameters`] holds.
+/// Number of values in [`Parameters`].
 pub const PARAMETERS: usize = 7;
 
-/// The earth's field at a place, as a ship on any heading meets it.
+/// The earth's field at a place: the parts that do not depend on the ship's heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EarthField {
     /// Horizontal part, nT, at least 0.
@@ -26,32 +25,33 @@ pub struct EarthField {
 }
 
 impl EarthField {
-    /// The field in ship axes on a magnetic heading: `[forward, starboard, down]`, nT.
+    /// Rotates the field into ship axes on a magnetic heading: `[forward, starboard,
+    /// down]`, nT.
     ///
-    /// A ship heading east has north on her port side, hence the minus sign.
+    /// A ship heading east has north on its port side, hence the minus sign.
     pub fn in_ship_axes(self, magnetic_rad: f64) -> [f64; 3] {
         let (sin, cos) = magnetic_rad.sin_cos();
         [self.h_nt * cos, -self.h_nt * sin, self.z_nt]
     }
 }
 
-/// The compass heading that a horizontal field in ship axes gives, radians in (−π, π].
+/// Compass heading of a card in a horizontal field in ship axes, radians in (−π, π].
 pub fn compass_rad(forward: f64, starboard: f64) -> f64 {
     (-starboard).atan2(forward)
 }
 
-/// The deviation on one magnetic heading with its derivatives.
+/// Deviation on one magnetic heading with its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linearised {
     /// Deviation, radians, east positive, in (−π, π].
     pub deviation_rad: f64,
-    /// ∂deviation/∂parameter in the order of [`Parameters`]: radians a nT for
-    /// bx and by, radians for the others.
+    /// ∂deviation/∂parameter in the order of [`Parameters`]: radians per nT for bx and by,
+    /// radians for the others.
     pub gradient: [f64; PARAMETERS],
 }
 
 impl Parameters {
-    /// The parameters in their order, as the covariance has them.
+    /// Returns the parameters in the order of the covariance.
     pub fn to_array(&self) -> [f64; PARAMETERS] {
         [
             self.bx_nt,
@@ -64,7 +64,7 @@ impl Parameters {
         ]
     }
 
-    /// The parameters from an array in their order.
+    /// Makes the parameters from an array in the order of the covariance.
     pub fn from_array(array: [f64; PARAMETERS]) -> Parameters {
         let [bx_nt, chi13, by_nt, chi23, chi11_minus_chi22, chi12, chi21] = array;
         Parameters {
@@ -78,14 +78,15 @@ impl Parameters {
         }
     }
 
-    /// The horizontal field at the compass over λ, nT: `[forward, starboard]`,
-    /// on a magnetic heading.
+    /// Computes the horizontal field at the compass over λ on a magnetic heading, nT:
+    /// `[forward, starboard]`.
     pub fn field_over_lambda(&self, magnetic_rad: f64, earth: EarthField) -> [f64; 2] {
-        self.of_ship_axes(earth.in_ship_axes(magnetic_rad))
+        self.field_over_lambda_in_ship_axes(earth.in_ship_axes(magnetic_rad))
     }
 
-    /// The same of an earth's field in ship axes.
-    pub fn of_ship_axes(&self, [hx, hy, z]: [f64; 3]) -> [f64; 2] {
+    /// Computes the horizontal field at the compass over λ for an earth's field in ship
+    /// axes, nT.
+    pub fn field_over_lambda_in_ship_axes(&self, [hx, hy, z]: [f64; 3]) -> [f64; 2] {
         let d = self.chi11_minus_chi22 / 2.0;
         [
             (1.0 + d) * hx + self.chi12 * hy + self.chi13 * z + self.bx_nt,
@@ -93,9 +94,10 @@ impl Parameters {
         ]
     }
 
-    /// The same ship by a compass whose zero moved so that it reads more by so much, radians:
-    /// her iron lies as much further from its lubber line (docs/science.md, §9).
-    pub fn by_turned_compass(&self, rad: f64) -> Parameters {
+    /// Returns the parameters seen by a compass whose zero moved so that it reads more by
+    /// `rad` radians: the ship's iron lies further from its lubber line by the same angle
+    /// (docs/science.md, §9).
+    pub fn with_compass_turned(&self, rad: f64) -> Parameters {
         let (sin, cos) = rad.sin_cos();
         let (sin_2, cos_2) = (2.0 * rad).sin_cos();
         let turned = |x: f64, y: f64| (x * cos + y * sin, y * cos - x * sin);
@@ -115,17 +117,16 @@ impl Parameters {
         }
     }
 
-    /// The deviation on a magnetic heading and its gradient at that fixed
-    /// magnetic heading (docs/science.md, eq. 9).
+    /// Computes the deviation on a magnetic heading and its gradient at that fixed magnetic
+    /// heading (docs/science.md, eq. 9).
     ///
-    /// Where the ship's own field exactly cancels the earth's the gradient is
-    /// infinite or NaN; check [`Coefficients::check_unambiguous`] first where
-    /// that can be.
+    /// Where the ship's own field exactly cancels the earth's, the gradient is infinite or
+    /// NaN; check [`Coefficients::check_unambiguous`] first where that is possible.
     ///
     /// [`Coefficients::check_unambiguous`]: crate::deviation::Coefficients::check_unambiguous
     pub fn linearised_at_magnetic(&self, magnetic_rad: f64, earth: EarthField) -> Linearised {
         let [hx, hy, z] = earth.in_ship_axes(magnetic_rad);
-        let [forward, starboard] = self.of_ship_axes([hx, hy, z]);
+        let [forward, starboard] = self.field_over_lambda_in_ship_axes([hx, hy, z]);
         let squared = forward * forward + starboard * starboard;
         let s = -starboard / squared;
         let c = forward / squared;
@@ -143,29 +144,30 @@ pub fn wrap_pi(radians: f64) -> f64 {
     if wrapped > PI { wrapped - TAU } else { wrapped }
 }
 
-/// A whole Poisson ship: more than headings can ever tell.
+/// All of Poisson's coefficients of a ship, including those that headings cannot determine.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShipMagnetism {
-    /// Soft iron: the field in row's direction for a unit of earth field in
-    /// column's direction (a, b, c; d, e, f; g, h, k of the handbooks).
+    /// Soft iron: field in the row's direction per unit of earth field in the column's
+    /// direction (a, b, c; d, e, f; g, h, k of the handbooks).
     pub chi: [[f64; 3]; 3],
     /// Permanent field `[forward, starboard, down]`, nT (P, Q, R).
     pub b_nt: [f64; 3],
 }
 
-/// Why a ship has no parameters over λ.
+/// Error of a ship without a positive shielding factor λ.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the shielding factor lambda is {0}, not a positive number")]
 pub struct NoShieldingFactor(pub f64);
 
 impl ShipMagnetism {
-    /// λ, the mean share of the earth's horizontal field that reaches the compass.
+    /// Shielding factor λ: mean share of the earth's horizontal field that reaches the
+    /// compass.
     pub fn lambda(&self) -> f64 {
         1.0 + f64::midpoint(self.chi[0][0], self.chi[1][1])
     }
 
-    /// The field at the compass, nT in ship axes, for the earth's field in ship axes.
-    pub fn field_aboard(&self, earth: [f64; 3]) -> [f64; 3] {
+    /// Computes the field at the compass from the earth's field, both in ship axes, nT.
+    pub fn field_at_compass(&self, earth: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|row| {
             let induced: f64 = (0..3)
                 .map(|column| self.chi[row][column] * earth[column])
@@ -174,16 +176,16 @@ impl ShipMagnetism {
         })
     }
 
-    /// The deviation on a magnetic heading, radians, straight from Poisson's equations.
+    /// Computes the deviation on a magnetic heading by Poisson's equations, radians.
     pub fn deviation_rad(&self, magnetic_rad: f64, earth: EarthField) -> f64 {
-        let [forward, starboard, _] = self.field_aboard(earth.in_ship_axes(magnetic_rad));
+        let [forward, starboard, _] = self.field_at_compass(earth.in_ship_axes(magnetic_rad));
         wrap_pi(magnetic_rad - compass_rad(forward, starboard))
     }
 
-    /// The seven ratios that headings can tell.
+    /// Computes the seven ratios that headings determine.
     ///
     /// # Errors
-    /// When λ is not positive: such a ship turns the compass around.
+    /// When λ is not positive: such a ship reverses the compass.
     pub fn parameters_over_lambda(&self) -> Result<Parameters, NoShieldingFactor> {
         let lambda = self.lambda();
         if !(lambda > 0.0 && lambda.is_finite()) {
@@ -201,8 +203,7 @@ impl ShipMagnetism {
         })
     }
 
-    /// The ship that has these parameters over λ, this λ, and no vertical
-    /// effects of her own.
+    /// Makes a ship with these parameters over λ, this λ, and no vertical coefficients.
     pub fn from_parameters(parameters: &Parameters, lambda: f64) -> ShipMagnetism {
         let p = parameters;
         let d = p.chi11_minus_chi22 / 2.0;

@@ -28,7 +28,7 @@ fn a_compass_whose_zero_moved_reads_as_much_more_on_every_heading() {
         let (ship, earth) = (random_ship(&mut rng), random_earth(&mut rng));
         let parameters = ship.parameters_over_lambda().unwrap();
         let moved = rng.random_range(-0.5..0.5);
-        let turned = parameters.by_turned_compass(moved);
+        let turned = parameters.with_compass_turned(moved);
         let compass = |p: &Parameters, magnetic: f64| {
             let [forward, starboard] = p.field_over_lambda(magnetic, earth);
             compass_rad(forward, starboard)
@@ -41,8 +41,8 @@ fn a_compass_whose_zero_moved_reads_as_much_more_on_every_heading() {
     }
 }
 
-/// The table of the adjuster's handbooks: which way each cause pulls the
-/// compass on each heading (sign of sin, cos, sin 2, cos 2 of the heading).
+/// The table of the adjuster's handbooks: direction of the deviation by cause and heading
+/// (sign of sin, cos, sin 2, cos 2 of the heading).
 #[test]
 fn each_cause_pulls_east_or_west_where_the_handbook_says() {
     let with = |change: fn(&mut ShipMagnetism)| {

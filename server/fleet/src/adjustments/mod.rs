@@ -26,14 +26,14 @@ pub struct CompletedOrder {
     pub adjuster_licence: Option<String>,
     /// Their firm.
     pub firm: Option<String>,
-    /// Headings at sea that agree with what was foretold; none while too few do.
+    /// Headings at sea that agree with the prediction; none while too few do.
     pub at_sea: Option<AtSea>,
 }
 
-/// Headings at sea that agree with what was foretold.
+/// Headings at sea that agree with the prediction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtSea {
-    /// When that was found.
+    /// Time at which they were enough.
     pub verified_at: Time,
     /// Headings that counted.
     pub headings: usize,
@@ -65,7 +65,7 @@ pub async fn completed(
     found.into_iter().map(Row::read).collect()
 }
 
-/// The version of the model that an order's adjustment was foretold from, by its record.
+/// Returns the version of the model that an order's adjustment was predicted from, by its record.
 pub async fn foretold_from(db: &Db, vessel: VesselId, order: OrderId) -> Result<Option<i64>> {
     let found = row!(
         db,
@@ -112,8 +112,7 @@ struct Verdict {
 }
 
 impl CompletedOrder {
-    /// Whether a model is the one that was foretold, or of the epoch that the adjustment
-    /// began.
+    /// Tells whether a model was predicted by this order, or is of the epoch that it began.
     pub fn bears_on(&self, model: &StoredModel) -> bool {
         let begun_by = model.epoch_begun_by.as_deref();
         model.foretold_by == Some(self.order)

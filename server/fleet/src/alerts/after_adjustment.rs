@@ -38,7 +38,7 @@ pub async fn list_in_force(
 pub(super) fn remove_earlier_changes(findings: &mut Findings, adjusted: Time) {
     findings.changes.retain(|found| {
         let change = &found.change;
-        !change.cause.is_the_ships() || Time(change.from) >= adjusted
+        !change.cause.changes_deviation() || Time(change.from) >= adjusted
     });
 }
 

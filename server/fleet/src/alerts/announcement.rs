@@ -102,7 +102,7 @@ fn words_of(change: &AlertChange) -> (String, String) {
 
 fn text(change: &AlertChange) -> String {
     let AlertChange { alert, kind, .. } = change;
-    let before = change.was.map(|was| format!(" ({} before)", was));
+    let before = change.was.map(|was| format!(" ({was} before)"));
     let mut lines = vec![
         format!("Vessel:   {}", one_line(&alert.vessel_name)),
         format!("Compass:  {}", one_line(&alert.compass_name)),

@@ -11,7 +11,7 @@
 use super::findings::{Findings, FoundChange};
 use super::queue;
 use binnacle_compass::position::Position;
-use binnacle_compass::result::{Elsewhere, in_fleet};
+use binnacle_compass::result::{FleetDisturbance, weigh_with_fleet};
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, rows};
 use binnacle_platform::error::Result;
@@ -114,7 +114,7 @@ fn passing(findings: &Findings) -> impl Iterator<Item = (Time, Time, Position)> 
     passing.filter_map(move |found| {
         let change = &found.change;
         let ended = change.ended.or(until)?.max(change.from);
-        let is_known = change.cause.passes_by() && !change.is_faint();
+        let is_known = change.cause.is_transient() && !change.is_weak_transient();
         let position = found.position.filter(|_| is_known)?;
         Some((change.from.into(), ended.into(), position))
     })
@@ -199,7 +199,7 @@ pub async fn compare_with_fleet_in(
 }
 
 fn may_pass(found: &FoundChange) -> bool {
-    found.change.cause.passes_by() || !found.change.confirmed
+    found.change.cause.is_transient() || !found.change.confirmed
 }
 
 impl Around {
@@ -229,13 +229,13 @@ fn compare(found: &mut FoundChange, around: &Around, others: &[Disturbed]) -> Re
     let mut elsewhere = Vec::with_capacity(others.len());
     for other in others {
         let next = ships.len();
-        elsewhere.push(Elsewhere {
+        elsewhere.push(FleetDisturbance {
             ship: *ships.entry(other.vessel_id).or_insert(next),
             from: other.began_at.0,
             until: other.ended_at.0,
             position: Position::new(other.lat, other.lon).map_err(anyhow::Error::from)?,
         });
     }
-    found.change = in_fleet(&found.change, found.position, around.until.0, &elsewhere);
+    found.change = weigh_with_fleet(&found.change, found.position, around.until.0, &elsewhere);
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! What an analysis is made from, and the hash that names it.
+//! Input of an analysis, and the hash that names it.
 
 use crate::{logbook, settings};
 use anyhow::Context;
@@ -19,18 +19,18 @@ use std::fmt::Write;
 pub struct Input {
     /// Distinct, in order of time.
     pub samples: Vec<Sample>,
-    /// What people reported.
+    /// Entries of the logbook.
     pub logbook: Vec<LogbookEntry>,
-    /// What the operator decided.
+    /// Settings of the operator.
     pub settings: AnalysisSettings,
 }
 
-/// What is stored of a compass, its batches as they came.
+/// Stored input of a compass, with its batches as received.
 pub struct Stored {
     batches: Vec<(Vec<u8>,)>,
     logbook: Vec<LogbookEntry>,
     settings: AnalysisSettings,
-    /// When the next of the entries comes true that are written down ahead.
+    /// Time at which the next future-dated entry takes effect.
     pub comes_true: Option<Timestamp>,
 }
 

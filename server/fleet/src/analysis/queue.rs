@@ -12,8 +12,8 @@ use binnacle_platform::time::Time;
 
 /// Attempts before a job is given up.
 pub const MOST_ATTEMPTS: i64 = 5;
-/// How long a worker may be silent before another may take its job. Short, so that
-/// a vessel need not wait long for the job of a process that was killed.
+/// Time without a heartbeat after which another worker may take a job. Short, so that a vessel need
+/// not wait long for the job of a process that was killed.
 const LEASE_S: f64 = 60.0;
 const FIRST_RETRY_S: f64 = 10.0;
 
@@ -64,7 +64,7 @@ pub async fn enqueue_outdated(db: &Db, now: Time) -> Result<usize> {
     Ok(outdated.len())
 }
 
-/// Whether a vessel waits to be analysed now, or is being.
+/// Tells whether a vessel's analysis is due or running.
 pub async fn is_under_way(db: &Db, vessel: VesselId, now: Time) -> Result<bool> {
     let found = rows!(
         db,
@@ -205,7 +205,7 @@ pub async fn fail(db: &Db, job: Job, error: &str, now: Time) -> Result<bool> {
     Ok(dead)
 }
 
-/// How many jobs are in each state.
+/// Counts the jobs in each state.
 pub async fn count(db: &Db) -> Result<Vec<(&'static str, i64)>> {
     let counted = rows!(
         db,

@@ -1,4 +1,4 @@
-//! What an analysis leaves in the database.
+//! Results of an analysis in the database.
 
 use super::disturbances::store_disturbances;
 use super::findings::Findings;
@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 /// Samples are kept in rows of so many microseconds: 30 days.
 const CHUNK_MICROS: i64 = 30 * 86_400 * 1_000_000;
 
-/// What one compass's analysis found.
+/// Results of one compass's analysis.
 pub struct Found {
     /// The vessel.
     pub vessel_id: VesselId,
@@ -38,8 +38,8 @@ pub struct Found {
     pub findings: Findings,
 }
 
-/// Where a compass's samples lie, where more would tell most, and how gyro and
-/// satellite compass compare in them.
+/// Coverage of a compass's samples, advice where more would help most, and the comparison of gyro
+/// and satellite compass.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Covered {
     /// Counts of samples.
@@ -67,8 +67,8 @@ pub async fn last_hash(db: &Db, vessel: VesselId, compass: CompassId) -> Result<
     Ok(found.map(|(hash,)| hash))
 }
 
-/// Why the compass's current epoch has no model, none before the first analysis, and
-/// what the logbook leaves out of it.
+/// Returns the reason for which the current epoch has no model, and the samples that the logbook
+/// leaves out. The reason is none before the first analysis.
 pub async fn refusal(
     db: &Db,
     vessel: VesselId,
@@ -100,7 +100,7 @@ pub async fn refusal(
     Ok((epochs.pop().and_then(|epoch| epoch.refusal), left_out))
 }
 
-/// Where a compass's samples lie; empty before the first analysis.
+/// Returns the coverage of a compass's samples; empty before the first analysis.
 pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Covered> {
     let found = row!(
         db,
@@ -120,8 +120,8 @@ pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<C
     Ok(serde_json::from_str(&text)?)
 }
 
-/// What became of the samples: rows that hold those of a range of time, and some
-/// before and after it. Each is a JSON array.
+/// Returns rows that hold the diagnostics of a range of time, and some before and after it. Each is
+/// a JSON array.
 pub async fn chunks(
     db: &Db,
     vessel: VesselId,
@@ -211,7 +211,7 @@ fn number_of(time: Time) -> i64 {
 pub async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>> {
     let analysis = &found.analysis;
     let withdrawn_before = models::withdrawn(tx, found.vessel_id, found.compass_id).await?;
-    // What an adjustment foretold holds from its moment on, and through its epoch.
+    // The prediction of an adjustment holds from its moment on, and through its epoch.
     let foretold = models::foretold(tx, found.vessel_id, found.compass_id).await?;
     let foretold = foretold.filter(|model| {
         let from = analysis.current_epoch().and_then(|epoch| epoch.from);
@@ -252,7 +252,7 @@ pub async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>
     let next = next_model(found, now)?;
     let next = next.filter(|next| {
         foretold.is_none_or(|known| {
-            // Of the ship as she was before the adjustment there is nothing to be told.
+            // A model of the vessel before the adjustment says nothing about it now.
             next.epoch_from >= known.epoch_from && next.knows_more_than(&known)
         })
     });
@@ -268,7 +268,7 @@ pub async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>
     Ok(Some(event))
 }
 
-/// Whether the card of an epoch before holds no more while the current one has none.
+/// Returns the withdrawal of an earlier epoch's card while the current epoch has no model.
 fn withdrawal(analysis: &Analysis) -> Result<Option<CardWithdrawn>> {
     let Some(epoch) = analysis.current_epoch() else {
         return Ok(None);
@@ -280,7 +280,7 @@ fn withdrawal(analysis: &Analysis) -> Result<Option<CardWithdrawn>> {
     Ok(Some(CardWithdrawn { since, reason }))
 }
 
-/// What began an epoch, in a word: what people reported, or the change that was found.
+/// Returns the kind of logbook entry, or the detected cause, that began an epoch.
 fn begun_by(epoch: &Epoch) -> Result<Option<String>> {
     let word = match (epoch.begun_by, epoch.begun_by_change) {
         (Some(reported), _) => serde_json::to_value(reported)?,

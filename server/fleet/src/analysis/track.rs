@@ -1,4 +1,4 @@
-//! Where a ship was lately, as few places as a map of the fleet shows.
+//! Recent places of a ship, as few as a map of the fleet shows.
 //!
 //! What always holds: a track depends on the samples alone, not on how they came. It
 //! has one place for each twelve hours in which there were samples, the last one there,

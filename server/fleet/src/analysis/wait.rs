@@ -6,7 +6,7 @@ use binnacle_platform::error::Result;
 use binnacle_platform::ids::VesselId;
 use std::time::{Duration, Instant};
 
-/// How often to look whether a vessel has been analysed.
+/// Interval between checks of the queue.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 
 /// Waits until a vessel's samples are analysed, but not for longer than that.

@@ -1,4 +1,4 @@
-//! How the OpenAPI document describes the parts of a design.
+//! OpenAPI descriptions of the parts of a binnacle's design.
 
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -25,7 +25,7 @@ pub(super) enum CompassKindSchema {
     reason = "describes binnacle_adjustment::binnacle::MagnetKind"
 )]
 pub(super) struct MagnetKindSchema {
-    /// What they are called.
+    /// Name of the magnets.
     name: String,
     /// From end to end, mm.
     length_mm: f64,
@@ -35,7 +35,7 @@ pub(super) struct MagnetKindSchema {
     moment_tolerance: f64,
 }
 
-/// What magnets are put into.
+/// Carrier of magnets.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = MagnetCarrier)]
@@ -45,16 +45,16 @@ enum CarrierSchema {
     Tray,
 }
 
-/// Where the magnets of one axis may stand.
+/// Positions of the magnets of one axis.
 #[derive(ToSchema)]
 #[schema(as = MagnetRack)]
 #[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Rack")]
 pub(super) struct RackSchema {
-    /// What magnets are put into.
+    /// Carrier of the magnets.
     carrier: CarrierSchema,
-    /// How many trays there are, or how many holes may hold magnets at once.
+    /// Number of trays, or of holes that may hold magnets at once.
     at_once: u8,
-    /// How many magnets each takes.
+    /// Magnets in each.
     magnets_each: u8,
     /// Sideways distance of each magnet from the middle plane, mm.
     #[schema(required = false)]
@@ -104,9 +104,9 @@ pub(super) struct QuadrantalSchema {
     reason = "describes binnacle_adjustment::binnacle::IronSize"
 )]
 struct IronSizeSchema {
-    /// What it is called.
+    /// Name of the correctors.
     name: String,
-    /// What it looks like.
+    /// Their shape.
     shape: ShapeSchema,
     /// Diameter of the sphere; of boxes and plates, that of the spheres that do the same.
     diameter_mm: f64,
@@ -130,7 +130,7 @@ enum ShapeSchema {
 #[schema(as = BracketMark)]
 #[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Mark")]
 struct MarkSchema {
-    /// What the scale says, mm.
+    /// Scale mark, mm.
     mark_mm: f64,
     /// From the card's centre to the centre of either, mm.
     centre_mm: f64,
@@ -178,8 +178,8 @@ pub(super) enum SideSchema {
 pub(super) struct HeelingHolderSchema {
     /// The kind of magnets that fits, upright.
     magnet: String,
-    /// How many it takes.
+    /// Greatest number of magnets in it.
     at_most: u8,
-    /// Where the bucket may hang, numbered from the bottom.
+    /// Positions of the bucket, numbered from the bottom.
     positions: Vec<HeightSchema>,
 }

@@ -4,7 +4,7 @@ use super::schema::AboardSchema;
 use super::store;
 use crate::compasses::Role;
 use axum::extract::{FromRef, State};
-use binnacle_adjustment::binnacle::{Aboard, Binnacle};
+use binnacle_adjustment::binnacle::{Binnacle, Inventory};
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Problem, Result};
@@ -27,17 +27,17 @@ where
 /// A compass of the fleet's, and what it stands in.
 #[derive(Debug, Serialize, ToSchema)]
 struct FleetBinnacle {
-    /// Her id.
+    /// The vessel's id.
     vessel_id: VesselId,
-    /// Her name.
+    /// The vessel's name.
     vessel_name: String,
     /// The compass's id.
     compass_id: CompassId,
     /// Its name.
     compass_name: String,
-    /// What it serves as.
+    /// Its role.
     role: Role,
-    /// What it stands in; none where that was never entered, and nothing can be planned.
+    /// Its binnacle. None where none was entered, and no adjustment can be planned.
     #[schema(required)]
     binnacle: Option<BinnacleInShort>,
 }
@@ -45,24 +45,24 @@ struct FleetBinnacle {
 /// The latest revision of a binnacle, in a line.
 #[derive(Debug, Serialize, ToSchema)]
 struct BinnacleInShort {
-    /// Who makes it.
+    /// Its maker.
     maker: String,
-    /// What the maker calls it.
+    /// The maker's name for it.
     model: String,
     /// The maker's number of this one.
     serial: String,
     /// All correctors on board, those in use included.
     #[schema(value_type = AboardSchema)]
-    aboard: Aboard,
-    /// How many of its effects were measured.
+    aboard: Inventory,
+    /// Number of measured effects.
     measured_effects: usize,
     /// Counts from 1.
     revision: i64,
-    /// When it was written.
+    /// Time of the revision.
     at: Time,
-    /// Who wrote it.
+    /// Author of the revision.
     by: String,
-    /// Why, in a few words.
+    /// Reason, in a few words.
     #[schema(required)]
     reason: Option<String>,
 }
@@ -119,7 +119,7 @@ impl BinnacleInShort {
             maker: binnacle.design.maker.clone(),
             model: binnacle.design.model.clone(),
             serial: binnacle.serial.clone(),
-            aboard: binnacle.aboard.clone(),
+            aboard: binnacle.inventory.clone(),
             measured_effects: binnacle.calibration.len(),
             revision: written.revision,
             at: written.at,

@@ -65,11 +65,11 @@ where
 pub struct BinnacleRevision {
     /// Counts from 1.
     pub revision: i64,
-    /// When it was written.
+    /// Time of the revision.
     pub at: Time,
-    /// Who wrote it.
+    /// Author of the revision.
     pub by: String,
-    /// Why, in a few words.
+    /// Reason, in a few words.
     #[schema(required)]
     pub reason: Option<String>,
     /// The binnacle, with the correctors on board and how they stand.
@@ -87,7 +87,7 @@ struct BinnacleRevisionList {
     next: Option<String>,
 }
 
-/// Why a binnacle is written anew.
+/// Reason for a new revision.
 #[derive(Deserialize, Serialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Why {
@@ -134,7 +134,7 @@ async fn put_binnacle(
     let request_hash = idempotency::request_hash(&format!("binnacle of {compass}"), &form)?;
     let reason = optional_text("reason", why.reason.as_deref())?;
     let binnacle = Binnacle::try_from(form).map_err(invalid_binnacle)?;
-    binnacle.must_be_credible().map_err(invalid_binnacle)?;
+    binnacle.check_tested_moments().map_err(invalid_binnacle)?;
     let now = app.clock.now().into();
     let wanted = BinnacleId::new();
     let mut tx = request.begin().await?;

@@ -1,5 +1,5 @@
-//! How the OpenAPI document describes binnacles; they themselves are the science
-//! crate's, and docs/binnacle.md says what each field means.
+//! OpenAPI descriptions of binnacles. The adjustment crate owns the types; docs/binnacle.md
+//! explains each field.
 
 use super::design_schema::{
     CompassKindSchema, FlindersSchema, HeelingHolderSchema, MagnetKindSchema, QuadrantalSchema,
@@ -26,9 +26,9 @@ pub struct BinnacleSchema {
     design: DesignSchema,
     /// All correctors on board, those in use included.
     aboard: AboardSchema,
-    /// How they stand now.
+    /// Their present setting.
     setting: SettingSchema,
-    /// What was measured of them; it wins over the formulas.
+    /// Measured effects of the correctors, which take precedence over the formulas.
     #[schema(required = false, value_type = Vec<Object>)]
     calibration: Vec<Value>,
 }
@@ -43,11 +43,11 @@ pub struct BinnacleSchema {
 pub(super) struct DesignSchema {
     /// Of this form: 1.
     version: u32,
-    /// Who makes it.
+    /// Its maker.
     maker: String,
-    /// What the maker calls it.
+    /// The maker's name for it.
     model: String,
-    /// Where its figures come from.
+    /// Source of its figures.
     provenance: String,
     /// Class A or B of ISO 25862, or neither.
     compass: CompassKindSchema,
@@ -73,7 +73,10 @@ pub(super) struct DesignSchema {
 /// Correctors on board, those in use included.
 #[derive(ToSchema)]
 #[schema(as = CorrectorsAboard)]
-#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Aboard")]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_adjustment::binnacle::Inventory"
+)]
 pub(super) struct AboardSchema {
     /// Magnets by their kind.
     magnets: Vec<LotSchema>,
@@ -93,7 +96,7 @@ struct LotSchema {
     /// Their kind.
     #[schema(example = "200 mm")]
     magnet: String,
-    /// How many there are, those in use included.
+    /// Number of magnets, those in use included.
     count: u16,
     /// Their moment as it was tested, A·m²; the nominal one counts otherwise.
     #[schema(required = false)]
@@ -103,7 +106,7 @@ struct LotSchema {
     tested_sd: Option<f64>,
 }
 
-/// How every corrector stands; an empty list or null is none.
+/// Setting of every corrector; an empty list or null is none.
 #[derive(ToSchema)]
 #[schema(as = CorrectorSetting)]
 #[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Setting")]
@@ -135,13 +138,13 @@ pub struct TraySchema {
     /// Their kind.
     #[schema(example = "200 mm")]
     magnet: String,
-    /// How many.
+    /// Number of magnets.
     count: u8,
-    /// Where their red, north-seeking ends point.
+    /// Direction of their red, north-seeking ends.
     red: RedSchema,
 }
 
-/// Where a red, north-seeking end points.
+/// Direction of a red, north-seeking end.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = RedEnd)]
@@ -200,8 +203,8 @@ pub struct BarSchema {
 pub struct BucketSchema {
     /// Number of its position, from the bottom.
     position: u16,
-    /// How many magnets.
+    /// Number of magnets.
     count: u8,
-    /// Where their red ends point: up or down.
+    /// Direction of their red ends: up or down.
     red: RedSchema,
 }

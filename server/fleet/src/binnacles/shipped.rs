@@ -29,11 +29,11 @@ struct BinnacleType {
     /// By which it is found.
     #[schema(example = "class_a_trays")]
     name: &'static str,
-    /// Who makes it.
+    /// Its maker.
     maker: String,
-    /// What the maker calls it.
+    /// The maker's name for it.
     model: String,
-    /// Where its figures come from.
+    /// Source of its figures.
     provenance: String,
 }
 

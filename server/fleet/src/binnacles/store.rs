@@ -14,13 +14,13 @@ use uuid::Uuid;
 pub struct Revised {
     /// Counts from 1.
     pub revision: i64,
-    /// When it was written.
+    /// Time of the revision.
     pub at: Time,
-    /// Who wrote it.
+    /// Author of the revision.
     pub author_name: String,
-    /// Why.
+    /// Reason for the revision.
     pub reason: Option<String>,
-    /// What it said.
+    /// The binnacle as recorded by it.
     #[sqlx(try_from = "String")]
     pub binnacle: BinnacleJson,
 }
@@ -29,14 +29,14 @@ pub struct Revised {
 #[derive(Clone, Debug)]
 pub struct BinnacleJson(pub Binnacle);
 
-/// Who writes, and when.
+/// Author of a revision, and its time.
 #[derive(Clone, Debug)]
 pub struct Author {
     /// Their id.
     pub id: Uuid,
     /// Their name.
     pub name: String,
-    /// When.
+    /// Time of writing.
     pub at: Time,
 }
 
@@ -66,7 +66,7 @@ pub async fn current(db: &Db, vessel: VesselId, compass: CompassId) -> DbResult<
     Ok(list(db, vessel, compass, None, 1).await?.pop())
 }
 
-/// What was written of it, the newest first, from before a revision.
+/// Lists the revisions before a given one, the newest first.
 pub(super) async fn list(
     db: &Db,
     vessel: VesselId,
@@ -104,7 +104,7 @@ pub(super) struct Standing {
 }
 
 impl Standing {
-    /// What was written last; none where nothing ever was.
+    /// Returns the last revision; none where there is none.
     pub(super) fn revised(&self) -> Result<Option<Revised>> {
         let (Some(revision), Some(at), Some(author_name), Some(text)) =
             (self.revision, self.at, &self.author_name, &self.binnacle)

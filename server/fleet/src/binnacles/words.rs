@@ -1,8 +1,8 @@
-//! How a binnacle's correctors stand, in words.
+//! Text that describes the setting of a binnacle's correctors.
 
 use binnacle_adjustment::binnacle::{Red, Setting, Shape, Side, Tray};
 
-/// What a corrector is, and how it stands; a line for each there may be.
+/// Describes each corrector and its setting, a line for each possible kind.
 pub fn in_words(setting: &Setting, shape: Option<Shape>) -> [(&'static str, String); 5] {
     let pair = match shape {
         Some(Shape::Sphere) => "Spheres",
@@ -59,7 +59,7 @@ fn or_none(words: Option<String>) -> String {
     words.unwrap_or_else(|| "none".to_owned())
 }
 
-/// By how much, and which way: clockwise seen from above, or the other way.
+/// Describes an angle and its direction: clockwise seen from above, or the other way.
 fn slewed(slew_deg: f64, [clockwise, other]: [&str; 2]) -> String {
     if slew_deg == 0.0 {
         return String::new();

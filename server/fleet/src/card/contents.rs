@@ -1,21 +1,21 @@
-//! What a deviation card says; its form as JSON.
+//! Contents of a deviation card, and their JSON.
 //!
-//! What always holds: a card is predicted until headings at sea have verified the
-//! adjustment that its model comes from, and a certificate never.
+//! Invariant: a card is predicted until headings at sea have verified the adjustment that its model
+//! comes from. It is never a certificate.
 
 use crate::binnacles::SettingSchema;
 use crate::compasses::Compass;
 use crate::deviation::{HandbookSchema, Row, Worst};
 use crate::ingest::CardWithdrawnSchema;
 use binnacle_adjustment::binnacle::{Setting, Shape};
-use binnacle_compass::handbook::Handbook;
+use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_platform::ids::{ModelId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// What a card says of itself while no heading at sea has verified what was foretold.
+/// Returns the statement of a card whose prediction no headings at sea have verified.
 pub(super) fn foretold(adjusted_at: Time, order: OrderId) -> String {
     format!(
         "Foretold when the compass was adjusted at the berth on {} by work order {order}: \
@@ -25,11 +25,11 @@ pub(super) fn foretold(adjusted_at: Time, order: OrderId) -> String {
     )
 }
 
-/// What a predicted card says of itself.
+/// Statement of a predicted card.
 pub(super) const PREDICTED: &str = "Predicted from observations under way by a model of the \
      ship's magnetism. Not a certificate of adjustment: no adjuster has signed it.";
 
-/// What a verified card says of itself: by what, and that it is no more than that.
+/// Returns the statement of a verified card: its verification, and that it is no certificate.
 pub(super) fn verified(by: &VerifiedAtSea) -> String {
     format!(
         "Verified at sea: {} headings up to {} agree, to {:.1} degrees, with what was foretold \
@@ -47,11 +47,11 @@ pub(super) fn verified(by: &VerifiedAtSea) -> String {
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = DeviationCard)]
 pub struct Card {
-    /// What the card is worth.
+    /// Status of the card.
     pub status: Status,
-    /// The same in words, to stand wherever figures of the card stand.
+    /// The status in words, to accompany figures of the card wherever they are shown.
     pub statement: String,
-    /// What verified it; none of a card that is predicted.
+    /// Its verification; none of a card that is predicted.
     #[schema(required)]
     pub verified: Option<VerifiedAtSea>,
     /// The work order whose adjustment at the berth the model comes from, while headings at
@@ -62,7 +62,7 @@ pub struct Card {
     pub vessel: Ship,
     /// The compass: each magnetic element has a card of its own.
     pub compass: Compass,
-    /// Where and when it holds.
+    /// Place and time at which it holds.
     pub place: Place,
     /// By compass heading from 0, each 15°.
     pub rows: Vec<CardRow>,
@@ -73,7 +73,7 @@ pub struct Card {
     pub widest_band95_deg: f64,
     /// The coefficients there.
     pub coefficients: Coefficients,
-    /// Why no card from before the model's epoch holds; none where there was no change.
+    /// Change that withdrew cards from before the model's epoch; none where there was no change.
     #[schema(required, value_type = Option<CardWithdrawnSchema>)]
     pub replaces: Option<CardWithdrawn>,
     /// The binnacle's correctors as they were last recorded; none where nobody recorded
@@ -82,7 +82,7 @@ pub struct Card {
     pub correctors: Option<Correctors>,
     /// Magnetic cargo on board at that date, by the logbook.
     pub cargo: Vec<CargoAboard>,
-    /// How the degaussing coils are, as it is recorded of the vessel.
+    /// State of the degaussing coils, as recorded of the vessel.
     #[schema(required, example = "no coils fitted")]
     pub degaussing: Option<String>,
     /// The last degaussing or deperming in the logbook.
@@ -91,44 +91,44 @@ pub struct Card {
     /// The last adjustment in the logbook.
     #[schema(required)]
     pub adjusted_at: Option<Time>,
-    /// Who did it, by the work order; none where that adjustment was by none.
+    /// Adjuster of that adjustment, by the work order; none where no work order covers it.
     #[schema(required)]
     pub adjusted_by: Option<AdjustedBy>,
-    /// When the compass is due to be adjusted next; none where no adjustment is on record,
-    /// or where headings at sea have not verified the last.
+    /// Due date of the next adjustment. None where no adjustment is on record, or where headings at
+    /// sea have not verified the last.
     #[schema(required)]
     pub next_due: Option<NextDue>,
-    /// What belongs on a card and is not recorded here: a person must write it.
+    /// Items that belong on a card and are not recorded here: a person must write them.
     pub not_recorded: Vec<NotRecorded>,
     /// The model that says so.
     pub model: Source,
-    /// What the reader must know, a sentence each; the most pressing first.
+    /// Notes for the reader, a sentence each; the most pressing first.
     pub notes: Vec<String>,
     /// Each 5°, for the curve.
     #[serde(skip)]
     pub curve: Vec<Row>,
 }
 
-/// What a card is worth.
+/// Status of a card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = CardStatus)]
 pub enum Status {
     /// By the model alone.
     Predicted,
-    /// Headings at sea agree with what was foretold when the compass was adjusted.
+    /// Headings at sea agree with the prediction of the adjustment.
     Verified,
 }
 
-/// What verified a card.
+/// Verification of a card at sea.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
 #[schema(as = CardVerification)]
 pub struct VerifiedAtSea {
     /// The work order whose adjustment was verified.
     pub order: OrderId,
-    /// When the compass was adjusted.
+    /// Time of the adjustment.
     pub adjusted_at: Time,
-    /// When the headings were found to be enough.
+    /// Time at which the headings were enough.
     pub verified_at: Time,
     /// Headings that counted, 15° or more apart.
     #[schema(example = 9)]
@@ -159,24 +159,24 @@ impl Status {
 pub struct Ship {
     /// The vessel's id.
     pub id: VesselId,
-    /// Her name.
+    /// Its name.
     #[schema(example = "Nao Victoria")]
     pub name: String,
-    /// Her IMO number.
+    /// Its IMO number.
     #[schema(required, example = "9074729")]
     pub imo_number: Option<String>,
-    /// Her call sign.
+    /// Its call sign.
     #[schema(required, example = "EAVN")]
     pub call_sign: Option<String>,
-    /// Her flag state.
+    /// Its flag state.
     #[schema(required, example = "Spain")]
     pub flag: Option<String>,
-    /// How her degaussing coils are.
+    /// State of its degaussing coils.
     #[serde(skip)]
     pub degaussing: Option<String>,
 }
 
-/// Where and when a card holds, and the earth's field there.
+/// Place and time at which a card holds, and the earth's field there.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = CardPlace)]
 pub struct Place {
@@ -186,7 +186,7 @@ pub struct Place {
     /// Degrees east.
     #[schema(example = -3.1)]
     pub lon: f64,
-    /// When.
+    /// Time.
     pub at: Time,
     /// Variation, degrees, east positive.
     #[schema(example = 0.4)]
@@ -232,32 +232,32 @@ pub struct CardRow {
 pub struct Coefficients {
     /// The exact ones, × 57.3.
     #[schema(value_type = HandbookSchema)]
-    pub exact: Handbook,
-    /// What the model adds on every heading: alignment, reference and variation
-    /// offsets. The handbook's A includes it.
+    pub exact: CoefficientsInDegrees,
+    /// Constant that the model adds on every heading: alignment, reference and variation offsets.
+    /// The handbook's A includes it.
     #[schema(example = 0.2)]
     pub constant_deg: f64,
-    /// What an adjuster would find who swung the ship.
+    /// Approximate coefficients, as an adjuster finds them who swings the ship.
     #[schema(value_type = HandbookSchema)]
-    pub handbook: Handbook,
+    pub handbook: CoefficientsInDegrees,
 }
 
-/// How a binnacle's correctors stand.
+/// Setting of a binnacle's correctors.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = CardCorrectors)]
 pub struct Correctors {
     /// The revision of the binnacle that says so.
     #[schema(example = 3)]
     pub revision: i64,
-    /// When it was written.
+    /// Time of the revision.
     pub at: Time,
     /// The binnacle: maker, model and serial number.
     #[schema(example = "Cassens & Plath type 11, no. 2047")]
     pub binnacle: String,
-    /// How each of them stands.
+    /// Setting of each corrector.
     #[schema(value_type = SettingSchema)]
     pub setting: Setting,
-    /// What the quadrantal correctors are.
+    /// Shape of the quadrantal correctors.
     #[serde(skip)]
     pub shape: Option<Shape>,
 }
@@ -265,16 +265,15 @@ pub struct Correctors {
 /// Magnetic cargo on board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct CargoAboard {
-    /// Since when.
+    /// Time from which it is on board.
     pub since: Time,
-    /// What it is: `steel`, `scrap`, `containers` or `other`; none where the logbook does
-    /// not say.
+    /// Its kind: `steel`, `scrap`, `containers` or `other`; none where the logbook does not say.
     #[schema(required, example = "steel")]
     pub cargo: Option<String>,
 }
 
-/// Who adjusted a compass, by the record of the work order. They have signed that record,
-/// and no card.
+/// Adjuster of a compass, by the record of the work order. The adjuster has signed that record, and
+/// no card.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[schema(as = CardAdjuster)]
 pub struct AdjustedBy {
@@ -291,35 +290,35 @@ pub struct AdjustedBy {
     pub firm: Option<String>,
 }
 
-/// When a compass is due to be adjusted next, by the schedule's rules.
+/// Due date of a compass's next adjustment, by the schedule's rules.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[schema(as = CardNextDue)]
 pub struct NextDue {
     /// The day.
     #[schema(format = Date, example = "2028-11-21")]
     pub on: String,
-    /// Why, with the rule.
+    /// Reason, with the rule.
     #[schema(example = "24 months after the adjustment of 2026-11-21 (ISO 25862:2019, Annex G)")]
     pub reason: String,
-    /// Whether the flag's own rules were among those that were asked: they are where the
-    /// vessel's flag is recorded by its two letters.
+    /// True if the flag's own rules were applied. They are where the vessel's flag is recorded by
+    /// its two letters.
     pub flags_own_rules: bool,
 }
 
-/// What belongs on a card and nobody has recorded here.
+/// Item that belongs on a card and is not recorded here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = CardNotRecorded)]
 pub enum NotRecorded {
-    /// Where magnets, spheres and Flinders bar are.
+    /// Positions of magnets, spheres and Flinders bar.
     Correctors,
-    /// How the degaussing coils are set.
+    /// Setting of the degaussing coils.
     DegaussingCoils,
     /// The adjuster, with licence and firm.
     Adjuster,
     /// An adjuster's signature on the card, which no program makes.
     Signature,
-    /// When the compass is due to be adjusted next.
+    /// Due date of the next adjustment.
     NextDue,
 }
 
@@ -332,13 +331,13 @@ pub struct Source {
     /// Counts the compass's models from 1.
     #[schema(example = 12)]
     pub version: i64,
-    /// When it was fitted, or foretold.
+    /// Time at which it was fitted or predicted.
     pub fitted_at: Time,
-    /// The work order that foretold it; none for a model that was fitted.
+    /// The work order that predicted it; none for a model that was fitted.
     #[schema(required)]
     pub foretold_by: Option<OrderId>,
-    /// The time of the first sample in it; of a model that was foretold, in the one that it
-    /// was foretold from.
+    /// The time of the first sample in it; for a predicted model, in the model that it was
+    /// predicted from.
     pub data_from: Time,
     /// The time of the last of them.
     pub data_until: Time,

@@ -1,7 +1,7 @@
-//! When a compass is due to be adjusted next, as its card has it.
+//! Due date of a compass's next adjustment, as its card shows it.
 //!
-//! What always holds: it is what the schedule's rules make of what is recorded here, on the
-//! day that the card is for; where no adjustment is on record there is no such day.
+//! Invariant: the date follows from the schedule's rules and the records at the card's date.
+//! Without an adjustment on record there is none.
 
 use super::contents::NextDue;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
@@ -14,13 +14,13 @@ use binnacle_schedule::time::Instant;
 /// flag's rules; a card that names a flag in words would then cite another state's.
 const NO_FLAG: &str = "ZZ";
 
-/// What the rules look at.
+/// Facts that the rules use.
 pub(super) struct Facts<'a> {
     /// The vessel's flag as it is recorded.
     pub(super) flag: Option<&'a str>,
-    /// When the compass was last adjusted.
+    /// Time of the last adjustment.
     pub(super) adjusted_at: Option<Time>,
-    /// What people reported.
+    /// Entries of the logbook.
     pub(super) logbook: &'a [LogbookEntry],
     /// The day of the card.
     pub(super) at: Time,
@@ -30,7 +30,7 @@ pub(super) struct Facts<'a> {
     pub(super) own_limit_deg: f64,
 }
 
-/// When it is due; none where no adjustment is on record.
+/// Returns the due date; none where no adjustment is on record.
 pub(super) fn next_due(facts: &Facts<'_>) -> Option<NextDue> {
     let flag = facts.flag.and_then(|flag| letters(flag.trim()));
     let ship = needs::Ship {

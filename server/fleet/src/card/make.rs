@@ -37,19 +37,19 @@ pub(super) struct Basis {
     pub(super) data: (Time, Time),
     /// The binnacle as it is recorded.
     pub(super) binnacle: Option<Revised>,
-    /// What people reported, without what is withdrawn.
+    /// Entries of the logbook, without withdrawn ones.
     pub(super) logbook: Vec<LogbookEntry>,
-    /// What is open on this compass.
+    /// Open alerts of this compass.
     pub(super) alerts: Vec<OpenAlert>,
     /// The compass's adjustments by work orders, in order of time.
     pub(super) completed: Vec<CompletedOrder>,
-    /// What was observed near each line.
+    /// Observations near each line.
     pub(super) observed: [Observed; 24],
     /// The widest half of a band that makes a card, degrees.
     pub(super) limit_deg: f64,
     /// The greatest deviation that the vessel's own limits let stand, degrees.
     pub(super) own_limit_deg: f64,
-    /// When the card is asked for.
+    /// Time of the request.
     pub(super) now: Time,
 }
 
@@ -69,7 +69,7 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
     let coefficients = Coefficients {
         exact: Exact::new(&ship.parameters_over_lambda, earth)?.to_degrees(),
         constant_deg: ship.constant_deg,
-        handbook: ship.handbook(earth)?,
+        handbook: ship.approximate_coefficients(earth)?,
     };
     let at = place.at;
     let cargo = cargo_at(&basis.logbook, at);
@@ -141,7 +141,7 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
     })
 }
 
-/// What verified the adjustment that the model comes from.
+/// Returns the verification of the adjustment that the model comes from.
 fn verified_by(model: &StoredModel, completed: &[CompletedOrder]) -> Option<VerifiedAtSea> {
     let by = completed.iter().rev().find(|order| order.bears_on(model))?;
     let at_sea = by.at_sea?;
@@ -215,7 +215,7 @@ fn line((row, observed): (&Row, Observed)) -> CardRow {
     }
 }
 
-/// Who did the last adjustment, where it was by a work order.
+/// Returns the adjuster of the last adjustment, where it was by a work order.
 fn adjusted_by(completed: &[CompletedOrder], adjusted_at: Option<Time>) -> Option<AdjustedBy> {
     let by = completed
         .iter()

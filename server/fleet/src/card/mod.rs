@@ -194,7 +194,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     let alerts = alerts::list_in_force(db, id, compass.id).await?;
     let made = tokio::task::spawn_blocking(move || {
         let seen = match model.foretold_by {
-            Some(_) => Seen::Foretold(&model.model.0),
+            Some(_) => Seen::Predicted(&model.model.0),
             None => Seen::Fitted,
         };
         let basis = Basis {
@@ -224,8 +224,8 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     made.await?
 }
 
-/// The first and the last sample that a model rests on: of one that was foretold, those
-/// of the model before the adjustment.
+/// Returns the times of the first and the last sample of a model. For a predicted model they are
+/// those of the model before the adjustment.
 async fn data_of(app: &App, model: &StoredModel) -> Result<(Time, Time)> {
     let from = match model.foretold_by {
         Some(order) => adjustments::foretold_from(&app.db, model.vessel_id, order).await?,
@@ -242,7 +242,7 @@ async fn data_of(app: &App, model: &StoredModel) -> Result<(Time, Time)> {
 }
 
 impl Query {
-    /// When the card is for: a model tells nothing of the time before its epoch.
+    /// Returns the time that the card is for: a model does not hold before its epoch.
     fn at(&self, model: &StoredModel, last_at: Time) -> Result<Time> {
         let at = time("at", self.at.as_deref())?.map(Time);
         let at = at.unwrap_or(model.place_at.max(last_at));

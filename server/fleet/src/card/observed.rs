@@ -1,4 +1,4 @@
-//! What was observed near each heading of a card, beside what the card says.
+//! Observations near each heading of a card, compared with the card.
 
 use binnacle_compass::angle::{CompassHeading, wrap_180};
 use binnacle_compass::model::Model;
@@ -15,23 +15,23 @@ const SECTORS: usize = 24;
 /// Observations within half a step of a heading.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Observed {
-    /// How many samples carried weight.
+    /// Number of samples that carried weight.
     pub(super) samples: u64,
     /// Their mean of measured less predicted deviation, by weight, degrees; none
     /// without samples.
     pub(super) residual_deg: Option<f64>,
 }
 
-/// What the samples are to a card's model.
+/// Relation of the samples to a card's model.
 #[derive(Clone, Copy)]
 pub(super) enum Seen<'a> {
     /// It was fitted to those that carried weight.
     Fitted,
-    /// It was foretold before them: what counts is what it says of each.
-    Foretold(&'a Model),
+    /// It was predicted before them: each is compared with its prediction.
+    Predicted(&'a Model),
 }
 
-/// What of a sample is looked at.
+/// Fields of a sample that the comparison needs.
 #[derive(Deserialize)]
 struct Sample {
     time: Time,
@@ -49,8 +49,8 @@ struct Sample {
     reason: Option<SampleReason>,
 }
 
-/// What was observed in an epoch from `from` on, by lines of the card; `chunks` are
-/// JSON arrays of samples.
+/// Collects the observations of an epoch from `from` on, by lines of the card. `chunks` are JSON
+/// arrays of samples.
 pub(super) fn observed(
     chunks: &[String],
     from: Time,
@@ -82,7 +82,7 @@ impl Seen<'_> {
     fn residual(self, sample: &Sample) -> Option<(f64, f64)> {
         match self {
             Seen::Fitted => Some((sample.residual_deg?, sample.weight)).filter(|_| sample.used),
-            Seen::Foretold(model) => {
+            Seen::Predicted(model) => {
                 if !matches!(sample.reason, None | Some(SampleReason::NoModel)) {
                     return None;
                 }
@@ -91,8 +91,8 @@ impl Seen<'_> {
                     z_nt: sample.z_nt?,
                 };
                 let compass = CompassHeading::new(sample.compass_deg)?;
-                let foretold = model.deviation(compass, earth).ok()?.deviation;
-                let residual_deg = sample.deviation_deg? - foretold.degrees_east();
+                let predicted = model.deviation(compass, earth).ok()?.deviation;
+                let residual_deg = sample.deviation_deg? - predicted.degrees_east();
                 Some((wrap_180(residual_deg), 1.0))
             }
         }

@@ -1,4 +1,4 @@
-//! Why there is no card although there is a model.
+//! Reasons for which there is no card although there is a model.
 
 use axum::http::StatusCode;
 use binnacle_compass::deviation::DeviationError;
@@ -12,7 +12,7 @@ use serde_json::Map;
 /// much that the half degree to which a card is read is no longer sure.
 pub(super) const OLDEST_DAYS: f64 = 90.0;
 
-/// Why a card is refused.
+/// Reason for which a card is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// Too long since the last sample.
@@ -22,9 +22,9 @@ pub enum Refusal {
         data_until.to_the_minute()
     )]
     TooOld {
-        /// When the last sample was taken.
+        /// Time of the last sample.
         data_until: Time,
-        /// How long before the card, days.
+        /// Age of the last sample at the card's time, days.
         days: f64,
     },
     /// Deviation is not known well enough on some heading.
@@ -36,7 +36,7 @@ pub enum Refusal {
     BandTooWide {
         /// Half the 95 % band where it is widest, degrees.
         band95_deg: f64,
-        /// Where that is.
+        /// Compass heading of the widest band.
         compass_deg: f64,
         /// The vessel's limit.
         limit_deg: f64,
@@ -61,7 +61,7 @@ impl Refusal {
                 ("band-too-wide", "The model is too uncertain for a card")
             }
             Refusal::NoHeadings(
-                DeviationError::FieldTooWeak { .. } | DeviationError::NoField { .. },
+                DeviationError::FieldTooWeak { .. } | DeviationError::InvalidField { .. },
             ) => ("field-too-weak", "The earth's field there is too weak"),
             Refusal::NoHeadings(_) => ("headings-ambiguous", "Headings are ambiguous"),
             Refusal::CompassSuspected { .. } => ("compass-suspected", "The compass is suspected"),

@@ -247,7 +247,7 @@ fn version(epoch: &StoredEpoch, versions: &[Version]) -> Option<i64> {
 /// Tells whether a change is shown. A disturbance too small to be certain by this ship alone is
 /// shown once other ships confirm it.
 fn is_shown(found: &FoundChange) -> bool {
-    !found.change.is_faint()
+    !found.change.is_weak_transient()
 }
 
 impl From<FoundChange> for ChangeFound {

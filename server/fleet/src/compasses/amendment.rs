@@ -6,7 +6,7 @@ use binnacle_platform::http::{Amended, optional_text, text};
 use serde::Deserialize;
 use utoipa::ToSchema;
 
-/// What is to be changed of a compass.
+/// Amendment of a compass.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Amendment {
@@ -20,7 +20,7 @@ pub(super) struct Amendment {
     binnacle: Amended<String>,
 }
 
-/// What is to be changed of a compass; what is left out stays, null takes a value away.
+/// Amendment of a compass. Absent fields stay as they are; null removes a value.
 #[derive(ToSchema)]
 #[schema(as = CompassAmendment)]
 #[allow(dead_code, reason = "describes Amendment")]

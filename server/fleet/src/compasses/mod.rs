@@ -34,7 +34,7 @@ where
         .routes(routes!(amend_compass))
 }
 
-/// A magnetic element aboard.
+/// A magnetic compass on board.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 pub struct Compass {
     /// The compass's id.
@@ -44,7 +44,7 @@ pub struct Compass {
     pub vessel_id: VesselId,
     /// Its name.
     pub name: String,
-    /// What it serves as.
+    /// Its role.
     pub role: Role,
     /// Maker and type.
     #[schema(required, example = "Cassens & Plath Reflecta 1")]
@@ -55,11 +55,11 @@ pub struct Compass {
     /// The binnacle that it stands in: maker, type and number.
     #[schema(required)]
     pub binnacle: Option<String>,
-    /// When it was entered.
+    /// Time at which it was entered.
     pub created_at: Time,
 }
 
-/// What a compass serves as.
+/// Role of a compass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
@@ -79,7 +79,7 @@ pub struct NewCompass {
     /// Its name.
     #[schema(min_length = 1, max_length = 200)]
     pub name: String,
-    /// What it serves as.
+    /// Its role.
     pub role: Role,
     /// Maker and type.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -105,7 +105,7 @@ pub struct CompassList {
     pub next: Option<String>,
 }
 
-/// Which of the vessel's compasses.
+/// Selection of one of the vessel's compasses.
 #[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct WhichCompass {

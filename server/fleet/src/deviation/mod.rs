@@ -31,7 +31,7 @@ where
     OpenApiRouter::new().routes(routes!(find_deviation))
 }
 
-/// Where and when.
+/// Place and time.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Query {
@@ -55,7 +55,7 @@ pub struct DeviationTable {
     pub lat: f64,
     /// Degrees east.
     pub lon: f64,
-    /// When.
+    /// Time.
     pub at: Time,
     /// The earth's variation there, degrees, east positive (IGRF-14).
     pub variation_deg: f64,

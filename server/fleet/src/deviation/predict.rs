@@ -1,8 +1,8 @@
-//! What a model says about every heading at one place.
+//! Predictions of a model on every heading at one place.
 
 use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_compass::deviation::DeviationError;
-use binnacle_compass::handbook::Handbook;
 use binnacle_compass::model::Model;
 use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
 use serde::{Deserialize, Serialize};
@@ -36,14 +36,14 @@ pub struct Worst {
     pub band95_deg: Option<f64>,
 }
 
-/// What an adjuster would find who swung the ship: the approximate coefficients of
-/// the handbooks, degrees.
+/// Approximate coefficients of the handbooks, degrees, as an adjuster finds them who swings the
+/// ship.
 #[derive(ToSchema)]
 #[schema(as = HandbookCoefficients)]
 #[allow(
     dead_code,
     non_snake_case,
-    reason = "describes binnacle_compass::handbook::Handbook"
+    reason = "describes binnacle_compass::deviation::CoefficientsInDegrees"
 )]
 pub struct HandbookSchema {
     /// Constant; includes alignment, reference and variation offsets.
@@ -106,6 +106,6 @@ pub fn worst_of(rows: &[Row]) -> Option<Worst> {
 }
 
 /// The handbook's coefficients; none where headings are ambiguous.
-pub fn handbook(model: &Model, earth: EarthField) -> Option<Handbook> {
-    model.handbook(earth).ok()
+pub fn handbook(model: &Model, earth: EarthField) -> Option<CoefficientsInDegrees> {
+    model.approximate_coefficients(earth).ok()
 }

@@ -19,7 +19,7 @@ use utoipa::ToSchema;
 pub(super) struct Entry {
     /// The middle of the stretch.
     pub(super) time: Time,
-    /// What it was made for.
+    /// Occasion of the entry.
     pub(super) occasion: Occasion,
     /// Degrees north.
     #[schema(example = 43.4)]
@@ -30,7 +30,7 @@ pub(super) struct Entry {
     /// Mean raw compass heading.
     #[schema(example = 92.4)]
     pub(super) compass_deg: f64,
-    /// What the true heading was taken from.
+    /// Reference of the true heading.
     pub(super) reference: Reference,
     /// The true heading, with what the vessel's settings have corrected.
     #[schema(example = 95.1)]
@@ -51,7 +51,7 @@ pub(super) struct Entry {
     /// or it held no more.
     #[schema(required, example = 12)]
     pub(super) model_version: Option<i64>,
-    /// What its card was worth then; none where there was none.
+    /// Status of its card then; none where there was none.
     #[schema(required)]
     pub(super) card_status: Option<card::Status>,
     /// Deviation by the card of that model, degrees, east positive.
@@ -63,20 +63,20 @@ pub(super) struct Entry {
     /// Observed less card, degrees.
     #[schema(required, example = 0.2)]
     pub(super) difference_deg: Option<f64>,
-    /// How many settled ten-second windows the means are of.
+    /// Number of settled ten-second windows in the means.
     #[schema(example = 60)]
     pub(super) windows: u16,
     /// Standard deviation of compass less reference among them, degrees.
     #[schema(required, example = 0.3)]
     pub(super) spread_deg: Option<f64>,
-    /// Why the observation was doubted, or left out of the model.
+    /// Reason for which the observation has less weight, or none, in the model.
     #[schema(required, value_type = Option<SampleReasonSchema>)]
     pub(super) reason: Option<SampleReason>,
-    /// Who observed it.
+    /// Its observer.
     pub(super) observer: Observer,
 }
 
-/// What a true heading is taken from.
+/// Reference of a true heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = BookReference)]
@@ -89,7 +89,7 @@ pub(super) enum Reference {
     GyroAndSatellite,
 }
 
-/// Who observed a compass error.
+/// Observer of a compass error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = BookObserver)]
@@ -98,12 +98,12 @@ pub(super) enum Observer {
     Automatic,
 }
 
-/// What ended cards, before another model took their place.
+/// Times at which cards ended before another model replaced them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ends {
     /// Work on compass or ship that the logbook tells of.
     pub(super) work: Vec<Time>,
-    /// Since when there is no card at all.
+    /// Time from which there is no card at all.
     pub(super) withdrawn: Option<Time>,
 }
 
@@ -131,11 +131,11 @@ pub(super) fn entries(
 }
 
 impl Ends {
-    /// Whether a model's card was not ended by then.
+    /// Tells whether a model's card was still valid at a time.
     fn leave(&self, model: &StoredModel, at: Time) -> bool {
         let mut work = self.work.iter();
         let worked = work.any(|begun| {
-            // The work that a foretold model comes from is no end of it.
+            // The adjustment that a model was predicted for does not end its card.
             model.epoch_from != Some(*begun) && (model.data_until..=at).contains(begun)
         });
         !worked && self.withdrawn.is_none_or(|since| at < since)
@@ -183,7 +183,7 @@ fn entry(
     })
 }
 
-/// What a model's card was worth at a time.
+/// Returns the status of a model's card at a time.
 fn status(model: &StoredModel, completed: &[CompletedOrder], at: Time) -> card::Status {
     let mut bearing = completed.iter().filter(|order| order.bears_on(model));
     let was_verified =
@@ -195,7 +195,7 @@ fn status(model: &StoredModel, completed: &[CompletedOrder], at: Time) -> card::
     }
 }
 
-/// What a model's card says of the heading, where the ship was.
+/// Returns the deviation on the model's card for the heading, at the vessel's place.
 fn predicted(found: &SampleDiagnostic, model: &StoredModel) -> Option<Prediction> {
     let (h_nt, z_nt) = found.h_nt.zip(found.z_nt)?;
     let earth = EarthField { h_nt, z_nt };

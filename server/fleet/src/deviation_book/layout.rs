@@ -14,7 +14,7 @@ const LEFT: f32 = MARGIN;
 const RIGHT: f32 = WIDTH - MARGIN;
 const TOP: f32 = MARGIN + 74.0;
 const LINE: f32 = 11.6;
-const FAINT: u8 = 90;
+const GREY: u8 = 90;
 /// Entries on a sheet.
 const ROWS: usize = 33;
 
@@ -32,7 +32,7 @@ const COLUMNS: [([&str; 2], f32, bool); 10] = [
     (["", "Remarks"], 650.0, false),
 ];
 
-/// Whose book it is, and of when.
+/// Vessel and period of the book.
 pub(super) struct Book {
     pub(super) vessel: String,
     pub(super) imo_number: Option<String>,
@@ -93,7 +93,7 @@ fn head(sheet: &mut Sheet, book: &Book, page: usize, of: usize) {
     let rule = MARGIN + 38.0;
     sheet.rule((LEFT, rule), (RIGHT, rule), 1.0);
     for ([first, second], x, ends) in COLUMNS {
-        let style = Style::plain(7.0).grey(FAINT);
+        let style = Style::plain(7.0).grey(GREY);
         let style = if ends { style.end() } else { style };
         sheet.text((x, TOP - 22.0), style, first);
         sheet.text((x, TOP - 13.5), style, second);
@@ -182,11 +182,11 @@ fn doubt(reason: SampleReason) -> &'static str {
     }
 }
 
-/// Where the master's line begins.
+/// Left edge of the master's line.
 const MASTER: f32 = RIGHT - 150.0;
 const FOOT: f32 = 7.0;
 
-/// What stands at the foot, beside the master's line.
+/// Returns the text at the foot, beside the master's line.
 fn said_at_the_foot() -> Vec<String> {
     let says = "Observed by the agent on board by itself, in settled stretches of heading: one in \
                 each watch that has one, and after alterations of course of 20° or more. A card is \
@@ -196,7 +196,7 @@ fn said_at_the_foot() -> Vec<String> {
 
 fn foot(sheet: &mut Sheet) {
     let y = HEIGHT - MARGIN;
-    let small = Style::plain(FOOT).grey(FAINT);
+    let small = Style::plain(FOOT).grey(GREY);
     for (above, line) in said_at_the_foot().into_iter().rev().enumerate() {
         sheet.text((LEFT, y - 8.5 * above as f32), small, line);
     }

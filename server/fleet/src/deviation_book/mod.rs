@@ -157,12 +157,12 @@ async fn book_pdf(
     Ok(file("application/pdf", &name, bytes))
 }
 
-/// Which entries, read and checked.
+/// Selection of entries, parsed and checked.
 struct Wanted {
     compass: CompassId,
     from: Option<Time>,
     to: Option<Time>,
-    /// When the vessel was entered.
+    /// Time at which the vessel was entered.
     entered: Time,
 }
 

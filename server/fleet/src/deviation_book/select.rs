@@ -1,8 +1,8 @@
-//! Which samples are entries of a deviation book: one in each watch, and one after
-//! each large alteration of course.
+//! Selection of samples as entries of a deviation book: one in each watch, and one after each large
+//! alteration of course.
 //!
-//! What always holds: what is chosen of a watch depends on that watch's samples alone,
-//! so that a book read in parts is the book read whole; no two entries have one time.
+//! Invariants: the entries of a watch depend on that watch's samples alone, so that a book read in
+//! parts equals the book read whole. No two entries have the same time.
 
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::result::SampleDiagnostic;
@@ -14,7 +14,7 @@ const WATCH_MICROS: i64 = 4 * 3_600 * 1_000_000;
 /// An alteration of course of so much is large, degrees.
 const LARGE_DEG: f64 = 20.0;
 
-/// What an entry was made for.
+/// Occasion of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = BookOccasion)]

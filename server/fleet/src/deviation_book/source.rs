@@ -21,7 +21,7 @@ pub(super) struct Source {
     to: Option<Time>,
     ends: Ends,
     completed: Vec<CompletedOrder>,
-    /// What is not yet read.
+    /// Chunks that are not yet read.
     left: VecDeque<Chunk>,
 }
 

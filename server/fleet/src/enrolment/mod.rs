@@ -1,9 +1,7 @@
-//! How an agent comes to belong to a compass: a one-time code, exchanged for a
-//! token.
+//! Enrolment of an agent for a compass: a one-time code, exchanged for a token.
 //!
-//! What always holds: a code works once, before it expires, and opens exactly one
-//! installation; code and token are stored only as hashes. A token that was revoked is
-//! never known again.
+//! Invariants: a code works once, before it expires, and opens exactly one installation. Code and
+//! token are stored only as hashes. A revoked token is never accepted again.
 
 mod agent;
 mod store;
@@ -31,7 +29,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-/// What is told of how the link did is of so many seconds.
+/// Period of the link statistics, seconds.
 const WEEK_S: f64 = 7.0 * 86_400.0;
 /// Made on a Friday ashore, it can be typed on board after the weekend.
 const DEFAULT_VALID_FOR_S: u32 = 3 * 86_400;
@@ -66,7 +64,7 @@ pub struct AgentStream {
     pub stream: Uuid,
     /// The installation, which may have opened several streams.
     pub agent_id: AgentId,
-    /// When its token was revoked.
+    /// Time at which its token was revoked.
     #[schema(required)]
     pub revoked_at: Option<Time>,
     /// The compass.
@@ -75,9 +73,9 @@ pub struct AgentStream {
     pub compass_name: String,
     /// The agent's version when it was enrolled.
     pub agent_version: String,
-    /// When the stream was opened.
+    /// Time at which the stream was opened.
     pub opened_at: Time,
-    /// When its last batch came.
+    /// Time of its last batch.
     #[schema(required)]
     pub last_upload_at: Option<Time>,
     /// Every batch up to this one is here.
@@ -89,36 +87,36 @@ pub struct AgentStream {
     /// Ten-second windows by outcome: `accepted`, or why they were refused; `thinned` are
     /// those that were accepted and left out for want of room or budget.
     pub tally: BTreeMap<String, u64>,
-    /// How the link did of late.
+    /// Link statistics of the last week.
     pub last_week: LinkWeek,
-    /// How it was on board when an agent last said so, with a batch; none before.
+    /// State on board as the agent last reported it with a batch; none before.
     #[schema(required)]
     pub aboard: Option<Aboard>,
 }
 
-/// What an agent says of its spool and budget, with a batch.
+/// State of an agent's spool and budget, reported with a batch.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[schema(as = AgentAboard)]
 pub struct Aboard {
     /// Batches that waited on board besides the one that was sent.
     pub batches_waiting: i64,
-    /// What was left of the link's budget where that was less than a day's, in hundredths of
-    /// it, less than none when overdrawn; none where there was enough, or is no limit.
+    /// Rest of the link's budget where that is less than a day's, in hundredths of a day's,
+    /// negative when overdrawn. None where there is enough, or no limit.
     #[schema(required)]
     pub budget_left_percent: Option<i64>,
-    /// When it was said.
+    /// Time of the report.
     pub at: Time,
 }
 
-/// What came over a stream's link in the last seven days.
+/// Statistics of a stream's link in the last seven days.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct LinkWeek {
     /// Batches that came.
     pub batches: i64,
-    /// Octets in them, without what the protocols below add.
+    /// Bytes in them, without the overhead of the protocols below.
     pub octets: i64,
-    /// How long the latest sample of a batch was on its way, at most, seconds: what had to
-    /// wait for the link. None of no samples.
+    /// Longest delay of the latest sample of a batch, seconds: time for which it waited for the
+    /// link. None without samples.
     #[schema(required)]
     pub longest_wait_s: Option<i64>,
 }
@@ -139,7 +137,7 @@ pub struct AgentStreamList {
 pub struct NewCode {
     /// The compass that the agent will report; the vessel's first if not said.
     pub compass_id: Option<CompassId>,
-    /// How long the code is valid, seconds; three days if not said.
+    /// Validity of the code, seconds; three days by default.
     #[schema(minimum = 1, maximum = 1_209_600)]
     pub valid_for_s: Option<u32>,
 }
@@ -149,7 +147,7 @@ pub struct NewCode {
 pub struct EnrolmentCode {
     /// To be typed on board; works once and is never shown again.
     pub code: String,
-    /// When it stops working.
+    /// Time at which it expires.
     pub expires_at: Time,
 }
 
@@ -175,7 +173,7 @@ struct EnrolAnswerSchema {
     stream: Uuid,
     vessel_name: String,
     compass_name: String,
-    /// The shore's clock.
+    /// The server's clock.
     server_time: Time,
 }
 

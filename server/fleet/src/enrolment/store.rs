@@ -35,7 +35,7 @@ pub(super) async fn insert_code(
     tx.commit().await
 }
 
-/// What an enrolment made.
+/// Result of an enrolment.
 pub(super) struct Enrolled {
     pub(super) token: String,
     pub(super) stream: StreamId,

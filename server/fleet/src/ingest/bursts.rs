@@ -15,7 +15,7 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 use uuid::Uuid;
 
-/// What messages came to.
+/// Result of an import of messages.
 #[derive(Debug, Default, Serialize)]
 pub struct Imported {
     /// Batches that were not there before.
@@ -26,7 +26,7 @@ pub struct Imported {
     pub incomplete: Vec<Incomplete>,
     /// Messages, and the batches that they completed, that were not taken.
     pub refused: Vec<Refused>,
-    /// What to send to the ship, by stream.
+    /// Acknowledgements for the ship, by stream.
     #[serde(skip)]
     pub answers: Vec<(Uuid, Vec<u8>)>,
 }
@@ -42,7 +42,7 @@ pub struct Incomplete {
     pub of: usize,
 }
 
-/// Why a message, or the batch that it completed, was not taken.
+/// Reason for which a message, or the batch that it completed, was refused.
 #[derive(Debug, PartialEq, Eq, Serialize)]
 pub struct Refused {
     /// As the caller calls the message.
@@ -64,12 +64,12 @@ pub async fn import(
     let mut imported = Imported::default();
     let mut joiner = Joiner::default();
     let mut streams = BTreeSet::new();
-    for (name, octets) in messages {
+    for (name, bytes) in messages {
         let refuse = |problem: String| Refused {
             message: name.clone(),
             problem,
         };
-        let frame = match joiner.push(octets) {
+        let frame = match joiner.push(bytes) {
             Ok(Some(frame)) => frame,
             Ok(None) => continue,
             Err(error) => {

@@ -1,4 +1,4 @@
-//! What goes back to the ship: only what it does not have.
+//! Downlink: the acknowledgement and everything that the agent lacks.
 
 use crate::enrolment::Agent;
 use crate::models::{self, ModelSchema, StoredModel};
@@ -17,13 +17,13 @@ use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 use uuid::Uuid;
 
-/// What the agent has.
+/// State of the agent, as the request names it.
 #[derive(Clone, Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct Has {
     /// The model version it uses; what follows it comes at once.
     model: Option<Uuid>,
-    /// The same by the last eight digits of its id; what follows comes when it matters.
+    /// The last eight digits of that model's id; a later model is sent when it matters.
     card: Option<String>,
     /// The settings it uses.
     settings: Option<u32>,
@@ -34,8 +34,8 @@ pub(super) struct Has {
     /// With a batch: what is left of the link's budget where that is less than a day's, in
     /// hundredths of it; less than none when overdrawn.
     pub(super) budget: Option<i32>,
-    /// So many seconds at most, and no more than 55, the answer to a batch may wait for the
-    /// analysis of its samples, and then tells what that found: of the last batch for now.
+    /// Seconds, at most 55, for which the response to a batch may wait for the analysis of its
+    /// samples. The response then includes its results. Sent with the last batch for now.
     pub(super) wait: Option<u16>,
 }
 
@@ -50,8 +50,8 @@ impl IntoResponse for Answer {
         let reads_compact = self.form.is_some_and(|form| form >= FORM);
         let compact = reads_compact.then(|| downlink::encode(&self.downlink));
         match compact.flatten() {
-            // What has no content type is octets (RFC 9110, 8.3): forty of them saved.
-            Some(octets) => Body::from(octets).into_response(),
+            // A body without a content type is bytes (RFC 9110, 8.3), which saves forty of them.
+            Some(bytes) => Body::from(bytes).into_response(),
             None => Json(self.downlink).into_response(),
         }
     }
@@ -67,13 +67,13 @@ pub(super) struct DownlinkSchema {
     /// The current model, when the agent has another one or none.
     #[schema(required = false)]
     model: Option<ModelDownlinkSchema>,
-    /// Since when the card that the agent has holds no more; none while it holds.
+    /// Withdrawal of the card that the agent has; none while it holds.
     #[schema(required = false)]
     card_withdrawn: Option<CardWithdrawnSchema>,
     /// The current settings, when the agent has others.
     #[schema(required = false)]
     settings: Option<AgentSettings>,
-    /// The shore's clock.
+    /// The server's clock.
     server_time: Time,
 }
 
@@ -87,21 +87,21 @@ pub(super) struct ModelDownlinkSchema {
     version: u32,
     /// The time of the last sample in it.
     data_until: Time,
-    /// Why no card from before its epoch holds; none in the first epoch.
+    /// Change that withdrew cards from before its epoch; none in the first epoch.
     #[schema(required = false)]
     replaces: Option<CardWithdrawnSchema>,
     model: ModelSchema,
 }
 
-/// That cards from before hold no more.
+/// Withdrawal of earlier cards.
 #[derive(ToSchema)]
 #[schema(as = CardWithdrawn)]
 #[allow(dead_code, reason = "describes binnacle_wire::messages::CardWithdrawn")]
 pub struct CardWithdrawnSchema {
-    /// Since when.
+    /// Time from which they do not hold.
     since: Time,
-    /// What altered the ship's magnetism or the compass: a kind of logbook entry, a cause
-    /// that was found, or `ship_as_before`.
+    /// Change of the ship's magnetism or the compass: a kind of logbook entry, a detected cause, or
+    /// `ship_as_before`.
     #[schema(example = "adjustment")]
     reason: String,
 }
@@ -136,20 +136,20 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
     } else {
         None
     };
-    let news = match current {
+    let newer = match current {
         Some(model) if Some(model.id.0) == has.model => None,
-        Some(model) if !is_news(app, &model, has.card.as_deref()).await? => None,
+        Some(model) if !should_send(app, &model, has.card.as_deref()).await? => None,
         current => current,
     };
     let settings = settings::find(&app.db, agent.vessel_id).await?.agent;
     let downlink = Downlink {
         contiguous_seq: contiguous_seq as u64,
-        model: news.map(|model| ModelDownlink {
+        model: newer.map(|model| ModelDownlink {
             id: model.id.0,
             version: model.version as u32,
             data_until: model.data_until.0,
             replaces: model.replaces(),
-            // What the model rests on is for the shore; the bridge has its band.
+            // The server keeps the quality of the model; the bridge has its band.
             model: Model {
                 quality: None,
                 ..model.model.0
@@ -164,8 +164,8 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
     Ok(Answer { downlink, form })
 }
 
-/// Whether a ship should have this model instead of the one that she names.
-async fn is_news(app: &App, model: &StoredModel, card: Option<&str>) -> Result<bool> {
+/// Tells whether an agent should get this model in place of the one that it names.
+async fn should_send(app: &App, model: &StoredModel, card: Option<&str>) -> Result<bool> {
     let Some(card) = card else {
         return Ok(true);
     };

@@ -112,7 +112,7 @@ async fn put_batch(
         store::note_aboard(&mut tx, agent.vessel_id, stream, (waits, has.budget), now).await?;
     }
     tx.commit().await?;
-    for event in taken.told {
+    for event in taken.events_out {
         app.publish(event);
     }
     let result = if taken.is_new { "stored" } else { "repeated" };
@@ -124,11 +124,11 @@ async fn put_batch(
     downlink::answer(&app, agent, stream, has).await
 }
 
-/// What a batch came to.
+/// Result of a received batch.
 struct Taken {
-    /// Whether it was not there already.
+    /// True if it was not stored before.
     is_new: bool,
-    told: Vec<events::Event>,
+    events_out: Vec<events::Event>,
 }
 
 /// Stores a batch and all that follows from it, whichever way it came.
@@ -141,22 +141,23 @@ async fn take(
     delay_s: f64,
 ) -> Result<Taken> {
     let is_new = store::insert(tx, agent, batch, bytes, now).await?;
-    let mut told = Vec::new();
+    let mut events_out = Vec::new();
     if is_new {
         let (vessel, compass) = (agent.vessel_id, agent.compass_id);
-        told.extend(alerts::record_agent_alerts(tx, vessel, compass, &batch.alerts, now).await?);
-        told.extend(
+        events_out
+            .extend(alerts::record_agent_alerts(tx, vessel, compass, &batch.alerts, now).await?);
+        events_out.extend(
             alerts::check_duplicate_agent(tx, agent, batch.stream.0, batch.seq, now).await?,
         );
         if !batch.samples.is_empty() || !batch.alerts.is_empty() {
             analysis::enqueue(tx, vessel, now, delay_s).await?;
         }
-        told.push(events::insert(tx, vessel, events::Kind::Batch, now).await?);
+        events_out.push(events::insert(tx, vessel, events::Kind::Batch, now).await?);
     }
-    Ok(Taken { is_new, told })
+    Ok(Taken { is_new, events_out })
 }
 
-/// Ask for what the shore has
+/// Fetch what the agent lacks
 #[utoipa::path(get, path = "/streams/{stream}/downlink", tag = "agents", security(("token" = [])),
     params(("stream" = Uuid, Path), Has),
     responses((status = 200, description = "As JSON, or in the compact form asked for",

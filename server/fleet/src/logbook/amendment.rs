@@ -10,7 +10,7 @@ use binnacle_wire::logbook::Report;
 use serde::Deserialize;
 use utoipa::ToSchema;
 
-/// What is to be changed in an entry.
+/// Amendment of an entry.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Amendment {
@@ -29,8 +29,7 @@ pub(super) struct Amendment {
     compass_id: Amended<CompassId>,
 }
 
-/// What is to be changed in an entry; what is left out stays, null takes a value
-/// away.
+/// Amendment of an entry. Absent fields stay as they are; null removes a value.
 #[derive(ToSchema)]
 #[schema(as = LogbookAmendment)]
 #[allow(dead_code, reason = "describes Amendment")]

@@ -15,7 +15,7 @@ use utoipa::{IntoParams, ToSchema};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(from = "Written")]
 pub(super) struct NewEntry {
-    /// What happened.
+    /// The event.
     #[serde(flatten)]
     #[schema(value_type = ReportSchema)]
     pub(super) report: Report,
@@ -63,39 +63,39 @@ impl From<Written> for NewEntry {
 pub(super) struct LogbookEntry {
     /// The entry's id.
     pub(super) id: EntryId,
-    /// What happened.
+    /// The event.
     #[serde(flatten)]
     #[schema(value_type = ReportSchema)]
     pub(super) report: Report,
     /// The compass that it concerns; none for the whole ship.
     #[schema(required)]
     pub(super) compass_id: Option<CompassId>,
-    /// When it came here.
+    /// Time at which the server received it.
     pub(super) created_at: Time,
     /// The reporter's name; empty when a report from on board gives none.
     pub(super) created_by: String,
-    /// Where it was reported.
+    /// Place of its author.
     pub(super) author: AuthorKind,
     /// Counts from 1.
     pub(super) revision: u32,
-    /// When it was last amended.
+    /// Time of the last amendment.
     #[schema(required)]
     pub(super) revised_at: Option<Time>,
-    /// Who amended it last.
+    /// Author of the last amendment.
     #[schema(required)]
     pub(super) revised_by: Option<String>,
-    /// When it was withdrawn; from then on it counts no more.
+    /// Time of withdrawal, from which the entry has no effect.
     #[schema(required)]
     pub(super) withdrawn_at: Option<Time>,
-    /// Who withdrew it.
+    /// Person who withdrew it.
     #[schema(required)]
     pub(super) withdrawn_by: Option<String>,
-    /// Why.
+    /// Reason for the withdrawal.
     #[schema(required)]
     pub(super) withdrawal_reason: Option<String>,
 }
 
-/// Where an entry was reported.
+/// Place at which an entry was reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
@@ -112,7 +112,7 @@ pub(super) enum AuthorKind {
 /// A page of a logbook.
 #[derive(Serialize, ToSchema)]
 pub(super) struct LogbookList {
-    /// What happened last comes first.
+    /// Entries, the latest event first.
     pub(super) items: Vec<LogbookEntry>,
     /// `after` of the next page.
     #[schema(required)]
@@ -134,17 +134,17 @@ pub(super) struct RevisedEntry {
 pub(super) struct Revision {
     /// Counts from 1.
     pub(super) number: u32,
-    /// When.
+    /// Time of the revision.
     pub(super) at: Time,
-    /// Where it was written.
+    /// Place of its author.
     pub(super) author: AuthorKind,
-    /// Who wrote it; empty when a report from on board does not say.
+    /// Name of its author; empty when a report from on board does not say.
     pub(super) author_name: String,
-    /// What it said.
+    /// The entry as it was then.
     pub(super) entry: NewEntry,
 }
 
-/// Why an entry is withdrawn.
+/// Reason for which an entry is withdrawn.
 #[derive(Default, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Withdrawal {
@@ -153,24 +153,24 @@ pub(super) struct Withdrawal {
     pub(super) reason: Option<String>,
 }
 
-/// Which entries.
+/// Selection of entries.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct Filter {
     /// Of this kind only.
     #[param(value_type = Option<KindSchema>)]
     kind: Option<LogbookKind>,
-    /// What had not ended before this instant, RFC 3339.
+    /// Entries that had not ended before this instant, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime)]
     from: Option<String>,
-    /// What began before this instant, RFC 3339.
+    /// Entries that began before this instant, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime)]
     to: Option<String>,
-    /// Whether withdrawn entries are listed too; they are if not said.
+    /// Includes withdrawn entries; true by default.
     withdrawn: Option<bool>,
 }
 
-/// Which entries, read.
+/// Selection of entries, parsed and checked.
 pub(super) struct CheckedFilter {
     pub(super) kind: Option<LogbookKind>,
     pub(super) from: Option<Time>,
@@ -194,7 +194,7 @@ impl NewEntry {
 }
 
 impl LogbookEntry {
-    /// What it says.
+    /// Returns its content.
     pub(super) fn content(&self) -> NewEntry {
         NewEntry {
             report: self.report.clone(),

@@ -9,13 +9,13 @@
 //! - A report from on board has the id that it was given there: the same again, or
 //!   an older revision that comes late, changes nothing.
 
-mod aboard;
+mod agent_reports;
 mod amendment;
 mod entry;
 mod schema;
 mod store;
 
-pub use aboard::router as agent_router;
+pub use agent_reports::router as agent_router;
 pub use schema::KindSchema as LogbookKindSchema;
 pub use store::{Adjusted, of_compass, write_adjustment};
 

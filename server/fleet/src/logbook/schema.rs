@@ -1,5 +1,4 @@
-//! How the OpenAPI document describes a report; the report itself is the wire
-//! crate's.
+//! OpenAPI descriptions of a report. The wire crate owns the type.
 
 use binnacle_platform::time::Time;
 use serde::Serialize;
@@ -11,13 +10,13 @@ use utoipa::ToSchema;
 #[allow(dead_code, reason = "describes binnacle_wire::logbook::Report")]
 pub(super) struct ReportSchema {
     kind: KindSchema,
-    /// When it happened, or began.
+    /// Time or beginning of the event.
     from: Time,
-    /// When it ended; none for an event or for what still goes on.
+    /// Its end; none for an instant or for an event that still goes on.
     to: Option<Time>,
-    /// What the magnetic cargo was.
+    /// Kind of magnetic cargo.
     cargo: Option<CargoSchema>,
-    /// Where the magnetic cargo lies.
+    /// Place of the magnetic cargo.
     #[schema(max_length = 100, example = "2")]
     hatch: Option<String>,
     /// The port, where there is one.
@@ -29,7 +28,7 @@ pub(super) struct ReportSchema {
     note: String,
 }
 
-/// What a logbook entry is about.
+/// Subject of a logbook entry.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = LogbookKind)]
@@ -61,7 +60,7 @@ pub enum KindSchema {
     Note,
 }
 
-/// What a magnetic cargo consists of.
+/// Kind of magnetic cargo.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = CargoKind)]
@@ -77,7 +76,7 @@ pub(super) enum CargoSchema {
     Other,
 }
 
-/// What an officer reported, whole.
+/// An officer's report, whole.
 #[derive(ToSchema)]
 #[schema(as = BoardReport)]
 #[allow(dead_code, reason = "describes binnacle_wire::messages::LogbookReport")]
@@ -89,7 +88,7 @@ pub(super) struct BoardReportSchema {
     #[serde(default)]
     #[schema(max_length = 100, default = "")]
     reporter: String,
-    /// Whether the officer takes the report back.
+    /// True if the officer withdraws the report.
     #[serde(default)]
     #[schema(default = false)]
     withdrawn: bool,
@@ -104,6 +103,6 @@ pub(super) struct BoardReportSchema {
 pub(super) struct BoardAnswerSchema {
     /// The latest revision from on board that is there.
     revision: u32,
-    /// Whether the entry counts no more, taken back on board or ashore.
+    /// True if the entry was withdrawn, on board or ashore.
     withdrawn: bool,
 }

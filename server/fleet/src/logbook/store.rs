@@ -47,15 +47,15 @@ pub(super) struct Locked {
     vessel_id: VesselId,
     id: EntryId,
     revision: i64,
-    /// What it says.
+    /// Its content.
     pub(super) content: NewEntry,
     /// The latest revision that came from on board; none when it was reported ashore.
     pub(super) board_revision: Option<u32>,
-    /// When it was withdrawn.
+    /// Time of withdrawal.
     pub(super) withdrawn_at: Option<Time>,
 }
 
-/// Who writes, and when.
+/// Author of a revision, and its time.
 pub(super) struct Author {
     kind: AuthorKind,
     id: Uuid,
@@ -168,7 +168,7 @@ pub async fn write_adjustment(tx: &mut Tx, adjusted: &Adjusted<'_>) -> Result<()
     Ok(())
 }
 
-/// What happened last comes first.
+/// Lists entries, the latest event first.
 pub(super) async fn list(
     db: &Db,
     vessel: VesselId,
@@ -226,7 +226,7 @@ pub(super) async fn must_find(db: &Db, vessel: VesselId, id: EntryId) -> Result<
     .read()
 }
 
-/// The same, to be changed: others who would change it wait.
+/// Locks an entry for an update; concurrent updates wait.
 pub(super) async fn lock(tx: &mut Tx, vessel_id: VesselId, id: EntryId) -> Result<Locked> {
     let found = row!(
         in tx,
@@ -372,8 +372,8 @@ pub(super) async fn revisions(db: &Db, vessel: VesselId, id: EntryId) -> Result<
     found.into_iter().map(read).collect()
 }
 
-/// What the analysis of a compass has to know: everything but notes and what was
-/// withdrawn, in order of time, without words.
+/// Lists the entries that the analysis of a compass needs, in order of time and without text. Notes
+/// and withdrawn entries are left out.
 pub async fn of_compass(
     db: &Db,
     vessel: VesselId,

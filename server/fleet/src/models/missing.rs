@@ -1,4 +1,4 @@
-//! Why a compass has no model, and since when its last one holds no more.
+//! Reason for which a compass has no model, and the withdrawal of its last one.
 
 use crate::analysis::{LeftOut, RefusalSchema};
 use crate::ingest::CardWithdrawnSchema;
@@ -10,14 +10,14 @@ use serde::Serialize;
 use std::fmt;
 use utoipa::ToSchema;
 
-/// What there is to say in place of a model.
+/// Description of a missing model.
 #[derive(Clone, Debug)]
 pub struct NoModel {
-    /// Why the samples make none; without a reason, none has been analysed.
+    /// Reason for which the samples make none; none before the first analysis.
     pub refusal: Option<FitError>,
     /// The samples that the logbook leaves out.
     pub left_out: LeftOut,
-    /// That there was one, and it must not be used.
+    /// Withdrawal of the last model, which must not be used.
     pub card_withdrawn: Option<CardWithdrawn>,
 }
 
@@ -36,8 +36,8 @@ impl fmt::Display for NoModel {
 /// Fields of the problem `no-model-yet`.
 #[derive(Serialize, ToSchema)]
 pub struct NoModelFields {
-    /// What a model is refused for; only in `no-model-yet`, and not before the
-    /// first samples have been analysed.
+    /// Reason for which the model is refused. Only in `no-model-yet`, and not before the first
+    /// samples have been analysed.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, value_type = Option<RefusalSchema>)]
     refusal: Option<FitError>,
@@ -46,7 +46,7 @@ pub struct NoModelFields {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false)]
     left_out: Option<LeftOut>,
-    /// That the last model holds no more; only in `no-model-yet`.
+    /// Withdrawal of the last model; only in `no-model-yet`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, value_type = Option<CardWithdrawnSchema>)]
     card_withdrawn: Option<CardWithdrawn>,

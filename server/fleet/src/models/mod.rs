@@ -1,8 +1,8 @@
 //! The models of a vessel's compasses: every version is kept, the highest is current,
 //! but while a change has ended its epoch and no other model has taken its place.
 
+mod downlink_policy;
 mod missing;
-mod news;
 mod schema;
 mod store;
 
@@ -17,7 +17,7 @@ use crate::compasses::{self, WhichCompass};
 use crate::deviation::{HandbookSchema, Worst};
 use crate::{analysis, vessels};
 use axum::extract::{FromRef, State};
-use binnacle_compass::handbook::Handbook;
+use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_compass::ship::EarthField;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
@@ -51,7 +51,7 @@ pub struct ModelSummary {
     pub version: i64,
     /// The compass.
     pub compass_id: CompassId,
-    /// When it was fitted.
+    /// Time at which it was fitted.
     pub created_at: Time,
     /// The time of the last sample in it.
     pub data_until: Time,
@@ -71,7 +71,7 @@ pub struct ModelVersion {
     pub version: i64,
     /// The compass.
     pub compass_id: CompassId,
-    /// Since when it holds; none reaches back without end.
+    /// Time from which it holds; none means without limit.
     #[schema(required)]
     pub epoch_from: Option<Time>,
     /// Until when it holds; none goes on.
@@ -81,13 +81,13 @@ pub struct ModelVersion {
     pub data_from: Time,
     /// The time of the last sample in it.
     pub data_until: Time,
-    /// When it was fitted.
+    /// Time at which it was fitted.
     pub created_at: Time,
     /// SHA-256 of everything that it was made from.
     pub input_hash: String,
     /// The estimator that made it.
     pub estimator: String,
-    /// The work order that foretold it; none for a model that was fitted.
+    /// The work order that predicted it; none for a model that was fitted.
     #[schema(required)]
     pub foretold_by: Option<OrderId>,
     /// The place of the last sample, degrees north.
@@ -100,7 +100,7 @@ pub struct ModelVersion {
     pub z_nt: f64,
     /// The handbook's coefficients there; none where headings are ambiguous.
     #[schema(required, value_type = Option<HandbookSchema>)]
-    pub handbook: Option<Handbook>,
+    pub handbook: Option<CoefficientsInDegrees>,
     /// The fit.
     #[schema(value_type = ModelSchema)]
     pub model: ModelJson,
@@ -192,7 +192,7 @@ impl StoredModel {
         crate::deviation::worst(&self.model.0, self.earth())
     }
 
-    /// Why no card from before the model's epoch holds.
+    /// Returns the change that withdrew cards from before the model's epoch.
     pub fn replaces(&self) -> Option<CardWithdrawn> {
         Some(CardWithdrawn {
             since: self.epoch_from?.0,

@@ -1,5 +1,4 @@
-//! How the OpenAPI document describes a model; the model itself is the science
-//! crate's.
+//! OpenAPI descriptions of a model. The compass crate owns the type.
 
 use binnacle_compass::model::Model;
 use binnacle_platform::time::Time;
@@ -28,8 +27,8 @@ pub struct ModelSchema {
     /// compass's models.
     version: u32,
     parameters_over_lambda: ParametersSchema,
-    /// What is added to the exact deviation: alignment, reference and variation
-    /// offsets, degrees, east positive.
+    /// Constant added to the exact deviation: alignment, reference and variation offsets, degrees,
+    /// east positive.
     constant_deg: f64,
     /// 8 × 8: the parameters in their order, the constant last.
     #[schema(required)]
@@ -43,26 +42,26 @@ pub struct ModelSchema {
     samples_used: u64,
     /// Samples that were left out or held to be outliers.
     samples_rejected: u64,
-    /// What the model rests on; absent in a model that came without.
+    /// Quality of the model; absent in a model that came without.
     #[schema(required = false)]
     quality: Option<QualitySchema>,
 }
 
-/// What a model rests on.
+/// Quality of a model.
 #[derive(ToSchema)]
 #[schema(as = Quality)]
 #[allow(dead_code, reason = "describes binnacle_compass::model::Quality")]
 pub(super) struct QualitySchema {
-    /// How many samples with independent errors would tell the deviation, where
-    /// the ship was last, as well as all her samples together.
+    /// Number of samples with independent errors that would determine the deviation at the last
+    /// place as well as all samples do.
     effective_samples: f64,
     /// Standard error of the worst known combination of parameters over that of
     /// the best, by the data alone; null where the data leave one quite open.
     #[schema(required)]
     condition: Option<f64>,
-    /// What part of the knowledge of each parameter is from the data, 0 to 1.
+    /// Part of the knowledge of each parameter that is from the data, 0 to 1.
     from_data: FromDataSchema,
-    /// What the model should not be trusted for.
+    /// Cautions on the use of the model.
     cautions: Vec<CautionSchema>,
 }
 
@@ -81,7 +80,7 @@ pub(super) struct FromDataSchema {
     constant_deg: f64,
 }
 
-/// What a model should not be trusted for.
+/// Caution on the use of a model.
 #[derive(Serialize, ToSchema)]
 #[serde(tag = "caution", rename_all = "snake_case")]
 #[schema(as = Caution)]
@@ -100,9 +99,9 @@ pub(super) enum CautionSchema {
     },
     /// The last samples stand more than a year after the others.
     LongGap {
-        /// How long there were none, days.
+        /// Duration of the gap, days.
         days: f64,
-        /// When the last sample was taken.
+        /// Time of the last sample.
         last: Time,
     },
     /// Some samples lie where the horizontal field is weak.
@@ -131,7 +130,7 @@ pub struct ParametersSchema {
     chi21: f64,
 }
 
-/// Which parameters the data determine; what is false rests on the prior.
+/// Parameters that the data determine; false for those that rest on the prior.
 #[derive(ToSchema)]
 #[schema(as = Identifiable)]
 #[allow(

@@ -164,7 +164,7 @@ pub async fn of_version(
     )
 }
 
-/// Since when, and why, the compass's last card holds no more; none while it holds.
+/// Returns the withdrawal of the compass's last card, with time and reason; none while it holds.
 pub async fn card_withdrawn(
     db: &Db,
     vessel: VesselId,
@@ -182,7 +182,7 @@ pub async fn card_withdrawn(
     Ok(found.and_then(read_withdrawn))
 }
 
-/// The same within a transaction.
+/// Does what [`card_withdrawn`] does, within a transaction.
 pub async fn withdrawn(
     tx: &mut Tx,
     vessel: VesselId,
@@ -207,8 +207,8 @@ fn read_withdrawn((since, reason): (Option<Time>, Option<String>)) -> Option<Car
     })
 }
 
-/// The compass's highest model, where an adjustment foretold it and no heading at sea has
-/// spoken against it.
+/// Returns the compass's highest model if an adjustment predicted it and no heading at sea
+/// contradicts it.
 pub async fn foretold(
     tx: &mut Tx,
     vessel: VesselId,

@@ -40,7 +40,7 @@ struct Operator {
     /// Its name.
     #[schema(example = "Armada del Sur")]
     name: String,
-    /// When it was entered here.
+    /// Time at which it was entered.
     created_at: Time,
 }
 

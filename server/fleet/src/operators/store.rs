@@ -24,7 +24,7 @@ pub(super) async fn insert(tx: &mut Tx, id: OperatorId, name: &str, now: Time) -
     Ok(())
 }
 
-/// Whether there is such an operator.
+/// Tells whether an operator exists.
 pub async fn exists(tx: &mut Tx, id: OperatorId) -> Result<bool> {
     let found = row!(
         in tx,

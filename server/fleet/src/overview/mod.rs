@@ -41,7 +41,7 @@ where
     OpenApiRouter::new().routes(routes!(find_fleet))
 }
 
-/// Which vessels.
+/// Selection of vessels.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Which {
@@ -56,31 +56,31 @@ pub struct Fleet {
     pub vessels: Vec<FleetVessel>,
 }
 
-/// How a vessel stands, in a line of a table and a mark on a map.
+/// State of a vessel, for a line of a table and a mark on a map.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct FleetVessel {
     /// The vessel's id.
     pub id: VesselId,
-    /// Her name.
+    /// Its name.
     pub name: String,
-    /// Her IMO number, seven digits.
+    /// Its IMO number, seven digits.
     #[schema(required)]
     pub imo_number: Option<String>,
-    /// Her call sign.
+    /// Its call sign.
     #[schema(required)]
     pub call_sign: Option<String>,
-    /// When her last batch came.
+    /// Time of its last batch.
     #[schema(required)]
     pub last_upload_at: Option<Time>,
-    /// Where her latest sample was taken.
+    /// Place of its latest sample.
     #[schema(required)]
     pub position: Option<LastPosition>,
-    /// Where she was in the month before, degrees north and east, a place for each twelve
-    /// hours, the oldest first. Empty in an answer of more than 200 vessels, where a map of
-    /// them would be a tangle: ask for the vessel.
+    /// Its places in the month before, degrees north and east, one for each twelve hours, the
+    /// oldest first. Empty in a response of more than 200 vessels, where a map of them would be
+    /// unreadable.
     #[schema(value_type = Vec<[f64; 2]>)]
     pub track: Track,
-    /// The current model of her first compass that has one.
+    /// The current model of its first compass that has one.
     #[schema(required)]
     pub model: Option<FleetModel>,
     /// The heading with the greatest deviation by that model, where it was made.
@@ -88,16 +88,16 @@ pub struct FleetVessel {
     pub worst: Option<Worst>,
     /// Alerts that nobody has acknowledged.
     pub open_alerts: u32,
-    /// Her first port call that is not over.
+    /// Its first port call that is not over.
     #[schema(required)]
     pub next_call: Option<NextCall>,
-    /// What most needs someone: of her alerts that are not cleared the worst, those that
-    /// nobody has acknowledged first, then the latest.
+    /// Its most urgent alert that is not cleared: the worst, then those that nobody has
+    /// acknowledged, then the latest.
     #[schema(required)]
     pub alert: Option<FleetAlert>,
 }
 
-/// How good a model is, in short.
+/// Quality of a model, in short.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct FleetModel {
     /// Counts the compass's models from 1.
@@ -118,11 +118,11 @@ pub struct NextCall {
     pub port: String,
     /// Its name; empty where the code is unknown.
     pub port_name: &'static str,
-    /// When she arrives.
+    /// Time of arrival.
     pub eta: Time,
-    /// When she leaves.
+    /// Time of departure.
     pub etd: Time,
-    /// The heading with the greatest deviation there and then, by her model.
+    /// The heading with the greatest deviation there and then, by its model.
     #[schema(required)]
     pub worst: Option<Worst>,
 }
@@ -132,13 +132,13 @@ pub struct NextCall {
 pub struct FleetAlert {
     /// Its id.
     pub id: AlertId,
-    /// What it is about.
+    /// Its cause.
     pub cause: Cause,
-    /// How bad it is.
+    /// Its severity.
     pub severity: Severity,
-    /// How far people have come with it.
+    /// Its state of handling.
     pub state: State,
-    /// What is so, in a sentence.
+    /// Summary, in a sentence.
     pub summary: String,
 }
 

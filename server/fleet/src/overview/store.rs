@@ -1,4 +1,4 @@
-//! What the database holds of a whole fleet, in five questions.
+//! Records of a whole fleet in the database, in five queries.
 
 use crate::alerts::{Cause, State};
 use crate::analysis::Track;
@@ -10,7 +10,7 @@ use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
 use uuid::Uuid;
 
-/// What there is to be put together.
+/// Records for the overview.
 pub(super) struct Found {
     pub(super) vessels: Vec<Row>,
     /// The current ones, a vessel's first compass first.

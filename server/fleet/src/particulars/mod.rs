@@ -1,7 +1,7 @@
-//! `/vessels/{id}/particulars`: what rules on adjusting ask about a vessel.
+//! `/vessels/{id}/particulars`: facts about a vessel that rules on adjusting use.
 //!
-//! What always holds: what is not known of a vessel binds her as if it were; so nothing
-//! here is needed, and everything that is said can only give her time.
+//! Invariant: an unknown fact counts as if it bound the vessel. So no fact is required, and each
+//! known fact can only give more time.
 
 use crate::vessels;
 use axum::extract::{FromRef, State};
@@ -26,11 +26,11 @@ use utoipa_axum::routes;
 const MOST_TRANSITS: usize = 50;
 const MOST_TONNAGE: u32 = 1_000_000;
 
-/// What rules ask about a vessel is about to change.
+/// Announces that the facts which rules use are about to change.
 pub struct ParticularsChanged {
-    /// Whose vessel.
+    /// Operator of the vessel.
     pub operator: OperatorId,
-    /// When.
+    /// Time of the change.
     pub at: Time,
 }
 
@@ -45,7 +45,7 @@ where
     OpenApiRouter::new().routes(routes!(find_particulars, set_particulars))
 }
 
-/// What rules on adjusting ask about a vessel.
+/// Facts about a vessel that rules on adjusting use.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 #[schema(as = VesselParticulars, example = json!({
@@ -53,16 +53,16 @@ where
     "licence": null, "transits": [{ "canal": "panama", "on": "2027-02-10" }]
 }))]
 pub struct Particulars {
-    /// Her flag, ISO 3166; where it is not said, what the vessel's own `flag` tells.
+    /// Its flag, ISO 3166; by default that of the vessel's own `flag`.
     #[schema(value_type = Option<String>, required, pattern = "^[A-Z]{2}$")]
     pub flag_state: Option<Flag>,
-    /// Her gross tonnage.
+    /// Its gross tonnage.
     #[schema(required, maximum = 1_000_000)]
     pub gross_tonnage: Option<u32>,
-    /// What she carries for her living.
+    /// Its trade.
     #[schema(value_type = Option<TradeSchema>, required)]
     pub trade: Option<Trade>,
-    /// Whether the compass deviation book is kept.
+    /// True if the compass deviation book is kept.
     #[schema(value_type = Option<RecordSchema>, required)]
     pub deviation_record: Option<DeviationRecord>,
     /// A licence that an adjuster must hold.
@@ -73,7 +73,7 @@ pub struct Particulars {
     pub transits: Vec<Transit>,
 }
 
-/// What a ship carries for her living.
+/// Trade of a vessel.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = Trade)]
@@ -90,7 +90,7 @@ enum TradeSchema {
     Other,
 }
 
-/// Whether the compass deviation book is kept.
+/// State of the compass deviation book: kept or not.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = DeviationRecordKept)]
@@ -129,10 +129,10 @@ async fn find_particulars(
     Ok(Json(find(&app.db, vessel).await?))
 }
 
-/// Say what rules on adjusting ask about a vessel
+/// Set the facts that rules on adjusting use
 ///
-/// What is left out or null is not known, and binds her: to adjust too early costs a fee,
-/// to adjust too late a detention.
+/// A fact that is left out or null is unknown, and binds the vessel: to adjust too early costs a
+/// fee, to adjust too late a detention.
 #[utoipa::path(put, path = "/vessels/{id}/particulars", tag = "adjusting",
     params(("id" = VesselId, Path)), request_body = Particulars,
     responses((status = 200, body = Particulars), (status = 401, body = Problem),
@@ -173,7 +173,7 @@ async fn find(db: &Db, vessel: VesselId) -> Result<Particulars> {
     )?)
 }
 
-/// A vessel's flag, and the licence that her operator asks an adjuster to hold.
+/// Returns a vessel's flag, and the licence that its operator asks an adjuster to hold.
 ///
 /// # Errors
 /// When the database fails.
@@ -237,7 +237,7 @@ impl Particulars {
         })
     }
 
-    /// The ship as rules see her; `flag` is what is written of the vessel herself.
+    /// Returns the ship as rules see it; `flag` is what is recorded of the vessel itself.
     pub fn ship(&self, flag: Option<&str>) -> Ship {
         Ship {
             flag: self.flag_state.or_else(|| flag.and_then(flag_of)),

@@ -1,4 +1,4 @@
-//! Where a compass's samples lie, and where to sail next.
+//! Coverage of a compass's samples, and advice on where to sail next.
 
 mod schema;
 
@@ -23,7 +23,7 @@ where
     OpenApiRouter::new().routes(routes!(find_coverage))
 }
 
-/// Where a compass's samples lie, and where more would tell most
+/// Show the coverage of a compass's samples and where more would help most
 #[utoipa::path(get, path = "/vessels/{id}/coverage", tag = "fleet",
     params(("id" = VesselId, Path), WhichCompass),
     responses((status = 200, body = CoverageSchema), (status = 401, body = Problem),

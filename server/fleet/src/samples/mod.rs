@@ -36,7 +36,7 @@ where
         .merge(coverage::router())
 }
 
-/// Which samples.
+/// Selection of samples.
 #[derive(Clone, Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Range {
@@ -81,7 +81,7 @@ struct SampleSchema {
     /// Standard deviation of compass less reference among the windows, degrees.
     #[schema(required)]
     spread_deg: Option<f64>,
-    /// How many settled ten-second windows the means are of.
+    /// Number of settled ten-second windows in the means.
     windows: u16,
     /// The earth's variation, degrees, east positive.
     #[schema(required)]
@@ -103,14 +103,14 @@ struct SampleSchema {
     residual_deg: Option<f64>,
     /// Robust weight, 0 to 1.
     weight: f64,
-    /// Whether it carried weight in a model.
+    /// True if it carried weight in a model.
     used: bool,
-    /// Why it was left out or doubted.
+    /// Reason for which it was left out or counted for less.
     #[schema(required, value_type = Option<SampleReasonSchema>)]
     reason: Option<SampleReasonSchema>,
 }
 
-/// Why a sample was left out, or counted for less.
+/// Reason for which a sample was left out, or counted for less.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = SampleReason)]

@@ -18,20 +18,20 @@ const LONGEST_BY_DAYS: i64 = 31 * DAY_MICROS;
 /// A compass's samples as a picture shows them.
 #[derive(Serialize, ToSchema)]
 pub(super) struct SamplePicture {
-    /// How many samples have a measured deviation.
+    /// Number of samples with a measured deviation.
     samples: usize,
-    /// How many of those have a residual, being of an epoch with a model.
+    /// Number of those with a residual, in an epoch with a model.
     with_residual: usize,
-    /// When the first with a residual was taken.
+    /// Time of the first with a residual.
     #[schema(required)]
     first: Option<Time>,
-    /// When the last was.
+    /// Time of the last with a residual.
     #[schema(required)]
     last: Option<Time>,
     /// Root mean square of the residuals that carried weight, degrees.
     #[schema(required)]
     rms_deg: Option<f64>,
-    /// How many days each interval is of: 1 up to 31 days, 7 beyond.
+    /// Length of an interval, days: 1 up to 31 days, 7 beyond.
     interval_days: i64,
     /// The residuals that carried weight, by interval from the first one's UTC day; those
     /// without any are left out.
@@ -45,7 +45,7 @@ pub(super) struct SamplePicture {
 pub(super) struct ResidualInterval {
     /// Its first instant.
     from: Time,
-    /// How many.
+    /// Number of residuals.
     samples: usize,
     /// Their mean, degrees.
     mean_deg: f64,
@@ -67,7 +67,7 @@ pub(super) struct SampleDots {
     deviation_deg: Vec<f64>,
     /// Measured less predicted, degrees; none where no model predicts.
     residual_deg: Vec<Option<f64>>,
-    /// Whether it carried weight in a model.
+    /// True for those that carried weight in a model.
     used: Vec<bool>,
 }
 

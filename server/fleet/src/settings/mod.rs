@@ -1,8 +1,8 @@
-//! What an operator decides for a vessel: how her agents sample and send, how her
-//! samples are read, and from when on there are alerts.
+//! Settings of a vessel: sampling and sending of its agents, analysis of its samples, limits of its
+//! alerts.
 //!
-//! What always holds: a change makes a new version, which agents get with their
-//! next downlink, and a new analysis. Without a row the defaults hold, version 0.
+//! Invariants: a change makes a new version, which agents get with their next downlink, and a new
+//! analysis. Without a row the defaults hold, version 0.
 
 mod store;
 
@@ -37,19 +37,18 @@ where
 /// A vessel's settings.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 pub struct VesselSettings {
-    /// How her agents sample and send; `version` rises with every change and is
-    /// ignored in a request.
+    /// Settings of its agents; `version` rises with every change and is ignored in a request.
     #[schema(value_type = AgentSettings)]
     pub agent: Settings,
-    /// How her samples are read.
+    /// Settings of the analysis of its samples.
     #[schema(value_type = ReadingSettings)]
     pub analysis: AnalysisSettings,
-    /// From when on alerts are raised; the defaults if not said.
+    /// Limits beyond which alerts are raised; the defaults if absent.
     #[serde(default)]
     pub alerts: AlertLimits,
 }
 
-/// How an agent samples and sends.
+/// Settings of an agent's sampling and sending.
 #[derive(ToSchema)]
 #[allow(dead_code, reason = "describes binnacle_wire::messages::Settings")]
 pub struct AgentSettings {
@@ -61,7 +60,7 @@ pub struct AgentSettings {
     max_rate_of_turn_deg_min: f64,
     /// Seconds after a turn in which nothing is sampled.
     settle_s: u32,
-    /// How far heading may swing to either side within 30 s, degrees.
+    /// Greatest swing of heading to either side within 30 s, degrees.
     max_swing_deg: f64,
     /// The longest stretch that one sample is the mean of, seconds.
     sample_s: u32,
@@ -69,7 +68,7 @@ pub struct AgentSettings {
     seal_s: u32,
 }
 
-/// How samples are read.
+/// Settings of an analysis.
 #[derive(ToSchema)]
 #[allow(
     dead_code,
@@ -79,14 +78,14 @@ pub struct ReadingSettings {
     /// The model of the earth's field.
     #[schema(value_type = FieldModelSchema)]
     field_model: FieldModelSchema,
-    /// Whether the gyro takes its speed error out itself.
+    /// Correction of the gyro's speed error by the gyro itself.
     #[schema(value_type = GyroSpeedErrorSchema)]
     gyro_speed_error: GyroSpeedErrorSchema,
     /// Standard deviation of a reference's constant error, degrees.
     reference_constant_sd_deg: f64,
 }
 
-/// Whether the gyro takes its speed error out itself.
+/// Correction of the gyro's speed error by the gyro itself.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = GyroSpeedError)]

@@ -6,7 +6,7 @@ use binnacle_platform::http::Amended;
 use serde::Deserialize;
 use utoipa::ToSchema;
 
-/// What is to be changed of a vessel.
+/// Amendment of a vessel.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Amendment {
@@ -22,7 +22,7 @@ pub(super) struct Amendment {
     pub(super) in_service: Option<bool>,
 }
 
-/// What is to be changed of a vessel; what is left out stays, null takes a value away.
+/// Amendment of a vessel. Absent fields stay as they are; null removes a value.
 #[derive(ToSchema)]
 #[schema(as = VesselAmendment)]
 #[allow(dead_code, reason = "describes Amendment")]
@@ -37,11 +37,11 @@ pub(super) struct AmendmentSchema {
     /// The flag state.
     #[schema(max_length = 200, example = "Spain")]
     flag: Option<String>,
-    /// How her degaussing coils are, in words.
+    /// State of its degaussing coils, in words.
     #[schema(max_length = 200, example = "no coils fitted")]
     degaussing: Option<String>,
-    /// False takes her out of service: she is in the fleet's lists no more, needs nothing and
-    /// calls for no alert; all that is stored of her stays, and what her agents send is kept.
+    /// False takes the vessel out of service: it leaves the fleet's lists, has no needs and raises
+    /// no alert. All its records stay, and what its agents send is kept.
     in_service: Option<bool>,
 }
 

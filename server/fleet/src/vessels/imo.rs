@@ -1,7 +1,7 @@
 //! IMO ship identification numbers.
 
-/// Whether seven digits end in the check digit that the first six demand: the
-/// last digit of 7a + 6b + 5c + 4d + 3e + 2f (IMO Resolution A.1117(30)).
+/// Tells whether seven digits end in the check digit of the first six: the last digit of 7a + 6b +
+/// 5c + 4d + 3e + 2f (IMO Resolution A.1117(30)).
 pub(super) fn is_valid(number: &str) -> bool {
     let digits: Vec<u32> = number
         .chars()

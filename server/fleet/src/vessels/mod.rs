@@ -59,18 +59,18 @@ pub struct Vessel {
     /// Its flag state.
     #[schema(required)]
     pub flag: Option<String>,
-    /// How its degaussing coils are, in words.
+    /// State of its degaussing coils, in words.
     #[schema(required)]
     pub degaussing: Option<String>,
-    /// When it was entered here.
+    /// Time at which it was entered.
     pub created_at: Time,
-    /// Since when it is out of service.
+    /// Time from which it is out of service.
     #[schema(required)]
     pub out_of_service_at: Option<Time>,
-    /// When its last batch came.
+    /// Time of its last batch.
     #[schema(required)]
     pub last_upload_at: Option<Time>,
-    /// Where its latest sample was taken.
+    /// Place of its latest sample.
     #[schema(required)]
     pub last_position: Option<LastPosition>,
     /// Its compasses, in the order in which they were entered.
@@ -83,19 +83,19 @@ pub struct Vessel {
     pub worst: Option<Worst>,
     /// Alerts that nobody has acknowledged.
     pub open_alerts: u32,
-    /// The worst of her alerts that are not cleared.
+    /// Its worst alert that is not cleared.
     #[schema(required)]
     pub worst_alert: Option<Severity>,
 }
 
-/// Where a vessel was last known to be.
+/// Last known position of a vessel.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct LastPosition {
     /// Degrees north.
     pub lat: f64,
     /// Degrees east.
     pub lon: f64,
-    /// When.
+    /// Time.
     pub at: Time,
 }
 
@@ -112,7 +112,7 @@ pub struct NewVessel {
     pub call_sign: Option<String>,
     /// Its flag state.
     pub flag: Option<String>,
-    /// How its degaussing coils are, in words.
+    /// State of its degaussing coils, in words.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(max_length = 200, example = "no coils fitted")]
     pub degaussing: Option<String>,
@@ -128,7 +128,7 @@ pub struct VesselList {
     pub next: Option<String>,
 }
 
-/// Which vessels to list.
+/// Selection of vessels.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Which {
@@ -232,7 +232,7 @@ async fn amend_vessel(
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
     let vessel = store::lock(&mut tx, writer.operator, id).await?;
-    let told = match amendment.in_service {
+    let events_out = match amendment.in_service {
         Some(in_service) => {
             service::set(&mut tx, writer.operator, &vessel, in_service, now).await?
         }
@@ -241,7 +241,7 @@ async fn amend_vessel(
     store::update(&mut tx, id, &amendment.applied_to(vessel)?).await?;
     tx.commit().await?;
     app.work.notify_one();
-    for event in told {
+    for event in events_out {
         app.publish(event);
     }
     Ok(Json(assemble(&app, writer.operator, id).await?))

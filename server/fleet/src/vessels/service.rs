@@ -10,15 +10,15 @@ use binnacle_platform::time::Time;
 
 /// A vessel is about to go out of service, or to come back.
 pub struct ServiceChanged {
-    /// Whose vessel.
+    /// Operator of the vessel.
     pub operator: OperatorId,
-    /// Which vessel.
+    /// The vessel.
     pub vessel: VesselId,
     /// The vessel's name.
     pub vessel_name: String,
-    /// Whether it comes back.
+    /// True if it comes back.
     pub in_service: bool,
-    /// When.
+    /// Time of the change.
     pub at: Time,
 }
 
@@ -46,14 +46,14 @@ pub(super) async fn set(
         at: now,
     };
     tx.publish(&change).await?;
-    let mut told = vec![events::insert(tx, vessel.id, events::Kind::Need, now).await?];
+    let mut events_out = vec![events::insert(tx, vessel.id, events::Kind::Need, now).await?];
     if in_service {
         set_out_of_service(tx, vessel.id, None).await?;
         // It raises what alerts there were again, if they still are called for.
         analysis::enqueue(tx, vessel.id, now, 0.0).await?;
-        return Ok(told);
+        return Ok(events_out);
     }
     set_out_of_service(tx, vessel.id, Some(now)).await?;
-    told.extend(alerts::end_all(tx, vessel.id, now).await?);
-    Ok(told)
+    events_out.extend(alerts::end_all(tx, vessel.id, now).await?);
+    Ok(events_out)
 }

@@ -20,24 +20,24 @@ pub struct Row {
     pub call_sign: Option<String>,
     /// Its flag state.
     pub flag: Option<String>,
-    /// How its degaussing coils are.
+    /// State of its degaussing coils.
     pub degaussing: Option<String>,
-    /// When it was entered.
+    /// Time at which it was entered.
     pub created_at: Time,
-    /// When its last batch came.
+    /// Time of its last batch.
     pub last_upload_at: Option<Time>,
-    /// When its latest sample was taken.
+    /// Time of its latest sample.
     pub last_sample_at: Option<Time>,
-    /// Where, degrees north.
+    /// Latitude of its latest sample, degrees north.
     pub last_lat: Option<f64>,
-    /// Where, degrees east.
+    /// Longitude of its latest sample, degrees east.
     pub last_lon: Option<f64>,
-    /// Since when it is out of service.
+    /// Time from which it is out of service.
     pub out_of_service_at: Option<Time>,
 }
 
 impl Row {
-    /// Where its latest sample was taken.
+    /// Returns the place and time of its latest sample.
     pub fn last_position(&self) -> Option<LastPosition> {
         Some(LastPosition {
             lat: self.last_lat?,
@@ -85,7 +85,7 @@ pub async fn find_row(db: &Db, operator: OperatorId, id: VesselId) -> Result<Opt
     )
 }
 
-/// The same, or the answer that it does not exist.
+/// Finds a vessel of the operator's, which must exist.
 ///
 /// # Errors
 /// [`Error::NotFound`] when it does not exist or is another operator's.
@@ -166,7 +166,7 @@ pub(super) async fn update(tx: &mut Tx, id: VesselId, amended: &NewVessel) -> Re
     Ok(())
 }
 
-/// Writes since when a vessel is out of service, or that she is in it.
+/// Sets or clears the time from which a vessel is out of service.
 pub(super) async fn set_out_of_service(
     tx: &mut Tx,
     id: VesselId,
@@ -181,7 +181,7 @@ pub(super) async fn set_out_of_service(
     Ok(())
 }
 
-/// Whether a vessel is in service, within a transaction.
+/// Tells whether a vessel is in service, within a transaction.
 pub async fn is_in_service(tx: &mut Tx, id: VesselId) -> Result<bool> {
     let found = row!(
         in tx,

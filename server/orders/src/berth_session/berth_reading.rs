@@ -52,7 +52,7 @@ const FAST_CLOCK_S: f64 = 300.0;
 
 /// Refuses what cannot be a number of its kind, or a time.
 pub(crate) fn must_be_numbers(given: &ReadingForm, now: Time) -> Result<()> {
-    given.must_be_numbers().map_err(|error| Error::Invalid {
+    given.check_ranges().map_err(|error| Error::Invalid {
         field: error.field,
         detail: error.what,
     })?;

@@ -5,7 +5,8 @@ use crate::work_orders::order::Summary;
 use crate::work_orders::order_state::Standing;
 use crate::work_orders::refusal::{Cure, Refusal, not_adjustable};
 use binnacle_adjustment::adjust::{
-    AdjustError, Learnt, Optimality, Outcome, Plan, by_compass, plan, turned_in_all,
+    AdjustError, Optimality, Outcome, Plan, UpdatedPrediction, check_total_turn, plan,
+    predict_by_compass,
 };
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_fleet::alerts::{self, Effect};
@@ -166,8 +167,8 @@ pub(crate) async fn must_be_without_cargo(
 pub(crate) fn must_keep_to_limits(standing: &Standing) -> Result<()> {
     let basis = standing.read.as_ref().and_then(|read| read.basis.as_ref());
     let followed = standing.plan.as_ref().zip(basis);
-    let beyond =
-        followed.and_then(|(plan, basis)| plan.plan.beyond(&standing.limits, &basis.waters));
+    let beyond = followed
+        .and_then(|(plan, basis)| plan.plan.limit_violation(&standing.limits, &basis.waters));
     match beyond {
         Some(refused) => Err(not_adjustable(vec![Refusal::from(&refused)])),
         None => Ok(()),
@@ -195,7 +196,7 @@ pub(crate) async fn must_have_turned(
     }
     let in_all = calculate(app, move || {
         let adjustment = prepared.adjustment();
-        turned_in_all(&adjustment, first_deg, adjustment.standing(), now_deg)
+        check_total_turn(&adjustment, first_deg, adjustment.standing(), now_deg)
     });
     let in_all = in_all.await?;
     if in_all.agrees() {
@@ -204,7 +205,7 @@ pub(crate) async fn must_have_turned(
     Err(Error::WrongState(format!(
         "{}: read the field again (second reading), or look at each corrector and say how they \
          stand",
-        in_all.in_words()
+        in_all
     )))
 }
 
@@ -213,15 +214,18 @@ pub(crate) async fn must_have_turned(
 ///
 /// # Errors
 /// `not-adjustable` where what is left open is beyond the order's limits.
-pub(crate) async fn foretold(app: &App, standing: &Standing) -> Result<Learnt> {
+pub(crate) async fn foretold(app: &App, standing: &Standing) -> Result<UpdatedPrediction> {
     if let Some(learnt) = standing.learnt() {
         return Ok(learnt.clone());
     }
     let prepared = standing.prepared()?;
     let (limits, waters) = (standing.limits, prepared.basis.waters.clone());
     let steps = standing.steps.clone();
-    let learnt = calculate(app, move || by_compass(&prepared.adjustment(), &steps)).await?;
-    let Some(beyond) = learnt.beyond(&limits, &waters) else {
+    let learnt = calculate(app, move || {
+        predict_by_compass(&prepared.adjustment(), &steps)
+    })
+    .await?;
+    let Some(beyond) = learnt.limit_violation(&limits, &waters) else {
         return Ok(learnt);
     };
     let mut refusal = Refusal::from(&beyond);

@@ -53,7 +53,7 @@ pub struct Basis {
     pub earlier: Option<EarlierBerth>,
     /// Whether the model has learnt from a reading at this berth.
     #[serde(default)]
-    pub has_learnt_here: bool,
+    pub is_updated_here: bool,
 }
 
 /// The model that a plan rests on.
@@ -133,7 +133,7 @@ impl Basis {
             waters: waters(app, vessel, compass, earth.for_ship()).await?,
             cargo_on_board: cargo || given.cargo_on_board,
             earlier: previous_lambda::of_compass(app, vessel, compass, given.at, &logbook).await?,
-            has_learnt_here: false,
+            is_updated_here: false,
             model: ModelUsed {
                 headings_until: headings_until(app, vessel, &model).await?,
                 ..ModelUsed::from(model)
@@ -190,7 +190,7 @@ impl Prepared {
                 model_age_days: Some((age_s / 86_400.0).max(0.0)),
                 cargo_on_board: self.basis.cargo_on_board,
                 earlier_lambda: earlier.and_then(|earlier| earlier.set_as(&self.binnacle)),
-                has_learnt_here: self.basis.has_learnt_here,
+                is_updated_here: self.basis.is_updated_here,
             },
             limits: self.limits,
         }

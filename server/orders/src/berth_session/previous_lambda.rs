@@ -31,7 +31,7 @@ pub struct EarlierBerth {
 impl EarlierBerth {
     /// With the correctors as this binnacle has them.
     pub fn set_as(&self, binnacle: &Binnacle) -> Option<EarlierLambda> {
-        self.lambda.set_as(binnacle, &self.stood)
+        self.lambda.adapted_to(binnacle, &self.stood)
     }
 }
 
@@ -125,7 +125,7 @@ impl Recorded {
             limits: Limits::default(),
         };
         Some(EarlierBerth {
-            lambda: EarlierLambda::told(self.reading.at, &adjustment).ok()??,
+            lambda: EarlierLambda::from_berth(self.reading.at, &adjustment).ok()??,
             stood: binnacle.setting.clone(),
         })
     }

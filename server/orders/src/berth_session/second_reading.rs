@@ -11,8 +11,8 @@ use crate::berth_session::steps::Moved;
 use crate::work_orders::order_state::Standing;
 use crate::work_orders::refusal::Refusal;
 use binnacle_adjustment::adjust::{
-    AdjustError, Again, AgainForm, Card, Corrector, Done, Learnt, ReadingForm, Slip, Verdict,
-    read_again,
+    AdjustError, CardCheck, CompletedStep, Corrector, PostCheck, ReadingForm, SecondReadingForm,
+    Slip, UpdatedPrediction, Verdict, check_second_reading,
 };
 use binnacle_adjustment::berth::BerthReading;
 use binnacle_adjustment::binnacle::Binnacle;
@@ -30,13 +30,13 @@ const BEYOND: &str = "the correctors seem to stand as planned, but more is left 
 
 /// A second reading as it was given, as one of its own, and as the science takes it.
 pub(crate) struct Second {
-    given: AgainForm,
+    given: SecondReadingForm,
     pub(crate) form: ReadingForm,
     reading: BerthReading,
 }
 
 impl Second {
-    pub(crate) fn new(given: AgainForm, prepared: &Prepared) -> Result<Second> {
+    pub(crate) fn new(given: SecondReadingForm, prepared: &Prepared) -> Result<Second> {
         let form = given.as_reading(&prepared.given);
         let form = form.map_err(|error| Error::Invalid {
             field: error.field,
@@ -54,8 +54,12 @@ impl Second {
         })
     }
 
-    fn read(&self, prepared: &Prepared, steps: &[Done]) -> std::result::Result<Again, AdjustError> {
-        read_again(
+    fn read(
+        &self,
+        prepared: &Prepared,
+        steps: &[CompletedStep],
+    ) -> std::result::Result<PostCheck, AdjustError> {
+        check_second_reading(
             &prepared.adjustment(),
             steps,
             &self.reading,
@@ -70,7 +74,7 @@ impl Second {
     pub(crate) fn judge(
         self,
         prepared: &Prepared,
-        steps: &[Done],
+        steps: &[CompletedStep],
         looked_at: usize,
         planned: bool,
     ) -> std::result::Result<(ReadAgain, Option<Basis>), AdjustError> {
@@ -86,19 +90,19 @@ impl Second {
             refusals: Vec::new(),
             could_be: Vec::new(),
         };
-        let from_here = |learnt: &Learnt, binnacle: Binnacle| {
+        let from_here = |learnt: &UpdatedPrediction, binnacle: Binnacle| {
             let mut basis = prepared.basis.clone();
             basis.model.model = learnt.model_after.clone();
             basis.binnacle = binnacle;
             // The first reading was held against it.
             basis.earlier = None;
-            basis.has_learnt_here = true;
+            basis.is_updated_here = true;
             basis
         };
         let (mut foretold, mut anew) = (None, None);
         match again.verdict {
-            Verdict::AsPlanned { learnt } if planned => foretold = Some(*learnt),
-            Verdict::AsPlanned { learnt } => {
+            Verdict::AsPlanned { updated: learnt } if planned => foretold = Some(*learnt),
+            Verdict::AsPlanned { updated: learnt } => {
                 said.verdict = AgainVerdict::Replan;
                 FITS_UNPLANNED.clone_into(&mut said.words);
                 let standing = prepared.adjustment().standing().clone();
@@ -109,7 +113,7 @@ impl Second {
                 foretold = Some(*learnt);
             }
             Verdict::Replan {
-                learnt,
+                updated: learnt,
                 refusals,
                 binnacle,
                 ..
@@ -131,12 +135,14 @@ impl Second {
                 said.step = u32::try_from(looked_at).ok().map(|before| before + step);
                 said.setting = Some(setting);
             }
-            Verdict::Unexplained { mistakes } => {
+            Verdict::Unexplained {
+                misreadings: mistakes,
+            } => {
                 said.verdict = AgainVerdict::Unexplained;
                 said.words = unexplained(looked_at);
                 said.could_be = mistakes.iter().map(ToString::to_string).collect();
-                if let Some(card) = again.card.filter(Card::is_refused) {
-                    said.words = card.found();
+                if let Some(card) = again.card.filter(CardCheck::is_refused) {
+                    said.words = card.summary();
                     said.could_be.extend(card.suspects());
                 }
             }
@@ -199,8 +205,8 @@ fn unexplained(looked_at: usize) -> String {
 }
 
 /// What is confirmed, and what is not.
-fn as_planned(steps: &[Done], parts: usize) -> String {
-    let heels = |done: &Done| done.step.corrector == Corrector::Heeling;
+fn as_planned(steps: &[CompletedStep], parts: usize) -> String {
+    let heels = |done: &CompletedStep| done.step.corrector == Corrector::Heeling;
     let mut words = "the correctors do what was planned".to_owned();
     if parts < WHOLE && steps.iter().any(heels) {
         words += "; the vertical part was not read both times, and nothing confirms the heeling \
@@ -209,7 +215,7 @@ fn as_planned(steps: &[Done], parts: usize) -> String {
     words
 }
 
-fn suspected(steps: &[Done], number: u32, slip: Slip) -> String {
+fn suspected(steps: &[CompletedStep], number: u32, slip: Slip) -> String {
     let step = steps.get((number as usize).saturating_sub(1));
     let words = step.map_or("", |done| done.step.words.as_str());
     let how = match slip {

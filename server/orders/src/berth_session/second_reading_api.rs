@@ -17,7 +17,9 @@ use crate::work_orders::order_update;
 use crate::work_orders::refusal::Refusal;
 use crate::work_orders::shown;
 use axum::extract::{FromRef, State as Shared};
-use binnacle_adjustment::adjust::{AgainForm, Learnt, Part, ReadingForm};
+use binnacle_adjustment::adjust::{
+    FieldComponent, ReadingForm, SecondReadingForm, UpdatedPrediction,
+};
 use binnacle_adjustment::binnacle::Setting;
 use binnacle_platform::access::PartyWriter;
 use binnacle_platform::app::App;
@@ -35,12 +37,12 @@ use utoipa_axum::routes;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ReadAgain {
     /// What was read.
-    pub given: AgainForm,
+    pub given: SecondReadingForm,
     /// What it told.
     #[serde(flatten)]
     pub said: AgainSaid,
     /// What is foretold now, where it told that.
-    pub learnt: Option<Learnt>,
+    pub learnt: Option<UpdatedPrediction>,
     /// The reading to plan from anew, where what is left is beyond the limits.
     pub anew: Option<Box<Read>>,
 }
@@ -62,7 +64,7 @@ pub struct AgainSaid {
     pub words: String,
     /// Forward, to starboard and, where it was read both times, down.
     #[schema(value_type = Vec<PartSchema>)]
-    pub parts: Vec<Part>,
+    pub parts: Vec<FieldComponent>,
     /// The step that is suspected, of all that were done since the first reading, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step: Option<u32>,
@@ -108,7 +110,7 @@ pub enum AgainVerdict {
 #[allow(
     dead_code,
     clippy::struct_field_names,
-    reason = "describes binnacle_adjustment::adjust::Part"
+    reason = "describes binnacle_adjustment::adjust::FieldComponent"
 )]
 struct PartSchema {
     /// What was foretold.
@@ -123,7 +125,10 @@ struct PartSchema {
 #[schema(as = SecondReading, example = json!({
     "at": "2026-11-22T10:05:00Z", "forward": 15.1, "starboard": 17.7, "unit": "microtesla"
 }))]
-#[allow(dead_code, reason = "describes binnacle_adjustment::adjust::AgainForm")]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_adjustment::adjust::SecondReadingForm"
+)]
 struct AgainSchema {
     /// When it was read.
     at: binnacle_platform::time::Time,
@@ -167,7 +172,7 @@ async fn read_field_again(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(given): Valid<AgainForm>,
+    Valid(given): Valid<SecondReadingForm>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "second reading", &given)?;
     let (whole, done) = update.look().await?;

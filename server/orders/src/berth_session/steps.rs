@@ -5,7 +5,7 @@ use crate::berth_session::planning_inputs::Prepared;
 use crate::work_orders::order_state::{Standing, Strength};
 use crate::work_orders::refusal::Refusal;
 use binnacle_adjustment::adjust::{
-    AdjustError, Outcome, Recheck, Step, recheck, recheck_elsewhere, turned_in_all,
+    AdjustError, Outcome, Step, StepCheck, check_step, check_step_with_setting, check_total_turn,
 };
 use binnacle_adjustment::binnacle::{Binnacle, Setting};
 use binnacle_platform::app::App;
@@ -156,18 +156,18 @@ pub(crate) fn judge(
         verdict,
         words,
     };
-    let rechecked = recheck(&prepared.adjustment(), &step, before_deg, after_deg)?;
+    let rechecked = check_step(&prepared.adjustment(), &step, before_deg, after_deg)?;
     let (said, setting, binnacle, outcome) = match rechecked {
-        Recheck::Confirmed { off_deg, proven } => (
+        StepCheck::Confirmed { off_deg, proven } => (
             said(
                 Verdict::Confirmed,
-                format!("within {:.1} degrees: {}", off_deg.abs(), proven.in_words()),
+                format!("within {:.1} degrees: {}", off_deg.abs(), proven),
             ),
             Some(step.setting_after.clone()),
             None,
             None,
         ),
-        Recheck::NotSeen { .. } => (
+        StepCheck::NotSeen { .. } => (
             said(
                 Verdict::NotSeen,
                 "on this heading the compass does not show the step: look at it again".to_owned(),
@@ -176,7 +176,7 @@ pub(crate) fn judge(
             None,
             None,
         ),
-        Recheck::WrongEnd {
+        StepCheck::WrongEnd {
             turned_deg,
             setting,
             outcome,
@@ -192,7 +192,7 @@ pub(crate) fn judge(
             None,
             Some(outcome),
         ),
-        Recheck::OtherStrength {
+        StepCheck::OtherStrength {
             share,
             other_hole,
             binnacle,
@@ -205,7 +205,7 @@ pub(crate) fn judge(
             Some(*binnacle),
             Some(outcome),
         ),
-        Recheck::Unexplained { unmoved: true, .. } => (
+        StepCheck::Unexplained { unmoved: true, .. } => (
             said(
                 Verdict::Unexplained,
                 format!(
@@ -218,7 +218,7 @@ pub(crate) fn judge(
             None,
             None,
         ),
-        Recheck::Unexplained { off_deg, .. } => (
+        StepCheck::Unexplained { off_deg, .. } => (
             said(
                 Verdict::Unexplained,
                 format!(
@@ -270,7 +270,7 @@ pub(crate) async fn learn_anew(
     let (after, compass_deg) = (moved.after.clone(), moved.compass_deg);
     let learnt = calculate(app, move || {
         let (adjustment, step) = (prepared.adjustment(), &strength.step);
-        recheck_elsewhere(&adjustment, step, strength.before_deg, &after, compass_deg)
+        check_step_with_setting(&adjustment, step, strength.before_deg, &after, compass_deg)
     });
     let (step, binnacle) = learnt.await?;
     Ok(Some(Box::new(LearntAnew { step, binnacle })))
@@ -299,14 +299,13 @@ fn in_all(
     let Some(first_deg) = prepared.given.compass_deg else {
         return Ok(said);
     };
-    let in_all = turned_in_all(&prepared.adjustment(), first_deg, setting, said.after_deg)?;
+    let in_all = check_total_turn(&prepared.adjustment(), first_deg, setting, said.after_deg)?;
     if in_all.agrees() {
         return Ok(said);
     }
     let words = format!(
         "{}; but {}: see that each corrector stands as it should before you finish",
-        said.words,
-        in_all.in_words()
+        said.words, in_all
     );
     Ok(StepSaid { words, ..said })
 }

@@ -10,7 +10,7 @@ use crate::work_orders::log_entry::{Content, sha256_hex};
 use crate::work_orders::order_state::Standing;
 use crate::work_orders::order_update::Change;
 use crate::work_orders::store::{self, Whole};
-use binnacle_adjustment::adjust::Learnt;
+use binnacle_adjustment::adjust::UpdatedPrediction;
 use binnacle_adjustment::binnacle::Setting;
 use binnacle_compass::model::Model;
 use binnacle_fleet::binnacles;
@@ -195,7 +195,7 @@ pub(crate) fn must_stand_as_planned(standing: &Standing) -> Result<&Setting> {
 pub(crate) async fn complete(
     change: &mut Change<'_>,
     aboard: &Aboard,
-    learnt: Learnt,
+    learnt: UpdatedPrediction,
     word: Word,
     at: Time,
 ) -> Result<()> {

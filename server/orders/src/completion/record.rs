@@ -7,7 +7,7 @@ use crate::completion::complete::Word;
 use crate::work_orders::log_entry::{Content, canonical};
 use crate::work_orders::order::NOT_A_CERTIFICATE;
 use crate::work_orders::store::Whole;
-use binnacle_adjustment::adjust::{HeelingPlan, Learnt};
+use binnacle_adjustment::adjust::{HeelingPlan, UpdatedPrediction};
 use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_fleet::compasses::Compass;
 use binnacle_platform::error::Result;
@@ -27,7 +27,7 @@ pub(crate) struct Aboard {
 pub(crate) fn text(
     aboard: &Aboard,
     whole: &Whole,
-    learnt: &Learnt,
+    learnt: &UpdatedPrediction,
     word: &Word,
     account: &str,
     after: &Binnacle,

@@ -10,7 +10,7 @@ use crate::work_orders::log_entry::{Author, Content};
 use crate::work_orders::order::State;
 use crate::work_orders::publish::{self, Before};
 use crate::work_orders::store;
-use binnacle_adjustment::adjust::{Settled, Verification, verify};
+use binnacle_adjustment::adjust::{SettledHeading, Verification, verify};
 use binnacle_compass::result::{SampleDiagnostic, SampleReason};
 use binnacle_compass::ship::EarthField;
 use binnacle_fleet::alerts::UnconfirmedAdjustment;
@@ -127,7 +127,7 @@ pub async fn after_analysis(
             && matches!(found.reason, None | Some(SampleReason::NoModel))
     };
     let counted: Vec<&SampleDiagnostic> = samples.iter().filter(counts).collect();
-    let settled: Vec<Settled> = counted.iter().filter_map(|found| settled(found)).collect();
+    let settled: Vec<SettledHeading> = counted.iter().filter_map(|found| settled(found)).collect();
     let (Some(last), Some(here)) = (counted.last(), settled.last().map(|last| last.earth)) else {
         return Ok(Vec::new());
     };
@@ -152,8 +152,8 @@ pub async fn after_analysis(
     publish::tell(tx, &whole, &before, now).await
 }
 
-fn settled(found: &SampleDiagnostic) -> Option<Settled> {
-    Some(Settled {
+fn settled(found: &SampleDiagnostic) -> Option<SettledHeading> {
+    Some(SettledHeading {
         compass: found.sample.compass,
         deviation_deg: found.deviation_deg?,
         sd_deg: HEADING_SD_DEG,
@@ -187,13 +187,13 @@ pub async fn unconfirmed_adjustment(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_adjustment::adjust::Needed;
+    use binnacle_adjustment::adjust::NeededHeadings;
     use binnacle_compass::time::Timestamp;
 
     #[test]
     fn one_heading_agrees_and_several_agree() {
         let words = |headings, count| {
-            let needed = Needed {
+            let needed = NeededHeadings {
                 count,
                 compass_deg: Vec::new(),
             };

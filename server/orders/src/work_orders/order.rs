@@ -407,7 +407,7 @@ impl NewOrder {
         must_be_near(self.planned_at, now)?;
         let optional = |field, value: Option<String>| optional_text(field, value.as_deref());
         if let Some(limits) = &self.limits {
-            limits.must_be_sane().map_err(|error| Error::Invalid {
+            limits.check_ranges().map_err(|error| Error::Invalid {
                 field: "limits",
                 detail: error.to_string(),
             })?;

@@ -16,7 +16,7 @@ use crate::work_orders::log_entry::Content;
 use crate::work_orders::offer_state::Offers;
 use crate::work_orders::order::State;
 use binnacle_adjustment::adjust::{
-    Corrector, Done, Learnt, Limits, PredictedTable, Step, Verification,
+    CompletedStep, Corrector, Limits, PredictedTable, Step, UpdatedPrediction, Verification,
 };
 use binnacle_adjustment::binnacle::{Binnacle, Setting};
 use binnacle_compass::angle::wrap_180;
@@ -53,10 +53,10 @@ pub(crate) struct Standing {
     /// What became of the last step.
     pub last_step: Option<StepSaid>,
     /// All steps that were done since the last reading, with what the compass showed.
-    pub steps: Vec<Done>,
+    pub steps: Vec<CompletedStep>,
     /// Heeling magnets moved before a second reading without its vertical part that became
     /// the one to plan from: nothing has shown these steps.
-    unshown: Vec<Done>,
+    unshown: Vec<CompletedStep>,
     /// At how many of them someone has looked since, to say how the correctors stand.
     pub looked_at: usize,
     /// What the magnetometer said after them, the correctors standing as they stand.
@@ -207,7 +207,7 @@ impl Standing {
                 if done.said.is_confirmed() {
                     self.steps_done += 1;
                     let turned_deg = wrap_180(done.said.after_deg - done.said.before_deg);
-                    self.steps.push(Done {
+                    self.steps.push(CompletedStep {
                         step: done.step.clone(),
                         turned_deg: Some(turned_deg),
                     });
@@ -312,7 +312,7 @@ impl Standing {
         let taken = self.setting()?;
         let mut strengths = self.strengths.iter();
         let elsewhere =
-            strengths.position(|strength| strength.step.is_gainsaid(taken, &moved.after));
+            strengths.position(|strength| strength.step.is_contradicted(taken, &moved.after));
         let is_last = |said: &StepSaid| said.verdict == Verdict::OtherStrength;
         let is_read_again = *taken == moved.after
             && moved.compass_deg.is_some()
@@ -330,7 +330,7 @@ impl Standing {
             && self.take_reading(anew)
         {
             if read.said.parts.len() < WHOLE {
-                let heels = |done: &&Done| done.step.corrector == Corrector::Heeling;
+                let heels = |done: &&CompletedStep| done.step.corrector == Corrector::Heeling;
                 self.unshown
                     .extend(before.steps.iter().filter(heels).cloned());
             } else {
@@ -423,7 +423,7 @@ impl Standing {
     }
 
     /// What the magnetometer said after the steps, where it confirmed them.
-    pub(crate) fn learnt(&self) -> Option<&Learnt> {
+    pub(crate) fn learnt(&self) -> Option<&UpdatedPrediction> {
         let again = self.again.as_ref()?;
         again.learnt.as_ref().filter(|_| !again.is_disproof())
     }

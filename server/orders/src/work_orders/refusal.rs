@@ -72,8 +72,8 @@ impl From<&Refused> for Refusal {
         Refusal {
             refusal: word.unwrap_or_else(|| "refused".to_owned()),
             // What could explain it stands beside it.
-            words: refused.refusal.found(),
-            could_be: refused.refusal.could_be(),
+            words: refused.refusal.summary(),
+            could_be: refused.refusal.explanations(),
             cures: refused.cures.iter().copied().map(Cure::from).collect(),
         }
     }

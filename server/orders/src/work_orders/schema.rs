@@ -277,7 +277,10 @@ pub(crate) enum SeaVerdictSchema {
 /// Headings that are still needed.
 #[derive(Serialize, ToSchema)]
 #[schema(as = NeededHeadings)]
-#[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Needed")]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_adjustment::adjust::NeededHeadings"
+)]
 pub(crate) struct NeededSchema {
     /// How many.
     count: usize,

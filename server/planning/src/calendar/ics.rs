@@ -2,7 +2,7 @@
 //!
 //! What always holds: each keeps its UID, and its SEQUENCE grows with an order's log, a
 //! call's revisions or the versions of a due date; times are UTC, due dates days; the same
-//! make the same octets.
+//! make the same bytes.
 
 use super::store::{Appointment, Call, Due};
 use anyhow::Context;
@@ -141,7 +141,7 @@ fn day(due: &Due, public_url: Option<&str>) -> anyhow::Result<Event> {
     Ok(event.done())
 }
 
-/// What an entry of the log says of itself.
+/// Fields of a log entry that a calendar shows.
 #[derive(Deserialize)]
 struct Written {
     at: Time,
@@ -195,8 +195,7 @@ fn takes() -> TimeDelta {
     TimeDelta::seconds((JOB_H * 3600.0) as i64)
 }
 
-/// What is wrong with the time of an order whose work is still to be done, and whose port call
-/// is not where it was.
+/// Returns the warning for an order still to be done whose port call has moved.
 fn unfit(order: &Appointment) -> Option<&'static str> {
     let is_ahead = matches!(
         order.state,

@@ -32,7 +32,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// What a feed's token begins with.
+/// Prefix of a feed's token.
 const PREFIX: &str = "bnc_";
 
 /// The routes of this part.
@@ -53,15 +53,15 @@ where
 struct Feed {
     /// Its id.
     id: FeedId,
-    /// What it is called.
+    /// Name of the feed.
     #[schema(example = "Nao Victoria")]
     name: String,
     /// The vessel, if it is one's only.
     #[schema(required)]
     vessel_id: Option<VesselId>,
-    /// When it was made.
+    /// Time of creation.
     created_at: Time,
-    /// Who made it.
+    /// Name of its creator.
     created_by: String,
 }
 
@@ -70,7 +70,7 @@ struct Feed {
 #[serde(deny_unknown_fields)]
 #[schema(as = NewCalendarFeed, example = json!({ "name": "Our fleet" }))]
 struct NewFeed {
-    /// What it is called.
+    /// Name of the feed.
     #[schema(min_length = 1, max_length = 200)]
     name: String,
     /// One of your vessels only, for an operator.
@@ -182,7 +182,7 @@ struct Address {
     token: Option<String>,
 }
 
-/// Whose orders a calendar shows.
+/// Owner of a calendar, whose orders it shows.
 struct Subscriber {
     name: String,
     tenant: Tenant,

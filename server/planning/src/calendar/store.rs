@@ -69,7 +69,7 @@ pub(super) struct Appointment {
     pub last_seq: i64,
     /// The last of them.
     pub line: String,
-    /// How its time lies in its port call, where that has moved since the time was agreed.
+    /// Fit of the planned time to the port call, where the call moved after the time was agreed.
     pub call_fit: Option<CallFit>,
 }
 
@@ -137,7 +137,7 @@ pub(super) async fn delete_all_of(tx: &mut Tx, user: UserId) -> Result<u64> {
     execute!(tx, "DELETE FROM calendar_feeds WHERE user_id = $1", user)
 }
 
-/// Whose the calendar of this token is, unless who made it was shut out.
+/// Returns the owner of the calendar with this token, unless its creator is disabled.
 pub(super) async fn find(db: &Db, token_hash: &[u8]) -> Result<Option<Subscriber>> {
     let found = row!(
         db,

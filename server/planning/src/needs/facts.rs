@@ -1,7 +1,7 @@
-//! What is known of a compass that rules ask about, put together from what is stored.
+//! Facts about a compass that the adjustment rules use, assembled from stored data.
 
-use super::need::Ahead;
-use super::since::Since;
+use super::over_limit_since::Since;
+use super::prediction::Ahead;
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::position::Position;
@@ -24,7 +24,7 @@ use chrono::NaiveDate;
 /// Degrees of heading between those on which the greatest deviation is looked for.
 const STEP_DEG: f64 = 10.0;
 
-/// What is known of a compass.
+/// Facts about a compass.
 #[derive(Clone, Debug)]
 pub struct Facts {
     /// The vessel.
@@ -43,7 +43,8 @@ pub struct Facts {
     pub compass: Compass,
     /// The greatest deviation at the places and on the days ahead.
     pub ahead: Vec<Ahead>,
-    /// Since when it has been as great as it is where the ship is, if that is news.
+    /// Updated history of deviation at the vessel's position, where it differs from the stored
+    /// one.
     pub(super) since: Option<Since>,
 }
 
@@ -60,7 +61,7 @@ pub(super) struct Work {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Completed {
     pub(super) at: Time,
-    /// Whether headings at sea have yet to say whether it holds.
+    /// Whether verification by headings at sea is still open.
     pub(super) awaits_verification: bool,
 }
 
@@ -71,7 +72,7 @@ pub(super) struct Waypoint {
     pub(super) at: Time,
 }
 
-/// What is stored of a compass.
+/// Stored data of a compass.
 pub(super) struct Stored<'a> {
     pub(super) work: Vec<&'a Work>,
     pub(super) completed: Option<Completed>,
@@ -85,12 +86,12 @@ pub(super) struct Stored<'a> {
     pub(super) since: &'a Since,
 }
 
-/// Where the ship is.
+/// Name of the vessel's current position.
 const HERE: &str = "here";
 const PANAMA_CANAL: &str = "Panama Canal";
 
 impl Facts {
-    /// What is not known of the vessel.
+    /// Returns the vessel's particulars that are unknown.
     pub(super) fn not_known(&self) -> Vec<&'static str> {
         let fields = [
             ("flag_state", self.ship.flag.is_none()),
@@ -180,7 +181,7 @@ fn predicted(ahead: &Ahead) -> Predicted {
     }
 }
 
-/// What of a logbook a rule asks about.
+/// Returns the rule event that a logbook entry stands for, if any.
 fn event(kind: LogbookKind) -> Option<EventKind> {
     match kind {
         LogbookKind::CompassMoved => Some(EventKind::Installation),
@@ -198,7 +199,7 @@ fn change(findings: &Findings, adjusted: Option<Time>) -> Option<Change> {
         let cause = change.cause;
         change.confirmed
             && change.ended.is_none()
-            && cause.is_the_ships()
+            && cause.changes_deviation()
             && !matches!(cause, Cause::MagneticCargo | Cause::AdjustmentOrRepair)
             && !found.expected
             && adjusted.is_none_or(|adjusted| change.from > adjusted.0)

@@ -1,7 +1,7 @@
-//! What needs are found from, out of the database: a few queries for a whole fleet.
+//! Loading of the facts for needs from the database: a few queries for a whole fleet.
 
 use super::facts::{Completed, Facts, Stored, Waypoint, Work, compass};
-use super::since::{self, Since};
+use super::over_limit_since::{self, Since};
 use crate::port_calls;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_fleet::alerts::AlertLimits;
@@ -36,7 +36,7 @@ struct Loaded {
     since: BTreeMap<Of, Since>,
 }
 
-/// What is known of a fleet's compasses, or of one vessel's in it.
+/// Returns the facts about a fleet's compasses, or about one vessel's in it.
 pub async fn of_fleet(
     app: &App,
     operator: OperatorId,
@@ -86,7 +86,7 @@ impl Loaded {
             findings: findings(db, operator).await?,
             limits: limits(db, operator).await?,
             calls,
-            since: since::noted(db, operator).await?,
+            since: over_limit_since::noted(db, operator).await?,
         })
     }
 
@@ -152,8 +152,7 @@ async fn particulars(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId,
     found.into_iter().map(read).collect()
 }
 
-/// What the logbooks tell of work; but not what a cancelled order left behind, which was
-/// no adjustment.
+/// Returns the work in the logbooks, without adjustments that cancelled orders left behind.
 async fn work(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Vec<Work>>> {
     let cancelled: BTreeSet<String> = rows!(
         db,
@@ -211,7 +210,7 @@ async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Complet
         operator
     )?;
     let by = |(vessel, compass, at, state)| {
-        // What is closed without a word from the sea is never more than foretold.
+        // What is closed without a word from the sea is never more than predicted.
         let awaits_verification = matches!(state, State::Adjusted | State::ClosedUnverified);
         let completed = Completed {
             at,

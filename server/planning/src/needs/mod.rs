@@ -1,14 +1,14 @@
-//! Which compasses are to be adjusted by when, and why.
+//! Adjustment needs: due dates of compasses and their causes.
 //!
-//! What always holds: a need is found anew each time it is asked for, from what is stored
-//! then, and nothing of it is stored but since when a deviation has been as great as it is; the rules and what follows from them are
-//! `binnacle_schedule`'s.
+//! What always holds: a need is computed on each request from stored data. Only the history of
+//! the deviation at the vessel's position is stored. The rules belong to `binnacle_schedule`.
 
 mod facts;
 mod load;
 mod need;
+mod over_limit_since;
+mod prediction;
 mod schema;
-mod since;
 
 pub use facts::Facts;
 pub use load::of_fleet;
@@ -110,7 +110,7 @@ pub async fn note_since(app: &App, facts: &[Facts]) -> Result<()> {
     for facts in facts {
         if let Some(news) = &facts.since {
             let mut tx = app.db.begin().await?;
-            since::note(&mut tx, (facts.vessel_id, facts.compass_id), news).await?;
+            over_limit_since::note(&mut tx, (facts.vessel_id, facts.compass_id), news).await?;
             tx.commit().await?;
         }
     }

@@ -1,8 +1,9 @@
 //! A need, as it is shown.
 
-use super::schema::{CauseKindSchema, SideSchema, UrgencySchema};
+use super::prediction::Ahead;
+use super::schema::{CauseKindSchema, UrgencySchema};
 use binnacle_platform::ids::{CompassId, VesselId};
-use binnacle_schedule::needs::{CauseKind, Due, Side, Urgency};
+use binnacle_schedule::needs::{CauseKind, Due, Urgency};
 use binnacle_schedule::rules::{Rule, built_in_rules};
 use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
@@ -22,10 +23,10 @@ pub struct Need {
     pub compass_name: String,
     /// The last day on which it may be adjusted.
     pub due_on: NaiveDate,
-    /// How much that presses.
+    /// Urgency of the due date.
     #[schema(value_type = UrgencySchema)]
     pub urgency: Urgency,
-    /// Why, in words.
+    /// Reason in plain words.
     #[schema(
         example = "24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G, \
                         read second-hand)"
@@ -39,7 +40,7 @@ pub struct Need {
     /// The greatest deviation predicted for the places and days ahead, where the model is
     /// sure enough to tell.
     pub predicted: Vec<Ahead>,
-    /// What is not known of the vessel, and so binds her as if it were.
+    /// Particulars of the vessel that are unknown; a rule that depends on one binds the vessel.
     #[schema(example = json!(["gross_tonnage"]))]
     pub not_known: Vec<&'static str>,
 }
@@ -48,7 +49,7 @@ pub struct Need {
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = NeedCause)]
 pub struct Cause {
-    /// What it is.
+    /// Kind of cause.
     #[schema(value_type = CauseKindSchema)]
     pub kind: CauseKind,
     /// By when it wants the compass adjusted.
@@ -68,27 +69,11 @@ pub struct RuleCited {
     pub id: String,
     /// Issuer and name of the document.
     pub document: String,
-    /// Where in it.
+    /// Section of the document.
     #[schema(required)]
     pub section: Option<String>,
-    /// Whether a copy or a report of it was read, rather than the document itself.
+    /// Whether the rule was read in a copy or a report rather than in the document itself.
     pub second_hand: bool,
-}
-
-/// The greatest deviation at a place and on a day.
-#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
-#[schema(as = DeviationAhead)]
-pub struct Ahead {
-    /// On which day.
-    pub on: NaiveDate,
-    /// Where: `here`, a port's name, or a canal's.
-    #[schema(example = "Rotterdam")]
-    pub place: String,
-    /// The largest deviation on any heading, either way, degrees.
-    pub worst_deviation_deg: f64,
-    /// Which way that is.
-    #[schema(value_type = SideSchema)]
-    pub side: Side,
 }
 
 /// A page of needs.
@@ -102,7 +87,7 @@ pub(super) struct NeedList {
     pub(super) next: Option<String>,
 }
 
-/// Which needs.
+/// Filter of a list of needs.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct Filter {

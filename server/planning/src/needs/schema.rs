@@ -1,9 +1,9 @@
-//! How the OpenAPI document describes what the schedule's own crate has.
+//! OpenAPI schemas of types of `binnacle_schedule`.
 
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// How much a need presses.
+/// Urgency of a need.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = Urgency)]
@@ -19,7 +19,7 @@ pub enum UrgencySchema {
     Overdue,
 }
 
-/// What brings a due date about.
+/// Cause of a due date.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = NeedCauseKind)]
@@ -41,7 +41,7 @@ pub(super) enum CauseKindSchema {
     FailedVerification,
 }
 
-/// Which way a compass deviates.
+/// Direction of a deviation.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = DeviationSide)]

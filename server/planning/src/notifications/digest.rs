@@ -4,10 +4,10 @@ use super::Notification;
 use binnacle_platform::error::Result;
 use binnacle_platform::mail::{Letter, Told, header, one_line, wrapped};
 
-/// So many are told with all that there is to know, more by a line each, and more than so
-/// many only counted.
+/// Notifications that a letter gives in full; further ones get a line each up to `MOST_LISTED`,
+/// and the rest are only counted.
 const MOST_IN_FULL: usize = 20;
-const MOST_TOLD: usize = 60;
+const MOST_LISTED: usize = 60;
 
 /// The letter that tells of them, as it waits to be sent; none of none.
 pub(super) fn letter_of(told: &[Notification]) -> Option<Result<String>> {
@@ -38,11 +38,11 @@ fn together(all: &[Notification]) -> Letter {
         text: one.text.clone(),
         path: one.path.clone(),
     });
-    let in_a_line = last_first().take(MOST_TOLD).skip(MOST_IN_FULL);
+    let in_a_line = last_first().take(MOST_LISTED).skip(MOST_IN_FULL);
     let mut lines: Vec<String> = in_a_line.map(|one| wrapped("- ", &head(one))).collect();
-    if all.len() > MOST_TOLD {
+    if all.len() > MOST_LISTED {
         lines.push(String::new());
-        lines.push(format!("And {} more.", all.len() - MOST_TOLD));
+        lines.push(format!("And {} more.", all.len() - MOST_LISTED));
     }
     if !lines.is_empty() {
         lines.push(String::new());

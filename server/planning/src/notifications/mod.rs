@@ -8,17 +8,17 @@
 //!   waits for neither. Letters go through [`binnacle_platform::outbox`].
 //! - A notification is its person's own: nobody else finds it.
 
+mod create;
 mod digest;
 mod needs;
-mod news;
-mod post;
+mod send;
 mod settings;
 mod store;
 mod way;
 
+pub use create::create;
 pub use needs::look;
-pub use news::create;
-pub use post::{post, watch};
+pub use send::{post, watch};
 
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
@@ -60,14 +60,14 @@ where
 pub struct Notification {
     /// The notification's id.
     pub id: NotificationId,
-    /// What it is about.
+    /// Kind of event.
     pub kind: Kind,
-    /// Whether mail of it waits for nothing.
+    /// Whether its mail skips quiet hours and digests.
     pub urgent: bool,
     /// In a line.
     #[schema(example = "Nao Victoria: Nervión Compass accepts the adjustment at Bilbao")]
     pub subject: String,
-    /// What there is to know, as the letter has it.
+    /// Full text, as in the letter.
     pub text: String,
     /// The dashboard's page to look at.
     #[schema(example = "/work-orders/0199aa00-0000-7000-8000-000000000001")]
@@ -81,9 +81,9 @@ pub struct Notification {
     /// The alert, if it is of one.
     #[schema(required)]
     pub alert_id: Option<AlertId>,
-    /// When it happened.
+    /// Time of the event.
     pub created_at: Time,
-    /// When you marked it as read.
+    /// Time at which you marked it as read.
     #[schema(required)]
     pub read_at: Option<Time>,
 }
@@ -96,21 +96,21 @@ struct NotificationList {
     /// `after` of the next page.
     #[schema(required)]
     next: Option<String>,
-    /// How many you have not read, on whatever page.
+    /// Number of unread notifications on all pages.
     unread: i64,
 }
 
-/// Which notifications.
+/// Filter of a list of notifications.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Filter {
-    /// Whether only those that you have not read (`true`), or only those that you have.
+    /// Only unread ones (`true`) or only read ones (`false`).
     unread: Option<bool>,
     /// Only of this kind.
     kind: Option<Kind>,
 }
 
-/// Which are read.
+/// Notifications to mark as read.
 #[derive(Debug, Default, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NotificationsRead)]
@@ -119,7 +119,7 @@ struct Read {
     until: Option<NotificationId>,
 }
 
-/// What is to be otherwise about a notification.
+/// Change to a notification.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = ChangedNotification)]
@@ -128,20 +128,20 @@ struct Changed {
     read: bool,
 }
 
-/// How you are told.
+/// Notification settings in force.
 #[derive(Serialize, ToSchema)]
 #[schema(as = NotificationSettingsInForce)]
 struct InForce {
-    /// What you have said.
+    /// Your settings.
     settings: Settings,
     /// Every kind that you are told of, with the way in force.
     ways: BTreeMap<Kind, Way>,
-    /// Where mail goes: what you sign in with.
+    /// Address for mail: the one you sign in with.
     #[schema(example = "ada@example.com")]
     address: String,
-    /// Whether this server was told how to send mail.
+    /// Whether this server is set up to send mail.
     sending: bool,
-    /// When the next digest is sent, if there is anything in it.
+    /// Time of the next digest, if there is anything in it.
     next_digest_at: Time,
 }
 

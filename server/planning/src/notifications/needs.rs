@@ -4,7 +4,7 @@
 //! sees it first; a date that is put off is noted and not told. What is noted is what
 //! calendars show.
 
-use super::news::tell;
+use super::create::tell;
 use super::store::{self, Noted};
 use crate::needs::{Need, need, note_since, of_fleet};
 use crate::schedule;
@@ -81,7 +81,7 @@ async fn look_at(app: &App, operator: OperatorId) -> Result<usize> {
     Ok(told)
 }
 
-/// How a need stands, to be noted.
+/// Returns the state of a need for the record.
 fn noted(need: &Need) -> Result<Noted> {
     Ok(Noted {
         vessel_id: need.vessel_id,
@@ -92,7 +92,7 @@ fn noted(need: &Need) -> Result<Noted> {
     })
 }
 
-/// What is to be told of a need, if anything is; `known` is what was.
+/// Returns the kind of notification that a need calls for, if any, given its last record.
 fn kind(need: &Need, known: Option<&Noted>) -> Result<Option<Kind>> {
     let presses = need.urgency > Urgency::Routine;
     let Some(known) = known else {

@@ -1,7 +1,7 @@
-//! How a person wants to be told: by which ways, when not, and when together.
+//! Notification settings of a person: ways of delivery, quiet hours and digest.
 //!
-//! What always holds: times of day are those of the person's own time zone, also when its
-//! clocks change.
+//! What always holds: times of day are in the person's own time zone, also when its clocks
+//! change.
 
 use super::way::Way;
 use binnacle_platform::error::{Error, Result};
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
-/// How a person wants to be told.
+/// Notification settings of a person.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NotificationSettings, example = json!({
@@ -29,15 +29,14 @@ pub(super) struct Settings {
     #[serde(default = "Zone::utc")]
     #[schema(value_type = String, example = "Europe/Madrid")]
     pub(super) time_zone: Zone,
-    /// How to tell of each kind; what is left out is told in the way that is usual.
+    /// Way of delivery for each kind; a kind that is left out has the default way.
     #[serde(default)]
     pub(super) ways: BTreeMap<Kind, Way>,
-    /// When no mail is to come, except of a critical alert. What comes then is kept for
-    /// the end.
+    /// Hours without mail, except for critical alerts. Mail is held until they end.
     #[serde(default)]
     #[schema(required)]
     pub(super) quiet_hours: Option<QuietHours>,
-    /// When what is told together is sent; each day at 07:00 if not said.
+    /// Time of the digest; each day at 07:00 by default.
     #[serde(default)]
     pub(super) digest: Digest,
 }
@@ -59,7 +58,7 @@ pub(super) struct QuietHours {
     pub(super) to: TimeOfDay,
 }
 
-/// When a digest is sent, if there is anything in it.
+/// Time at which a digest is sent, if there is anything in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(tag = "every", rename_all = "snake_case", deny_unknown_fields)]
 pub(super) enum Digest {
@@ -129,10 +128,10 @@ impl From<TimeOfDay> for String {
 }
 
 impl Settings {
-    /// The same, if it makes sense for someone of that role.
+    /// Returns the settings if they suit the role.
     ///
     /// # Errors
-    /// When it does not.
+    /// Fails when a kind never reaches the role, or when quiet hours and digest collide.
     pub(super) fn checked(self, role: Role) -> Result<Settings> {
         let invalid = |field, detail: &str| {
             Err(Error::Invalid {
@@ -154,13 +153,14 @@ impl Settings {
         Ok(self)
     }
 
-    /// How to tell of a kind.
+    /// Returns the way of delivery for a kind.
     pub(super) fn way(&self, kind: Kind, role: Role) -> Way {
         let said = self.ways.get(&kind).copied();
         said.unwrap_or_else(|| Way::default_for(kind, role))
     }
 
-    /// When a letter is to tell of something that happens now; none when none is.
+    /// Returns the time of the letter for an event that happens now; `None` when no letter is
+    /// due.
     pub(super) fn mail_at(&self, way: Way, urgent: bool, now: Time) -> Option<Time> {
         match way {
             Way::Mail | Way::Digest if urgent => Some(now),
@@ -188,7 +188,7 @@ impl Settings {
         self.instant(day, quiet.to).max(now)
     }
 
-    /// When the next digest is sent.
+    /// Returns the time of the next digest.
     pub(super) fn next_digest(&self, now: Time) -> Time {
         let today = self.local(now).date();
         let days = (0..=8).filter_map(|ahead| today.checked_add_days(Days::new(ahead)));

@@ -13,7 +13,7 @@ use uuid::Uuid;
 /// So long they are kept.
 const KEPT_FOR_S: f64 = 90.0 * 86_400.0;
 
-/// What someone has said of how to be told; the usual, if nothing.
+/// Returns a person's settings, or the defaults.
 pub(super) async fn settings(db: &Db, user: UserId) -> Result<Settings> {
     let found = row!(
         db,
@@ -48,7 +48,7 @@ pub(super) async fn put_settings(
 pub(super) async fn insert(
     tx: &mut Tx,
     user: UserId,
-    news: &Notice,
+    notice: &Notice,
     mail_at: Option<Time>,
     now: Time,
 ) -> DbResult<()> {
@@ -59,14 +59,14 @@ pub(super) async fn insert(
          VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12)",
         user,
         NotificationId::new(),
-        news.kind,
-        news.urgent,
-        news.subject.as_str(),
-        news.text.as_str(),
-        news.path.as_str(),
-        news.vessel,
-        news.order,
-        news.alert,
+        notice.kind,
+        notice.urgent,
+        notice.subject.as_str(),
+        notice.text.as_str(),
+        notice.path.as_str(),
+        notice.vessel,
+        notice.order,
+        notice.alert,
         now,
         mail_at
     )?;
@@ -100,7 +100,7 @@ pub(super) async fn list(
     )
 }
 
-/// How many someone has not read.
+/// Returns the number of a person's unread notifications.
 pub(super) async fn unread(db: &Db, user: UserId) -> DbResult<i64> {
     let found = row!(
         db,
@@ -146,7 +146,7 @@ pub(super) async fn mark_read(
     Ok(())
 }
 
-/// What waits for its letter: which, of what kind, and whether urgent.
+/// Returns the notifications that wait for a letter: id, kind, and whether urgent.
 pub(super) async fn waiting(
     tx: &mut Tx,
     user: UserId,
@@ -215,7 +215,7 @@ pub(super) async fn prune(db: &Db, now: Time) -> DbResult<()> {
     tx.commit().await
 }
 
-/// What was last noted of a compass's need.
+/// Last recorded state of a compass's need.
 #[derive(Clone, Debug, PartialEq, sqlx::FromRow)]
 pub(super) struct Noted {
     pub(super) vessel_id: VesselId,
@@ -225,7 +225,7 @@ pub(super) struct Noted {
     pub(super) reason: String,
 }
 
-/// What was last noted of an operator's compasses' needs.
+/// Returns the last recorded needs of an operator's compasses.
 pub(super) async fn needs_told(db: &Db, operator: OperatorId) -> DbResult<Vec<Noted>> {
     rows!(
         db,

@@ -5,7 +5,7 @@ use binnacle_platform::session::Role;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// How a person is told of something.
+/// Way of delivery of a notification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = NotificationWay)]

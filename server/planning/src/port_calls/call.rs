@@ -18,7 +18,7 @@ use utoipa::{IntoParams, ToSchema};
     "eta_uncertainty_h": 12, "etd": "2026-12-10T18:00:00Z"
 }))]
 pub(super) struct NewCall {
-    /// What it is called where it comes from; port and ETA where nothing is said.
+    /// Reference in the source system; port and ETA by default.
     #[schema(max_length = 200)]
     pub(super) reference: Option<String>,
     /// UN/LOCODE of the port.
@@ -27,14 +27,14 @@ pub(super) struct NewCall {
     /// The berth.
     #[schema(max_length = 200)]
     pub(super) berth: Option<String>,
-    /// When she is expected alongside, with a time zone.
+    /// Expected arrival alongside, with a time zone.
     #[schema(value_type = Time)]
     pub(super) eta: Instant,
     /// She comes within so many hours of that, nineteen times in twenty.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 720)]
     pub(super) eta_uncertainty_h: f64,
-    /// When she is expected to leave, 120 days later at most.
+    /// Expected departure, 120 days later at most.
     #[schema(value_type = Time)]
     pub(super) etd: Instant,
     /// She leaves within so many hours of that, nineteen times in twenty.
@@ -46,7 +46,7 @@ pub(super) struct NewCall {
     pub(super) berth_heading_deg: Option<f64>,
 }
 
-/// What is to be changed of a call.
+/// Changes to a port call.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Amendment {
@@ -66,8 +66,8 @@ pub(super) struct Amendment {
     berth_heading_deg: Amended<f64>,
 }
 
-/// What is to be changed of a call; what is left out stays, null takes the berth or her
-/// heading there away.
+/// Changes to a port call. A field that is left out stays; null removes the berth or the heading
+/// there.
 #[derive(ToSchema)]
 #[schema(as = PortCallAmendment, example = json!({
     "eta": "2026-12-09T02:00:00Z", "etd": "2026-12-11T12:00:00Z"
@@ -91,11 +91,11 @@ pub(super) struct AmendmentSchema {
     berth_heading_deg: Option<f64>,
 }
 
-/// What a call says, wherever it comes from.
+/// Content of a port call, whatever its source.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = PortCallContent)]
 pub struct Content {
-    /// What it is called where it comes from.
+    /// Reference in the source system.
     pub reference: String,
     /// UN/LOCODE of the port.
     #[schema(value_type = String)]
@@ -103,11 +103,11 @@ pub struct Content {
     /// The berth.
     #[schema(required)]
     pub berth: Option<String>,
-    /// When she is expected alongside.
+    /// Expected arrival alongside.
     pub eta: Time,
     /// She comes within so many hours of that, nineteen times in twenty.
     pub eta_uncertainty_h: f64,
-    /// When she is expected to leave.
+    /// Expected departure.
     pub etd: Time,
     /// She leaves within so many hours of that, nineteen times in twenty.
     pub etd_uncertainty_h: f64,
@@ -116,7 +116,7 @@ pub struct Content {
     pub berth_heading_deg: Option<f64>,
 }
 
-/// Where a call comes from.
+/// Source of a port call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
@@ -139,7 +139,7 @@ pub struct PortCall {
     pub vessel_id: VesselId,
     /// Her name.
     pub vessel_name: String,
-    /// What it says.
+    /// Content of the call.
     #[serde(flatten)]
     pub content: Content,
     /// The port's name.
@@ -147,27 +147,27 @@ pub struct PortCall {
     /// Her heading alongside, given or learnt; none where neither tells.
     #[schema(required)]
     pub berth_heading: Option<LearntHeading>,
-    /// Where it comes from, as it is now.
+    /// Current source of the call.
     pub source: Source,
     /// Counts from 1.
     pub revision: u32,
-    /// When it was entered.
+    /// Time of entry.
     pub created_at: Time,
-    /// Who entered it.
+    /// Name of its author.
     pub created_by: String,
-    /// When it was last amended.
+    /// Time of the last amendment.
     #[schema(required)]
     pub revised_at: Option<Time>,
-    /// Who amended it last.
+    /// Author of the last amendment.
     #[schema(required)]
     pub revised_by: Option<String>,
-    /// When it was withdrawn; from then on it counts no more.
+    /// Time of withdrawal, after which the call counts no more.
     #[schema(required)]
     pub withdrawn_at: Option<Time>,
-    /// Who withdrew it.
+    /// Name of the person who withdrew it.
     #[schema(required)]
     pub withdrawn_by: Option<String>,
-    /// Why.
+    /// Reason.
     #[schema(required)]
     pub withdrawal_reason: Option<String>,
 }
@@ -178,11 +178,11 @@ pub struct PortCall {
 pub struct LearntHeading {
     /// Degrees, true.
     pub heading_deg: f64,
-    /// How it is known.
+    /// Source of the heading.
     pub source: LearntFrom,
 }
 
-/// How a heading alongside is known.
+/// Source of a heading alongside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = CallBerthHeadingSource)]
@@ -225,17 +225,17 @@ pub(super) struct RevisedCall {
 pub(super) struct Revision {
     /// Counts from 1.
     pub(super) number: u32,
-    /// When.
+    /// Time of the revision.
     pub(super) at: Time,
-    /// Where it came from.
+    /// Source of the revision.
     pub(super) source: Source,
-    /// Who sent it.
+    /// Name of its author.
     pub(super) author_name: String,
-    /// What it said.
+    /// Content of the call at that revision.
     pub(super) call: Content,
 }
 
-/// Why a call is withdrawn.
+/// Reason for withdrawing a call.
 #[derive(Default, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = PortCallWithdrawal, example = json!({ "reason": "Charter cancelled" }))]
@@ -245,23 +245,23 @@ pub(super) struct Withdrawal {
     pub(super) reason: Option<String>,
 }
 
-/// Which calls.
+/// Filter of a list of port calls.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct Filter {
-    /// What has not ended before this instant, RFC 3339.
+    /// Only calls that have not ended before this instant, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime)]
     from: Option<String>,
-    /// What begins before this instant, RFC 3339.
+    /// Only calls that begin before this instant, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime)]
     to: Option<String>,
     /// At this port only, UN/LOCODE.
     port: Option<String>,
-    /// Whether withdrawn calls are listed too; they are not if not said.
+    /// Whether to list withdrawn calls too; by default they are left out.
     withdrawn: Option<bool>,
 }
 
-/// Which calls, read.
+/// Parsed filter of a list of port calls.
 pub(super) struct CheckedFilter {
     pub(super) from: Option<Time>,
     pub(super) to: Option<Time>,
@@ -317,7 +317,7 @@ impl Amendment {
 }
 
 impl Content {
-    /// The same with its words trimmed, if it can be so at this time.
+    /// Returns the call with its texts trimmed, if it is valid at this time.
     pub(super) fn checked(mut self, now: Time) -> Result<Content> {
         self.reference = text("reference", &self.reference)?;
         self.berth = optional_text("berth", self.berth.as_deref())?;

@@ -39,7 +39,7 @@ pub(super) async fn whole(body: Body) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// What a file does to the calls of one vessel.
+/// Effect of a file on the calls of one vessel.
 #[derive(Default)]
 pub(super) struct Taken<'a> {
     pub(super) new: Vec<Content>,
@@ -49,7 +49,7 @@ pub(super) struct Taken<'a> {
     pub(super) withdrawn: Vec<(&'a Row, &'static str)>,
 }
 
-/// What a file has of one vessel.
+/// Calls of one vessel in a file.
 #[derive(Default)]
 pub(super) struct OfVessel {
     pub(super) calls: Vec<(usize, Content)>,

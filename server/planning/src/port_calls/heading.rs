@@ -1,4 +1,4 @@
-//! How a ship lies at a berth: given, read alongside, or learnt from earlier calls.
+//! Heading of a vessel at a berth: given, read alongside, or learnt from earlier calls.
 //!
 //! What always holds: an operator learns from its own fleet's calls only.
 
@@ -45,7 +45,7 @@ impl Earlier {
     }
 }
 
-/// How she lies, or will; what was read alongside is better than what was given.
+/// Returns the heading of the vessel alongside; one read there takes precedence over a given one.
 pub fn heading(call: &Content, lay_deg: Option<f64>, earlier: &Earlier) -> Option<LearntHeading> {
     if let Some(heading_deg) = lay_deg {
         let source = LearntFrom::Read;

@@ -292,7 +292,7 @@ fn must_be_new(known: &[Row], call: &Content) -> Result<()> {
     }
 }
 
-/// Whether a call, entered or in place of `instead_of`, overlaps no other.
+/// Checks that a call, new or in place of `instead_of`, overlaps no other.
 fn must_fit(known: &[Row], instead_of: Option<CallId>, call: &Content) -> Result<()> {
     let others = known
         .iter()

@@ -1,4 +1,4 @@
-//! What work orders must hear of calls that are written otherwise.
+//! Moves of port calls, as work orders must learn of them.
 
 use super::call::Content;
 use super::file::Taken;
@@ -36,7 +36,7 @@ pub(super) fn withdrawn(row: &Row) -> Result<Moving> {
     })
 }
 
-/// What a file moves; its new calls have these ids.
+/// Returns the moves that a file brings about; its new calls have these ids.
 pub(super) fn taken(taken: &Taken<'_>, new: &[(CallId, &Content)]) -> Result<Vec<Moving>> {
     let mut all = Vec::new();
     for (row, call) in &taken.amended {
@@ -69,18 +69,18 @@ pub(super) fn taken(taken: &Taken<'_>, new: &[(CallId, &Content)]) -> Result<Vec
     Ok(all)
 }
 
-/// What a file does to the calls at one port.
+/// Effect of a file on the calls at one port.
 #[derive(Default)]
 struct AtPort<'a> {
-    /// How many are gone.
+    /// Number of calls that are gone.
     gone: usize,
     /// Its new calls, in the order of time, and whether each is what one that is gone has become.
     came: Vec<(&'a (CallId, &'a Content), bool)>,
 }
 
 impl<'a> AtPort<'a> {
-    /// Which of the new calls one that is gone has become, each for one only: the next where
-    /// as many came as went, else the nearest.
+    /// Returns the new call that replaces one that is gone, each used once: the next one where as
+    /// many came as went, else the nearest.
     fn becomes(&mut self, row: &Row) -> Option<&'a (CallId, &'a Content)> {
         let after_h = |one: &(CallId, &Content)| one.1.eta.0.seconds_since(row.eta.0) / 3600.0;
         let came = &self.came;
@@ -99,7 +99,7 @@ impl<'a> AtPort<'a> {
     }
 }
 
-/// Where and when a call has her alongside.
+/// Returns the port and times of a call.
 pub(super) fn alongside(call: &Content) -> Alongside {
     Alongside::new(call.port, call.eta, call.etd)
 }

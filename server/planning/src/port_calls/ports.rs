@@ -23,14 +23,14 @@ where
     OpenApiRouter::new().routes(routes!(search_ports))
 }
 
-/// What to look for.
+/// Search for a port.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Search {
     /// The beginning of a name or of a UN/LOCODE, or a part of a name.
     #[param(example = "rotterdam")]
     q: String,
-    /// How many at most; 20 if not said.
+    /// Maximum number of results; 20 by default.
     #[param(minimum = 1, maximum = 100)]
     limit: Option<usize>,
 }
@@ -53,10 +53,10 @@ struct Port {
     zone: Zone,
 }
 
-/// What was found.
+/// Ports found.
 #[derive(Serialize, ToSchema)]
 struct PortList {
-    /// What begins with the text comes first.
+    /// Ports that begin with the text come first.
     items: Vec<Port>,
 }
 

@@ -39,7 +39,7 @@ pub struct Row {
     pub withdrawal_reason: Option<String>,
 }
 
-/// Who writes, and when.
+/// Author and time of a write.
 pub(super) struct Author {
     pub(super) id: UserId,
     pub(super) name: String,
@@ -54,10 +54,10 @@ impl Author {
 }
 
 impl Row {
-    /// What it says.
+    /// Returns the content of the call.
     ///
     /// # Errors
-    /// When the port is no code, which was checked before it was stored.
+    /// Fails when the port is no code, which was checked before it was stored.
     pub fn content(&self) -> Result<Content> {
         Ok(Content {
             reference: self.reference.clone(),
@@ -71,10 +71,10 @@ impl Row {
         })
     }
 
-    /// Where and when she is alongside, as a work order has it.
+    /// Returns the port and times of the call, as a work order uses them.
     ///
     /// # Errors
-    /// As [`Row::content`] has it.
+    /// As [`Row::content`].
     pub fn alongside(&self) -> Result<Alongside> {
         let port = PortCode::parse(&self.port).context("a stored port")?;
         Ok(Alongside::new(port, self.eta, self.etd))
@@ -152,7 +152,7 @@ pub async fn ahead(db: &Db, operator: OperatorId, now: Time) -> Result<Vec<Row>>
     )?)
 }
 
-/// The same of one vessel.
+/// Returns the current and future calls of one vessel.
 pub(super) async fn ahead_of(db: &Db, vessel: VesselId, now: Time) -> Result<Vec<Row>> {
     Ok(rows!(
         db,

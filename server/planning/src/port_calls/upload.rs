@@ -36,17 +36,16 @@ where
         .routes(routes!(upload_ics))
 }
 
-/// How a file is taken.
+/// Options of an upload.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct How {
-    /// Whether the file is all there is: calls of the vessels in it that came from such a
-    /// file before, are not over and are not in this one are withdrawn. They stay if not
-    /// said.
+    /// Whether the file is complete. Then calls of its vessels that came from such a file before,
+    /// are not over and are missing in this one are withdrawn. By default they stay.
     replace: Option<bool>,
 }
 
-/// What a file did.
+/// Result of an upload.
 #[derive(Debug, Default, Serialize, ToSchema)]
 #[schema(as = PortCallUpload, example = json!({
     "created": 3, "amended": 1, "unchanged": 8, "withdrawn": 0, "over": 2

@@ -5,7 +5,7 @@ use super::report::{DueCompass, Job, Report, WorstDeviation};
 use binnacle_platform::error::{Error, Result};
 use serde_json::Value;
 
-/// What a spreadsheet would take for a formula.
+/// First characters by which a spreadsheet recognises a formula.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
 /// One of a report's tables.

@@ -1,4 +1,4 @@
-//! What a report is made of, out of the database.
+//! Loading of a report from the database.
 
 use super::report::{DueCompass, FeeFrom, Job, Report, Saving, UnderWay, WorstDeviation};
 use super::settings::{self, Settings};
@@ -18,7 +18,7 @@ use chrono::{Days, NaiveDate, NaiveTime};
 use std::collections::{BTreeMap, BTreeSet};
 use uuid::Uuid;
 
-/// What is done on a ship in one port within so long of each other is done at one visit.
+/// Longest gap between jobs on a vessel in one port that belong to one visit.
 const A_VISIT_S: f64 = 86_400.0;
 
 /// The report of a fleet, with the jobs from one day to another; also those of before that
@@ -179,8 +179,8 @@ async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
     Ok(done.into_iter().zip(visits).zip(fees).map(job).collect())
 }
 
-/// Which visit each job belongs to, in the jobs' order: a ship's in one port, each within
-/// a day of the one before.
+/// Returns the visit of each job, in the jobs' order. A visit is a vessel's jobs in one port,
+/// each within a day of the one before.
 fn visits(done: &[Done]) -> Vec<usize> {
     let mut last: BTreeMap<VesselId, usize> = BTreeMap::new();
     let mut visits: Vec<usize> = Vec::with_capacity(done.len());

@@ -54,12 +54,12 @@ struct Range {
     to: Option<NaiveDate>,
 }
 
-/// Which table of a report.
+/// Table of a report.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = ReportTable)]
 enum Table {
-    /// When each compass is due, the first due first.
+    /// Due dates of the compasses, the first due first.
     #[default]
     Due,
     /// The greatest deviation of each compass, the greatest first.
@@ -68,11 +68,11 @@ enum Table {
     Jobs,
 }
 
-/// Which table.
+/// Choice of a table.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Which {
-    /// Which table; `due` if not said.
+    /// Table to return; `due` by default.
     #[serde(default)]
     #[param(inline)]
     table: Table,

@@ -19,7 +19,7 @@ use chrono::{DateTime, Datelike, Days, NaiveDate, NaiveTime, Timelike, Utc};
 use std::time::Duration;
 use tracing::error;
 
-/// How often to look whether a month is over.
+/// Interval between checks for the end of a month.
 const LOOK_EVERY: Duration = Duration::from_mins(10);
 /// On the first day of a month not before this hour, UTC: late batches of the night before
 /// have come, and nobody is woken in Europe.
@@ -111,8 +111,8 @@ async fn make(app: &App, operator: OperatorId, month: NaiveDate, ended: Time) ->
     Ok(true)
 }
 
-/// When the last report before a month's was made: what was done earlier and came later is
-/// in the next one.
+/// Returns the time of the last report before a month's. Jobs entered after it belong to the next
+/// report, even when they were done earlier.
 async fn last_made(app: &App, operator: OperatorId, month: NaiveDate) -> Result<Option<Time>> {
     let found = row!(
         &app.db,
@@ -164,7 +164,7 @@ fn name(month: NaiveDate) -> String {
 }
 
 impl Report {
-    /// What stands in the letter, a fact on each line.
+    /// Returns the text of the letter, a fact on each line.
     fn words(&self) -> String {
         let pressing = self.due.iter().filter(|due| due.presses()).count();
         let largest = self.deviation.first().and_then(|one| {

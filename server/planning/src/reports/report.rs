@@ -9,18 +9,18 @@ use chrono::NaiveDate;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// What a fleet's compasses are due for, how bad they are, and what was done.
+/// Report on a fleet: due dates, deviations and completed work.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = FleetReport)]
 pub(super) struct Report {
-    /// Whose fleet.
+    /// Name of the operator.
     #[schema(example = "Naviera Vizcaína")]
     pub(super) operator_name: String,
     /// The first day of the time that jobs are counted in, UTC.
     pub(super) from: NaiveDate,
     /// The last.
     pub(super) to: NaiveDate,
-    /// When the report was made: what is due, and how bad, is as of then.
+    /// Time of the report; due dates and deviations are as of then.
     pub(super) made_at: Time,
     /// Vessels in the fleet.
     pub(super) vessels: usize,
@@ -33,7 +33,7 @@ pub(super) struct Report {
     pub(super) deviation: Vec<WorstDeviation>,
     /// Adjustments that were completed in the time, in order.
     pub(super) jobs: Vec<Job>,
-    /// What they saved against swinging.
+    /// Savings against swinging.
     pub(super) saved: Saving,
 }
 
@@ -51,10 +51,10 @@ pub(super) struct DueCompass {
     pub(super) compass_name: String,
     /// The last day on which it may be adjusted.
     pub(super) due_on: NaiveDate,
-    /// How much that presses.
+    /// Urgency of the due date.
     #[schema(value_type = UrgencySchema)]
     pub(super) urgency: Urgency,
-    /// Why, in words.
+    /// Reason in plain words.
     pub(super) reason: String,
     /// The day of the last adjustment on record.
     #[schema(required)]
@@ -65,7 +65,7 @@ pub(super) struct DueCompass {
 }
 
 impl DueCompass {
-    /// Whether it is due soon, or should have been done.
+    /// Returns whether the compass is due soon or overdue.
     pub(super) fn presses(&self) -> bool {
         self.urgency > Urgency::Routine
     }
@@ -77,11 +77,11 @@ impl DueCompass {
 pub(super) struct UnderWay {
     /// The order.
     pub(super) id: OrderId,
-    /// How far it has come.
+    /// State of the order.
     pub(super) state: State,
     /// The port.
     pub(super) port: String,
-    /// When it is to be done.
+    /// Planned time of the work.
     pub(super) planned_at: Time,
     /// The firm that has it.
     #[schema(required)]
@@ -130,19 +130,19 @@ pub(super) struct Job {
     pub(super) compass_name: String,
     /// The port.
     pub(super) port: String,
-    /// When it was completed.
+    /// Time of completion.
     pub(super) completed_at: Time,
     /// The firm.
     #[schema(required)]
     pub(super) firm: Option<String>,
-    /// What has become of it.
+    /// State of the order.
     pub(super) state: State,
-    /// Whether it spared the ship a swing: not if headings at sea speak against it.
+    /// Whether it spared the vessel a swing; not if headings at sea contradict it.
     pub(super) spared_swing: bool,
-    /// What the firm took, euros; none where that is not known.
+    /// Fee of the firm, euros; none where it is unknown.
     #[schema(required)]
     pub(super) fee_eur: Option<f64>,
-    /// Where the fee is known from.
+    /// Source of the fee.
     #[schema(required)]
     pub(super) fee_from: Option<FeeFrom>,
     /// Tells one visit from others.
@@ -150,7 +150,7 @@ pub(super) struct Job {
     pub(super) visit: usize,
 }
 
-/// Where a fee is known from.
+/// Source of a fee.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = ReportFeeFrom)]
@@ -162,7 +162,7 @@ pub(super) enum FeeFrom {
     Terms,
 }
 
-/// What adjusting at the berth saved against swinging the ship.
+/// Savings from adjusting at the berth instead of swinging the vessel.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[schema(as = ReportSaved)]
 pub(super) struct Saving {
@@ -172,14 +172,13 @@ pub(super) struct Saving {
     /// The swings that they spared: one for all compasses of a ship that were adjusted at
     /// one visit.
     pub(super) swings: usize,
-    /// What a swing costs, euros, by the operator's settings.
+    /// Cost of a swing, euros, from the operator's settings.
     pub(super) swing_eur: f64,
-    /// How long it takes, hours, by the operator's settings.
+    /// Duration of a swing, hours, from the operator's settings.
     pub(super) swing_h: f64,
-    /// What the fees of all jobs come to, as far as they are known, euros: those that the
-    /// sea does not confirm were paid for too.
+    /// Sum of the known fees of all jobs, euros, including those of jobs that failed at sea.
     pub(super) fees_eur: f64,
-    /// How many of all jobs have no fee that is known.
+    /// Number of jobs whose fee is unknown.
     pub(super) without_fee: usize,
     /// The swings' cost less the fees, euros; less than nothing if the fees are more.
     pub(super) saved_eur: f64,

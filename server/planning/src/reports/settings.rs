@@ -20,7 +20,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// So many get the monthly report at most.
+/// Maximum number of recipients of the monthly report.
 const MOST_RECIPIENTS: usize = 20;
 const MOST_EUR: f64 = 1e6;
 const LONGEST_SWING_H: f64 = 72.0;
@@ -33,20 +33,20 @@ where
     OpenApiRouter::new().routes(routes!(find_report_settings, set_report_settings))
 }
 
-/// What reports reckon with, and who gets one each month.
+/// Cost figures for reports, and recipients of the monthly report.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 #[schema(as = ReportSettings, example = json!({
     "swing_eur": 6000.0, "swing_h": 3.0, "monthly_to": ["superintendent@example.com"]
 }))]
 pub(super) struct Settings {
-    /// What swinging a ship costs, euros: tugs, pilot, adjuster and the ship's time.
+    /// Cost of swinging a vessel, euros: tugs, pilot, adjuster and the vessel's time.
     #[schema(minimum = 0, maximum = 1_000_000)]
     pub(super) swing_eur: f64,
-    /// How long it takes, hours.
+    /// Duration of a swing, hours.
     #[schema(minimum = 0, maximum = 72)]
     pub(super) swing_h: f64,
-    /// Who gets the report of a month by mail after its end; at most 20 addresses.
+    /// Recipients of the report of a month by mail after its end; at most 20 addresses.
     pub(super) monthly_to: Vec<String>,
 }
 

@@ -1,7 +1,6 @@
 //! Agreed adjustments that do not fit any more: what people must know of a plan.
 
-use super::gather::{Agreed, Gathered, Names};
-use super::orders::Aside;
+use super::input::{Agreed, Aside, Gathered, Names};
 use super::plan::Plan;
 use binnacle_fleet::alerts::JobAtRisk;
 use binnacle_platform::ids::{CompassId, FirmId, OrderId, VesselId};
@@ -10,7 +9,7 @@ use binnacle_schedule::plan::ChangeKind;
 use chrono::NaiveDate;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the solver says of a confirmed job that stands.
+/// Reason that the solver gives for a confirmed job that stays in place.
 const STANDS: &str = "confirmed";
 
 /// Those that the plan moves or gives up.
@@ -36,7 +35,8 @@ pub(super) fn at_risk(plan: &Plan, names: &Names) -> BTreeMap<(VesselId, Compass
     wanted
 }
 
-/// The same of orders beside the plan; those of whose alerts nothing can be told come back.
+/// Adds the jobs at risk among orders beside the plan; returns the compasses whose alerts stay as
+/// they are because nothing is known of them.
 pub(super) fn aside(
     plan: &Plan,
     gathered: &Gathered,

@@ -10,9 +10,8 @@
 
 mod at_risk;
 mod concurrency;
-mod gather;
+mod input;
 mod offer;
-mod orders;
 mod pins;
 mod plan;
 mod schema;
@@ -69,11 +68,10 @@ struct Current {
     /// The plan; none before the first.
     #[schema(required)]
     plan: Option<Plan>,
-    /// Since when something has changed that it does not know of; another one follows by
-    /// itself.
+    /// Time of the first change that the plan does not know of. A new plan follows automatically.
     #[schema(required)]
     outdated_since: Option<Time>,
-    /// Why the last try to make another one failed.
+    /// Error of the last attempt to make a plan.
     #[schema(required)]
     problem: Option<String>,
 }
@@ -84,17 +82,17 @@ struct Current {
 struct PlanSummary {
     /// Counts the operator's plans from 1.
     version: i64,
-    /// When it was made.
+    /// Time of creation.
     solved_at: Time,
-    /// What it costs by the weights, all that is unmet included.
+    /// Cost by the weights, including everything unmet.
     cost_eur: f64,
-    /// How far that is above what no plan can cost less than, in per cent.
+    /// Distance of the cost from its lower bound, per cent.
     gap_percent: f64,
     /// Fees and travel that are really paid.
     paid_eur: f64,
     /// Jobs in it.
     jobs: usize,
-    /// What could not be scheduled, or only late.
+    /// Number of needs that are not scheduled, or only late.
     unscheduled: usize,
     /// Jobs of the plan before that moved or were dropped.
     moved: usize,

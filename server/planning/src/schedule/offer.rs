@@ -51,7 +51,7 @@ struct NewScheduleOffer {
     /// Firms that are asked next, in this order, when it says no or nothing.
     #[serde(default)]
     then: Vec<FirmId>,
-    /// What is said to them.
+    /// Message to the firms.
     #[schema(max_length = 200)]
     text: Option<String>,
 }

@@ -53,12 +53,12 @@ struct NewPin {
     firm_id: FirmId,
     /// On this day, in the port's time.
     day: NaiveDate,
-    /// Why.
+    /// Note, such as the reason.
     #[schema(max_length = 200)]
     note: Option<String>,
 }
 
-/// What a person wants for a compass.
+/// Pin of a compass's job, set by a person.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = Pin)]
 pub(super) struct Pin {
@@ -72,12 +72,12 @@ pub(super) struct Pin {
     pub(super) firm_id: FirmId,
     /// On this day.
     pub(super) day: NaiveDate,
-    /// Why.
+    /// Note, such as the reason.
     #[schema(required)]
     pub(super) note: Option<String>,
-    /// When it was said.
+    /// Time of the pin.
     pub(super) created_at: Time,
-    /// Who said it.
+    /// Name of the person who set it.
     pub(super) created_by: String,
 }
 

@@ -12,38 +12,41 @@ use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// Who adjusts which compass where and when, how good that is, and what could not be done.
+/// Reason for leaving out a firm without terms, which may hold orders all the same.
+pub(super) const NO_TERMS: &str = "nobody has said on what terms it works";
+
+/// Plan of a fleet: jobs, their quality, and the needs that could not be met.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = SchedulePlan)]
 pub struct Plan {
     /// Counts the operator's plans from 1.
     pub version: i64,
-    /// When it was made.
+    /// Time of creation.
     pub solved_at: Time,
     /// As of when: the begun hour.
     pub as_of: Time,
-    /// How long that took, seconds.
+    /// Time taken to solve, seconds.
     pub solved_in_s: f64,
     /// SHA-256 of what it rests on, hexadecimal: the same again makes no new plan.
     pub input_sha256: String,
-    /// What it costs by the weights, all that is unmet included.
+    /// Cost by the weights, including everything unmet.
     pub cost_eur: f64,
-    /// What no plan can cost less than.
+    /// Lower bound of the cost of any plan.
     pub bound_eur: f64,
-    /// How far the cost is above the bound, in per cent of the cost.
+    /// Distance of the cost from the bound, per cent of the cost.
     pub gap_percent: f64,
-    /// Whether no plan is better.
+    /// Whether the plan is proven optimal.
     pub proven_optimal: bool,
     /// Fees and travel that are really paid.
     pub paid_eur: f64,
-    /// How it compares with the plan before; none for the first.
+    /// Comparison with the previous plan; none for the first.
     #[schema(required)]
     pub against: Option<Against>,
     /// The jobs, in order of the day.
     pub jobs: Vec<Job>,
-    /// What could not be scheduled, or only late.
+    /// Needs that could not be scheduled, or only late.
     pub unscheduled: Vec<Unscheduled>,
-    /// What became of the jobs of the plan before, and what is new.
+    /// Changes against the previous plan.
     pub changes: Vec<Change>,
     /// Compasses that are due after the horizon.
     pub later: Vec<Later>,
@@ -53,17 +56,17 @@ pub struct Plan {
     pub left_out: Vec<LeftOut>,
 }
 
-/// How a plan compares with the one before.
+/// Comparison of a plan with the previous one.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = PlanAgainst)]
 pub struct Against {
     /// The plan before.
     pub version: i64,
-    /// What this one costs more by the weights; less, where it is negative.
+    /// Extra cost by the weights; negative where this plan costs less.
     pub cost_eur: f64,
-    /// What is paid more.
+    /// Extra payments.
     pub paid_eur: f64,
-    /// How many of its jobs moved or were dropped.
+    /// Number of the previous plan's jobs that moved or were dropped.
     pub moved: usize,
 }
 
@@ -106,14 +109,14 @@ pub struct Job {
     pub firm_name: String,
     /// On which day, in the port's time.
     pub day: NaiveDate,
-    /// From when she is alongside and the firm at work.
+    /// Start of the window in which the vessel is alongside and the firm works.
     pub from: Time,
     /// Until when.
     pub to: Time,
-    /// How far it got.
+    /// State of the job.
     #[schema(value_type = JobStateSchema)]
     pub state: JobState,
-    /// Whether a person wants it so.
+    /// Whether a person pinned it.
     pub pinned: bool,
     /// The orders by which it is offered or agreed, one for each compass.
     pub orders: Vec<OrderId>,
@@ -123,10 +126,10 @@ pub struct Job {
     pub instead_of: Vec<OrderId>,
     /// The last day on which it would be in time.
     pub due_on: NaiveDate,
-    /// How much it presses.
+    /// Urgency of the due date.
     #[schema(value_type = UrgencySchema)]
     pub urgency: Urgency,
-    /// Why it is due.
+    /// Reason of the due date.
     pub reason: String,
     /// Days after the due date.
     pub late_days: i64,
@@ -136,12 +139,12 @@ pub struct Job {
     pub fee_eur: f64,
     /// Its part of the team's travel, euros.
     pub travel_eur: f64,
-    /// What else it was weighed by.
+    /// Other terms of the cost.
     #[schema(value_type = WeighedSchema)]
     pub weighed: Weighed,
 }
 
-/// What could not be scheduled, or only late.
+/// Need that could not be scheduled, or only late.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = UnscheduledNeed)]
 pub struct Unscheduled {
@@ -151,12 +154,12 @@ pub struct Unscheduled {
     pub vessel_name: String,
     /// The compasses.
     pub compasses: Vec<Compass>,
-    /// When they are due.
+    /// Due date.
     pub due_on: NaiveDate,
-    /// How much that presses.
+    /// Urgency of the due date.
     #[schema(value_type = UrgencySchema)]
     pub urgency: Urgency,
-    /// Why they are due.
+    /// Reason of the due date.
     pub reason: String,
     /// Orders under way that firms are asked for or hold though nothing is planned: to be
     /// cancelled, or moved by agreement.
@@ -164,13 +167,13 @@ pub struct Unscheduled {
     pub orders: Vec<OrderId>,
     /// Whether it is in the plan, after the due date.
     pub planned_late: bool,
-    /// Why it could not be.
+    /// Reasons why it could not be scheduled in time.
     pub because: Vec<String>,
-    /// What would have made it possible, the nearest first.
+    /// Changes that would have made it possible, the nearest first.
     pub would_help: Vec<String>,
 }
 
-/// What became of a job of the plan before, or that there is a new one.
+/// Change of a job against the previous plan, or a new job.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = PlanChange)]
 pub struct Change {
@@ -180,20 +183,20 @@ pub struct Change {
     pub vessel_name: String,
     /// The compasses.
     pub compasses: Vec<Compass>,
-    /// What became of it.
+    /// Kind of change.
     #[schema(value_type = ChangeKindSchema)]
     pub what: ChangeKind,
-    /// Where it was.
+    /// Previous place.
     #[schema(required)]
     pub from: Option<Place>,
-    /// Where it is now.
+    /// New place.
     #[schema(required)]
     pub to: Option<Place>,
-    /// Why.
+    /// Reason.
     pub why: String,
 }
 
-/// Where and when a job is, and what is paid for it.
+/// Place and day of a job, with its price.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = PlanPlace)]
 pub struct Place {
@@ -223,9 +226,9 @@ pub struct Later {
     /// The compass.
     #[serde(flatten)]
     pub compass: Compass,
-    /// When it is due.
+    /// Due date.
     pub due_on: NaiveDate,
-    /// Why.
+    /// Reason.
     pub reason: String,
 }
 
@@ -242,7 +245,7 @@ pub struct UnderWay {
     pub compass: Compass,
     /// The order.
     pub order_id: OrderId,
-    /// Why it is beside the plan.
+    /// Reason why it is beside the plan.
     pub why: String,
 }
 
@@ -254,7 +257,7 @@ pub struct LeftOut {
     pub firm_id: FirmId,
     /// Its name.
     pub firm_name: String,
-    /// Why.
+    /// Reason.
     pub why: String,
 }
 
@@ -266,7 +269,7 @@ impl Plan {
 }
 
 impl Job {
-    /// Whether it adjusts a compass.
+    /// Returns whether the job includes a compass.
     pub fn is_for(&self, compass: CompassId) -> bool {
         self.compasses.iter().any(|one| one.compass_id == compass)
     }

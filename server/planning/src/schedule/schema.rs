@@ -1,9 +1,9 @@
-//! How the OpenAPI document describes what the schedule's own crate has.
+//! OpenAPI schemas of types of `binnacle_schedule`.
 
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// How far a job got.
+/// State of a job.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = PlannedJobState)]
@@ -17,7 +17,7 @@ pub(super) enum JobStateSchema {
     Confirmed,
 }
 
-/// What became of a job.
+/// Kind of change of a job.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = PlanChangeKind)]
@@ -44,7 +44,7 @@ pub(super) struct HeadingSchema {
     source: String,
 }
 
-/// What a job was weighed by beside what is paid, in euros.
+/// Terms of a job's cost beside payments, euros.
 #[derive(ToSchema)]
 #[schema(as = PlannedJobWeighed)]
 #[allow(

@@ -24,7 +24,7 @@ where
     OpenApiRouter::new().routes(routes!(find_schedule_settings, set_settings))
 }
 
-/// What counts how much in the schedule.
+/// Cost weights, terms and horizon of the schedule.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 #[schema(as = ScheduleSettings, example = json!({
@@ -36,8 +36,8 @@ pub(super) struct Settings {
     /// Days ahead to plan for; a compass that is due later is left out.
     #[schema(minimum = 1, maximum = 730)]
     pub horizon_days: u32,
-    /// What counts how much, in euros; what is left out has its default. docs/schedule.md
-    /// has every figure.
+    /// Cost weights in euros; a weight that is left out has its default. docs/schedule.md
+    /// explains each.
     #[schema(value_type = Object)]
     pub weights: Weights,
     /// The terms by which compasses are due where a rule gives no date.

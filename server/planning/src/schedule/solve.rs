@@ -5,7 +5,7 @@
 
 use super::at_risk::{aside, at_risk};
 use super::concurrency::{PlanLock, PlanSlots};
-use super::gather::{Agreed, Gathered, Names, gather};
+use super::input::{Agreed, Gathered, Names, load_input};
 use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled};
 use super::store;
 use anyhow::Context;
@@ -29,7 +29,7 @@ use std::time::Instant;
 use tracing::info;
 use uuid::Uuid;
 
-/// Who comes second so often gives up.
+/// Attempts to store a plan before giving up to concurrent solvers.
 const MOST_TRIES: usize = 5;
 
 /// Makes the operator's plan anew, or finds that nothing has changed. Whoever asks for it
@@ -44,7 +44,7 @@ pub(super) async fn solve(
     solve_locked(app, Some(request), slots, operator, Arc::new(lock)).await
 }
 
-/// The same, unless somebody is at it.
+/// Makes the operator's plan anew, unless another task is at it.
 pub(super) async fn solve_unless_busy(
     app: &App,
     slots: &PlanSlots,
@@ -66,7 +66,7 @@ async fn solve_locked(
     lock: Arc<PlanLock>,
 ) -> Result<Plan> {
     for _ in 0..MOST_TRIES {
-        let gathered = gather(app, operator, &BTreeSet::new()).await?;
+        let gathered = load_input(app, operator, &BTreeSet::new()).await?;
         if let Some(former) = &gathered.former
             && former.input_sha256 == gathered.sha256
         {
@@ -116,7 +116,7 @@ async fn settled(
             return Ok((schedule, gathered));
         }
         moved.extend(more);
-        gathered = gather(app, operator, &moved).await?;
+        gathered = load_input(app, operator, &moved).await?;
         let mut next = run(slots, gathered.text.clone(), lock).await?;
         // Why a job moved is what moved it first, not that its order is in its way now.
         for change in &mut next.changes {

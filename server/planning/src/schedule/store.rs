@@ -7,7 +7,7 @@ use binnacle_platform::ids::{OperatorId, VesselId};
 use binnacle_platform::time::Time;
 use uuid::Uuid;
 
-/// So many plans are kept.
+/// Number of plans to keep.
 const KEPT: i64 = 30;
 
 /// Says that something has changed on which the schedule rests.
@@ -22,7 +22,7 @@ pub(super) async fn ask(tx: &mut Tx, operator: OperatorId, now: Time) -> DbResul
     Ok(())
 }
 
-/// Who asked, and since when there is something to do.
+/// Returns the open requests for a schedule, the oldest first.
 pub(super) async fn asks(db: &Db, operator: OperatorId) -> Result<Vec<(Uuid, Time)>> {
     Ok(rows!(
         db,
@@ -77,7 +77,7 @@ fn read(found: Option<(String,)>) -> Result<Option<Plan>> {
     Ok(plan.transpose()?)
 }
 
-/// What the current plan was made from.
+/// Returns the input of the current plan.
 pub(super) async fn input(db: &Db, operator: OperatorId) -> Result<Option<String>> {
     let found = row!(
         db,
@@ -116,7 +116,7 @@ pub(super) async fn keep(
     Ok(kept > 0)
 }
 
-/// What went wrong with the last try, if it did.
+/// Returns the error of the last attempt, if it failed.
 pub(super) async fn last_error(db: &Db, operator: OperatorId) -> Result<Option<String>> {
     let found = row!(
         db,

@@ -42,7 +42,7 @@ pub fn on_particulars_change<'a>(
     Box::pin(async move { Ok(store::ask(tx, change.operator, change.at).await?) })
 }
 
-/// Whether a schedule rests on events of this kind.
+/// Returns whether a schedule depends on events of this kind.
 fn alters_the_schedule(kind: Kind) -> bool {
     matches!(
         kind,

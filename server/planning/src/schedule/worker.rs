@@ -5,7 +5,7 @@
 //! never older than a day.
 
 use super::concurrency::PlanSlots;
-use super::gather::gather;
+use super::input::load_input;
 use super::{solve, store};
 use binnacle_platform::app::App;
 use binnacle_platform::error::Error;
@@ -15,7 +15,7 @@ use std::collections::BTreeSet;
 use std::time::Duration;
 use tracing::{error, warn};
 
-/// How often to look for what has changed.
+/// Interval between checks for changes.
 const LOOK_EVERY: Duration = Duration::from_secs(5);
 /// So long after the first change: ETAs come in files, and answers in bursts.
 const WAIT_S: f64 = 30.0;
@@ -75,7 +75,7 @@ pub async fn step(app: &App, slots: &PlanSlots) -> anyhow::Result<Option<Operato
     Ok(Some(operator))
 }
 
-/// What became of a schedule that was asked for.
+/// Outcome of a request for a schedule.
 enum Made {
     /// It was made, or there is no use for it.
     Here,
@@ -83,13 +83,13 @@ enum Made {
     Elsewhere,
 }
 
-/// Who plans with no firm has no use for a plan until it is asked for.
+/// Makes a schedule; drops the request of an operator that has neither firms nor a plan.
 async fn make(
     app: &App,
     slots: &PlanSlots,
     operator: OperatorId,
 ) -> binnacle_platform::error::Result<Made> {
-    let gathered = gather(app, operator, &BTreeSet::new()).await?;
+    let gathered = load_input(app, operator, &BTreeSet::new()).await?;
     if !gathered.has_firms && gathered.former.is_none() {
         solve::forget_asks(app.db.begin().await?, operator, &gathered).await?;
         return Ok(Made::Here);
@@ -109,7 +109,7 @@ async fn ask_for_outdated(app: &App, now: Time) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What went wrong, for the log.
+/// Returns the cause of an error, for the log.
 fn in_words<T>(result: binnacle_platform::error::Result<T>) -> anyhow::Result<T> {
     result.map_err(|error| match error {
         Error::Internal(error) => error,

@@ -1,9 +1,9 @@
-//! The log as CSV.
+//! CSV export of the audit log.
 
 use super::Line;
 use crate::error::{Error, Result};
 
-/// Named as in JSON.
+/// Column names, the same as in JSON.
 const COLUMNS: [&str; 15] = [
     "id",
     "at",
@@ -22,7 +22,7 @@ const COLUMNS: [&str; 15] = [
     "status",
 ];
 
-/// The line that names the columns.
+/// Returns the header row.
 pub(super) fn head() -> Vec<u8> {
     format!("{}\n", COLUMNS.join(",")).into_bytes()
 }
@@ -45,8 +45,8 @@ pub(super) fn lines(lines: &[Line]) -> Result<Vec<u8>> {
         .map_err(|error| Error::Internal(error.into_error().into()))
 }
 
-/// People's names are what they call themselves: a spreadsheet is not to take one for a
-/// formula.
+/// Neutralises a text for spreadsheets: people choose their names, and none may be read as
+/// a formula.
 fn harmless(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@']) {
         format!("'{text}")

@@ -1,4 +1,4 @@
-//! The middleware that opens an audit trail for each request, and closes it.
+//! Middleware that opens and closes the audit record of each request.
 
 use super::request::RequestContext;
 use super::trail::{AuditTrail, Facts};
@@ -14,10 +14,10 @@ use std::sync::{Arc, Mutex};
 use tracing::{Instrument, error, info_span};
 use uuid::Uuid;
 
-/// The header that names a request.
+/// Response header with the request's id.
 const REQUEST_ID: &str = "x-request-id";
 
-/// Serves a request and has its line written.
+/// Serves a request and has its audit line written.
 pub async fn log_request(State(app): State<App>, request: Request, next: Next) -> Response {
     let (mut parts, body) = request.into_parts();
     let route = parts.extensions.get::<MatchedPath>();
@@ -42,7 +42,7 @@ pub async fn log_request(State(app): State<App>, request: Request, next: Next) -
     let request = Request::from_parts(parts, body);
     let mut response = next.run(request).instrument(span).await;
     match trail.finish(&app.db, response.status()).await {
-        // What goes over a satellite has no header that it does not need.
+        // A response over a satellite link carries no header that it does not need.
         Ok(true) if !trail.is_of_agent() => {
             if let Ok(id) = HeaderValue::try_from(trail.id.to_string()) {
                 response.headers_mut().insert(REQUEST_ID, id);
@@ -57,14 +57,14 @@ pub async fn log_request(State(app): State<App>, request: Request, next: Next) -
     response
 }
 
-/// Leaves the requests of a route out of the audit log: what they write is a log itself.
+/// Excludes a route's requests from the audit log: what they write is a log itself.
 pub async fn leave_out(context: RequestContext, request: Request, next: Next) -> Response {
     context.leave_out();
     next.run(request).await
 }
 
-/// The route with its ids and numbers; anything else in a path may be a mistake that is
-/// nobody's business.
+/// Returns the route with its ids and numbers filled in. Any other text in a path may be a
+/// mistake of the caller and must not be stored.
 async fn filled(route: &str, parts: &mut Parts) -> String {
     let mut path = route.to_owned();
     let Ok(given) = RawPathParams::from_request_parts(parts, &()).await else {

@@ -1,17 +1,16 @@
-//! The audit log: who changed what, and what firms read of ships.
+//! Audit log: changes by anyone, and work-order data read by firms.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - A change that is in the database has its line there: the line is written in the
-//!   transaction of the change. What a firm asks for of an order is not sent before its
-//!   line is on disk. What is refused is noted too, after the answer is known, if it is
-//!   known who asked.
-//! - A line has no secret in it: no body, no query, no header; of a path only ids and
+//! - Every change in the database has a line, written in the transaction of the change.
+//!   Work-order data is sent to a firm only after its line is on disk. A refused request is
+//!   logged too, after the response is known, if the caller is known.
+//! - A line contains no secret: no body, no query, no header, and of a path only ids and
 //!   numbers.
-//! - A line is never changed but for the status of the answer, once, and goes only when
-//!   it is as old as the setting says.
+//! - Only the response status of a line changes, once. A line is removed only when it is
+//!   older than the retention setting.
 //!
-//! Batches of samples are not in it: they are a log themselves.
+//! Batches of samples are excluded: they are a log themselves.
 
 mod csv;
 mod middleware;
@@ -34,96 +33,96 @@ use tracing::{error, info};
 use utoipa::{IntoParams, ToSchema};
 use uuid::Uuid;
 
-/// How often to look for lines that are too old.
+/// Interval between removals of expired lines.
 const FORGET_EVERY: Duration = Duration::from_hours(1);
 
-/// Something that was done, or tried.
+/// Action that was done or tried.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 #[schema(as = AuditLine)]
 struct Line {
-    /// The request's id, as the answer's `X-Request-Id` gave it.
+    /// Request id, as returned in `X-Request-Id`.
     id: Uuid,
-    /// When.
+    /// Time of the request.
     at: Time,
-    /// Who.
+    /// Kind of actor.
     actor_kind: ActorKind,
-    /// The user's or the agent's id.
+    /// Id of the user or the agent.
     #[schema(required)]
     actor_id: Option<Uuid>,
-    /// The name at that time; of an agent, its vessel's.
+    /// Name of the actor at that time; for an agent, its vessel's name.
     actor_name: String,
-    /// The API token that stood for the user.
+    /// API token that acted for the user.
     #[schema(required)]
     token_id: Option<TokenId>,
-    /// The operator whose fleet it was about, or whose people did it.
+    /// Operator of the fleet concerned, or of the actor.
     #[schema(required)]
     operator_id: Option<Uuid>,
-    /// The firm whose people did it, or which it was about.
+    /// Firm of the actor, or the firm concerned.
     #[schema(required)]
     firm_id: Option<Uuid>,
-    /// Where from; empty if that is not known.
+    /// Client address; empty if unknown.
     address: String,
-    /// What was done: the request's method. Empty for a command on the server itself.
+    /// HTTP method of the request; empty for a command on the server itself.
     method: String,
-    /// The route, as this document names it, or the command.
+    /// Route as named in this document, or the command.
     route: String,
-    /// The route with its ids.
+    /// Route with its ids filled in.
     path: String,
-    /// The vessel that it was about.
+    /// Vessel concerned.
     #[schema(required)]
     vessel_id: Option<VesselId>,
-    /// The work order that it was about.
+    /// Work order concerned.
     #[schema(required)]
     order_id: Option<OrderId>,
-    /// The status of the answer. None if it was done and the server ended, or the client
-    /// went, before there was one.
+    /// Response status. Null if the action was done but the server stopped, or the client
+    /// disconnected, before it responded.
     #[schema(required)]
     status: Option<i64>,
 }
 
-/// Who did something.
+/// Kind of actor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 enum ActorKind {
-    /// A person who had signed in.
+    /// Person who had signed in.
     User,
-    /// A program with a person's API token.
+    /// Program with a person's API token.
     Token,
-    /// A ship's agent.
+    /// Vessel's agent.
     Agent,
-    /// Someone at the server's own command line.
+    /// Person at the server's own command line.
     Command,
 }
 
-/// Which lines.
+/// Filter of audit lines.
 #[derive(Clone, Debug, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Filter {
-    /// Of this user or agent only.
+    /// Id of a user or an agent.
     actor: Option<Uuid>,
-    /// About this vessel only.
+    /// Id of a vessel.
     vessel: Option<VesselId>,
-    /// About this work order only.
+    /// Id of a work order.
     order: Option<OrderId>,
-    /// Of this route only, like `/api/v1/work-orders/{id}/model`.
+    /// Route, like `/api/v1/work-orders/{id}/model`.
     route: Option<String>,
-    /// The first instant, RFC 3339.
+    /// First instant, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime)]
     from: Option<String>,
-    /// The instant after the last, RFC 3339.
+    /// Instant after the last, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime)]
     to: Option<String>,
 }
 
-/// Removes the lines that are older than is kept, and says how many.
+/// Removes expired lines and returns their number.
 pub async fn forget(app: &App) -> crate::db::Result<u64> {
     let kept_s = f64::from(app.config.audit_days) * 86_400.0;
     let before = app.clock.now().plus_seconds(-kept_s);
     store::remove_before(&app.db, before.into()).await
 }
 
-/// Removes them until the server stops.
+/// Removes expired lines periodically until the server stops.
 pub async fn watch(app: App) {
     while !app.stopping.is_cancelled() {
         match forget(&app).await {

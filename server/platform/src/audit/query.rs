@@ -1,4 +1,4 @@
-//! The API that reads the log.
+//! API that reads the audit log.
 
 use super::store::{self, Selection};
 use super::{Filter, Line, csv};
@@ -18,10 +18,10 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-/// Lines that a file is written by.
+/// Lines fetched at a time for a file.
 const AT_A_TIME: i64 = 1000;
 
-/// The routes of this part.
+/// Routes of the audit log.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -32,22 +32,21 @@ where
         .routes(routes!(audit_csv))
 }
 
-/// A page of the audit log.
+/// Page of the audit log.
 #[derive(Serialize, ToSchema)]
 struct AuditList {
-    /// The newest first.
+    /// Lines, newest first.
     items: Vec<Line>,
-    /// `after` of the next page.
+    /// Value of `after` for the next page.
     #[schema(required)]
     next: Option<String>,
 }
 
 /// Read the audit log
 ///
-/// Every change that was made or tried, and what firms read of work orders. An operator's
-/// admins see what their people and agents did and what firms did and read of their
-/// vessels' orders; a firm's people what was done in the firm's name; platform admins see
-/// all.
+/// Returns every change made or tried, and the work-order data read by firms. An operator's
+/// admins see the actions of their people and agents, and those of firms on their vessels'
+/// orders. A firm's people see the actions in the firm's name. Platform admins see all.
 #[utoipa::path(get, path = "/audit", tag = "people", params(Filter, Page),
     responses((status = 200, body = AuditList), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem)))]
@@ -67,7 +66,7 @@ async fn list_audit(
     }))
 }
 
-/// The audit log as CSV
+/// Download the audit log as CSV
 #[utoipa::path(get, path = "/audit.csv", tag = "people", params(Filter),
     responses((status = 200, content_type = "text/csv", body = String),
               (status = 401, body = Problem), (status = 403, body = Problem),
@@ -86,7 +85,7 @@ async fn audit_csv(
 
 impl Selection {
     fn read(auditor: Auditor, filter: Filter) -> Result<Selection> {
-        // PostgreSQL takes no NUL in a text, and no route has one.
+        // PostgreSQL accepts no NUL in a text, and no route has one.
         if filter.route.iter().any(|route| route.contains('\0')) {
             return Err(Error::Invalid {
                 field: "route",

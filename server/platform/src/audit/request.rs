@@ -1,4 +1,4 @@
-//! The request in a handler's hands: it begins the transactions that carry the audit line.
+//! Request context for handlers: it begins the transactions that carry the audit line.
 
 use super::trail::{Actor, AuditTrail, Facts, FindVessel};
 use crate::db::{self, Db, Tx};
@@ -11,10 +11,10 @@ use axum::http::request::Parts;
 use std::sync::{Arc, Mutex};
 use uuid::Uuid;
 
-/// A request, or a command, that may change something.
+/// Context of a request or a command that may change something.
 ///
-/// Handlers name it in their arguments, and hand it down to whatever writes: a transaction
-/// that is begun by it has the request's line of the audit log when it is committed.
+/// Handlers name it in their arguments and pass it to every function that writes. A
+/// transaction begun by it contains the request's audit line when it is committed.
 #[derive(Clone)]
 pub struct RequestContext {
     db: Db,
@@ -26,7 +26,7 @@ impl RequestContext {
         RequestContext { db, trail }
     }
 
-    /// The context of a command on the server itself.
+    /// Creates the context of a command on the server itself.
     pub fn of_command(db: &Db, command: &str, now: Time) -> RequestContext {
         let facts = Facts {
             actor: Some(Actor::command_line()),
@@ -45,53 +45,53 @@ impl RequestContext {
         RequestContext::new(db.clone(), Arc::new(trail))
     }
 
-    /// The context of the request that these parts are of.
+    /// Returns the context of a request from its parts.
     ///
     /// # Errors
-    /// When the request has not passed the audit log's middleware.
+    /// When the request has not passed the audit middleware.
     pub fn of(parts: &Parts) -> Result<&RequestContext> {
         let found = parts.extensions.get::<RequestContext>();
         found.ok_or_else(|| Error::Internal(anyhow::anyhow!("a route without the audit log")))
     }
 
-    /// The database, for reading.
+    /// Returns the database, for reading.
     pub fn db(&self) -> &Db {
         &self.db
     }
 
-    /// Begins a transaction that carries the line.
+    /// Begins a transaction that carries the audit line.
     pub async fn begin(&self) -> db::Result<Tx> {
         let hook = Arc::clone(&self.trail);
         Ok(self.db.begin().await?.with_hook(hook))
     }
 
-    /// Records who asks, as soon as that is known.
+    /// Records the actor as soon as it is known.
     pub fn record_actor(&self, actor: impl Into<Actor>) {
         self.trail.facts().actor = Some(actor.into());
     }
 
-    /// Records whom it concerns, where the path does not tell.
+    /// Records the tenant concerned, where the path does not identify it.
     pub fn concerns(&self, tenant: Tenant) {
         self.trail.facts().tenant = Some(tenant);
     }
 
-    /// Records the vessel that it concerns, and the vessel's order if it is about one, where
-    /// the path does not tell.
+    /// Records the vessel concerned, and its order if any, where the path does not identify
+    /// them.
     pub fn concerns_vessel(&self, vessel: VesselId, order: Option<OrderId>) {
         let mut facts = self.trail.facts();
         facts.vessel = Some(vessel);
         facts.order = order.or(facts.order);
     }
 
-    /// Records the order that it concerns. Its vessel is looked up when the line is written,
-    /// and only for what is done: a refusal does not tell whose order it is.
+    /// Records the order concerned. Its vessel is looked up when the line is written, and
+    /// only for a successful request: a refusal must not reveal whose order it is.
     pub fn concerns_order(&self, order: OrderId, find_vessel: FindVessel) {
         let mut facts = self.trail.facts();
         facts.order = Some(order);
         facts.find_vessel = Some(find_vessel);
     }
 
-    /// Logs what a firm reads by this request.
+    /// Logs reads by firms on this request.
     pub fn log_reads_of_firms(&self) {
         self.trail.facts().logs_firms = true;
     }
@@ -101,7 +101,7 @@ impl RequestContext {
         self.trail.facts().is_change = true;
     }
 
-    /// Leaves a change out of the audit log: what it writes is a log itself.
+    /// Excludes a change from the audit log: what it writes is a log itself.
     pub fn leave_out(&self) {
         self.trail.facts().is_change = false;
     }

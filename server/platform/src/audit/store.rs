@@ -1,4 +1,4 @@
-//! Lines in the database.
+//! Audit lines in the database.
 
 use super::{Filter, Line};
 use crate::db::{Db, Result, Tx, execute, row, rows};
@@ -6,8 +6,7 @@ use crate::ids::{FirmId, OperatorId, VesselId};
 use crate::time::Time;
 use uuid::Uuid;
 
-/// The lines that are asked for, and the tenant whose part of the log they are in: the whole
-/// log where there is none.
+/// Filter and tenant of the lines to list; all tenants if that is `None`.
 pub(super) struct Selection {
     pub(super) operator: Option<OperatorId>,
     pub(super) firm: Option<FirmId>,
@@ -42,7 +41,7 @@ pub(super) async fn insert(tx: &mut Tx, line: &Line) -> Result<()> {
     Ok(())
 }
 
-/// Notes how a request was answered whose line is there.
+/// Records the response status of a request whose line exists.
 pub(super) async fn answered(db: &Db, id: Uuid, status: i64) -> Result<()> {
     let mut tx = db.begin().await?;
     execute!(
@@ -54,7 +53,7 @@ pub(super) async fn answered(db: &Db, id: Uuid, status: i64) -> Result<()> {
     tx.commit().await
 }
 
-/// The newest first, from before an id.
+/// Lists lines newest first, from before an id.
 pub(super) async fn list(
     db: &Db,
     selection: &Selection,
@@ -97,7 +96,7 @@ pub(super) async fn remove_before(db: &Db, before: Time) -> Result<u64> {
     Ok(removed)
 }
 
-/// Whose a vessel is, and its name.
+/// Returns a vessel's operator and name.
 pub(super) async fn owner_of(
     tx: &mut Tx,
     vessel: VesselId,

@@ -1,4 +1,4 @@
-//! Facts of a request, gathered while it is served, until they are a line.
+//! Facts of a request, gathered while it is served and then written as a line.
 
 use super::{ActorKind, Line, store};
 use crate::db::{self, CommitHook, Db, Tx};
@@ -15,7 +15,7 @@ use uuid::Uuid;
 pub type FindVessel =
     for<'a> fn(&'a mut Tx, OrderId) -> BoxFuture<'a, db::Result<Option<VesselId>>>;
 
-/// Who does something.
+/// Actor of a request.
 #[derive(Clone, Debug)]
 pub struct Actor {
     kind: ActorKind,
@@ -27,7 +27,7 @@ pub struct Actor {
 }
 
 impl Actor {
-    /// A person, by id and name.
+    /// Returns the actor for a person.
     pub fn person(id: UserId, name: &str, tenant: Option<Tenant>) -> Actor {
         Actor {
             kind: ActorKind::User,
@@ -39,7 +39,7 @@ impl Actor {
         }
     }
 
-    /// The actor with the API token that stands for the person, if there is one.
+    /// Sets the API token that acts for the person, if there is one.
     #[must_use]
     pub fn with_token(self, token: Option<TokenId>) -> Actor {
         let kind = match token {
@@ -53,7 +53,7 @@ impl Actor {
         }
     }
 
-    /// A vessel's agent.
+    /// Returns the actor for a vessel's agent.
     pub fn agent(id: AgentId, vessel: VesselId) -> Actor {
         Actor {
             kind: ActorKind::Agent,
@@ -65,7 +65,7 @@ impl Actor {
         }
     }
 
-    /// Someone at the server's own command line.
+    /// Returns the actor for the server's own command line.
     pub(super) fn command_line() -> Actor {
         Actor {
             kind: ActorKind::Command,
@@ -78,7 +78,7 @@ impl Actor {
     }
 }
 
-/// What is known of a request from the start, and the facts that come to light while it is
+/// Audit record of a request: the facts known from the start, and those found while it is
 /// served.
 pub(super) struct AuditTrail {
     pub(super) id: Uuid,
@@ -96,18 +96,18 @@ pub(super) struct Facts {
     pub(super) tenant: Option<Tenant>,
     pub(super) vessel: Option<VesselId>,
     pub(super) order: Option<OrderId>,
-    /// For an order that is known without its vessel.
+    /// Lookup of the vessel, for an order that is known without it.
     pub(super) find_vessel: Option<FindVessel>,
-    /// Whether what is done is logged, in the transaction that does it.
+    /// True if the request is logged as a change, in the transaction of the change.
     pub(super) is_change: bool,
-    /// Whether a line is written of what a firm reads.
+    /// True if reads by a firm are logged.
     pub(super) logs_firms: bool,
-    /// Whether the line is on disk.
+    /// True if the line is on disk.
     pub(super) is_written: bool,
 }
 
 impl CommitHook for AuditTrail {
-    /// Writes the line, if this is a change by someone who is known and has none yet.
+    /// Writes the line, if this is a change by a known actor and has no line yet.
     fn before_commit<'a>(&'a self, tx: &'a mut Tx) -> BoxFuture<'a, db::Result<bool>> {
         Box::pin(async move {
             let is_due = {
@@ -137,12 +137,12 @@ impl AuditTrail {
         actor.is_some_and(|actor| actor.kind == ActorKind::Agent)
     }
 
-    /// Records the status of the response. Returns whether there is a line.
+    /// Records the status of the response. Returns true if there is a line.
     pub(super) async fn finish(&self, db: &Db, status: StatusCode) -> db::Result<bool> {
         let facts = self.facts().clone();
         let code = i64::from(status.as_u16());
         if facts.is_written {
-            // The line is there, and so is the change: the answer stands.
+            // The line and the change are stored, so the response stands.
             if let Err(cause) = store::answered(db, self.id, code).await {
                 error!(error = ?cause, id = %self.id, "a status is missing in the audit log");
             }
@@ -164,7 +164,8 @@ impl AuditTrail {
         Ok(written)
     }
 
-    /// Writes the line, if it is known who asks. Without a status what it tells of is done.
+    /// Writes the line, if the actor is known. Without a status it records a completed
+    /// change.
     async fn write(&self, tx: &mut Tx, status: Option<StatusCode>) -> db::Result<bool> {
         let facts = self.facts().clone();
         let Some(actor) = facts.actor else {
@@ -174,7 +175,7 @@ impl AuditTrail {
         let order = facts.order;
         let named = facts.vessel.or(actor.vessel);
         let mut vessel = named.or(self.id_after("/api/v1/vessels/{id}").map(VesselId));
-        // Whoever is refused learns nothing here, and is in nobody's log but their own.
+        // A refused request reveals nothing, and appears only in the caller's own log.
         let mut owner = None;
         if is_done {
             if let (None, Some(order), Some(find)) = (vessel, order, facts.find_vessel) {
@@ -218,7 +219,7 @@ impl AuditTrail {
         Ok(true)
     }
 
-    /// The id in the path, if the route begins so.
+    /// Returns the id in the path, if the route begins with the given text.
     fn id_after(&self, route: &str) -> Option<Uuid> {
         let begins = self.route.starts_with(route);
         let mut segments = self.path.split('/').filter(|_| begins);

@@ -1,4 +1,4 @@
-//! Opening a database by its URL, and bringing its schema up to date.
+//! Database connections by URL, and schema migrations.
 
 use super::{Db, Pools, Subscribers};
 use anyhow::{Context, bail};
@@ -13,14 +13,14 @@ use std::time::Duration;
 static PORTABLE: Migrator = sqlx::migrate!("../../migrations");
 static POSTGRES_ONLY: Migrator = sqlx::migrate!("../../migrations/postgres");
 
-/// How long a connection waits for another process's lock, or for its turn.
+/// Longest wait of a connection for another process's lock or for its turn.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 const OTHER_VERSION: &str = "the database was set up by another version of binnacle-server: \
                              run that version, or name a new database";
 
 impl Db {
-    /// Opens `sqlite://FILE` (made when missing) or `postgres://…`.
+    /// Opens `sqlite://FILE` (created if missing) or `postgres://…`.
     ///
     /// # Errors
     /// When the URL is of another kind, or the database cannot be reached.
@@ -36,10 +36,10 @@ impl Db {
         })
     }
 
-    /// Applies the migrations that are missing.
+    /// Applies pending migrations.
     ///
     /// # Errors
-    /// When one fails, or one that was applied is unknown or has been edited since.
+    /// When one fails, or an applied one is unknown or has been edited since.
     pub async fn migrate(&self) -> anyhow::Result<()> {
         let migrated = match &self.pools {
             Pools::Sqlite { writer, .. } => PORTABLE.run(writer).await,
@@ -65,8 +65,8 @@ fn explain(error: MigrateError) -> anyhow::Error {
     error
 }
 
-/// Of so many connections at most, which are kept: reaping those that are idle may spin
-/// for ever in this version of sqlx (its issue 3645).
+/// Returns pool options with a limit of connections, which are kept open: reaping idle ones
+/// may spin for ever in this version of sqlx (its issue 3645).
 fn pool<D: Database>(connections: u32) -> PoolOptions<D> {
     PoolOptions::new()
         .max_connections(connections)
@@ -81,7 +81,7 @@ async fn connect_sqlite(url: &str) -> anyhow::Result<Pools> {
         .create_if_missing(true)
         .foreign_keys(true)
         .journal_mode(SqliteJournalMode::Wal)
-        // What was acknowledged survives a power cut, not only a crash.
+        // An acknowledged write survives a power cut, not only a crash.
         .synchronous(SqliteSynchronous::Full)
         .busy_timeout(PATIENCE);
     let writer = pool(1)

@@ -1,17 +1,17 @@
-//! Both databases behind one type, and one SQL text for both.
+//! SQLite and PostgreSQL behind one type, with one SQL text for both.
 //!
-//! What always holds: reads go through [`Db`], writes through a [`Tx`], and what
-//! [`Tx::commit`] has returned from is on disk. On SQLite there is one writer at a
-//! time, which takes the write lock before it reads anything, so that no
-//! transaction fails half-way for another's sake.
+//! Invariants: reads go through [`Db`] and writes through a [`Tx`]. Once [`Tx::commit`] has
+//! returned, the data is on disk. On SQLite there is one writer at a time, which takes the
+//! write lock before it reads anything. So no transaction fails half-way because of
+//! another.
 //!
-//! A transaction may carry a [`CommitHook`], which writes into it last of all: so a change
-//! has its line in the audit log, and this module knows nothing of that log.
+//! A transaction may carry a [`CommitHook`], which writes into it last. That is how a
+//! change gets its line in the audit log while this module knows nothing of that log.
 //!
-//! An event that is published in a transaction is handled in it, see [`Subscribers`].
+//! An event published in a transaction is handled in it, see [`Subscribers`].
 //!
-//! The macros take the SQL as a literal and run it on whichever database is
-//! there: `rows!`, `row!` and `execute!`.
+//! The macros take the SQL as a literal and run it on the open database: `rows!`, `row!`
+//! and `execute!`.
 
 mod connect;
 mod queries;
@@ -25,65 +25,66 @@ use futures_util::future::BoxFuture;
 use sqlx::{PgPool, Postgres, Sqlite, SqlitePool, Transaction};
 use std::sync::Arc;
 
-/// A result from the database.
+/// Result of a database call.
 pub type Result<T> = std::result::Result<T, sqlx::Error>;
 
-/// The database that the URL named, with those who subscribed to events.
+/// Database named by the URL, with the subscribers to events.
 #[derive(Clone, Debug)]
 pub struct Db {
     pools: Pools,
     subscribers: Arc<Subscribers>,
 }
 
-/// Connections to the database.
+/// Connection pools of the database.
 #[derive(Clone, Debug)]
 pub enum Pools {
-    /// One file.
+    /// SQLite: one file.
     Sqlite {
-        /// Any number of readers.
+        /// Concurrent readers.
         readers: SqlitePool,
-        /// A pool of one: SQLite knows one writer at a time.
+        /// Pool of one connection: SQLite has one writer at a time.
         writer: SqlitePool,
     },
-    /// A server, which other processes of ours may share.
+    /// PostgreSQL server, which other processes of ours may share.
     Postgres(PgPool),
 }
 
-/// A transaction; rolled back unless committed.
+/// Transaction; rolled back unless committed.
 pub struct Tx {
     connection: Connection,
     subscribers: Arc<Subscribers>,
     hook: Option<Arc<dyn CommitHook>>,
 }
 
-/// The open transaction of a [`Tx`], on whichever database is there.
+/// Open transaction of a [`Tx`] on either database.
 pub enum Connection {
-    /// On SQLite.
+    /// SQLite transaction.
     Sqlite(Transaction<'static, Sqlite>),
-    /// On PostgreSQL.
+    /// PostgreSQL transaction.
     Postgres(Transaction<'static, Postgres>),
 }
 
 /// Work that a transaction carries to its commit.
 ///
-/// A trait, so that the layers above can write into a transaction that code knows only as
-/// [`Tx`].
+/// This is a trait so that upper layers can write into a transaction that other code knows
+/// only as [`Tx`].
 pub trait CommitHook: Send + Sync {
-    /// Writes into the transaction. Returns whether [`CommitHook::committed`] is to be called.
+    /// Writes into the transaction. Returns true if [`CommitHook::committed`] is to be
+    /// called.
     fn before_commit<'a>(&'a self, tx: &'a mut Tx) -> BoxFuture<'a, Result<bool>>;
 
-    /// Notes that what was written is on disk.
+    /// Records that the written data is on disk.
     fn committed(&self);
 }
 
 impl Db {
-    /// The connections, for what only one kind of database can do.
+    /// Returns the connection pools, for features of one kind of database.
     pub fn pools(&self) -> &Pools {
         &self.pools
     }
 
-    /// Begins a transaction that may write, for work that no request asked for. A request
-    /// begins its own by `audit::RequestContext::begin`.
+    /// Begins a writing transaction for work without a request. A request begins its own
+    /// with `audit::RequestContext::begin`.
     pub async fn begin(&self) -> Result<Tx> {
         let connection = match &self.pools {
             Pools::Sqlite { writer, .. } => Connection::Sqlite(begin_sqlite(writer).await?),
@@ -96,7 +97,7 @@ impl Db {
         })
     }
 
-    /// Whether the database answers.
+    /// Checks that the database responds.
     pub async fn ping(&self) -> Result<()> {
         row!(self, (i64,), "SELECT CAST(1 AS BIGINT)").map(drop)
     }
@@ -116,8 +117,8 @@ impl Db {
 async fn begin_sqlite(writer: &SqlitePool) -> Result<Transaction<'static, Sqlite>> {
     const BEGIN: &str = "BEGIN IMMEDIATE";
     match writer.begin_with(BEGIN).await {
-        // A transaction that SQLite itself has rolled back, as on a full disk, is open for
-        // good to this version of sqlx: only another connection begins another.
+        // In this version of sqlx, a transaction that SQLite itself has rolled back, as on
+        // a full disk, stays open for good. Only another connection can begin a new one.
         Err(sqlx::Error::InvalidSavePointStatement) => {}
         begun => return begun,
     }
@@ -126,7 +127,7 @@ async fn begin_sqlite(writer: &SqlitePool) -> Result<Transaction<'static, Sqlite
 }
 
 impl Tx {
-    /// The transaction with a hook that it carries to its commit.
+    /// Sets the hook that the transaction carries to its commit.
     #[must_use]
     pub fn with_hook(self, hook: Arc<dyn CommitHook>) -> Tx {
         Tx {
@@ -135,10 +136,10 @@ impl Tx {
         }
     }
 
-    /// Publishes an event: each of its subscribers runs now, in this transaction.
+    /// Publishes an event: each subscriber runs now, in this transaction.
     ///
     /// # Errors
-    /// When a subscriber fails, or refuses what is about to happen.
+    /// When a subscriber fails or rejects the event.
     pub async fn publish<E: DomainEvent>(&mut self, event: &E) -> error::Result<()> {
         let subscribers = Arc::clone(&self.subscribers);
         for handler in subscribers.of::<E>() {
@@ -147,12 +148,12 @@ impl Tx {
         Ok(())
     }
 
-    /// The connection that statements of this transaction run on.
+    /// Returns the connection on which the statements of this transaction run.
     pub fn connection(&mut self) -> &mut Connection {
         &mut self.connection
     }
 
-    /// Makes everything durable, and visible to others, at once; with it what the hook writes.
+    /// Commits everything, including the hook's writes.
     pub async fn commit(mut self) -> Result<()> {
         let Some(hook) = self.hook.take() else {
             return self.connection.commit().await;

@@ -1,6 +1,6 @@
-//! The macros that run one SQL text on both databases.
+//! Macros that run one SQL text on both databases.
 
-/// All rows of a query as a `Vec` of a type that is `FromRow` on both databases.
+/// Returns all rows of a query as a `Vec` of a type that is `FromRow` on both databases.
 /// `rows!(db, Type, "SELECT …", binds…)`, or `rows!(in &mut tx, …)`.
 #[macro_export]
 macro_rules! rows {
@@ -22,7 +22,7 @@ macro_rules! rows {
     };
 }
 
-/// The first row of a query, if there is one; otherwise like [`rows!`].
+/// Returns the first row of a query, if any; otherwise like [`rows!`].
 #[macro_export]
 macro_rules! row {
     (in $tx:expr, $row:ty, $sql:expr $(, $bind:expr)* $(,)?) => {
@@ -43,7 +43,7 @@ macro_rules! row {
     };
 }
 
-/// Runs a statement in a transaction and says how many rows it touched:
+/// Runs a statement in a transaction and returns the number of affected rows:
 /// `execute!(&mut tx, "UPDATE …", binds…)`.
 #[macro_export]
 macro_rules! execute {

@@ -1,8 +1,8 @@
-//! Events between capabilities, handled in the transaction that publishes them.
+//! Domain events, handled in the transaction that publishes them.
 //!
-//! A capability publishes what happens in it without knowing who cares. Who does subscribes
-//! when the server is put together. A handler that fails undoes the publisher's transaction:
-//! so a subscriber may also refuse what is about to happen.
+//! A capability publishes its events without knowing the subscribers, which are registered
+//! when the server is put together. A handler that fails rolls back the publisher's
+//! transaction, so a subscriber may also reject an event.
 
 use super::Tx;
 use crate::error::Result;
@@ -11,7 +11,7 @@ use std::any::{Any, TypeId};
 use std::collections::HashMap;
 use std::fmt;
 
-/// Something that happens in a transaction.
+/// Event that happens in a transaction.
 pub trait DomainEvent: Any + Send + Sync {}
 
 /// Function that handles an event in the publisher's transaction.
@@ -20,7 +20,7 @@ pub type Handler<E> = for<'a> fn(&'a mut Tx, &'a E) -> BoxFuture<'a, Result<()>>
 /// Handlers of each type of event, in the order in which they run.
 #[derive(Default)]
 pub struct Subscribers {
-    /// By the event's type, each a `Handler` of that type.
+    /// Handlers by event type, each a `Handler` of that type.
     handlers: HashMap<TypeId, Vec<Box<dyn Any + Send + Sync>>>,
 }
 

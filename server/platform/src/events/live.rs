@@ -33,7 +33,7 @@ impl Live {
 
     /// Tells everyone who listens in this process.
     pub fn tell(&self, event: Event) {
-        // No listener is not an error.
+        // A channel without listeners is not an error.
         let _ = self.0.send(event);
     }
 }

@@ -1,6 +1,6 @@
-//! Live events: what dashboards are told as it happens.
+//! Live events for dashboards.
 //!
-//! What always holds: an event is stored in the transaction that makes it true,
+//! Invariants: an event is stored in the transaction that makes it true,
 //! and reaches the dashboards of every server process on the same database: on
 //! PostgreSQL through LISTEN and NOTIFY, on SQLite (one process) directly. A
 //! dashboard that comes back with the last id it saw gets what it missed, some of
@@ -43,7 +43,7 @@ where
     OpenApiRouter::new().routes(routes!(follow_events))
 }
 
-/// What happened to a vessel.
+/// Kind of change to a vessel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
@@ -72,15 +72,15 @@ pub enum Kind {
 pub struct Event {
     /// Its id, by which a dashboard resumes.
     pub id: EventId,
-    /// Whose vessel.
+    /// Operator of the vessel.
     pub operator_id: OperatorId,
-    /// The firm that is told; none when the operator is.
+    /// The firm that receives the event; none if the operator does.
     pub firm_id: Option<FirmId>,
     /// The work order, if it is of one.
     pub order_id: Option<OrderId>,
-    /// Which vessel.
+    /// The vessel concerned.
     pub vessel_id: VesselId,
-    /// What happened.
+    /// Kind of event.
     pub kind: Kind,
 }
 
@@ -88,7 +88,7 @@ pub struct Event {
 pub struct EventStored {
     /// The event.
     pub event: Event,
-    /// When.
+    /// Time of the event.
     pub at: Time,
 }
 
@@ -97,23 +97,23 @@ impl DomainEvent for EventStored {}
 /// The data of an event.
 #[derive(Serialize, ToSchema)]
 pub struct VesselEvent {
-    /// Which vessel.
+    /// The vessel concerned.
     pub vessel_id: VesselId,
-    /// What happened.
+    /// Kind of event.
     pub kind: Kind,
     /// The work order, if it is of one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order_id: Option<OrderId>,
 }
 
-/// A client is to come back after so long, to be looked at anew.
+/// Maximum length of a stream: after that the client reconnects and is authorized again.
 const LONGEST_STREAM: Duration = Duration::from_mins(30);
 
 /// Follow the fleet live
 ///
 /// Server-sent events named `vessel`, whose data is a `VesselEvent`. With
-/// `Last-Event-ID`, what was missed within the last day comes first. A firm is told of its
-/// work orders only.
+/// `Last-Event-ID`, the events missed within the last day come first. A firm receives only the
+/// events of its work orders.
 #[utoipa::path(get, path = "/events", tag = "fleet",
     params(("Last-Event-ID" = Option<Uuid>, Header, description = "The last event seen")),
     responses((status = 200, content_type = "text/event-stream", body = VesselEvent),
@@ -162,7 +162,7 @@ impl Follower {
     async fn next(mut self) -> Option<(std::result::Result<Sent, Infallible>, Follower)> {
         loop {
             if let Some(event) = self.pending.pop_front() {
-                // Who was signed out meanwhile, or whose token was revoked, hears no more.
+                // A client that was signed out, or whose token was revoked, gets no more events.
                 if !self.caller.still_vouched_for(&self.app).await.ok()? {
                     return None;
                 }

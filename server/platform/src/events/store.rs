@@ -12,7 +12,7 @@ const KEPT_FOR_S: f64 = 86_400.0;
 /// Each process has its own clock, and a transaction may be seen late: how far to
 /// look back before the last event seen.
 const OVERLAP_S: f64 = 10.0;
-/// As many as a dashboard is told after a pause; with more it should read anew.
+/// Maximum number of events sent after a pause; beyond that, a dashboard should reload its data.
 const MOST_MISSED: i64 = 1000;
 
 /// Stores an event, to be made known with the transaction's commit.
@@ -81,8 +81,8 @@ async fn write(
     Ok(event)
 }
 
-/// What happened since an event was seen; everything there is when that is so long
-/// ago that it was forgotten.
+/// Returns the events since the given one. If that event is already deleted, returns all
+/// events that are left.
 pub(super) async fn since(db: &Db, tenant: Tenant, last: EventId) -> Result<Vec<Event>> {
     rows!(
         db,
@@ -102,7 +102,7 @@ pub(super) async fn since(db: &Db, tenant: Tenant, last: EventId) -> Result<Vec<
     )
 }
 
-/// What happened to anyone's vessels since a time, and shortly before it.
+/// Returns the events of all tenants since a time, with a short overlap before it.
 pub(super) async fn all_since(db: &Db, from: Time) -> Result<Vec<Event>> {
     rows!(
         db,

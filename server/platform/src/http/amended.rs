@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Deserializer};
 
-/// What is left out stays, null takes a value away.
+/// A change to one value: an omitted field keeps it, null removes it.
 #[derive(Debug, Default)]
 pub enum Amended<T> {
     /// As it is.

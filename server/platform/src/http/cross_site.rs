@@ -1,6 +1,6 @@
 //! Refuses changes that another site's page asks a browser for.
 //!
-//! What always holds: no change is made for a request that says that it comes from another
+//! Invariants: no change is made for a request that says that it comes from another
 //! site, whatever cookie it carries. That is besides the cookie's own `SameSite=Strict` and
 //! the header that only a page of ours sends. Programs say neither, and bring a token.
 
@@ -12,7 +12,7 @@ use axum::http::{HeaderMap, Uri};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
-/// What a browser says of where a request comes from (Fetch Metadata).
+/// Header in which a browser states the origin of a request (Fetch Metadata).
 const FETCH_SITE: &str = "sec-fetch-site";
 
 /// Refuses a change that another site asks for.
@@ -24,7 +24,7 @@ pub async fn refuse(State(app): State<App>, request: Request, next: Next) -> Res
     Error::Forbidden("a change cannot be asked for from another site's page").into_response()
 }
 
-/// Whether a request is from a page of ours, or from no page at all.
+/// Checks that a request comes from one of our own pages, or from no page at all.
 fn is_of_our_own(headers: &HeaderMap, public_url: Option<&str>) -> bool {
     if let Some(site) = headers.get(FETCH_SITE) {
         return site == "same-origin" || site == "none";

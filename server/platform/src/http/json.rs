@@ -84,8 +84,8 @@ pub fn text(field: &'static str, value: &str) -> Result<String> {
     })
 }
 
-/// Whether a character is not to be seen, but changes what is: ends a line, or turns the
-/// direction of writing, so that a name reads as another (Unicode Standard Annex 9,
+/// Checks for a character that is invisible but changes the text: one that ends a line, or one
+/// that turns the writing direction and so disguises a name (Unicode Standard Annex 9,
 /// section 2).
 pub fn is_control(c: char) -> bool {
     let turns = matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}'
@@ -93,7 +93,7 @@ pub fn is_control(c: char) -> bool {
     turns || c.is_control() || matches!(c, '\u{2028}' | '\u{2029}')
 }
 
-/// The same where there may be none: what is blank is none.
+/// Checks an optional text as [`text`] does; blank text counts as absent.
 ///
 /// # Errors
 /// When it is too long or not on one line.

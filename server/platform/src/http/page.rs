@@ -7,11 +7,11 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-/// Which part of a list.
+/// The requested part of a list.
 #[derive(Clone, Debug, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct Page {
-    /// How many at most; 100 if not said.
+    /// Maximum number of items; 100 by default.
     #[param(minimum = 1, maximum = 10_000)]
     limit: Option<u32>,
     /// `next` of the page before.
@@ -20,7 +20,7 @@ pub struct Page {
 
 /// A page that was cut from what was found.
 pub struct Listed<T> {
-    /// What is on it.
+    /// The items on this page.
     pub items: Vec<T>,
     /// `after` of the next page.
     pub next: Option<String>,
@@ -82,12 +82,12 @@ impl Page {
         read.map(Some).ok_or_else(|| bad_cursor(after))
     }
 
-    /// How many items a page holds.
+    /// Returns the maximum number of items on a page.
     pub fn limit(&self) -> usize {
         self.limit.unwrap_or(DEFAULT_LIMIT).clamp(1, MAX_LIMIT) as usize
     }
 
-    /// How many to fetch: one more than fits, to know whether there is a next page.
+    /// Returns the number of rows to fetch: one extra row shows that a next page exists.
     pub fn fetch(&self) -> i64 {
         self.limit() as i64 + 1
     }

@@ -15,7 +15,7 @@ use uuid::Uuid;
 pub struct Announcement {
     /// The delivery's id.
     pub id: DeliveryId,
-    /// Whether the topic begins, goes on or ends.
+    /// Kind of announcement: the topic begins, continues or ends.
     pub kind: Kind,
     /// The topic: each recipient is written to when it gets worse, and when it ends.
     pub topic: Uuid,
@@ -51,8 +51,8 @@ pub async fn announce(
     Ok(())
 }
 
-/// Whether a letter of the next topic of the series goes to the same recipient: it says more
-/// than that this one is over.
+/// Checks whether the same recipient also gets a letter about the next topic of the series.
+/// That letter makes the one about the end of this topic redundant.
 fn is_replaced(announcement: &Announcement, least: Severity, all: &[Announcement]) -> bool {
     let is_next = |other: &Announcement| {
         other.kind == Kind::AlertRaised

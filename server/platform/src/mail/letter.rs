@@ -1,4 +1,4 @@
-//! What a letter says: plain text, so that every program shows it the same.
+//! The content of a letter: plain text, so that every mail program shows it the same.
 
 use crate::ids::OperatorId;
 use crate::severity::Severity;
@@ -15,7 +15,7 @@ pub struct Letter {
     pub subject: String,
     /// The text.
     pub text: String,
-    /// What it tells of, one after the other, if that is several things.
+    /// The single items of a letter about several things, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub told: Vec<Told>,
     /// The page to look at, below the dashboard's address.
@@ -55,19 +55,19 @@ pub struct Attached {
     pub month: String,
 }
 
-/// Why somebody gets a letter.
+/// Reason for which a recipient gets a letter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Why {
     /// Someone is on the company's list for alerts from a severity on.
     Listed(Severity),
-    /// It is what a person with an account is told of.
+    /// Someone with an account chose this notification.
     Person,
     /// Someone is on the company's list for monthly reports.
     Reports,
 }
 
 impl Letter {
-    /// What somebody gets who asked for a test.
+    /// Returns the letter for a requested test.
     pub(super) fn test() -> Letter {
         Letter {
             subject: "A test of Binnacle's mail".to_owned(),
@@ -85,9 +85,8 @@ impl Letter {
         let (why, page) = match why {
             Why::Listed(least) => (
                 format!(
-                    "You get this because {address} is on your company's list for alerts from {} \
-                     on. An administrator takes it off:",
-                    least
+                    "You get this because {address} is on your company's list for alerts from {least} \
+                     on. An administrator takes it off:"
                 ),
                 "/mail",
             ),

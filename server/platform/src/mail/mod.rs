@@ -1,6 +1,6 @@
 //! Mail: telling people of alerts, wherever they are.
 //!
-//! What always holds:
+//! Invariants:
 //!
 //! - Letters wait and are sent as [`crate::outbox`] says. One that the relay took is
 //!   not sent again; one whose answer was lost comes again under the same message id.

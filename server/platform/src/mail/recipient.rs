@@ -1,4 +1,4 @@
-//! Who gets mail, as it is asked for and shown.
+//! Mail recipients, as requested and as shown.
 
 use crate::error::{Error, Result};
 use crate::ids::RecipientId;
@@ -16,7 +16,7 @@ const MAX_ADDRESS: usize = 254;
 #[serde(deny_unknown_fields)]
 #[schema(as = NewMailRecipient)]
 pub(super) struct NewRecipient {
-    /// Where to.
+    /// E-mail address of the recipient.
     #[schema(max_length = 254, example = "superintendent@example.com")]
     pub(super) address: String,
     /// Of alerts as bad as this or worse; `warning` if not said.
@@ -28,7 +28,7 @@ fn warning() -> Severity {
     Severity::Warning
 }
 
-/// From when on someone gets mail.
+/// A new minimum severity for a recipient.
 #[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = ChangedMailRecipient)]
@@ -43,12 +43,12 @@ pub(super) struct ChangedRecipient {
 pub(super) struct Recipient {
     /// The recipient's id.
     pub(super) id: RecipientId,
-    /// Where to.
+    /// E-mail address of the recipient.
     #[schema(example = "superintendent@example.com")]
     pub(super) address: String,
     /// Of alerts as bad as this or worse.
     pub(super) severity: Severity,
-    /// Since when.
+    /// Time at which the recipient was added.
     pub(super) created_at: Time,
     /// Letters that wait.
     pub(super) pending: i64,
@@ -65,12 +65,12 @@ pub(super) struct RecipientList {
     /// `after` of the next page.
     #[schema(required)]
     pub(super) next: Option<String>,
-    /// Whether this server was told how to send mail.
+    /// True if mail is set up on this server.
     pub(super) sending: bool,
 }
 
 impl NewRecipient {
-    /// The same, if mail can go there.
+    /// Returns the recipient if mail can be sent to the address.
     ///
     /// # Errors
     /// When it cannot.

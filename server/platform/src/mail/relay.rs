@@ -1,6 +1,6 @@
 //! The mail relay: what the settings say of it, and a conversation with it.
 //!
-//! What always holds: a name and a password go only over TLS with a certificate that
+//! Invariants: a name and a password go only over TLS with a certificate that
 //! was checked; a relay without TLS is spoken to only within one's own network. No
 //! error names the password.
 
@@ -23,14 +23,14 @@ pub(super) const PATIENCE: Duration = Duration::from_mins(1);
 /// Taking leave after a letter was taken or refused.
 const QUIT_PATIENCE: Duration = Duration::from_secs(2);
 
-/// Where letters are handed over, and how.
+/// The mail relay that takes letters, and the way to reach it.
 #[derive(Clone)]
 pub struct Relay {
     host: String,
     port: u16,
     security: Security,
     credentials: Option<Credentials>,
-    /// What we call ourselves.
+    /// Our own name in the SMTP greeting.
     name: ClientId,
     patience: Duration,
 }
@@ -83,7 +83,7 @@ impl Relay {
         })
     }
 
-    /// The same, tried again after another time than a minute.
+    /// Returns the relay with a timeout other than the default.
     #[must_use]
     pub fn with_patience(self, patience: Duration) -> Relay {
         Relay { patience, ..self }
@@ -171,7 +171,7 @@ fn credentials(url: &Url) -> Result<Option<Credentials>> {
     }
 }
 
-/// What the relay said, on one line.
+/// Returns the relay's error message as one line.
 fn plain(error: &lettre::transport::smtp::Error) -> String {
     let said = error.to_string();
     said.split_whitespace().collect::<Vec<_>>().join(" ")

@@ -15,12 +15,12 @@ use reqwest::Url;
 use std::fs;
 use std::time::{Duration, UNIX_EPOCH};
 
-/// What sends mail.
+/// Sender of mail.
 #[derive(Clone)]
 pub struct Mailer {
     relay: Relay,
     from: Mailbox,
-    /// Where people reach the dashboard, without a slash at the end.
+    /// Public URL of the dashboard, without a trailing slash.
     public_url: String,
 }
 
@@ -48,7 +48,7 @@ impl Mailer {
         }))
     }
 
-    /// The same, with a relay that is tried again after another time.
+    /// Returns the sender with a relay timeout other than the default.
     #[must_use]
     pub fn with_patience(self, patience: Duration) -> Mailer {
         Mailer {
@@ -71,7 +71,7 @@ impl Mailer {
             .to(Mailbox::new(None, address.parse()?))
             .subject(letter.subject.as_str())
             .date(UNIX_EPOCH + Duration::from_micros(written))
-            // The same at every try, so that a mailbox can tell a second copy.
+            // The id is the same at every try, so that a mailbox can detect a second copy.
             .message_id(Some(format!(
                 "<{}.{}@{domain}>",
                 claimed.id,
@@ -85,7 +85,7 @@ impl Mailer {
             None => builder.header(ContentType::TEXT_PLAIN).body(text)?,
             Some((files, report)) => builder.multipart(with_files(text, files, &report.month))?,
         };
-        // Nobody's holiday notice is to answer (RFC 3834, section 5).
+        // Automatic replies, such as holiday notices, are suppressed (RFC 3834, section 5).
         message.headers_mut().insert_raw(HeaderValue::new(
             HeaderName::new_from_ascii_str("Auto-Submitted"),
             "auto-generated".to_owned(),

@@ -1,4 +1,4 @@
-//! Who gets mail, in the database.
+//! Mail recipients in the database.
 
 use super::letter::Why;
 use super::recipient::{NewRecipient, Recipient};
@@ -107,7 +107,7 @@ pub(super) async fn change(
     Ok(())
 }
 
-/// Where a receiver's mail goes, and why; none if it was removed or shut out.
+/// Returns a receiver's address and the reason for its mail; none if removed or disabled.
 pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, Why)>> {
     let listed = row!(
         db,
@@ -137,7 +137,7 @@ pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, Why)>
     Ok(person.map(|(email,)| (email, Why::Person)))
 }
 
-/// Whom an operator's alerts are told by mail, and from which severity on.
+/// Returns the recipients of an operator's alerts, each with its minimum severity.
 pub(super) async fn wishes(
     tx: &mut Tx,
     operator: OperatorId,

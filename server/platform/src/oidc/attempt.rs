@@ -1,7 +1,7 @@
 //! A sign-in under way: what the browser keeps while its person is at the provider's.
 //!
-//! What always holds: the cookie is the only secret, and what the provider is told of it
-//! does not lead back to it. So nothing is stored for a sign-in before it comes back.
+//! Invariants: the cookie is the only secret. The values given to the provider do not
+//! reveal it. So nothing is stored for a sign-in before it comes back.
 
 use crate::app::App;
 use crate::config::Serve;
@@ -9,13 +9,13 @@ use crate::secret;
 use crate::session::cookie::{self, SameSite};
 use axum::http::{HeaderMap, HeaderValue};
 
-/// How long a person may be at the provider's, and then at the code.
+/// Time limit for a sign-in at the provider and the code after it, seconds.
 pub(super) const LASTS_S: i64 = 600;
 
 const PLAIN: &str = "binnacle_provider";
 const SECURE: &str = "__Host-binnacle_provider";
 
-/// What the browser keeps.
+/// The state of a sign-in that the browser keeps.
 pub(super) struct Attempt {
     begun_s: i64,
     cookie: String,
@@ -44,17 +44,17 @@ impl Attempt {
             .then_some(attempt)
     }
 
-    /// What comes back with the answer.
+    /// Returns the `state` value, which comes back with the provider's answer.
     pub(super) fn state(&self) -> String {
         secret::derived("state", &self.cookie)
     }
 
-    /// What the provider puts into the token.
+    /// Returns the `nonce` value, which the provider puts into the token.
     pub(super) fn nonce(&self) -> String {
         secret::derived("nonce", &self.cookie)
     }
 
-    /// What whoever redeems the code must know (RFC 7636).
+    /// Returns the verifier, which is needed to redeem the code (RFC 7636).
     pub(super) fn verifier(&self) -> String {
         secret::derived("verifier", &self.cookie)
     }

@@ -1,7 +1,7 @@
 //! From the code that the browser brings to who the person is: what the provider says,
 //! and that it is the provider who says it.
 //!
-//! What always holds: the token bears a signature by one of the provider's keys, never
+//! Invariants: the token bears a signature by one of the provider's keys, never
 //! none and never one by a shared secret; it is for us, of this sign-in, and not over
 //! (OpenID Connect Core 1.0, section 3.1.3.7).
 
@@ -47,7 +47,7 @@ type Client = CoreClient<
     EndpointMaybeSet,
 >;
 
-/// Whom the provider names, and what it says of their e-mail.
+/// The person named by the provider, with the e-mail address it claims.
 pub(super) struct Identity {
     pub(super) subject: String,
     email: Option<String>,
@@ -71,7 +71,7 @@ fn client(app: &App, found: &Found) -> Result<Client, Refusal> {
     Ok(client.set_auth_type(auth).set_redirect_uri(redirect))
 }
 
-/// Where a person goes to sign in.
+/// Returns the provider's address at which a person signs in.
 pub(super) fn address(app: &App, found: &Found, attempt: &Attempt) -> Result<Url, Refusal> {
     let client = client(app, found)?;
     let (state, nonce) = (attempt.state(), attempt.nonce());
@@ -108,7 +108,7 @@ pub(super) async fn redeem(
             Refusal::Unreachable
         }
         RequestTokenError::ServerResponse(said) => {
-            // Of the provider's own words only the kind: they may hold what was sent.
+            // Only the kind of the provider's error is kept: its text may hold what was sent.
             info!(error = %said.error().as_ref(), "the sign-in provider refused a code");
             Refusal::Untrusted
         }

@@ -1,6 +1,6 @@
 //! Requests to the provider.
 //!
-//! What always holds: each ends within ten seconds; redirects are not followed; no more
+//! Invariants: each ends within ten seconds; redirects are not followed; no more
 //! is read than a provider has to say; a provider with a certificate is asked for nothing
 //! without. The server's own admin named the provider, which may be within the network
 //! then; but one on the public internet cannot send requests into it.
@@ -15,7 +15,7 @@ use std::pin::Pin;
 /// Of a longer answer nothing is read: a hundred keys are a tenth of it.
 const MOST_BYTES: usize = 1 << 20;
 
-/// What asks.
+/// HTTP client for requests to the provider.
 #[derive(Clone)]
 pub(super) struct Http {
     client: Client,
@@ -23,7 +23,7 @@ pub(super) struct Http {
     https_only: bool,
 }
 
-/// Why there is no answer.
+/// Reason for a missing answer.
 #[derive(Debug, thiserror::Error)]
 #[error("{0:#}")]
 pub(super) struct NoAnswer(anyhow::Error);

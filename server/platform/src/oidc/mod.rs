@@ -1,6 +1,6 @@
 //! Signing in by the word of an OpenID Connect provider, for those who set one up.
 //!
-//! What always holds:
+//! Invariants:
 //!
 //! - Nobody is made a user here: a person of the provider's is let in who was one before,
 //!   found the first time by an e-mail that the provider has verified, and from then on by

@@ -1,6 +1,6 @@
-//! What the provider says of itself: its addresses and keys.
+//! The provider's own description: its addresses and keys.
 //!
-//! What always holds: it is asked when someone wants to sign in, not before; once an hour
+//! Invariants: it is asked when someone wants to sign in, not before; once an hour
 //! at most, but that a token by a key that is not known yet makes it be asked again; and
 //! after a failure not again for some seconds, however many wait.
 
@@ -15,14 +15,14 @@ use std::sync::Arc;
 use tokio::sync::Mutex;
 use tracing::warn;
 
-/// After so long it is asked anew.
+/// Time after which the provider is asked again, seconds.
 const KEPT_S: f64 = 3600.0;
-/// Not sooner, for keys that are not known.
+/// Minimum wait before another request for unknown keys, seconds.
 pub(super) const NEW_KEYS_AFTER_S: f64 = 60.0;
-/// Nor after a failure.
+/// Minimum wait after a failure, seconds.
 const TRIED_AGAIN_AFTER_S: f64 = 5.0;
 
-/// What was found, or that nothing was.
+/// Cache of the last discovery, whether it succeeded or failed.
 #[derive(Default)]
 pub struct Provider {
     kept: Mutex<Option<Kept>>,
@@ -39,7 +39,7 @@ pub(super) struct Found {
     pub(super) http: Http,
 }
 
-/// What is known of the provider, from no longer ago than `age_s`.
+/// Returns the provider's description, cached for less than `age_s` seconds or fetched anew.
 pub(super) async fn find(app: &App, age_s: f64) -> Result<Arc<Found>, Refusal> {
     let mut kept = app.provider.kept.lock().await;
     let now = app.clock.now();

@@ -1,9 +1,9 @@
-//! Why a sign-in by the provider did not come to its end.
+//! Reasons for which a sign-in through the provider fails.
 
 use crate::error::Error;
 use tracing::error;
 
-/// What the sign-in page is told.
+/// Reason shown on the sign-in page.
 #[derive(Debug)]
 pub(super) enum Refusal {
     /// The person did not want to, or the provider does not let them.
@@ -12,7 +12,7 @@ pub(super) enum Refusal {
     Over,
     /// The provider cannot be reached.
     Unreachable,
-    /// What the provider says does not hold.
+    /// The provider's claims failed verification.
     Untrusted,
     /// The provider does not vouch for an e-mail.
     Unverified,
@@ -42,7 +42,7 @@ impl Refusal {
         }
     }
 
-    /// Whether it counts as a failed attempt.
+    /// Checks whether the refusal counts as a failed attempt.
     pub(super) fn counts(&self) -> bool {
         use Refusal::{Taken, Unknown, Untrusted, Unverified};
         matches!(self, Untrusted | Unverified | Unknown | Taken)

@@ -26,9 +26,9 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// Where the provider sends people back to.
+/// Path to which the provider redirects people.
 pub const CALLBACK: &str = "/api/v1/session/provider/callback";
-/// Where the sign-in page is; what it is to say follows.
+/// Address of the sign-in page, to which the outcome is appended.
 const SIGN_IN_PAGE: &str = "/?sign-in=";
 
 /// The routes of this part.
@@ -48,12 +48,12 @@ where
 #[derive(Serialize, ToSchema)]
 #[schema(as = SignInProvider, example = json!({ "name": "Example Lines" }))]
 struct Named {
-    /// What it is called; none when there is none.
+    /// Name of the provider; none if no provider is set up.
     #[schema(required)]
     name: Option<String>,
 }
 
-/// What the provider sends the browser back with.
+/// Query parameters of the provider's redirect.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Answer {
@@ -61,7 +61,7 @@ struct Answer {
     code: Option<String>,
     /// As we gave it.
     state: Option<String>,
-    /// Why nobody signed in.
+    /// Error code, if nobody signed in.
     error: Option<String>,
 }
 
@@ -74,9 +74,9 @@ struct Code {
     code: String,
 }
 
-/// Whether one may sign in by another's word
+/// Show the sign-in provider
 ///
-/// By that of an OpenID Connect provider, if this server was told of one.
+/// This is the OpenID Connect provider, if one is set up on this server.
 #[utoipa::path(get, path = "/session/provider", tag = "session", security(()),
     responses((status = 200, body = Named)))]
 async fn find_provider(State(app): State<App>) -> Json<Named> {
@@ -194,7 +194,7 @@ async fn conclude(
     answer: Answer,
 ) -> Done {
     let attempt = Attempt::of(app, headers).ok_or(Refusal::Over)?;
-    // Of hashes, so that how long it takes does not tell how much is right.
+    // Hashes are compared, so that the timing does not reveal how much is right.
     let state = answer.state.unwrap_or_default();
     if secret::hash(&state) != attempt.state_hash() {
         return Err(Refusal::Over);
@@ -238,7 +238,7 @@ async fn who(
     let issuer = app.config.oidc.oidc_issuer.as_deref().unwrap_or_default();
     let identity = claims::redeem(app, attempt, code).await?;
     let subject = identity.subject.as_str();
-    // PostgreSQL takes no NUL in a text, and no provider names anyone so.
+    // PostgreSQL accepts no NUL in a text, and no provider uses one in a name.
     if subject.chars().any(char::is_control) {
         return Err(Refusal::Untrusted);
     }

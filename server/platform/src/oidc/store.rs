@@ -1,4 +1,4 @@
-//! Whom the provider means, and which sign-ins have come back from it.
+//! Users known to the provider, and the sign-ins that have come back from it.
 
 use crate::audit::RequestContext;
 use crate::db::{Db, Result, Tx, execute, row};
@@ -26,9 +26,9 @@ pub(super) async fn find_known(db: &Db, issuer: &str, subject: &str) -> Result<O
 
 /// Someone whom the provider has named before.
 pub(super) enum Known {
-    /// Who may sign in.
+    /// A user who may sign in.
     User(Box<User>),
-    /// Who may not.
+    /// A user who is disabled.
     Disabled,
 }
 
@@ -123,7 +123,7 @@ pub(super) async fn await_code(
     tx.commit().await
 }
 
-/// Whose code a sign-in waits for.
+/// Returns the user whose code a sign-in is waiting for.
 pub(super) async fn awaited(db: &Db, state_hash: &[u8], now: Time) -> Result<Option<User>> {
     let found = row!(
         db,

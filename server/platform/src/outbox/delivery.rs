@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use utoipa::{IntoParams, ToSchema};
 
-/// What carries messages to a receiver.
+/// Channel that carries messages to a receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, sqlx::Type)]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 pub enum Channel {
@@ -16,7 +16,7 @@ pub enum Channel {
     Mail,
 }
 
-/// What a message tells of.
+/// Subject of a message.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema, sqlx::Type,
 )]
@@ -75,7 +75,7 @@ pub enum Kind {
     #[serde(rename = "order.completed")]
     #[sqlx(rename = "order.completed")]
     OrderCompleted,
-    /// Headings at sea agree with what was foretold.
+    /// Headings at sea agree with the prediction.
     #[serde(rename = "order.verified")]
     #[sqlx(rename = "order.verified")]
     OrderVerified,
@@ -91,7 +91,7 @@ pub enum Kind {
     #[serde(rename = "order.cancelled")]
     #[sqlx(rename = "order.cancelled")]
     OrderCancelled,
-    /// What a person is told of by mail: one notification, or several together.
+    /// Notification mail to a person: one notification, or several together.
     #[serde(rename = "notification")]
     #[sqlx(rename = "notification")]
     Notification,
@@ -106,7 +106,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Whether it is of a work order: firms are told of nothing else.
+    /// Checks whether the message concerns a work order: firms receive no other kind.
     pub fn is_of_order(self) -> bool {
         !matches!(
             self,
@@ -121,12 +121,12 @@ impl Kind {
     }
 }
 
-/// Something to be told.
+/// A message to be delivered.
 #[derive(Clone, Debug)]
 pub struct Message {
     /// The event's id.
     pub id: DeliveryId,
-    /// What it tells of.
+    /// Subject of the message.
     pub kind: Kind,
     /// The work order that it is of, if it is of one.
     pub order: Option<OrderId>,
@@ -134,7 +134,7 @@ pub struct Message {
     pub body: String,
 }
 
-/// How a delivery stands.
+/// State of a delivery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
@@ -152,27 +152,27 @@ pub enum DeliveryState {
 pub struct Delivery {
     /// The event's id, which a webhook's body names too.
     pub id: DeliveryId,
-    /// What it tells of.
+    /// Subject of the message.
     pub kind: Kind,
-    /// How it stands.
+    /// State of the delivery.
     pub state: DeliveryState,
-    /// When it was written.
+    /// Creation time of the message.
     pub created_at: Time,
-    /// How often it was tried since it was last to be sent.
+    /// Number of attempts since it was last queued.
     pub attempts: i64,
-    /// When it is tried next, while it waits.
+    /// Time of the next attempt, while the delivery is pending.
     #[schema(required)]
     pub next_attempt_at: Option<Time>,
     /// The last answer's HTTP status or SMTP reply code.
     #[schema(required, example = 503)]
     pub last_status: Option<i64>,
-    /// Why the last try failed.
+    /// Error of the last failed attempt.
     #[schema(required)]
     pub last_error: Option<String>,
-    /// When it was delivered.
+    /// Time of the delivery.
     #[schema(required)]
     pub delivered_at: Option<Time>,
-    /// What a webhook is sent, or a mail's `subject` and `text`.
+    /// Body sent to a webhook, or a mail's `subject` and `text`.
     #[schema(value_type = Object)]
     pub body: Box<RawValue>,
 }
@@ -187,7 +187,7 @@ pub struct DeliveryList {
     pub next: Option<String>,
 }
 
-/// Which deliveries.
+/// Filter for deliveries.
 #[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct Filter {

@@ -1,4 +1,4 @@
-//! What became of a receiver's messages.
+//! The history of a receiver's messages.
 
 use super::delivery::{Delivery, DeliveryList, DeliveryState, Filter, Kind, Message};
 use super::queue::queue;

@@ -1,6 +1,6 @@
 //! Messages on their way out, whatever carries them: a queue for each receiver.
 //!
-//! What always holds:
+//! Invariants:
 //!
 //! - A message is queued in the transaction that makes it true, and sent at least
 //!   once; its id tells a receiver that it had it before.

@@ -1,6 +1,6 @@
 //! The queues in the database, one for each receiver.
 //!
-//! What always holds: a receiver's deliveries are numbered in the order in which
+//! Invariants: a receiver's deliveries are numbered in the order in which
 //! their transactions commit, and of each work order's, and of those of none, only the
 //! first that waits is due. One worker at a time has it, the one that holds its lease, and no
 //! other calls upon the same receiver. Webhooks are always taken before mail recipients, and
@@ -13,22 +13,22 @@ use crate::time::Time;
 use sha2::{Digest, Sha256};
 use uuid::Uuid;
 
-/// How long a try may take before another worker may try: longer than any does.
+/// Lease of one attempt, seconds: longer than any attempt takes.
 const LEASE_S: f64 = 90.0;
-/// So many of a tenant's receivers are called upon at once: those who are slow to answer keep
-/// nobody else's waiting.
+/// Maximum number of a tenant's receivers served at once, so that slow receivers do not delay
+/// those of other tenants.
 const MOST_OF_TENANT: i64 = 2;
 const FIRST_RETRY_S: f64 = 10.0;
 const LONGEST_RETRY_S: f64 = 3600.0;
-/// What could not be delivered for so long is given up.
+/// Time after which an undelivered message is given up, seconds.
 const GIVEN_UP_AFTER_S: f64 = 86_400.0;
-/// What was delivered or given up is forgotten after so long.
+/// Time after which a finished delivery is deleted, seconds.
 const KEPT_FOR_S: f64 = 30.0 * 86_400.0;
 
 /// A delivery that a worker has claimed.
 #[derive(Clone, Debug, sqlx::FromRow)]
 pub struct Claimed {
-    /// Who is to get it.
+    /// The receiver of the message.
     pub receiver_id: Uuid,
     /// Its place in the receiver's queue.
     pub number: i64,
@@ -36,9 +36,9 @@ pub struct Claimed {
     pub id: DeliveryId,
     /// This one included; tells this lease from later ones.
     pub attempts: i64,
-    /// When it was written.
+    /// Creation time of the message.
     pub created_at: Time,
-    /// Since when it is to be sent.
+    /// Time at which it was last queued.
     pub tries_since: Time,
     /// The message, JSON.
     pub body: String,
@@ -182,7 +182,7 @@ pub(super) async fn succeed(db: &Db, claimed: &Claimed, status: u16, now: Time) 
     tx.commit().await
 }
 
-/// Whether a delivery has been tried for as long as anything is.
+/// Checks whether the retry period of a delivery is over.
 pub(super) fn is_tried_enough(claimed: &Claimed, now: Time) -> bool {
     now.0.seconds_since(claimed.tries_since.0) >= GIVEN_UP_AFTER_S
 }

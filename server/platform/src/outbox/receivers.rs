@@ -1,5 +1,5 @@
-//! What webhooks and mail recipients have in common: a row of their own in the
-//! queue's terms, under the same id.
+//! The common part of webhooks and mail recipients: each has a row in the queue's table of
+//! receivers, under the same id.
 
 use super::delivery::Channel;
 use crate::db::{Result as DbResult, Tx, execute};

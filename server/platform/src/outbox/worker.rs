@@ -8,14 +8,14 @@ use std::future::Future;
 use std::time::Duration;
 use tracing::{error, info, warn};
 
-/// How often to look for deliveries that nobody was told of.
+/// Interval at which the worker looks for deliveries without a notification.
 const LOOK_EVERY: Duration = Duration::from_secs(2);
 /// Longest text that is kept of an error, characters.
 const MAX_ERROR: usize = 300;
 
-/// What brings messages to the receivers of one channel.
+/// Carrier of messages to the receivers of one channel.
 pub trait Carrier: Send + Sync {
-    /// Which channel.
+    /// The channel served.
     const CHANNEL: Channel;
 
     /// Tries a delivery once.
@@ -29,7 +29,7 @@ pub trait Carrier: Send + Sync {
     ) -> impl Future<Output = anyhow::Result<Tried>> + Send;
 }
 
-/// What a receiver answered to a try, with its status.
+/// A receiver's answer to an attempt, with its status.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Tried {
     /// It took the message.
@@ -40,7 +40,7 @@ pub enum Tried {
     Refused(u16, String),
 }
 
-/// What a step did.
+/// Outcome of one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sent {
     /// The receiver has it.

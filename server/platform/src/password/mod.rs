@@ -1,6 +1,6 @@
-//! Which passwords are taken, after NIST SP 800-63B, section 3.1.1.2: long ones, of any
-//! letters, that are neither common nor what anybody would guess of this person. No mix
-//! of kinds of letters is asked for, and nothing is to be changed for its age.
+//! Password rules, after NIST SP 800-63B, section 3.1.1.2: passwords are long and use any
+//! characters. They are neither common nor easily guessed for this person. No mix of
+//! character classes is required, and no password expires.
 
 mod common;
 
@@ -13,9 +13,9 @@ use tokio::sync::OwnedSemaphorePermit;
 pub const LEAST: usize = 12;
 /// Argon2 takes any length; nobody types more.
 pub const MOST_BYTES: usize = 1024;
-/// So many characters are to be left when all that is easily guessed is taken out.
+/// Minimum number of characters left after all easily guessed parts are removed.
 const LEAST_LEFT: usize = 6;
-/// Shorter words are in everything.
+/// Minimum length of a word that counts as easily guessed.
 const LEAST_WORD: usize = 4;
 
 /// Refuses a password that is short or easily guessed; `about` is what is known of
@@ -78,8 +78,8 @@ pub async fn place(app: &App) -> Result<OwnedSemaphorePermit> {
     Ok(place.map_err(anyhow::Error::from)?)
 }
 
-/// Whether the password is right. The place goes along, so that it is taken for as
-/// long as the hashing lasts, even when nobody waits for the answer any more.
+/// Checks a password. The permit moves into the task, so that it stays taken for as long as
+/// the hashing lasts, even if nobody waits for the answer any more.
 ///
 /// # Errors
 /// When the server is stopping.

@@ -1,7 +1,7 @@
 //! A second factor for those who want one, or whose operator wants it: codes from an
 //! authenticator app (RFC 6238), and recovery codes for when the telephone is gone.
 //!
-//! What always holds: a code works once; recovery codes are stored as hashes and each
+//! Invariants: a code works once; recovery codes are stored as hashes and each
 //! works once; a factor counts only after a first code has come, so that nobody locks
 //! themselves out; the password is asked for again before anything of it changes.
 
@@ -52,7 +52,7 @@ struct Again {
     password: String,
 }
 
-/// What an authenticator app needs to make codes.
+/// The secret from which an authenticator app makes codes.
 #[derive(Serialize, ToSchema)]
 #[schema(as = SecondFactorSecret, example = json!({
     "secret": "GEZDGNBVGY3TQOJQGEZDGNBVGY3TQOJQ",
@@ -61,7 +61,7 @@ struct Again {
 struct Begun {
     /// To be typed into the app; base 32. Never shown again.
     secret: String,
-    /// The same as an address, to be shown as a QR code or opened on the telephone.
+    /// The secret as a URI, to be shown as a QR code or opened on the phone.
     uri: String,
 }
 
@@ -200,7 +200,7 @@ async fn new_recovery_codes(tx: &mut Tx, user: UserId) -> Result<RecoveryCodes> 
     Ok(RecoveryCodes { recovery_codes })
 }
 
-/// Whether a code, from the app or a recovery code, is the user's; it is used up.
+/// Checks a code of the user's, from the app or a recovery code, and marks it as used.
 ///
 /// # Errors
 /// When the database does.

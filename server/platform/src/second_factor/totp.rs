@@ -1,13 +1,13 @@
 //! Codes from the time, RFC 6238 on RFC 4226: SHA-1, six digits, thirty seconds, which
 //! is what every authenticator app takes.
 //!
-//! What always holds: a code is of one step of time, and whoever asks says after which
+//! Invariants: a code is of one step of time, and whoever asks says after which
 //! step it must be, so that a code that was seen once is worth nothing.
 
 use binnacle_compass::time::Timestamp;
 use ring::hmac;
 
-/// Octets of a secret: as long as the hash (RFC 4226, section 4, requirement 6).
+/// Length of a secret in bytes, equal to the hash's (RFC 4226, section 4, requirement 6).
 pub(super) const SECRET_BYTES: usize = 20;
 const STEP_S: i64 = 30;
 const CODES: u32 = 1_000_000;

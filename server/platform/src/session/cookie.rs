@@ -1,6 +1,6 @@
 //! The session's cookie, and what every cookie of ours is like.
 //!
-//! What always holds: scripts cannot read it, other sites' requests do not carry the
+//! Invariants: scripts cannot read it, other sites' requests do not carry the
 //! session's, and where it is for https alone its name begins with `__Host-`, so that no other
 //! host of the domain can plant one (RFC 6265bis, section 4.1.3.2).
 
@@ -42,7 +42,7 @@ pub(super) fn set(config: &Serve, token: &str, max_age_s: u64) -> HeaderMap {
     HeaderMap::from_iter([(SET_COOKIE, header)])
 }
 
-/// Which requests of other sites' carry a cookie.
+/// The cross-site requests that carry a cookie.
 #[derive(Clone, Copy, Debug)]
 pub enum SameSite {
     /// Following a link does.

@@ -1,6 +1,6 @@
 //! Signing in and out; one's sessions and password.
 //!
-//! What always holds: a session's token is stored only as a hash; it ends when its time
+//! Invariants: a session's token is stored only as a hash; it ends when its time
 //! is over, when it was idle for long, when it is ended, and when the password changes
 //! under another session. What a failed sign-in answers, and how long that takes, does
 //! not tell whether there is such a user.

@@ -34,21 +34,21 @@ where
 pub(super) struct Session {
     /// The session's id.
     pub(super) id: SessionId,
-    /// When you signed in.
+    /// Time of the sign-in.
     created_at: Time,
-    /// When a request last came, to ten minutes.
+    /// Time of the last request, to ten minutes.
     last_seen_at: Time,
-    /// When it ends at the latest.
+    /// Latest end of the session.
     expires_at: Time,
-    /// Where the sign-in came from; empty if that is not known.
+    /// Network address of the sign-in; empty if unknown.
     #[schema(example = "198.51.100.7")]
     address: String,
-    /// What the browser called itself.
+    /// The browser's own name for itself (`User-Agent`).
     user_agent: String,
     /// By whose word it was opened; none if by your password.
     #[schema(required, example = json!(null))]
     provider: Option<String>,
-    /// Whether this request came with it.
+    /// True for the session of this request.
     current: bool,
 }
 

@@ -27,7 +27,7 @@ where
         .routes(routes!(me))
 }
 
-/// What a user signs in with.
+/// A user's credentials.
 #[derive(Deserialize, ToSchema)]
 #[schema(example = json!({ "email": "captain@example.com", "password": "seven gulls over the quay" }))]
 struct SignIn {
@@ -99,7 +99,7 @@ async fn sign_out(
     Ok((StatusCode::NO_CONTENT, cookie::set(&app.config, "", 0)))
 }
 
-/// Who is signed in
+/// Show the signed-in user
 #[utoipa::path(get, path = "/me", tag = "session",
     responses((status = 200, body = User), (status = 401, body = Problem)))]
 async fn me(caller: Caller) -> Json<User> {
@@ -108,7 +108,7 @@ async fn me(caller: Caller) -> Json<User> {
 
 /// The user, if everything is right.
 async fn judge(app: &App, request: &RequestContext, from: &Origin, given: SignIn) -> Result<User> {
-    // PostgreSQL takes no NUL in a text, and nobody has such an e-mail.
+    // PostgreSQL accepts no NUL in a text, and nobody has such an e-mail address.
     if given.email.chars().any(char::is_control) {
         return Err(Error::WrongPassword);
     }

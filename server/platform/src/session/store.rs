@@ -11,7 +11,7 @@ use crate::secret;
 use crate::tenants::Tenant;
 use crate::time::Time;
 
-/// How old `last_seen_at` may be before a request is noted: reading is not to write.
+/// Minimum age of `last_seen_at` before it is updated, seconds: most requests write nothing.
 const SEEN_NOTED_EVERY_S: f64 = 600.0;
 
 #[derive(sqlx::FromRow)]
@@ -66,7 +66,7 @@ pub async fn find_user(
     Ok(Some((holder.user, holder.session_id)))
 }
 
-/// Whether a session that was good still is.
+/// Checks whether a session that was valid still is.
 ///
 /// # Errors
 /// When the database does.
@@ -99,7 +99,7 @@ pub async fn name_of(tx: &mut Tx, id: UserId) -> error::Result<String> {
     Ok(name)
 }
 
-/// Who may sign in with an e-mail, and the hash of the password.
+/// Returns the active user with an e-mail address, and the hash of the password.
 pub(super) async fn find_by_email(db: &Db, email: &str) -> Result<Option<(User, String)>> {
     let stored = row!(
         db,

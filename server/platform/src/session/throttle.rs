@@ -1,6 +1,6 @@
 //! Slows down those who guess passwords and codes.
 //!
-//! What always holds: an e-mail that nobody has is throttled like any other, so
+//! Invariants: an e-mail that nobody has is throttled like any other, so
 //! that the answer does not tell which exist. Failures count for the e-mail, and, so
 //! that one password is not tried on every e-mail, for the address they come from.
 
@@ -21,7 +21,7 @@ const LONGEST_WAIT_S: i64 = 900;
 /// After so long without a failure all is forgotten.
 const FORGET_AFTER_S: f64 = 86_400.0;
 
-/// Whose failures are counted.
+/// The subjects whose failures are counted.
 pub struct Subjects<'a> {
     /// The e-mail that is tried, as it is stored; none where nobody says it.
     email: Option<&'a str>,

@@ -1,4 +1,4 @@
-//! Who signs in.
+//! The signed-in user.
 
 use crate::audit::Actor;
 use crate::ids::{FirmId, OperatorId, UserId};
@@ -12,38 +12,38 @@ use utoipa::ToSchema;
 pub struct User {
     /// The user's id.
     pub user_id: UserId,
-    /// What the user signs in with.
+    /// E-mail address used to sign in.
     pub email: String,
     /// The user's name.
     pub name: String,
-    /// What the user may do.
+    /// Role of the user.
     pub role: Role,
     /// The operator whose fleet the user sees, if any.
     #[schema(required)]
     pub operator_id: Option<OperatorId>,
-    /// That operator's name.
+    /// Name of the operator.
     #[schema(required)]
     pub operator_name: Option<String>,
     /// The firm that the user adjusts compasses for, if any.
     #[schema(required)]
     pub firm_id: Option<FirmId>,
-    /// That firm's name.
+    /// Name of the firm.
     #[schema(required)]
     pub firm_name: Option<String>,
-    /// Whether the user has a second factor.
+    /// True if the user has a second factor.
     pub second_factor: bool,
-    /// Whether the operator wants one: without it nothing else can be seen or done.
+    /// True if the operator requires a second factor: without one, access is refused.
     pub second_factor_required: bool,
 }
 
 impl User {
-    /// Whose side the user is on; none for a platform admin.
+    /// Returns the user's tenant; none for a platform admin.
     pub fn tenant(&self) -> Option<Tenant> {
         let operator = self.operator_id.map(Tenant::Operator);
         operator.or(self.firm_id.map(Tenant::Firm))
     }
 
-    /// Whether nothing is to be had before a second factor is set up.
+    /// Checks whether the user must set up a second factor before anything else.
     pub fn lacks_second_factor(&self) -> bool {
         self.second_factor_required && !self.second_factor
     }
@@ -73,7 +73,7 @@ macro_rules! user_sql {
 }
 pub(crate) use user_sql;
 
-/// What a user may do.
+/// Role of a user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
@@ -89,12 +89,12 @@ pub enum Role {
 }
 
 impl Role {
-    /// Whether the role allows changes to a fleet.
+    /// Checks whether the role allows changes to a fleet.
     pub fn may_change_fleet(self) -> bool {
         self == Role::Admin
     }
 
-    /// Whether the role allows to bring work orders on.
+    /// Checks whether the role allows progress on work orders.
     pub fn may_bring_orders_on(self) -> bool {
         matches!(self, Role::Admin | Role::Adjuster)
     }

@@ -11,13 +11,13 @@ use std::sync::Arc;
 /// TLS sessions that can be resumed; each takes some 300 bytes.
 const SESSIONS: usize = 32_768;
 
-/// How hands are shaken.
+/// TLS configurations for handshakes.
 #[derive(Clone, Debug)]
 pub struct Configs {
     usual: Arc<ServerConfig>,
     /// Without a ticket, for clients that do not return while it holds.
     once: Arc<ServerConfig>,
-    /// Application protocol (ALPN) by which such a client makes itself known.
+    /// Application protocol (ALPN) by which a client of one request identifies itself.
     one_request: &'static [u8],
 }
 
@@ -33,7 +33,7 @@ impl Configs {
     }
 }
 
-/// Where the certificate is kept.
+/// Location of the certificate.
 #[derive(Clone, Debug)]
 pub struct Certificate {
     /// PEM: the server's certificate first, then those up to the authority's.
@@ -68,8 +68,8 @@ impl Certificate {
         config.alpn_protocols = vec![b"h2".to_vec(), b"http/1.1".to_vec()];
         // Each ticket is some hundred bytes over a satellite; one is enough to resume.
         config.send_tls13_tickets = 1;
-        // One for each ship of a large fleet, and for the browsers between two uploads of
-        // hers: kept here they are a quarter of what a ticket would be that holds it all.
+        // One session for each ship of a large fleet, and for the browsers between two of its
+        // uploads. Kept here, a session takes a quarter of the bytes of a self-contained ticket.
         config.session_storage = ServerSessionMemoryCache::new(SESSIONS);
         Ok(Configs {
             usual: Arc::new(config),

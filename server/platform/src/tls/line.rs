@@ -1,7 +1,7 @@
-//! Connections that spend few packets: each costs a ship forty octets and more beside
-//! what is in it.
+//! Connections that use few packets: each packet costs a ship forty bytes or more besides
+//! its content.
 //!
-//! What always holds: nothing that a peer waits for is kept back, and a peer that is
+//! Invariants: nothing that a peer waits for is kept back, and a peer that is
 //! still there gets all that was written.
 
 use socket2::SockRef;
@@ -13,7 +13,7 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 use tokio_rustls::server::TlsStream;
 
-/// The first octet of a TLS record that is encrypted (RFC 8446, 5.1).
+/// The first byte of an encrypted TLS record (RFC 8446, 5.1).
 const ENCRYPTED: u8 = 23;
 
 /// TCP below TLS. The ticket for a next session, which nobody waits for, goes with the
@@ -21,10 +21,10 @@ const ENCRYPTED: u8 = 23;
 #[derive(Debug)]
 pub(super) struct Tcp {
     stream: TcpStream,
-    /// What is kept for the next write.
+    /// Data held back for the next write.
     kept: Vec<u8>,
     hands_shaken: bool,
-    /// What is kept has been joined by what a peer waits for.
+    /// True once data that the peer waits for has joined the data held back.
     joined: bool,
 }
 
@@ -47,8 +47,8 @@ impl Tcp {
         self.acknowledge_with_answers();
     }
 
-    /// What acknowledges a hello or a request may go with the answer to it. The system
-    /// forgets it now and then; it only saves octets.
+    /// Lets the acknowledgement of a hello or a request go with the answer to it. The system
+    /// resets this now and then; it only saves bytes.
     fn acknowledge_with_answers(&self) {
         #[cfg(target_os = "linux")]
         SockRef::from(&self.stream).set_tcp_quickack(false).ok();
@@ -139,7 +139,7 @@ impl AsyncWrite for Tcp {
     }
 }
 
-/// TLS whose peer, when it has said goodbye, is not told so in five packets but in one.
+/// A TLS connection that, after the peer has closed it, ends with one packet instead of five.
 #[derive(Debug)]
 pub struct Line {
     stream: TlsStream<Tcp>,

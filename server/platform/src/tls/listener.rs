@@ -19,12 +19,12 @@ use tracing::{debug, error, info};
 
 /// Over a satellite that loses packets a handshake takes up to half a minute.
 const HANDSHAKE: Duration = Duration::from_mins(1);
-/// So many hands are shaken at once; others wait in the system's queue.
+/// Maximum number of concurrent handshakes; further connections wait in the system's queue.
 const HANDSHAKES: usize = 1024;
 
 type Connection = (Line, SocketAddr);
 
-/// Takes TLS connections on a TCP listener. SIGHUP has the certificate read anew.
+/// Takes TLS connections on a TCP listener. SIGHUP reloads the certificate.
 #[derive(Debug)]
 pub struct TlsListener {
     ready: mpsc::Receiver<Connection>,
@@ -80,7 +80,7 @@ impl Listener for TlsListener {
     async fn accept(&mut self) -> Connection {
         match self.ready.recv().await {
             Some(connection) => connection,
-            // Nobody takes connections any more: the runtime is stopping.
+            // Nothing accepts connections any more: the runtime is stopping.
             None => std::future::pending().await,
         }
     }

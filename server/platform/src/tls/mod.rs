@@ -1,6 +1,6 @@
 //! TLS on the server's own listener, for a server without a proxy before it.
 //!
-//! What always holds: a handshake, however slow, keeps nobody else waiting; a
+//! Invariants: a handshake, however slow, keeps nobody else waiting; a
 //! certificate that cannot be read is refused at the start, and later leaves the
 //! one before in use.
 

@@ -1,6 +1,6 @@
 //! API tokens: for programs that act for a user.
 //!
-//! What always holds: a token is shown once and stored as a hash; it may do no
+//! Invariants: a token is shown once and stored as a hash; it may do no
 //! more than its user, and only read unless its scope is `write`.
 
 mod store;
@@ -22,7 +22,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// What an API token begins with; an agent's token has no prefix.
+/// Prefix of an API token; an agent's token has none.
 pub const PREFIX: &str = "bna_";
 
 /// The routes of this part.
@@ -36,15 +36,15 @@ where
         .routes(routes!(delete_token))
 }
 
-/// What a token may do.
+/// Scope of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = TokenScope)]
 pub enum Scope {
-    /// What its user may see.
+    /// Read access to all that its user may see.
     Read,
-    /// What its user may do.
+    /// Permission for all that its user may do.
     Write,
 }
 
@@ -53,15 +53,15 @@ pub enum Scope {
 pub struct Token {
     /// The token's id.
     pub id: TokenId,
-    /// What it is for, in the user's words.
+    /// Purpose of the token, in the user's words.
     pub name: String,
-    /// What it may do.
+    /// Scope of the token.
     pub scope: Scope,
-    /// When it ends.
+    /// Expiry time.
     pub expires_at: Time,
-    /// When it was made.
+    /// Creation time.
     pub created_at: Time,
-    /// When it was last used, to the hour.
+    /// Time of the last use, to the hour.
     #[schema(required)]
     pub last_used_at: Option<Time>,
 }
@@ -69,12 +69,12 @@ pub struct Token {
 /// A token to be made.
 #[derive(Deserialize, ToSchema)]
 pub struct NewToken {
-    /// What it is for.
+    /// Purpose of the token.
     #[schema(min_length = 1, max_length = 200)]
     pub name: String,
-    /// What it may do.
+    /// Scope of the token.
     pub scope: Scope,
-    /// When it ends; a year from now if not said.
+    /// Expiry time; one year from now by default.
     pub expires_at: Option<Time>,
 }
 
@@ -121,7 +121,7 @@ async fn create_token(
     caller: Caller,
     Valid(new): Valid<NewToken>,
 ) -> Result<(StatusCode, Json<MadeToken>)> {
-    // One that leaked is not to make others that outlive it.
+    // A leaked token must not create others that outlive it.
     caller.must_be_signed_in()?;
     caller.must_have_second_factor()?;
     let name = crate::http::text("name", &new.name)?;

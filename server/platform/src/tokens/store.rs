@@ -9,7 +9,7 @@ use crate::secret;
 use crate::session::{User, user_sql};
 use crate::time::Time;
 
-/// How old `last_used_at` may be before a use is noted: reading is not to write.
+/// Minimum age of `last_used_at` before it is updated, seconds: most requests write nothing.
 const USE_NOTED_EVERY_S: f64 = 3600.0;
 
 #[derive(sqlx::FromRow)]
@@ -55,7 +55,7 @@ pub async fn caller(db: &Db, token: &str, now: Time) -> Result<Option<Caller>> {
     }))
 }
 
-/// Whether a token that was good still is.
+/// Checks whether a token that was valid still is.
 ///
 /// # Errors
 /// When the database does.

@@ -1,6 +1,6 @@
 //! One-time codes with which people set a password of their own.
 //!
-//! What always holds: a code is stored as a hash, works once and for a week; whoever
+//! Invariants: a code is stored as a hash, works once and for a week; whoever
 //! uses it gets a password and nothing else, and signs in with that.
 
 use crate::access::Custodian;
@@ -42,11 +42,11 @@ where
 pub(super) struct Invitation {
     /// Works once and is never shown again.
     code: String,
-    /// Where to use it, if the server was told its address. What stands after the # is
-    /// sent to no server and gets into no log.
+    /// Link for its use, if the server knows its public address. The part after the # is sent to
+    /// no server and appears in no log.
     #[schema(required)]
     link: Option<String>,
-    /// When it stops working.
+    /// Expiry time.
     expires_at: Time,
 }
 
@@ -64,10 +64,10 @@ struct Acceptance {
     password: String,
 }
 
-/// Who can now sign in.
+/// The user who can now sign in.
 #[derive(Serialize, ToSchema)]
 struct Accepted {
-    /// What to sign in with.
+    /// E-mail address to sign in with.
     #[schema(example = "ada@example.com")]
     email: String,
     /// The user's name.

@@ -1,6 +1,6 @@
-//! Who of an operator's people may sign in, and as what.
+//! An operator's users and their roles.
 //!
-//! What always holds: an operator keeps at least one admin who can sign in; nobody
+//! Invariants: an operator keeps at least one admin who can sign in; nobody
 //! learns another's password, for an admin gives a one-time code and the person sets
 //! the password; who is disabled is signed out at once, and so are their tokens; a token
 //! changes none of this.
@@ -48,29 +48,29 @@ where
 struct Person {
     /// The user's id.
     id: UserId,
-    /// What the user signs in with.
+    /// E-mail address used to sign in.
     #[schema(example = "ada@example.com")]
     email: String,
     /// The user's name.
     #[schema(example = "Ada Lovelace")]
     name: String,
-    /// What the user may do.
+    /// Role of the user.
     role: Role,
-    /// Whether the user can sign in.
+    /// State of the account.
     state: Standing,
-    /// Whether the user has a second factor.
+    /// True if the user has a second factor.
     second_factor: bool,
-    /// Since when there is such a user.
+    /// Creation time of the user.
     created_at: Time,
-    /// When one of the user's sessions that go on was last used, to ten minutes.
+    /// Time of the last use among the user's active sessions, to ten minutes.
     #[schema(required)]
     last_seen_at: Option<Time>,
-    /// When the one-time code ends that was made for the user, if it was not used.
+    /// Expiry time of the user's one-time code, if it is unused.
     #[schema(required)]
     invitation_expires_at: Option<Time>,
 }
 
-/// Whether a user can sign in.
+/// State of a user's account.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
@@ -99,17 +99,17 @@ struct UserList {
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({ "email": "ada@example.com", "name": "Ada Lovelace", "role": "viewer" }))]
 struct NewUser {
-    /// What the user is to sign in with.
+    /// E-mail address to sign in with.
     #[schema(max_length = 200)]
     email: String,
     /// The user's name.
     #[schema(min_length = 1, max_length = 200)]
     name: String,
-    /// What the user may do.
+    /// Role of the user.
     role: FleetRole,
 }
 
-/// What one of an operator's people may do.
+/// Role of an operator's user.
 #[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 enum FleetRole {
@@ -133,11 +133,11 @@ impl From<FleetRole> for Role {
 struct InvitedUser {
     /// The user.
     user: Person,
-    /// What to give them.
+    /// The invitation to pass on.
     invitation: Invitation,
 }
 
-/// What is to be otherwise about a user; what is left out stays.
+/// Changes to a user; omitted fields stay as they are.
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({ "role": "admin" }))]
@@ -145,19 +145,19 @@ struct ChangedUser {
     /// The user's name.
     #[schema(min_length = 1, max_length = 200)]
     name: Option<String>,
-    /// What the user may do.
+    /// Role of the user.
     role: Option<FleetRole>,
-    /// Whether the user is shut out.
+    /// True to disable the user.
     disabled: Option<bool>,
 }
 
-/// What an operator asks of its people when they sign in.
+/// An operator's rules for signing in.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, ToSchema, sqlx::FromRow)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({ "second_factor_required": true }))]
 struct SignInRules {
-    /// Whether everyone needs a second factor. Who has none may then only set one up, and
-    /// their tokens do nothing until they have.
+    /// True if everyone needs a second factor. Users without one can then only set one up, and
+    /// their tokens stop working until they do.
     second_factor_required: bool,
 }
 

@@ -1,9 +1,9 @@
-//! Which addresses a webhook may reach: only public ones, so that nobody makes the
-//! server knock on the doors of its own network.
+//! The addresses that a webhook may reach: only public ones, so that nobody can make the
+//! server call hosts of its own network.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 
-/// Whether an address is one of the public internet's (IANA special-purpose address
+/// Checks whether an address belongs to the public internet (IANA special-purpose address
 /// registries, RFC 6890).
 pub fn is_public(address: IpAddr) -> bool {
     match address {

@@ -1,11 +1,11 @@
 //! Webhooks: telling an operator's or a firm's programs of what happened.
 //!
-//! What always holds:
+//! Invariants:
 //!
 //! - Messages wait and are sent as [`crate::outbox`] says.
 //! - Each try is signed with the webhook's secret over its time and its body.
-//! - Nothing is sent to an address that is not one of the public internet, unless
-//!   the server was told to.
+//! - Nothing is sent to an address outside the public internet, unless the server is
+//!   configured to allow it.
 
 mod address;
 mod announce;
@@ -33,7 +33,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use webhook::{MadeWebhook, NewWebhook, Webhook, WebhookList};
 
-/// What a webhook's secret begins with.
+/// Prefix of a webhook's secret.
 const SECRET_PREFIX: &str = "bns_";
 
 /// The routes of this part.
@@ -137,7 +137,7 @@ async fn change_webhook(
 
 /// Remove a webhook
 ///
-/// What it was to be told is forgotten.
+/// Pending messages to it are deleted.
 #[utoipa::path(delete, path = "/webhooks/{id}", tag = "alerts", params(("id" = WebhookId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 404, body = Problem)))]

@@ -1,6 +1,6 @@
 //! One delivery over HTTP, signed.
 //!
-//! What always holds: a redirect is not followed and no proxy is used, so that a
+//! Invariants: a redirect is not followed and no proxy is used, so that a
 //! message goes only to an address that was looked at; what answers is not read
 //! beyond its status.
 
@@ -25,14 +25,14 @@ pub const SIGNATURE_HEADER: &str = "Binnacle-Signature";
 const PATIENCE: Duration = Duration::from_secs(10);
 const MAX_URL: usize = 500;
 
-/// What sends.
+/// Sender of webhook messages.
 #[derive(Clone, Debug)]
 pub struct Sender {
     client: Client,
     reach: Reach,
 }
 
-/// Where messages may go.
+/// The addresses to which messages may go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
     /// Over https, to addresses of the public internet.
@@ -66,7 +66,7 @@ impl Sender {
             .header("content-type", "application/json")
             .header(SIGNATURE_HEADER, signature(secret, seconds, &body))
             .body(body);
-        // An address may hold a secret of the receiver's: it goes into no message.
+        // An address may contain a secret of the receiver, so no error message quotes it.
         let answer = request.send().await.map_err(reqwest::Error::without_url)?;
         Ok(answer.status().as_u16())
     }
@@ -82,13 +82,13 @@ impl Carrier for Sender {
         let body = claimed.body.clone();
         Ok(match self.send(&url, &secret, seconds, body).await? {
             status @ 200..=299 => Tried::Taken(status),
-            // Whoever makes the receiver may yet mend it: nothing is refused for good.
+            // The receiver may still be repaired, so nothing is refused for good.
             status => Tried::Later(status, format!("answered with status {status}")),
         })
     }
 }
 
-/// What asks others' servers: patient, but not for long, and led nowhere else.
+/// Builds the client for requests to other servers: with a timeout, and without redirects.
 ///
 /// # Errors
 /// When this machine has no certificates to check others by.

@@ -126,7 +126,7 @@ pub(super) async fn change(
     Ok(())
 }
 
-/// Where a webhook goes and what signs it; none if it was removed.
+/// Returns a webhook's URL and signing secret; none if it was removed.
 pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, String)>> {
     row!(
         db,
@@ -136,7 +136,7 @@ pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, Strin
     )
 }
 
-/// The webhooks of an tenant's that are enabled, with what they want to be told of.
+/// Returns a tenant's enabled webhooks, each with the kinds of messages it receives.
 pub(super) async fn wishes(tx: &mut Tx, tenant: Tenant) -> Result<Vec<(Uuid, Kinds)>> {
     let found = rows!(
         in tx,

@@ -10,7 +10,7 @@ use crate::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// What a webhook is told of, as JSON in its row.
+/// Kinds of messages for a webhook, as JSON in its row.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(super) struct Kinds(pub(super) Vec<Kind>);
@@ -27,13 +27,13 @@ impl TryFrom<String> for Kinds {
 #[derive(Clone, Debug, Deserialize, Serialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct NewWebhook {
-    /// Where to POST to.
+    /// URL for the POST requests.
     #[schema(max_length = 500, example = "https://example.com/hooks/binnacle")]
     pub(super) url: String,
-    /// What to tell of.
+    /// Kinds of messages to send.
     #[schema(example = json!(["alert.raised", "alert.cleared"]))]
     pub(super) kinds: Vec<Kind>,
-    /// Whether anything is sent; true if not said.
+    /// True if messages are sent; true by default.
     #[serde(default = "enabled")]
     pub(super) enabled: bool,
 }
@@ -47,16 +47,16 @@ fn enabled() -> bool {
 pub(super) struct Webhook {
     /// The webhook's id.
     pub(super) id: WebhookId,
-    /// Where it POSTs to.
+    /// URL for the POST requests.
     #[schema(example = "https://example.com/hooks/binnacle")]
     pub(super) url: String,
-    /// What it is told of.
+    /// Kinds of messages sent.
     #[sqlx(try_from = "String")]
     #[schema(value_type = Vec<Kind>)]
     pub(super) kinds: Kinds,
-    /// Whether anything is sent; what was not delivered waits meanwhile.
+    /// True if messages are sent; undelivered messages wait meanwhile.
     pub(super) enabled: bool,
-    /// When it was made.
+    /// Creation time.
     pub(super) created_at: Time,
     /// Deliveries that wait.
     pub(super) pending: i64,
@@ -69,7 +69,7 @@ pub(super) struct Webhook {
 pub(super) struct MadeWebhook {
     #[serde(flatten)]
     pub(super) about: Webhook,
-    /// What its messages are signed with; never shown again.
+    /// Signing secret of its messages; never shown again.
     #[schema(example = "bns_mZ3q8k…")]
     pub(super) secret: String,
 }
@@ -85,14 +85,14 @@ pub(super) struct WebhookList {
 }
 
 impl NewWebhook {
-    /// The same, in order, if it can be sent to.
+    /// Returns the webhook with its kinds in order, if messages can be sent to it.
     ///
     /// # Errors
     /// When it cannot, or would never be.
     pub(super) fn checked(mut self, tenant: Tenant, reach: Reach) -> Result<NewWebhook> {
         let invalid = |field, detail| Err(Error::Invalid { field, detail });
-        // A blank that came along when it was copied; within, a reader of addresses may pass
-        // over it, and the request would go elsewhere than what is shown.
+        // Blanks at the ends come from copying. A blank inside might be skipped by a URL parser,
+        // and the request would go elsewhere than to the address shown.
         self.url = self.url.trim().to_owned();
         if self.url.chars().any(|c| c.is_whitespace() || is_control(c)) {
             return invalid("url", "has blanks or control characters".to_owned());

@@ -259,7 +259,7 @@ async fn a_fleet_that_is_too_large_to_be_planned_is_told_so(shore: Shore) {
             Pools::Postgres(_) => many_calls!("gen_random_uuid()"),
         })
         .await;
-    let said = "this fleet cannot be planned: port_calls: 50001 are more than 50000";
+    let said = "this fleet cannot be planned: port_calls: 50001 entries exceed the limit of 50000";
     let refused = ada.post("/schedule/solve", &json!({})).await;
     assert_eq!(refused.problem(), "wrong-state");
     assert_eq!(refused.json()["detail"], said);

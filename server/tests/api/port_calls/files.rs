@@ -88,7 +88,7 @@ async fn a_csv_of_a_european_spreadsheet_is_taken(shore: Shore) {
         ),
         (
             "id;port;eta;etd\na;NLRTM;2026-12-10T06:00:00;2026-12-11T06:00:00Z\n",
-            "line 2: eta: \"2026-12-10T06:00:00\" says no time zone",
+            "line 2: eta: \"2026-12-10T06:00:00\" has no time zone",
         ),
     ] {
         let refused = send(&ada, &csv, file).await;
@@ -108,7 +108,7 @@ async fn a_csv_with_one_wrong_line_leaves_nothing(shore: Shore) {
     for (rows, said) in [
         (
             format!("{good}b,BEANR,2026-12-10T06:00:00,2026-12-11T06:00:00Z,\n"),
-            "file: line 3: eta: \"2026-12-10T06:00:00\" says no time zone",
+            "file: line 3: eta: \"2026-12-10T06:00:00\" has no time zone",
         ),
         (
             format!("{good}{}", row("b", "BEANR", 9)),
@@ -246,7 +246,7 @@ async fn a_calendar_is_taken_and_what_it_cancels_is_withdrawn(shore: Shore) {
         answer.text.contains("file: line 12: DTSTART: "),
         "{answer:?}"
     );
-    assert!(answer.text.contains("says no time zone"));
+    assert!(answer.text.contains("has no time zone"));
     shore.finish().await;
 }
 

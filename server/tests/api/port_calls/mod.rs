@@ -97,11 +97,11 @@ async fn what_is_no_call_is_refused_by_its_field_and_leaves_nothing(shore: Shore
     let ada = shore.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     for (field, value, said) in [
-        ("eta", json!("2026-12-08T06:00:00"), "says no time zone"),
+        ("eta", json!("2026-12-08T06:00:00"), "has no time zone"),
         ("eta", json!("tomorrow"), "is not an RFC 3339 time"),
         ("etd", json!("2026-12-08T06:00:00Z"), "is not after eta"),
         ("etd", json!("2027-12-08T06:00:00Z"), "more than 120 days"),
-        ("port", json!("XXXXX"), "no sea port"),
+        ("port", json!("XXXXX"), "is not a sea port"),
         ("port", json!("Rotterdam"), "is not a UN/LOCODE"),
         ("eta_uncertainty_h", json!(-1), "is not within 0 to 720"),
         ("berth_heading_deg", json!(361), "is not within 0 to 360"),

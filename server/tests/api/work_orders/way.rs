@@ -244,10 +244,7 @@ async fn an_adjustment_clears_what_was_open_about_the_ship_before_it(shore: Shor
     let list = job.person.get("/alerts").await.good();
     for alert in list["items"].as_array().unwrap() {
         let why = alert["clearing_reason"].as_str().unwrap_or_default();
-        assert!(
-            why.contains("the card that was foretold then holds"),
-            "{alert}"
-        );
+        assert!(why.contains("the predicted card holds"), "{alert}");
     }
     // Nor does what the new samples show bring it back within its week.
     let ship = foretold(&job.seen().await);

@@ -1,40 +1,40 @@
 //! Ships and berths for tests of the planner.
 
-mod best;
-mod card;
+mod card_check;
+mod corrector_scale;
+mod field_drift;
+mod headings_at_sea;
+mod optimal_plans;
 mod paper;
-mod refused;
-mod sea;
-mod since;
-
+mod refusals;
 mod steps;
-mod strength;
-mod vertical;
+mod vertical_check;
 
+use super::state::MagneticState;
 use super::*;
-use crate::berth::{Alignment, ReadingErrors};
+use crate::berth::{Alignment, BerthReading, ReadingErrors};
 use crate::binnacle::tests::class_a;
-use crate::binnacle::{Axis, BinnacleForm, DesignForm};
+use crate::binnacle::{Axis, Binnacle, BinnacleForm, DesignForm, Setting};
 use crate::corrector::effect;
 use binnacle_compass::angle::MagneticHeading;
-use binnacle_compass::model::{Identifiable, Parameters};
-use binnacle_compass::ship::ShipMagnetism;
+use binnacle_compass::model::{Identifiable, Model, Parameters};
+use binnacle_compass::ship::{EarthField, ShipMagnetism};
 
-pub(super) const BISCAY: EarthField = EarthField {
+pub(crate) const BISCAY: EarthField = EarthField {
     h_nt: 24_000.0,
     z_nt: 38_500.0,
 };
 
-/// A ship without correctors, and what is read and known of her with those of a binnacle.
-pub(super) struct Case {
-    pub(super) model: Model,
-    pub(super) reading: BerthReading,
-    pub(super) binnacle: Binnacle,
-    pub(super) waters: Vec<Water>,
+/// A ship without correctors, with its reading and model for the correctors of a binnacle.
+pub(crate) struct Case {
+    pub(crate) model: Model,
+    pub(crate) reading: BerthReading,
+    pub(crate) binnacle: Binnacle,
+    pub(crate) waters: Vec<Water>,
     bare: ShipMagnetism,
 }
 
-pub(super) fn bare() -> ShipMagnetism {
+pub(crate) fn bare() -> ShipMagnetism {
     ShipMagnetism {
         chi: [
             [-0.06, 0.002, -0.021],
@@ -57,7 +57,7 @@ fn small_covariance() -> binnacle_compass::model::Covariance {
 }
 
 impl Case {
-    pub(super) fn new(bare: ShipMagnetism, binnacle: Binnacle, magnetic_deg: f64) -> Case {
+    pub(crate) fn new(bare: ShipMagnetism, binnacle: Binnacle, magnetic_deg: f64) -> Case {
         let waters = vec![
             water("Biscay", BISCAY.h_nt, BISCAY.z_nt, 2.0),
             water("Cape Town", 15_500.0, -20_000.0, 1.0),
@@ -75,9 +75,9 @@ impl Case {
             samples_rejected: 0,
             quality: None,
         };
-        // The magnetometer meets no needles.
+        // The magnetometer does not measure the needles.
         let there = sum(&bare, &there.as_ship(f64::INFINITY));
-        let [x, y, _] = there.field_aboard(BISCAY.in_ship_axes(magnetic_deg.to_radians()));
+        let [x, y, _] = there.field_at_compass(BISCAY.in_ship_axes(magnetic_deg.to_radians()));
         let errors = ReadingErrors {
             field_sd_nt: 150.0,
             heading_sd_deg: 0.5,
@@ -94,7 +94,7 @@ impl Case {
         }
     }
 
-    pub(super) fn adjustment(&self) -> Adjustment<'_> {
+    pub(crate) fn adjustment(&self) -> Adjustment<'_> {
         Adjustment {
             model: &self.model,
             earth: BISCAY,
@@ -114,12 +114,12 @@ impl Case {
         }
     }
 
-    pub(super) fn plan(&self) -> Outcome {
+    pub(crate) fn plan(&self) -> Outcome {
         plan(&self.adjustment()).unwrap()
     }
 }
 
-pub(super) fn water(name: &str, h_nt: f64, z_nt: f64, weight: f64) -> Water {
+pub(crate) fn water(name: &str, h_nt: f64, z_nt: f64, weight: f64) -> Water {
     Water {
         name: name.to_owned(),
         h_nt,
@@ -128,19 +128,19 @@ pub(super) fn water(name: &str, h_nt: f64, z_nt: f64, weight: f64) -> Water {
     }
 }
 
-pub(super) fn sum(one: &ShipMagnetism, other: &ShipMagnetism) -> ShipMagnetism {
+pub(crate) fn sum(one: &ShipMagnetism, other: &ShipMagnetism) -> ShipMagnetism {
     ShipMagnetism {
         chi: std::array::from_fn(|r| std::array::from_fn(|c| one.chi[r][c] + other.chi[r][c])),
         b_nt: std::array::from_fn(|axis| one.b_nt[axis] + other.b_nt[axis]),
     }
 }
 
-pub(super) fn case(magnetic_deg: f64) -> Case {
+pub(crate) fn case(magnetic_deg: f64) -> Case {
     Case::new(bare(), class_a(), magnetic_deg)
 }
 
-/// A binnacle with so little in it that every setting can be tried.
-pub(super) fn little() -> Binnacle {
+/// A binnacle with so few settings that all can be tried.
+pub(crate) fn little() -> Binnacle {
     let mut form: BinnacleForm = class_a().into();
     let mut design: DesignForm = form.design.into();
     for rack in [&mut design.fore_and_aft, &mut design.athwartship] {
@@ -152,8 +152,8 @@ pub(super) fn little() -> Binnacle {
     iron.marks
         .retain(|mark| mark.mark_mm <= 280.0 || (mark.mark_mm - 320.0).abs() < 1e-9);
     iron.slews_deg = vec![0.0];
-    form.aboard.flinders_pieces_mm = vec![225.0];
-    form.aboard.quadrantal = vec!["7 inch".to_owned()];
+    form.inventory.flinders_pieces_mm = vec![225.0];
+    form.inventory.quadrantal = vec!["7 inch".to_owned()];
     form.setting.athwartship[0].hole = 3;
     form.design = design.try_into().unwrap();
     Binnacle::try_from(form).unwrap()
@@ -170,11 +170,11 @@ fn an_outcome_comes_back_from_json_as_it_went() {
 
 #[test]
 fn the_parameters_before_are_those_of_the_model() {
-    // With nothing moved the model after is the model, and no corrector errs.
+    // With nothing moved, the model after is the model, and no corrector has an error.
     let case = case(60.0);
     let adjustment = case.adjustment();
-    let condition = Condition::new(&adjustment).unwrap();
-    let same = condition.model_with(&case.binnacle.setting).unwrap();
+    let state = MagneticState::new(&adjustment).unwrap();
+    let same = state.model_with(&case.binnacle.setting).unwrap();
     let (old, new): (Parameters, Parameters) = (
         case.model.parameters_over_lambda,
         same.parameters_over_lambda,

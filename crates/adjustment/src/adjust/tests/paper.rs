@@ -1,11 +1,10 @@
-//! The worked adjustment of Basterretxea-Iribar et al., found again.
+//! The worked adjustment of Basterretxea-Iribar et al. is reproduced.
 
-use super::super::*;
 use super::*;
 use crate::binnacle::{Hole, Red, Tray};
 
 /// Holes 20 mm apart, hole 5 at 0.42 m; a pair of magnets red aft in hole 5 and a single
-/// one red to port in hole 7, each of the moment that the paper's own moves tell.
+/// one red to port in hole 7, each with the moment that follows from the paper's moves.
 fn binnacle() -> Binnacle {
     let mut form: BinnacleForm = class_a().into();
     let mut design: DesignForm = form.design.into();
@@ -25,14 +24,14 @@ fn binnacle() -> Binnacle {
     design.quadrantal = None;
     design.flinders = None;
     form.design = design.try_into().unwrap();
-    form.aboard.magnets.push(crate::binnacle::Lot {
+    form.inventory.magnets.push(crate::binnacle::Lot {
         magnet: "100 mm".to_owned(),
         count: 3,
         tested_moment_am2: Some(0.61),
         tested_sd: None,
     });
-    form.aboard.quadrantal.clear();
-    form.aboard.flinders_pieces_mm.clear();
+    form.inventory.quadrantal.clear();
+    form.inventory.flinders_pieces_mm.clear();
     form.setting = Setting {
         fore_and_aft: vec![held(5, 2, Red::Aft)],
         athwartship: vec![held(7, 1, Red::Port)],
@@ -50,8 +49,8 @@ fn held(hole: u16, count: u8, red: Red) -> Tray {
     }
 }
 
-/// bx 0.0034 gauss with the pair in hole 5 and by 0.0049 with the single one in hole 7
-/// became −0.0006 and 0.0004 with both in hole 3, red ends as they were.
+/// bx was 0.0034 gauss with the pair in hole 5, by 0.0049 with the single one in hole 7;
+/// with both in hole 3 and unchanged red ends they became −0.0006 and 0.0004.
 #[test]
 fn the_papers_adjustment_is_the_plan() {
     let binnacle = binnacle();

@@ -1,4 +1,4 @@
-//! Steps, and what the compass shows after them.
+//! Steps, and the compass headings after them.
 
 use super::super::*;
 use super::*;
@@ -90,7 +90,7 @@ fn heeling_magnets_are_left_without_a_vertical_reading_and_nulled_with_one() {
     let ship = sum(&case.bare, &there.as_ship(f64::INFINITY));
     let mut adjustment = case.adjustment();
     adjustment.vertical = Some(VerticalReading {
-        down_nt: ship.field_aboard([0.0, 0.0, BISCAY.z_nt])[2],
+        down_nt: ship.field_at_compass([0.0, 0.0, BISCAY.z_nt])[2],
     });
     let outcome = plan(&adjustment).unwrap();
     let left = |note: &String| note.starts_with("the heeling magnets are left");
@@ -104,7 +104,7 @@ fn heeling_magnets_are_left_without_a_vertical_reading_and_nulled_with_one() {
         after.abs() < 0.06 && after.abs() <= before.abs(),
         "{before} {after}"
     );
-    // J itself, from the ship as she then is.
+    // J itself, from the ship after the plan.
     let there = effect(&case.binnacle, &plan.setting);
     let ship = sum(&case.bare, &there.as_ship(BISCAY.h_nt));
     let j = ((ship.chi[1][1] - ship.chi[2][2]) * BISCAY.z_nt - ship.b_nt[2])
@@ -112,7 +112,7 @@ fn heeling_magnets_are_left_without_a_vertical_reading_and_nulled_with_one() {
     assert!((j - after).abs() < 1e-6, "{j} {after}");
 }
 
-/// Steps that read as they should, with a wrong end, and with a weaker magnet.
+/// Steps with the expected turn, with a wrong end, and with a weaker magnet.
 #[test]
 fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
     let mut ship = bare();
@@ -126,10 +126,10 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
         .max_by(|a, b| a.change_deg.abs().total_cmp(&b.change_deg.abs()))
         .unwrap();
     let wrap = binnacle_compass::angle::wrap_360;
-    let read = |change: f64| recheck(&adjustment, step, 50.0, wrap(50.0 + change)).unwrap();
+    let read = |change: f64| check_step(&adjustment, step, 50.0, wrap(50.0 + change)).unwrap();
     let confirmed = read(step.change_deg + 0.1);
     assert!(
-        matches!(confirmed, Recheck::Confirmed { .. }),
+        matches!(confirmed, StepCheck::Confirmed { .. }),
         "{confirmed:?}"
     );
 
@@ -146,32 +146,33 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
             tray.red = tray.red.reversed();
         }
     }
-    let condition = Condition::new(&adjustment).unwrap();
-    let change = instructions::change_deg(&adjustment, &condition, &step.setting_before, &reversed);
-    let Recheck::WrongEnd {
+    let state = MagneticState::new(&adjustment).unwrap();
+    let change = instructions::compass_turn(&adjustment, &state, &step.setting_before, &reversed);
+    let StepCheck::WrongEnd {
         setting, outcome, ..
-    } = read(change.0)
+    } = read(change.change_deg)
     else {
         panic!("{change:?}")
     };
     assert_eq!(setting, reversed);
-    // The new plan goes on from what was read.
+    // The new plan continues from the observed heading.
     let first = &outcome.plans[0].steps[0];
-    let read_deg = wrap(50.0 + change.0);
+    let read_deg = wrap(50.0 + change.change_deg);
     let next_deg = wrap(read_deg + first.change_deg);
     assert!((first.expected_compass_deg - next_deg).abs() < 1e-9);
     assert!(outcome.plans[0].moves > 0);
 
-    // Magnets of 0.6 of their moment, then as when she was measured.
+    // Magnets with 0.6 of their moment, then as at the first reading.
     let weaker = case.binnacle.with_moment("200 mm", 0.6, 0.02).unwrap();
     let weak = Adjustment {
         binnacle: &weaker,
         ..adjustment.clone()
     };
-    let truly = Condition::new(&weak).unwrap();
+    let truly = MagneticState::new(&weak).unwrap();
     let change =
-        instructions::change_deg(&weak, &truly, &step.setting_before, &step.setting_after).0;
-    let Recheck::OtherStrength {
+        instructions::compass_turn(&weak, &truly, &step.setting_before, &step.setting_after)
+            .change_deg;
+    let StepCheck::OtherStrength {
         share,
         outcome,
         setting,
@@ -185,16 +186,16 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
     assert!(!outcome.plans.is_empty());
     let forgotten = read(0.2);
     assert!(
-        matches!(forgotten, Recheck::Unexplained { unmoved: true, .. }),
+        matches!(forgotten, StepCheck::Unexplained { unmoved: true, .. }),
         "{forgotten:?}"
     );
     let wild = read(step.change_deg + 25.0);
-    assert!(!matches!(wild, Recheck::Confirmed { .. }));
+    assert!(!matches!(wild, StepCheck::Confirmed { .. }));
 }
 
 #[test]
 fn a_step_that_the_heading_does_not_show_is_said_to_be_so() {
-    // On north fore-and-aft magnets only weaken or strengthen the field.
+    // On north, fore-and-aft magnets only weaken or strengthen the field.
     let mut ship = bare();
     ship.b_nt = [5_000.0, 0.0, 0.0];
     let case = Case::new(ship, class_a(), 0.0);
@@ -206,8 +207,8 @@ fn a_step_that_the_heading_does_not_show_is_said_to_be_so() {
         .find(|s| s.corrector == Corrector::ForeAndAft)
         .unwrap();
     assert!(!along.seen);
-    let found = recheck(&adjustment, along, 1.0, 1.0 + along.change_deg).unwrap();
-    assert!(matches!(found, Recheck::NotSeen { .. }));
+    let found = check_step(&adjustment, along, 1.0, 1.0 + along.change_deg).unwrap();
+    assert!(matches!(found, StepCheck::NotSeen { .. }));
     let notes = &outcome.notes;
     assert!(
         notes.iter().any(|n| n.contains("fore-and-aft magnets")),
@@ -217,32 +218,34 @@ fn a_step_that_the_heading_does_not_show_is_said_to_be_so() {
     assert!(seen.b < 1e-9 && seen.c > 0.99 && seen.d < 1e-9 && seen.e > 0.99);
 }
 
-/// Magnets of 0.59 of their moment, told by 1.5 degrees: within what readings err, and
-/// no proof that they are right.
+/// Magnets with 0.59 of their moment, shown by 1.5 degrees: within the reading errors, and
+/// no proof of their strength.
 #[test]
 fn a_small_turn_is_confirmed_with_how_little_it_proves() {
     let case = case(60.0);
     let adjustment = case.adjustment();
     let mut step = plan(&adjustment).unwrap().plans[0].steps[0].clone();
     (step.change_deg, step.tolerance_deg, step.seen) = (-1.52, 0.80, true);
-    let Recheck::Confirmed { proven, .. } = recheck(&adjustment, &step, 50.0, 49.1).unwrap() else {
+    let StepCheck::Confirmed { proven, .. } = check_step(&adjustment, &step, 50.0, 49.1).unwrap()
+    else {
         panic!()
     };
     assert!((proven.share - 0.59).abs() < 0.01, "{proven:?}");
-    assert!((proven.to - 0.39).abs() < 0.01, "{proven:?}");
-    let words = proven.in_words();
+    assert!((proven.precision - 0.39).abs() < 0.01, "{proven:?}");
+    let words = proven.to_string();
     assert!(
         words.contains("59 per cent") && words.contains("only to within 39 per cent"),
         "{words}"
     );
     (step.change_deg, step.tolerance_deg) = (15.0, 2.0);
-    let Recheck::Confirmed { proven, .. } = recheck(&adjustment, &step, 50.0, 64.5).unwrap() else {
+    let StepCheck::Confirmed { proven, .. } = check_step(&adjustment, &step, 50.0, 64.5).unwrap()
+    else {
         panic!()
     };
-    assert!(!proven.in_words().contains("only"), "{proven:?}");
+    assert!(!proven.to_string().contains("only"), "{proven:?}");
 }
 
-/// Each step a little less than it should, all the same way: each within its tolerance.
+/// Each step is a little small in the same direction, within its own tolerance.
 #[test]
 fn what_each_step_hides_all_of_them_show() {
     let mut ship = bare();
@@ -254,7 +257,7 @@ fn what_each_step_hides_all_of_them_show() {
     let expected: f64 = steps.iter().map(|step| step.change_deg).sum();
     let wrap = binnacle_compass::angle::wrap_360;
     let in_all = |off_deg: f64| {
-        turned_in_all(&adjustment, 50.0, last, wrap(50.0 + expected + off_deg)).unwrap()
+        check_total_turn(&adjustment, 50.0, last, wrap(50.0 + expected + off_deg)).unwrap()
     };
     let found = in_all(0.0);
     assert!(found.agrees() && found.off_deg.abs() < 1e-6, "{found:?}");
@@ -262,25 +265,25 @@ fn what_each_step_hides_all_of_them_show() {
     assert!(steps.len() > 2 && hidden > found.tolerance_deg, "{found:?}");
     let found = in_all(hidden);
     assert!(!found.agrees(), "{found:?}");
-    assert!(found.in_words().starts_with("in all the compass turned"));
+    assert!(found.to_string().starts_with("in all, the compass turned"));
 }
 
-/// What comes out needs no trial for magnetism of its own, and no place in the tube.
+/// Iron that comes out needs no check of its retentive magnetism, and no place in the tube.
 #[test]
 fn iron_is_tried_where_it_goes_in_and_a_bar_stands_at_the_cards_height() {
     let case = case(60.0);
     let adjustment = case.adjustment();
-    let condition = Condition::new(&adjustment).unwrap();
+    let state = MagneticState::new(&adjustment).unwrap();
     let mut bare = case.binnacle.setting.clone();
     (bare.flinders, bare.quadrantal) = (None, None);
-    let out = instructions::steps(&adjustment, &condition, &bare);
+    let out = instructions::steps(&adjustment, &state, &bare);
     assert_eq!(out.len(), 2);
     assert!(out.iter().all(|step| step.check.is_none()), "{out:?}");
     let adjustment = Adjustment {
         now: Some(&bare),
         ..adjustment.clone()
     };
-    let back = instructions::steps(&adjustment, &condition, &case.binnacle.setting);
+    let back = instructions::steps(&adjustment, &state, &case.binnacle.setting);
     assert!(back.iter().all(|step| step.check.is_some()));
     assert!(
         back[0].words.contains("fill the tube below"),
@@ -289,13 +292,13 @@ fn iron_is_tried_where_it_goes_in_and_a_bar_stands_at_the_cards_height() {
     );
 }
 
-/// The compass on an even keel shows nothing of them, the vertical field all.
+/// The compass on an even keel shows nothing of them, the vertical field everything.
 #[test]
 fn heeling_magnets_are_verified_by_the_vertical_field() {
     let case = case(60.0);
     let down_nt = |setting: &Setting| {
         let there = effect(&case.binnacle, setting).as_ship(f64::INFINITY);
-        sum(&case.bare, &there).field_aboard([0.0, 0.0, BISCAY.z_nt])[2]
+        sum(&case.bare, &there).field_at_compass([0.0, 0.0, BISCAY.z_nt])[2]
     };
     let mut moved = 0;
     for more_nt in [-12_000.0, -6_000.0, 6_000.0, 12_000.0] {

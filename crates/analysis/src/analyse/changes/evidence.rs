@@ -1,26 +1,26 @@
-//! Why an event is what it is taken for, in words that an officer knows.
+//! Evidence of an event, in words that an officer knows.
 
-use crate::change::{Circumstances, Event, What, odds};
+use crate::change::{Circumstances, Event, EventKind, tempered_odds};
 
-/// What is further astray is worth a word, degrees where H is 24 µT.
-const WILD_DEG: f64 = 8.0;
-/// Beyond this a compass points no way at all, degrees.
+/// Error from which it is mentioned, degrees where H is 24 µT.
+const MENTIONED_ERROR_DEG: f64 = 8.0;
+/// Error from which a compass no longer points north, degrees.
 const POINTLESS_DEG: f64 = 90.0;
-/// No drift is told as a smaller one, degrees: it would read as none.
-const TOLD_DEG: f64 = 0.1;
-/// Said of a disturbance that other ships may speak for.
-const FAINT: &str = "too faint to be certain by this ship alone";
+/// Smallest drift that is given, degrees: a smaller figure would read as none.
+const SMALLEST_DRIFT_DEG: f64 = 0.1;
+/// Evidence of a transient that other vessels may confirm.
+const UNCONFIRMED: &str = "too weak for this vessel alone to confirm";
 
-/// Said of what one reference alone cannot tell.
-const EITHER: &str = "compass or reference: there is no other reference to tell which";
+/// Evidence that one reference alone leaves open.
+const EITHER: &str = "compass or reference: with no other reference this cannot be decided";
 
-/// Said of a disturbance that is over.
+/// Evidence of a transient that is over.
 pub(super) const LASTED: &str = "it lasted ";
-/// Said of a change that was none.
-const WITHDRAWN: &str = "it was held to be certain, and is withdrawn: the samples since do not \
-                         bear it out";
+/// Evidence of a withdrawn change.
+const WITHDRAWN: &str = "it was reported as certain and is withdrawn: the samples since do not \
+                         confirm it";
 
-/// The evidence of an event; `seen_deg` is how far the compass was seen astray.
+/// Returns the evidence of an event; `seen_deg` is the error of the compass as seen.
 pub(super) fn evidence(
     event: &Event,
     known: &Circumstances,
@@ -28,99 +28,103 @@ pub(super) fn evidence(
     seen_deg: Option<f64>,
 ) -> Vec<String> {
     let [step, reference, burst, _] = event.leads;
-    let mut told = vec![match event.what {
-        What::Step | What::Return(_) => format!(
-            "a change of the ship's own magnetism explains the samples: {} none, {} a passing \
+    let mut lines = vec![match event.kind {
+        EventKind::Step | EventKind::Return(_) => format!(
+            "a change of the vessel's own magnetism explains the samples: {} no change, {} a passing \
              disturbance and {} a fault of the reference",
             likelier(step),
             likelier(step - burst),
             likelier(step - reference)
         ),
-        What::Alignment => format!(
-            "what changed is the same on every heading, and gyro and satellite compass agree: \
-             that the compass's own zero moved is {} a change of the ship's magnetism",
-            likelier(event.over_step)
+        EventKind::Alignment => format!(
+            "the error changed equally on every heading, and gyro and satellite compass agree: \
+             a change of the compass's own alignment is {} a change of the vessel's magnetism",
+            likelier(event.over_step_log_likelihood_ratio)
         ),
-        What::Drift => format!(
+        EventKind::Drift => format!(
             "{}: a drift is {} one sudden change",
             drifted(worst_deg),
-            likelier(event.over_step)
+            likelier(event.over_step_log_likelihood_ratio)
         ),
-        What::Reference => format!(
-            "what changed is the same on every heading: a fault of the reference is {} none and {} \
-             a change of the ship",
+        EventKind::ReferenceFault => format!(
+            "the error changed equally on every heading: a fault of the reference is {} no fault and \
+             {} a change of the vessel",
             likelier(reference),
             likelier(reference - step)
         ),
-        What::Burst => format!(
-            "the compass went astray, but not for good: a passing disturbance is {} none and {} a \
-             change of the ship",
+        EventKind::Transient => format!(
+            "the compass was disturbed for a time: a passing disturbance is {} none and {} a \
+             change of the vessel",
             likelier(burst),
             likelier(burst - step)
         ),
     }];
     if event.was_step {
-        told.push(
-            "at first taken for a change of the ship's own magnetism, until it was gone again at sea"
+        lines.push(
+            "at first taken for a change of the vessel's own magnetism, until it ended at sea"
                 .to_owned(),
         );
     }
     match known.at_port {
-        Some(true) => told.push("it began at a port call".to_owned()),
-        Some(false) => told.push("it began at sea".to_owned()),
-        None if event.is_late => told.push(
-            "it may have begun at the port call before, where cargo comes on board, though it was \
-             seen at sea only"
+        Some(true) => lines.push("it began at a port call".to_owned()),
+        Some(false) => lines.push("it began at sea".to_owned()),
+        None if event.noticed_late => lines.push(
+            "it may have begun at the port call before, where cargo is loaded, though it showed \
+             only at sea"
                 .to_owned(),
         ),
         None => {}
     }
     match known.ended_at_port {
-        Some(true) => told.push("the ship was herself again after a port call".to_owned()),
-        Some(false) => told.push("the ship became herself again at sea".to_owned()),
+        Some(true) => {
+            lines.push("the vessel returned to its earlier state at a port call".to_owned());
+        }
+        Some(false) => lines.push("the vessel returned to its earlier state at sea".to_owned()),
         None => {}
     }
-    if known.in_a_day > 1 {
-        told.push(format!(
-            "it is one of {} changes within a day of it",
-            known.in_a_day
+    if known.changes_within_a_day > 1 {
+        lines.push(format!(
+            "it is one of {} changes within a day",
+            known.changes_within_a_day
         ));
     }
-    if known.creeps {
-        told.push("another change within weeks went the same way".to_owned());
+    if known.is_drifting {
+        lines.push("another change within weeks had the same direction".to_owned());
     }
-    let is_wild = known.astray_deg.is_some_and(|degrees| degrees > WILD_DEG);
+    let is_wild = known
+        .disturbance_deg
+        .is_some_and(|degrees| degrees > MENTIONED_ERROR_DEG);
     if let Some(degrees) = seen_deg.filter(|_| is_wild) {
-        told.push(if degrees > POINTLESS_DEG {
-            format!("it was astray by {degrees:.0} degrees: the compass no longer pointed north")
+        lines.push(if degrees > POINTLESS_DEG {
+            format!("the error was {degrees:.0} degrees: the compass no longer pointed north")
         } else {
-            format!("it was astray by {degrees:.0} degrees, which few storms and anomalies come to")
+            format!("the error was {degrees:.0} degrees, which few storms and anomalies reach")
         });
         if known.one_reference {
-            told.push(EITHER.to_owned());
+            lines.push(EITHER.to_owned());
         }
     }
-    if event.what == What::Reference && known.one_reference && !known.is_over {
-        told.push(EITHER.to_owned());
+    if event.kind == EventKind::ReferenceFault && known.one_reference && !known.is_over {
+        lines.push(EITHER.to_owned());
     }
-    if let Some(seconds) = known.burst_s.filter(|_| known.is_over) {
-        told.push(lasted(seconds));
+    if let Some(seconds) = known.transient_s.filter(|_| known.is_over) {
+        lines.push(lasted(seconds));
     }
     if !known.reported.is_empty() {
-        told.push("the logbook has a report of that time".to_owned());
+        lines.push("the logbook has a report of that time".to_owned());
     }
     if event.withdrawn.is_some() {
-        told.push(WITHDRAWN.to_owned());
+        lines.push(WITHDRAWN.to_owned());
     }
     match (event.confirmed || event.withdrawn.is_some(), event.last) {
         (true, _) => {}
-        (false, None) => told.push("not yet certain: more samples will tell".to_owned()),
-        (false, Some(_)) => told.push(FAINT.to_owned()),
+        (false, None) => lines.push("not yet certain: more samples are needed".to_owned()),
+        (false, Some(_)) => lines.push(UNCONFIRMED.to_owned()),
     }
-    told
+    lines
 }
 
-/// How long what is over lasted: of a single sample it is not known.
+/// Returns the duration; that of a single sample is unknown.
 fn lasted(seconds: f64) -> String {
     let hours = seconds / 3600.0;
     if hours < 0.05 {
@@ -129,20 +133,20 @@ fn lasted(seconds: f64) -> String {
     format!("{LASTED}{hours:.1} hours")
 }
 
-/// How far a drift has gone.
+/// Returns the extent of a drift.
 fn drifted(worst_deg: f64) -> String {
-    if worst_deg < TOLD_DEG {
+    if worst_deg < SMALLEST_DRIFT_DEG {
         return format!(
-            "the deviation goes to and fro, and is now within {TOLD_DEG:.1} degrees of what it was"
+            "the deviation varies, and is now within {SMALLEST_DRIFT_DEG:.1} degrees of its earlier value"
         );
     }
-    format!("the deviation goes on changing, by up to {worst_deg:.1} degrees so far")
+    format!("the deviation continues to change, by up to {worst_deg:.1} degrees so far")
 }
 
-/// By how much likelier than something one is that leads it by so many nats, with the
-/// temper of `causes`: the models are only nearly right.
-fn likelier(nats: f64) -> String {
-    let odds = odds(nats);
+/// Returns the likelihood against an alternative in words, with the temper of `causes`: the
+/// models are only nearly right.
+fn likelier(log_likelihood_ratio: f64) -> String {
+    let odds = tempered_odds(log_likelihood_ratio);
     match odds {
         ..0.7 => "less likely than".to_owned(),
         ..1.5 => "about as likely as".to_owned(),

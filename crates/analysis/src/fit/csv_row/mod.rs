@@ -1,17 +1,19 @@
-//! Rows of a table of headings as users bring them, made into readings.
+//! Rows of users' tables of headings, and the readings made of them.
 //!
-//! Reading the file is the caller's business; which columns there must be, and
-//! what a row says, is decided here.
+//! The caller reads the file. The required columns and the meaning of a row are decided
+//! here.
 
-use super::{HeadingReading, gyro_speed_error_deg};
-use binnacle_compass::angle::{Brief, CompassHeading, TrueHeading, Variation};
+use super::HeadingReading;
+use crate::gyro_speed_error::gyro_speed_error_deg;
+use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation};
 use binnacle_compass::field::{FieldAt, FieldModel};
+use binnacle_compass::number::CompactNumber;
 use binnacle_compass::position::Position;
 use binnacle_compass::settings::GyroSpeedError;
 use binnacle_compass::time::Timestamp;
 use std::cmp::Ordering;
 
-/// One row: every column that such a table may have.
+/// A row: every column that such a table may have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CsvRow {
     /// `time`
@@ -44,34 +46,34 @@ pub struct CsvRow {
     pub weight: Option<f64>,
 }
 
-/// What is wrong with a table.
+/// Error of a table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CsvRowError {
-    /// The header lacks what no fit can do without.
+    /// A required column is missing from the header.
     #[error("missing column {0}")]
     MissingColumn(&'static str),
-    /// A row has nothing where something must stand.
+    /// A required value is empty.
     #[error("{column} is empty")]
     Empty {
-        /// Which row, counted from 0.
+        /// Row, counted from 0.
         row: usize,
-        /// Its column.
+        /// Column of the row.
         column: &'static str,
     },
     /// A value is not one that the column may hold.
     #[error("{column}: {message}")]
     Invalid {
-        /// Which row, counted from 0.
+        /// Row, counted from 0.
         row: usize,
-        /// Its column.
+        /// Column of the row.
         column: &'static str,
-        /// What is wrong with it.
+        /// Reason.
         message: String,
     },
 }
 
 impl CsvRowError {
-    /// The row that is at fault, counted from 0; none when the header is.
+    /// Returns the row at fault, counted from 0; none when the header is.
     pub fn row(&self) -> Option<usize> {
         match self {
             CsvRowError::MissingColumn(_) => None,
@@ -79,7 +81,7 @@ impl CsvRowError {
         }
     }
 
-    /// The column that is at fault.
+    /// Returns the column at fault.
     pub fn column(&self) -> &'static str {
         match self {
             CsvRowError::MissingColumn(column)
@@ -90,8 +92,8 @@ impl CsvRowError {
 }
 
 /// Checks that a header has what a fit needs: `compass_deg`; one of `gyro_deg`,
-/// `satellite_deg` and `reference_deg`; and either `variation_deg`, `h_nt` and
-/// `z_nt` or `time`, `lat` and `lon`.
+/// `satellite_deg` and `reference_deg`; and either `variation_deg`, `h_nt` and `z_nt` or
+/// `time`, `lat` and `lon`.
 ///
 /// # Errors
 /// [`CsvRowError::MissingColumn`] with the first that is missing.
@@ -124,13 +126,13 @@ pub fn check_columns<'a>(header: impl IntoIterator<Item = &'a str>) -> Result<()
     need("lon")
 }
 
-/// Makes readings of rows, in order of time and then of everything else, so that
-/// the order of the rows leaves no trace. A row that says the same as another is that
-/// row again and counts once, with a time or without. Where a row has both a field and a place, the field as given is used.
+/// Makes readings of rows, in order of time and then of everything else, so that the order
+/// of the rows changes nothing. Identical rows count once, with a time or without. Where a
+/// row has both a field and a place, the field as given is used.
 ///
 /// # Errors
-/// With the first row and column that are empty or invalid. A row without any
-/// reference heading is not an error.
+/// Fails at the first row and column that are empty or invalid. A row without any reference
+/// heading is not an error.
 pub fn readings_from_csv(
     rows: &[CsvRow],
     gyro_speed_error: GyroSpeedError,
@@ -146,7 +148,7 @@ pub fn readings_from_csv(
 
 fn in_order(a: &HeadingReading, b: &HeadingReading) -> Ordering {
     let numbers = |r: &HeadingReading| {
-        // Nothing sorts before anything.
+        // A missing value sorts first.
         let or_first = |x: Option<f64>| x.unwrap_or(f64::NEG_INFINITY);
         [
             or_first(r.position.map(Position::lat_deg)),
@@ -184,7 +186,7 @@ fn reading(
     let sog_kn = column.at_least_zero("sog_kn", row.sog_kn)?;
     let position = match (row.lat, row.lon) {
         (Some(lat), Some(lon)) => {
-            // Which of the two is at fault shows when the other is made harmless.
+            // Longitude zero shows which of the two is at fault.
             let latitude = Position::new(lat, 0.0);
             latitude.map_err(|e| column.invalid("lat", &e.to_string()))?;
             Some(Position::new(lat, lon).map_err(|e| column.invalid("lon", &e.to_string()))?)
@@ -221,7 +223,7 @@ fn reading(
     })
 }
 
-/// Names the row in every complaint.
+/// Row named in its error messages.
 struct Column {
     row: usize,
 }
@@ -265,13 +267,13 @@ impl Column {
         match value {
             Some(number) if !(number >= 0.0 && number.is_finite()) => Err(self.invalid(
                 column,
-                &format!("{} is not a number from 0 up", Brief(number)),
+                &format!("{} is not a number of 0 or more", CompactNumber(number)),
             )),
             _ => Ok(value),
         }
     }
 
-    /// Variation, H and Z: as the row gives them, or from its time and place.
+    /// Returns variation, H and Z: as the row gives them, or from its time and place.
     fn field(
         &self,
         row: &CsvRow,
@@ -285,20 +287,21 @@ impl Column {
             if !(h_nt > 0.0 && h_nt <= 1e6) {
                 return Err(self.invalid(
                     "h_nt",
-                    &format!("{} nT is no horizontal field", Brief(h_nt)),
+                    &format!("{} nT is not a valid horizontal field", CompactNumber(h_nt)),
                 ));
             }
             let z_nt = self.needed("z_nt", row.z_nt)?;
             if !(-1e6..=1e6).contains(&z_nt) {
-                return Err(
-                    self.invalid("z_nt", &format!("{} nT is no vertical field", Brief(z_nt)))
-                );
+                return Err(self.invalid(
+                    "z_nt",
+                    &format!("{} nT is not a valid vertical field", CompactNumber(z_nt)),
+                ));
             }
             return Ok((variation, h_nt, z_nt));
         }
         let place = position.ok_or_else(|| self.empty("lat"))?;
         let time = row.time.ok_or_else(|| self.empty("time"))?;
-        let field = FieldAt::time(FieldModel::Igrf14, time)
+        let field = FieldAt::from_time(FieldModel::Igrf14, time)
             .and_then(|model| model.at(place, 0.0))
             .map_err(|e| self.invalid("time", &e.to_string()))?;
         Ok((field.declination(), field.h_nt(), field.z_nt))

@@ -1,5 +1,6 @@
 use super::*;
-use crate::fit::{Observation, refer};
+use crate::fit::observe_readings;
+use crate::observation::Observation;
 
 fn row() -> CsvRow {
     CsvRow {
@@ -17,7 +18,9 @@ fn read(row: CsvRow) -> Result<HeadingReading, CsvRowError> {
 }
 
 fn observed(row: CsvRow) -> Option<Observation> {
-    refer(&[read(row).unwrap()], 0.5).unwrap().observations[0]
+    observe_readings(&[read(row).unwrap()], 0.5)
+        .unwrap()
+        .observations[0]
 }
 
 #[test]
@@ -49,7 +52,7 @@ fn a_row_without_a_reference_makes_no_observation() {
     };
     let rows = [without, row()];
     let readings = readings_from_csv(&rows, GyroSpeedError::Corrected).unwrap();
-    let observations = refer(&readings, 0.5).unwrap().observations;
+    let observations = observe_readings(&readings, 0.5).unwrap().observations;
     assert_eq!(observations.iter().flatten().count(), 1);
 }
 

@@ -1,41 +1,41 @@
-//! How gyro and satellite compass compare, and the heading of both.
+//! Comparison of gyro and satellite compass, and their common heading.
 
-use super::{HeadingReading, Trust};
+use super::reading::{HeadingReading, Trust};
 use binnacle_compass::angle::{TrueHeading, wrap_180};
-use binnacle_compass::result::{FAILED_BEYOND_AT_MOST_DEG, ReferenceCheck};
+use binnacle_compass::result::{MAX_FAILURE_THRESHOLD_DEG, ReferenceCheck};
 
-/// Fewer readings of both at once do not show how they differ.
+/// Least number of pairs that show the difference.
 const NEEDED_PAIRS: usize = 12;
-/// The gyro's share in the heading of both. From row to row the gyro is the
-/// steadier; what it does wrong for longer shows in the difference, which the
-/// estimator takes in beside the merged heading.
+/// Share of the gyro in the common heading. From row to row the gyro is the steadier; its
+/// slower errors show in the difference, which the estimator reads beside the merged
+/// heading.
 const GYRO_SHARE: f64 = 0.7;
-/// Two sound references hardly differ by more.
+/// Largest difference of two sound references.
 const SOUND_DEG: f64 = 2.5;
-/// When this part of all pairs differ by less than [`SOUND_DEG`], those are the
-/// sound ones.
+/// Share of the pairs with differences below [`SOUND_DEG`] from which those are the sound
+/// ones.
 const SOUND_SHARE: f64 = 0.25;
-/// Where the two depart further from their usual difference one has failed: so
-/// many standard deviations, and within these limits.
+/// Departure from the usual difference from which one has failed: in standard deviations,
+/// and within these limits.
 const FAILED_SD: f64 = 6.0;
-const FAILED_DEG: (f64, f64) = (2.0, FAILED_BEYOND_AT_MOST_DEG);
-/// The median of |x| of a Gaussian is this part of its standard deviation.
+const FAILED_DEG: (f64, f64) = (2.0, MAX_FAILURE_THRESHOLD_DEG);
+/// Median of |x| of a Gaussian, as a part of its standard deviation.
 const MEDIAN_TO_SD: f64 = 0.674_489_8;
 
-/// A true heading made of what there was.
+/// True heading by the references that were read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Reference {
     pub(super) heading: TrueHeading,
-    /// What part of it is the gyro's, 0 to 1.
+    /// Share of the gyro, 0 to 1.
     pub(super) gyro_share: f64,
-    /// Gyro less satellite compass where both were taken, their usual difference
-    /// taken off, degrees.
+    /// Gyro less satellite compass where both were used, without their usual difference,
+    /// degrees.
     pub(super) gyro_less_satellite_deg: Option<f64>,
 }
 
 impl Reference {
-    /// A heading by a gyro alone.
-    pub(super) fn of_gyro(heading: TrueHeading) -> Reference {
+    /// Makes a heading by a gyro alone.
+    pub(super) fn from_gyro(heading: TrueHeading) -> Reference {
         Reference {
             heading,
             gyro_share: 1.0,
@@ -44,13 +44,13 @@ impl Reference {
     }
 }
 
-/// Gyro less satellite compass, degrees.
+/// Returns gyro less satellite compass, degrees.
 pub(super) fn difference_deg(gyro: TrueHeading, satellite: TrueHeading) -> f64 {
     wrap_180(gyro.degrees() - satellite.degrees())
 }
 
-/// From every difference of gyro and satellite compass, degrees.
-pub(super) fn check_of(
+/// Compares references by all differences of gyro and satellite compass, degrees.
+pub(super) fn check_differences(
     differences: impl Iterator<Item = f64>,
     one_constant_sd_deg: f64,
 ) -> ReferenceCheck {
@@ -62,19 +62,19 @@ pub(super) fn check_of(
         .filter(|d| d.abs() < SOUND_DEG)
         .collect();
     let enough = (all.len() as f64 * SOUND_SHARE).max(NEEDED_PAIRS as f64);
-    let telling = if sound.len() as f64 >= enough {
+    let used = if sound.len() as f64 >= enough {
         sound
     } else {
         all
     };
     ReferenceCheck {
         pairs,
-        ..check_of_sound(&telling, one_constant_sd_deg)
+        ..check_sound_differences(&used, one_constant_sd_deg)
     }
 }
 
-/// From differences of references of which neither had failed for long, degrees.
-pub(super) fn check_of_sound(sound: &[f64], one_constant_sd_deg: f64) -> ReferenceCheck {
+/// Compares references by the differences of sound ones, degrees.
+pub(super) fn check_sound_differences(sound: &[f64], one_constant_sd_deg: f64) -> ReferenceCheck {
     let mut check = ReferenceCheck {
         pairs: sound.len() as u64,
         offset_deg: None,
@@ -91,13 +91,14 @@ pub(super) fn check_of_sound(sound: &[f64], one_constant_sd_deg: f64) -> Referen
     };
     check.offset_deg = Some(offset);
     check.failed_beyond_deg = (FAILED_SD * spread).clamp(FAILED_DEG.0, FAILED_DEG.1);
-    // The mean of two is better than one, but no better than their quarrel.
+    // The mean of two is better than one, but no better than their difference.
     let variance = (one_constant_sd_deg.powi(2) / 2.0).max(offset.powi(2) / 4.0);
     check.constant_sd_deg = variance.sqrt();
     check
 }
 
-/// How far a difference departs from the usual, when one must have failed.
+/// Returns true if a difference departs so far from the usual one that a reference has
+/// failed.
 pub(super) fn has_failed(check: &ReferenceCheck, difference_deg: f64) -> bool {
     departure_deg(check, difference_deg).abs() > check.failed_beyond_deg
 }
@@ -106,8 +107,8 @@ fn departure_deg(check: &ReferenceCheck, difference_deg: f64) -> f64 {
     wrap_180(difference_deg - check.offset_deg.unwrap_or(0.0))
 }
 
-/// Either reference with half of the usual difference taken off.
-pub(super) fn centred(
+/// Returns each reference without half of the usual difference.
+pub(super) fn without_usual_difference(
     check: &ReferenceCheck,
     gyro: Option<TrueHeading>,
     satellite: Option<TrueHeading>,
@@ -123,15 +124,15 @@ pub(super) fn centred(
     )
 }
 
-/// The reference heading of what is believed; none when nothing is.
+/// Returns the heading of the trusted references; none without any.
 pub(super) fn merge(
     check: &ReferenceCheck,
     gyro: Option<TrueHeading>,
     satellite: Option<TrueHeading>,
 ) -> Option<Reference> {
-    match centred(check, gyro, satellite) {
+    match without_usual_difference(check, gyro, satellite) {
         (None, None) => None,
-        (Some(gyro), None) => Some(Reference::of_gyro(gyro)),
+        (Some(gyro), None) => Some(Reference::from_gyro(gyro)),
         (None, Some(heading)) => Some(Reference {
             heading,
             gyro_share: 0.0,
@@ -148,7 +149,7 @@ pub(super) fn merge(
     }
 }
 
-/// Notes how often either reference was there and not believed.
+/// Counts the readings of either reference that were not trusted.
 pub(super) fn count_dropped(
     check: &mut ReferenceCheck,
     readings: &[HeadingReading],
@@ -160,7 +161,7 @@ pub(super) fn count_dropped(
     }
 }
 
-/// None of no numbers.
+/// Returns the median; none of no numbers.
 pub(super) fn median(mut numbers: Vec<f64>) -> Option<f64> {
     let middle = numbers.len() / 2;
     if numbers.is_empty() {
@@ -169,8 +170,8 @@ pub(super) fn median(mut numbers: Vec<f64>) -> Option<f64> {
     Some(*numbers.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// The standard deviation of a Gaussian of whose numbers as many are as near to the median;
-/// none of no numbers.
+/// Returns the standard deviation of a Gaussian with the same median distance from the
+/// median; none of no numbers.
 pub(super) fn robust_sd(numbers: &[f64]) -> Option<f64> {
     let middle = median(numbers.to_vec())?;
     let off = numbers.iter().map(|x| (x - middle).abs());

@@ -1,12 +1,17 @@
-use super::check::{Reference, check_of, merge};
+use super::check::{Reference, check_differences, merge};
 use super::*;
+use crate::observation::Observation;
+use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation};
+use binnacle_compass::position::Position;
+use binnacle_compass::result::FitError;
+use binnacle_compass::time::Timestamp;
 
 fn heading(degrees: f64) -> TrueHeading {
     TrueHeading::new(degrees).unwrap()
 }
 
-/// A ship of known magnetism, a reading every ten minutes, whose references are
-/// off by what `off` says of each reading: gyro and satellite compass.
+/// Readings of a ship of known magnetism, every ten minutes, with the errors `off` of gyro
+/// and satellite compass.
 fn readings(count: u32, off: impl Fn(u32) -> (f64, f64)) -> Vec<HeadingReading> {
     (0..count)
         .map(|i| {
@@ -39,10 +44,10 @@ fn wobble(i: u32) -> f64 {
 
 #[test]
 fn a_lasting_difference_is_halved_and_widens_the_constant() {
-    let referred = refer(&readings(200, |i| (4.0 + wobble(i), 0.0)), 0.5).unwrap();
+    let referred = observe_readings(&readings(200, |i| (4.0 + wobble(i), 0.0)), 0.5).unwrap();
     assert!((referred.check.offset_deg.unwrap() - 4.0).abs() < 0.11);
     assert!((referred.check.constant_sd_deg - 2.0).abs() < 0.06);
-    let check = check_of((0..40).map(|_| 4.0), 0.5);
+    let check = check_differences((0..40).map(|_| 4.0), 0.5);
     let merged = |gyro, satellite| merge(&check, gyro, satellite).unwrap();
     for Reference { heading, .. } in [
         merged(Some(heading(1.0)), None),
@@ -59,21 +64,23 @@ fn wrap(degrees: f64) -> f64 {
 
 #[test]
 fn references_that_never_agree_are_refused() {
-    let refused = refer(&readings(200, |i| (9.0 + wobble(i), 0.0)), 0.5);
+    let refused = observe_readings(&readings(200, |i| (9.0 + wobble(i), 0.0)), 0.5);
     assert!(matches!(
         refused,
         Err(FitError::ReferencesDisagree { offset_deg, .. }) if (offset_deg - 9.0).abs() < 0.2
     ));
 }
 
-/// For a day out of a week, whichever of the two it is.
+/// The fault lasts a day out of a week.
 #[test]
 fn the_reference_that_fails_for_a_day_is_dropped_and_the_other_kept() {
     let failing = |i: u32| if (300..444).contains(&i) { 7.0 } else { 0.0 };
-    let gyro_fails = refer(&readings(1000, |i| (wobble(i) + failing(i), 0.0)), 0.5).unwrap();
+    let gyro_fails =
+        observe_readings(&readings(1000, |i| (wobble(i) + failing(i), 0.0)), 0.5).unwrap();
     assert_eq!(gyro_fails.check.gyro_dropped, 144);
     assert_eq!(gyro_fails.check.satellite_dropped, 0);
-    let satellite_fails = refer(&readings(1000, |i| (0.0, wobble(i) - failing(i))), 0.5).unwrap();
+    let satellite_fails =
+        observe_readings(&readings(1000, |i| (0.0, wobble(i) - failing(i))), 0.5).unwrap();
     assert_eq!(satellite_fails.check.gyro_dropped, 0);
     assert_eq!(satellite_fails.check.satellite_dropped, 144);
     for referred in [gyro_fails, satellite_fails] {
@@ -82,27 +89,27 @@ fn the_reference_that_fails_for_a_day_is_dropped_and_the_other_kept() {
     }
 }
 
-/// The gyro is 8° out for two thirds of the time: the third in which they agree
-/// is the one to go by.
+/// The gyro is 8° off for two thirds of the time: the other third is right.
 #[test]
 fn a_gyro_that_failed_for_most_of_the_time_is_dropped_all_the_same() {
     let off = |i| (wobble(i) + if i >= 333 { 8.0 } else { 0.0 }, 0.0);
-    let referred = refer(&readings(1000, off), 0.5).unwrap();
+    let referred = observe_readings(&readings(1000, off), 0.5).unwrap();
     assert_eq!(referred.check.gyro_dropped, 667);
     assert_eq!(referred.check.satellite_dropped, 0);
 }
 
-/// By so little that no reading alone shows it, and for far longer than they stood as usual.
+/// The error is too small for a single reading, and lasts far longer than the usual
+/// difference did.
 #[test]
 fn a_reference_that_is_off_for_good_never_becomes_the_usual_one() {
     for off_deg in [-3.0, -2.0, 2.0, 3.0] {
         let since = |i: u32| if i >= 1000 { off_deg } else { 0.0 };
-        let gyro = refer(&readings(5000, |i| (wobble(i) + since(i), 0.0)), 0.5).unwrap();
+        let gyro = observe_readings(&readings(5000, |i| (wobble(i) + since(i), 0.0)), 0.5).unwrap();
         assert_eq!(
             (gyro.check.gyro_dropped, gyro.check.satellite_dropped),
             (4000, 0)
         );
-        let satellite = refer(&readings(5000, |i| (wobble(i), since(i))), 0.5).unwrap();
+        let satellite = observe_readings(&readings(5000, |i| (wobble(i), since(i))), 0.5).unwrap();
         let dropped = (
             satellite.check.gyro_dropped,
             satellite.check.satellite_dropped,
@@ -116,11 +123,11 @@ fn a_reference_that_is_off_for_good_never_becomes_the_usual_one() {
     }
 }
 
-/// The fault was there from the first day, and was mended.
+/// The fault was there from the first day, and was repaired.
 #[test]
 fn references_that_stand_together_at_last_do_so_as_usual() {
     let before = |i: u32| if i < 1000 { 4.0 } else { 0.0 };
-    let referred = refer(&readings(5000, |i| (wobble(i), before(i))), 0.5).unwrap();
+    let referred = observe_readings(&readings(5000, |i| (wobble(i), before(i))), 0.5).unwrap();
     assert_eq!(referred.check.satellite_dropped, 1000);
     assert_eq!(referred.check.gyro_dropped, 0);
     assert!(referred.check.offset_deg.unwrap().abs() < 0.2);
@@ -129,7 +136,7 @@ fn references_that_stand_together_at_last_do_so_as_usual() {
 #[test]
 fn a_reference_that_is_itself_again_is_believed_again() {
     let while_off = |i: u32| if (1500..3500).contains(&i) { 2.0 } else { 0.0 };
-    let referred = refer(&readings(5000, |i| (wobble(i), while_off(i))), 0.5).unwrap();
+    let referred = observe_readings(&readings(5000, |i| (wobble(i), while_off(i))), 0.5).unwrap();
     assert_eq!(referred.check.satellite_dropped, 2000);
     assert_eq!(referred.check.gyro_dropped, 0);
 }
@@ -138,16 +145,17 @@ fn a_reference_that_is_itself_again_is_believed_again() {
 #[test]
 fn a_gyro_that_creeps_away_is_left_out() {
     let creeps = |i: u32| f64::from(i.saturating_sub(2000)) / 288.0;
-    let referred = refer(&readings(5000, |i| (wobble(i) + creeps(i), 0.0)), 0.5).unwrap();
+    let referred =
+        observe_readings(&readings(5000, |i| (wobble(i) + creeps(i), 0.0)), 0.5).unwrap();
     assert_eq!(referred.check.satellite_dropped, 0);
-    // From where it was a degree off.
+    // From an error of a degree on.
     let dropped = referred.check.gyro_dropped;
     assert!((2500..2900).contains(&dropped), "{dropped}");
 }
 
 #[test]
 fn when_the_compass_cannot_tell_neither_is_believed() {
-    // Either is 3° off, to either side.
+    // Both are 3° off, to either side.
     let off = |i| {
         if (400..500).contains(&i) {
             (3.0 + wobble(i), -3.0)
@@ -155,7 +163,7 @@ fn when_the_compass_cannot_tell_neither_is_believed() {
             (wobble(i), 0.0)
         }
     };
-    let referred = refer(&readings(1000, off), 0.5).unwrap();
+    let referred = observe_readings(&readings(1000, off), 0.5).unwrap();
     let without = referred.observations.iter().filter(|o| o.is_none());
     assert_eq!(without.count(), 100);
 }
@@ -166,7 +174,7 @@ fn a_reference_that_repeats_itself_while_the_ship_turns_is_dropped() {
     for reading in &mut stuck[100..160] {
         reading.gyro = Some(heading(123.4));
     }
-    let referred = refer(&stuck, 0.5).unwrap();
+    let referred = observe_readings(&stuck, 0.5).unwrap();
     assert_eq!(referred.check.gyro_dropped, 60);
     assert!(referred.observations.iter().all(Option::is_some));
     // On one course both may repeat themselves.
@@ -176,7 +184,10 @@ fn a_reference_that_repeats_itself_while_the_ship_turns_is_dropped() {
         reading.gyro = Some(heading(93.0));
         reading.satellite = Some(heading(93.1));
     }
-    assert_eq!(refer(&straight, 0.5).unwrap().check.gyro_dropped, 0);
+    assert_eq!(
+        observe_readings(&straight, 0.5).unwrap().check.gyro_dropped,
+        0
+    );
 }
 
 #[test]
@@ -185,34 +196,34 @@ fn the_order_of_the_readings_does_not_matter() {
     let forward = readings(900, off);
     let mut backward = forward.clone();
     backward.reverse();
-    let forward = refer(&forward, 0.5).unwrap();
-    let mut backward = refer(&backward, 0.5).unwrap();
+    let forward = observe_readings(&forward, 0.5).unwrap();
+    let mut backward = observe_readings(&backward, 0.5).unwrap();
     backward.observations.reverse();
     assert_eq!(forward, backward);
 }
 
-/// A reference that stands still and trembles; the sound gyro is kept.
+/// The reference oscillates about one heading; the sound gyro is kept.
 #[test]
 fn a_reference_that_trembles_where_the_ship_turns_is_stuck() {
     for tremble in [0.05, 0.4, 3.0] {
-        let trembling = |i: u32| heading(123.0 + tremble * wobble(i) / 0.3);
+        let oscillating = |i: u32| heading(123.0 + tremble * wobble(i) / 0.3);
         let mut stuck = readings(300, |i| (wobble(i), 0.0));
         for (i, reading) in stuck.iter_mut().enumerate() {
-            reading.satellite = Some(trembling(i as u32));
+            reading.satellite = Some(oscillating(i as u32));
         }
-        let referred = refer(&stuck, 0.5).unwrap();
+        let referred = observe_readings(&stuck, 0.5).unwrap();
         assert_eq!(referred.check.satellite_dropped, 300, "{tremble}");
         assert!(referred.observations.iter().all(Option::is_some));
         for reading in &mut stuck {
             reading.gyro = None;
         }
-        let refused = refer(&stuck, 0.5);
+        let refused = observe_readings(&stuck, 0.5);
         assert_eq!(refused, Err(FitError::ReferenceStuck { readings: 300 }));
     }
 }
 
-/// Neither wild compass readings on a steady course nor a compass that lightning
-/// moved by 60° make a stuck gyro of a sound one.
+/// Neither wild compass readings on a steady course nor a compass moved by 60° by lightning
+/// make a sound gyro a stuck one.
 #[test]
 fn a_gyro_on_a_steady_course_is_not_stuck_for_what_the_compass_does() {
     let mut steady = readings(300, |i| (wobble(i), 0.0));
@@ -223,7 +234,7 @@ fn a_gyro_on_a_steady_course_is_not_stuck_for_what_the_compass_does() {
         reading.gyro = Some(heading(90.0 + wobble(i as u32)));
         reading.satellite = None;
     }
-    let referred = refer(&steady, 0.5).unwrap();
+    let referred = observe_readings(&steady, 0.5).unwrap();
     assert_eq!(referred.check.gyro_dropped, 0);
 }
 
@@ -234,7 +245,7 @@ fn readings_without_any_reference_are_refused_by_name() {
         (reading.gyro, reading.satellite) = (None, None);
     }
     assert_eq!(
-        refer(&none, 0.5),
+        observe_readings(&none, 0.5),
         Err(FitError::NoReference { readings: 30 })
     );
 }
@@ -249,7 +260,7 @@ fn a_compass_that_swings_over_a_steady_ship_costs_no_reference() {
         let swung = 90.0 + 70.0 * (0.7 * i as f64).sin();
         reading.compass = CompassHeading::new(swung).unwrap();
     }
-    let referred = refer(&readings, 0.5).unwrap();
+    let referred = observe_readings(&readings, 0.5).unwrap();
     let both = |o: &Option<Observation>| o.is_some_and(|o| o.gyro_less_satellite_deg.is_some());
     assert!(referred.observations[100..124].iter().all(both));
 }

@@ -184,7 +184,7 @@ fn instant(line: &Line, zones: &BTreeMap<String, Zone>) -> Result<Instant, FileE
         },
         None => {
             return Err(wrong(format!(
-                "{:?} says no time zone; write Z for UTC",
+                "{:?} has no time zone; write Z for UTC",
                 line.value
             )));
         }

@@ -98,7 +98,7 @@ fn parted(report: &ShipAlert) -> Condition {
         since: report.since.into(),
         window: EventWindow::exactly(report.since.into()),
         size: Size {
-            size_deg,
+            magnitude_deg: size_deg,
             ..Size::default()
         },
         case: Case::Parted {
@@ -140,7 +140,7 @@ fn quiet(last: &ShipAlert, known: &KnownAlert) -> Condition {
 fn severity(size: &Size) -> Severity {
     match size.was {
         Some(was) => was,
-        None if size.size_deg > CRITICAL_DEG => Severity::Critical,
+        None if size.magnitude_deg > CRITICAL_DEG => Severity::Critical,
         None => Severity::Warning,
     }
 }

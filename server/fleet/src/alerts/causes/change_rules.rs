@@ -59,7 +59,7 @@ pub(super) fn outcome(cause: Cause, since: Time, findings: &Findings) -> Option<
     if own
         .iter()
         .filter(stays)
-        .any(|found| found.change.cause.is_the_ships())
+        .any(|found| found.change.cause.changes_deviation())
     {
         return Some(Outcome::Learned);
     }
@@ -122,7 +122,7 @@ pub(super) fn stage(detected: &DetectedChange<'_>) -> Stage {
     if !found.change.confirmed {
         return Stage::Unconfirmed;
     }
-    if !found.change.cause.is_the_ships() {
+    if !found.change.cause.changes_deviation() {
         return Stage::NotTheShips;
     }
     let Some(band_deg) = findings.widest_band95_deg else {
@@ -146,7 +146,7 @@ fn holds(detected: &DetectedChange<'_>, stage: Stage) -> bool {
     if change.ended.is_some() {
         return false;
     }
-    if !change.cause.is_the_ships() {
+    if !change.cause.changes_deviation() {
         return true;
     }
     let is_recent = findings
@@ -163,8 +163,12 @@ fn holds(detected: &DetectedChange<'_>, stage: Stage) -> bool {
 /// references, or the others.
 fn window(found: &FoundChange, findings: &Findings) -> EventWindow {
     let at = found.change.from;
-    let kind =
-        |cause: result::Cause| (cause.is_the_ships(), cause == result::Cause::ReferenceFault);
+    let kind = |cause: result::Cause| {
+        (
+            cause.changes_deviation(),
+            cause == result::Cause::ReferenceFault,
+        )
+    };
     let others = findings.changes.iter().map(|other| &other.change);
     let others = others.filter(|other| kind(other.cause) == kind(found.change.cause));
     let (before, after): (Vec<Timestamp>, Vec<Timestamp>) = others
@@ -184,7 +188,7 @@ fn size(detected: &DetectedChange<'_>, stage: Stage) -> Size {
     let ahead_deg = found.size_ahead_deg.unwrap_or(0.0);
     let size_deg = found.size_deg.unwrap_or(0.0).max(ahead_deg);
     Size {
-        size_deg,
+        magnitude_deg: size_deg,
         at_least_deg: size_deg,
         limit_deg: detected.limits.deviation_deg,
         was: detected.was,
@@ -200,7 +204,7 @@ fn size(detected: &DetectedChange<'_>, stage: Stage) -> Size {
 /// Grades a change by the deviation that it causes, with hysteresis.
 pub(super) fn by_size(size: &Size) -> Severity {
     let reaches =
-        |limit_deg, severity| size.size_deg >= limit_deg - hysteresis_deg(size.was, severity);
+        |limit_deg, severity| size.magnitude_deg >= limit_deg - hysteresis_deg(size.was, severity);
     let severity = if reaches(size.limit_deg, Severity::Critical) {
         Severity::Critical
     } else if reaches(WARN_DEG, Severity::Warning) {

@@ -50,7 +50,7 @@ fn over_limit(situation: &Situation<'_>) -> Option<Condition> {
     );
     Some(Condition {
         size: Size {
-            size_deg,
+            magnitude_deg: size_deg,
             at_least_deg: size_deg - worst.band95_deg.unwrap_or(0.0),
             limit_deg: limits.deviation_deg,
             was: situation.open_severity(cause),
@@ -68,7 +68,7 @@ fn severity(size: &Size) -> Severity {
     let over = |figure_deg, limit_deg, severity| {
         figure_deg > limit_deg - hysteresis_deg(size.was, severity)
     };
-    if over(size.size_deg, 2.0 * size.limit_deg, Severity::Critical) {
+    if over(size.magnitude_deg, 2.0 * size.limit_deg, Severity::Critical) {
         Severity::Critical
     } else if over(size.at_least_deg, size.limit_deg, Severity::Warning) {
         Severity::Warning

@@ -108,7 +108,7 @@ fn may_be_the_compass(change: &Change) -> bool {
 
 /// Tells whether an apparent fault of a reference may as well be a change of the ship.
 fn may_be_the_ship(change: &Change) -> bool {
-    let of_the_ship = change.causes.iter().filter(|c| c.cause.is_the_ships());
+    let of_the_ship = change.causes.iter().filter(|c| c.cause.changes_deviation());
     of_the_ship.map(|c| c.probability).sum::<f64>() > SHIP_SUSPECTED
 }
 

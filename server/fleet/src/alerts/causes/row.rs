@@ -116,7 +116,7 @@ pub(in crate::alerts) struct Condition {
 #[derive(Clone, Copy)]
 pub(in crate::alerts) struct Size {
     /// The size, degrees.
-    pub size_deg: f64,
+    pub magnitude_deg: f64,
     /// The lower end of its 95 % band, degrees.
     pub at_least_deg: f64,
     /// The vessel's limit on the deviation, degrees.
@@ -212,7 +212,7 @@ impl Condition {
 impl Default for Size {
     fn default() -> Size {
         Size {
-            size_deg: 0.0,
+            magnitude_deg: 0.0,
             at_least_deg: 0.0,
             limit_deg: 0.0,
             was: None,

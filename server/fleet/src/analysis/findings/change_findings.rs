@@ -64,7 +64,7 @@ fn found(change: &Change, analysis: &Analysis, logbook: &[LogbookEntry]) -> Foun
     let epochs = &analysis.epochs;
     let begun_at = |time: Timestamp| epochs.iter().position(|epoch| epoch.from == Some(time));
     // Neither a disturbance nor a reference begins an epoch, even at the same time.
-    let is_boundary = change.confirmed && change.cause.is_the_ships();
+    let is_boundary = change.confirmed && change.cause.changes_deviation();
     let epoch = Some(change.from).filter(|_| is_boundary).and_then(begun_at);
     let spoilt = Spoilt::by(change, analysis);
     let sides = epoch.and_then(|after| {
@@ -152,7 +152,7 @@ struct Spoilt {
 
 impl Spoilt {
     fn by(change: &Change, analysis: &Analysis) -> Spoilt {
-        if !change.cause.passes_by() {
+        if !change.cause.is_transient() {
             return Spoilt::default();
         }
         let last = change.ended.or(analysis.data_until);
@@ -161,7 +161,7 @@ impl Spoilt {
             .samples
             .iter()
             .filter(|s| within(s.sample.time))
-            .filter(|s| s.reason == Some(SampleReason::Disturbance) || change.is_faint())
+            .filter(|s| s.reason == Some(SampleReason::Disturbance) || change.is_weak_transient())
             .collect();
         let departed = spoilt.iter().filter_map(|s| {
             let earth = EarthField {

@@ -1,7 +1,7 @@
 //! The curve beside the table, headings downwards, west to the left.
 
 use super::table::{Lines, line_name};
-use super::{FAINT, LINE, RIGHT};
+use super::{GREY, LINE, RIGHT};
 use crate::card::contents::{Card, CardRow};
 use crate::deviation::Row;
 use binnacle_drawing::words::east_west;
@@ -10,7 +10,7 @@ use binnacle_drawing::{Pen, Point, Sheet, Style};
 const LEFT: f32 = 352.0;
 const BAND: u8 = 214;
 
-/// What a deviation's place across is.
+/// Horizontal scale of deviations.
 struct Across {
     most_deg: f64,
 }
@@ -95,7 +95,7 @@ fn grid(sheet: &mut Sheet, lines: &Lines, across: &Across, step_deg: f64, steps:
         sheet.line(vec![(x, top), (x, bottom)], pen);
         // The outermost would stand over the margin.
         if step.abs() < steps {
-            let label = Style::plain(7.0).grey(FAINT).middle();
+            let label = Style::plain(7.0).grey(GREY).middle();
             sheet.text((x, top - 11.5), label, whole(degrees));
         }
     }
@@ -103,7 +103,7 @@ fn grid(sheet: &mut Sheet, lines: &Lines, across: &Across, step_deg: f64, steps:
         let compass_deg = f64::from(eighth) * 45.0;
         let y = lines.y(compass_deg);
         sheet.line(vec![(LEFT, y), (RIGHT, y)], Pen::black(0.3).grey(150));
-        let label = Style::plain(7.0).grey(FAINT).end();
+        let label = Style::plain(7.0).grey(GREY).end();
         sheet.text((LEFT - 4.0, y + 2.5), label, line_name(compass_deg));
     }
 }
@@ -118,7 +118,7 @@ fn observed_deg(row: &CardRow) -> Option<f64> {
     Some(row.deviation_deg + row.residual_deg?)
 }
 
-/// What was observed near a heading.
+/// Draws the observed deviation near a heading.
 fn cross(sheet: &mut Sheet, row: &CardRow, lines: &Lines, across: &Across) {
     const ARM: f32 = 2.4;
     let Some(observed_deg) = observed_deg(row) else {
@@ -131,7 +131,7 @@ fn cross(sheet: &mut Sheet, row: &CardRow, lines: &Lines, across: &Across) {
 
 fn legend(sheet: &mut Sheet, lines: &Lines) {
     let y = lines.bottom() + LINE / 2.0 + 2.0;
-    let style = Style::plain(7.0).grey(FAINT);
+    let style = Style::plain(7.0).grey(GREY);
     let text = "line: deviation · grey: 95 % band · ×: mean observed";
     sheet.text((RIGHT, y), style.end(), text);
 }

@@ -1,16 +1,16 @@
 //! The lower part: coefficients, the ship's state, what to know, who signs, and where
 //! it all comes from.
 
-use super::{FAINT, LEFT, RIGHT, UNKNOWN, known, told};
+use super::{GREY, LEFT, RIGHT, UNKNOWN, draw_labelled, known};
 use crate::binnacles::in_words;
 use crate::card::contents::{Card, CargoAboard};
-use binnacle_compass::handbook::Handbook;
+use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_drawing::words::signed;
 use binnacle_drawing::{A4, Face, MARGIN, Sheet, Style, wrap};
 use binnacle_platform::time::Time;
 
 const SECOND: f32 = 262.0;
-/// Where the signatures begin, from the sheet's upper edge.
+/// Upper edge of the signatures, from the sheet's upper edge.
 const SIGNATURES: f32 = A4.1 - MARGIN - 68.0;
 const NOTE_LINE: f32 = 9.4;
 
@@ -25,11 +25,11 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card, top: f32) {
 }
 
 fn coefficients(sheet: &mut Sheet, card: &Card, top: f32) {
-    let small = Style::plain(7.5).grey(FAINT);
+    let small = Style::plain(7.5).grey(GREY);
     sheet.text((LEFT, top), Style::bold(8.0), "Coefficients");
     sheet.text((LEFT + 112.0, top), small.end(), "exact");
     sheet.text((LEFT + 168.0, top), small.end(), "handbook");
-    let of = |found: &Handbook| {
+    let of = |found: &CoefficientsInDegrees| {
         [
             found.a_deg,
             found.b_deg,
@@ -49,11 +49,7 @@ fn coefficients(sheet: &mut Sheet, card: &Card, top: f32) {
     }
     let constant = signed(card.coefficients.constant_deg);
     let says = format!("handbook A includes {constant} of alignment and offsets");
-    sheet.text(
-        (LEFT + 6.0, top + 66.0),
-        Style::plain(6.8).grey(FAINT),
-        says,
-    );
+    sheet.text((LEFT + 6.0, top + 66.0), Style::plain(6.8).grey(GREY), says);
 }
 
 /// Answers with where the next thing begins.
@@ -101,7 +97,7 @@ fn state(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
     sheet.text((SECOND, top), Style::bold(8.0), "State");
     let at = top + 11.0;
     facts.iter().fold(at, |y, (label, value)| {
-        told(sheet, (SECOND, y), label, value, RIGHT - SECOND)
+        draw_labelled(sheet, (SECOND, y), label, value, RIGHT - SECOND)
     })
 }
 
@@ -147,7 +143,7 @@ fn correctors(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
         let ends = pair
             .iter()
             .zip(columns)
-            .map(|((label, value), (x, end))| told(sheet, (x, y), label, value, end - x));
+            .map(|((label, value), (x, end))| draw_labelled(sheet, (x, y), label, value, end - x));
         ends.fold(y, f32::max)
     })
 }
@@ -193,7 +189,7 @@ fn signatures(sheet: &mut Sheet) {
         let left = LEFT + (width + 14.0) * index as f32;
         let y = SIGNATURES + 26.0;
         sheet.rule((left, y), (left + width, y), 0.5);
-        sheet.text((left, y + 9.0), Style::plain(7.0).grey(FAINT), *label);
+        sheet.text((left, y + 9.0), Style::plain(7.0).grey(GREY), *label);
     }
 }
 
@@ -231,6 +227,6 @@ fn source(sheet: &mut Sheet, card: &Card) {
     };
     for (index, line) in lines.into_iter().enumerate() {
         let y = A4.1 - MARGIN - 14.0 + 9.5 * index as f32;
-        sheet.text((LEFT, y), Style::plain(6.8).grey(FAINT), line);
+        sheet.text((LEFT, y), Style::plain(6.8).grey(GREY), line);
     }
 }

@@ -7,7 +7,7 @@ use binnacle_drawing::words::{east_west, latitude, longitude};
 use binnacle_drawing::{MARGIN, Sheet, Style};
 
 const FACT_LINE: f32 = 12.5;
-/// Where the right column begins, and its width.
+/// Left edge of the right column, and its width.
 const SECOND: f32 = 306.0;
 
 /// Draws it; answers with its lower edge.
@@ -30,7 +30,7 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card) -> f32 {
     bottom
 }
 
-/// What the card is worth, so that nobody can overlook it.
+/// Draws the card's status, so that nobody can overlook it.
 fn mark(sheet: &mut Sheet, card: &Card) {
     let foretold = card.model.foretold_by.and(card.unverified_order);
     let (word, why) = match &card.verified {

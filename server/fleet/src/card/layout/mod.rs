@@ -16,7 +16,7 @@ const RIGHT: f32 = A4.0 - MARGIN;
 /// From one line of the table to the next.
 const LINE: f32 = 13.0;
 /// Grey of what is not the first thing to be read.
-const FAINT: u8 = 90;
+const GREY: u8 = 90;
 
 /// The card's sheet.
 pub(super) fn sheet(card: &Card) -> Sheet {
@@ -31,7 +31,7 @@ pub(super) fn sheet(card: &Card) -> Sheet {
     sheet
 }
 
-/// What the document says of itself.
+/// Returns the metadata of the document.
 pub(super) fn about(card: &Card) -> About {
     About {
         title: format!(
@@ -51,7 +51,7 @@ const SMALLEST: f32 = 6.0;
 fn fact(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) {
     const LABEL: f32 = 74.0;
     let style = Style::plain(8.0);
-    sheet.text(at, style.grey(FAINT), label);
+    sheet.text(at, style.grey(GREY), label);
     let room = room - LABEL;
     // What is long is set smaller before anything of it is left out.
     let long = binnacle_drawing::width(value, style.face, style.size);
@@ -60,23 +60,23 @@ fn fact(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) {
     sheet.text((at.0 + LABEL, at.1), Style::plain(size), value);
 }
 
-/// From one line of what is told to the next.
-const TOLD: f32 = 9.6;
+/// Distance between two lines of labelled text.
+const LABELLED_STEP: f32 = 9.6;
 
-/// The same on as many lines as it takes; answers with where the next one begins.
-fn told(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) -> f32 {
+/// Draws labelled text on as many lines as it needs. Returns the position of the next line.
+fn draw_labelled(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) -> f32 {
     const LABEL: f32 = 68.0;
     let style = Style::plain(8.0);
-    sheet.text(at, style.grey(FAINT), label);
+    sheet.text(at, style.grey(GREY), label);
     let lines = binnacle_drawing::wrap(value, style.face, style.size, room - LABEL);
     for (index, line) in lines.iter().enumerate() {
-        let y = at.1 + TOLD * index as f32;
+        let y = at.1 + LABELLED_STEP * index as f32;
         sheet.text((at.0 + LABEL, y), style, line.as_str());
     }
-    at.1 + TOLD * lines.len().max(1) as f32
+    at.1 + LABELLED_STEP * lines.len().max(1) as f32
 }
 
-/// What stands where nothing is known.
+/// Text for an unknown value.
 const UNKNOWN: &str = "not recorded";
 
 /// A value, or that there is none.

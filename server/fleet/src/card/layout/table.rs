@@ -1,11 +1,11 @@
 //! The table: deviation by compass heading.
 
-use super::{FAINT, LEFT, LINE};
+use super::{GREY, LEFT, LINE};
 use crate::card::contents::{Card, CardRow};
 use binnacle_drawing::words::{east_west, heading, heading_to_a_tenth, signed};
 use binnacle_drawing::{Face, Pen, Sheet, Style};
 
-/// Where its columns end; the last one ends the table.
+/// Right edges of the columns; the last one ends the table.
 const ENDS: [f32; 6] = [72.0, 126.0, 172.0, 226.0, 276.0, 312.0];
 const TITLES: [[&str; 2]; 6] = [
     ["Compass", "heading"],
@@ -16,7 +16,7 @@ const TITLES: [[&str; 2]; 6] = [
     ["", "Samples"],
 ];
 
-/// Where the lines lie: one for each 15° from 000 to 360.
+/// Positions of the lines: one for each 15° from 000 to 360.
 pub(super) struct Lines {
     /// The first line's middle.
     pub(super) top: f32,
@@ -36,7 +36,7 @@ impl Lines {
 
 /// Draws it.
 pub(super) fn draw(sheet: &mut Sheet, card: &Card, lines: &Lines) {
-    let small = Style::plain(7.0).grey(FAINT).end();
+    let small = Style::plain(7.0).grey(GREY).end();
     for (end, [first, second]) in ENDS.into_iter().zip(TITLES) {
         sheet.text((end, lines.top - 20.0), small, first);
         sheet.text((end, lines.top - 11.5), small, second);
@@ -57,7 +57,7 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card, lines: &Lines) {
     sheet.rule((LEFT, lines.bottom()), (last, lines.bottom()), 0.4);
     let rule = "magnetic = compass + east deviation, or − west deviation";
     let y = lines.bottom() + LINE / 2.0 + 2.0;
-    sheet.text((LEFT, y), Style::plain(7.0).grey(FAINT), rule);
+    sheet.text((LEFT, y), Style::plain(7.0).grey(GREY), rule);
 }
 
 /// The heading that a line is of: north is 360 where it closes the circle.
@@ -85,8 +85,8 @@ fn line(sheet: &mut Sheet, row: &CardRow, lines: &Lines) {
         (bold, east_west(row.deviation_deg)),
         (plain, format!("±{:.1}°", row.band95_deg)),
         (plain, heading_to_a_tenth(row.magnetic_deg)),
-        (plain.grey(FAINT), residual),
-        (plain.grey(FAINT), row.samples.to_string()),
+        (plain.grey(GREY), residual),
+        (plain.grey(GREY), row.samples.to_string()),
     ];
     for (end, (style, text)) in ENDS.into_iter().zip(cells) {
         sheet.text((end, baseline), style.end(), text);

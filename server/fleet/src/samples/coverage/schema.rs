@@ -1,9 +1,9 @@
-//! How the OpenAPI document describes coverage, advice and the references'
-//! comparison; all are the science crate's.
+//! OpenAPI descriptions of coverage, advice and the comparison of references. Science crates own
+//! the types.
 
 use utoipa::ToSchema;
 
-/// Where a compass's samples lie.
+/// Coverage of a compass's samples.
 #[derive(ToSchema)]
 #[schema(as = Coverage)]
 #[allow(dead_code, reason = "describes analysis::Covered")]
@@ -16,17 +16,17 @@ pub(super) struct CoverageSchema {
     bands: Vec<CoverageBandSchema>,
     /// The cells that hold samples, by band and then by heading.
     cells: Vec<CoverageCellSchema>,
-    /// What to sail next to narrow the 95 % band most; none without a model.
+    /// Advice on what to sail next to narrow the 95 % band most; none without a model.
     #[schema(required)]
     sail_next: Option<SailNextSchema>,
-    /// How gyro and satellite compass compare; none before the first analysis and
-    /// where a model is refused because they disagree.
+    /// Comparison of gyro and satellite compass. None before the first analysis, and where a model
+    /// is refused because they disagree.
     #[schema(required)]
     references: Option<ReferencesSchema>,
 }
 
-/// How gyro and satellite compass compare over the samples since the ship or the
-/// compass was last changed.
+/// Comparison of gyro and satellite compass over the samples since the last change of the ship or
+/// the compass.
 #[derive(ToSchema)]
 #[schema(as = References)]
 #[allow(
@@ -83,8 +83,8 @@ struct CoverageCellSchema {
     samples: u64,
 }
 
-/// What to sail next. A watch is four hours on one compass heading; three
-/// watches are on three successive days.
+/// Advice on what to sail next. A watch is four hours on one compass heading; three watches are on
+/// three successive days.
 #[derive(ToSchema)]
 #[schema(as = SailNext)]
 #[allow(dead_code, reason = "describes binnacle_compass::result::SailNext")]

@@ -32,7 +32,7 @@ fn found(cause: Found, size_deg: f64) -> FoundChange {
                 probability: 0.9,
             }],
             evidence: vec!["it began at sea".to_owned()],
-            deviation_change_deg: cause.is_the_ships().then_some(size_deg),
+            deviation_change_deg: cause.changes_deviation().then_some(size_deg),
             step: None,
             ended: None,
         },

@@ -1,0 +1,192 @@
+//! Objective of the search: the worst residual on any heading, weighted over the waters,
+//! with two bounds for whole families of settings.
+//!
+//! On one heading, the residual is the angle of a vector that is linear in the magnets'
+//! field b. Over a rectangle of b, it is least at a corner, or zero within. For any b, the
+//! residuals on two opposite headings together are no better than the soft iron's alone:
+//! the two vectors sum to twice it, and the vectors within an angle of north form a convex
+//! cone (docs/science.md, §11).
+
+use crate::adjust::inputs::Water;
+use binnacle_compass::ship::ShipMagnetism;
+
+/// Number of evaluated headings: every 5°.
+const HEADINGS: usize = 72;
+/// Stride of headings in the bound of a box.
+const STRIDE: usize = 3;
+
+/// A rectangle of horizontal fields, nT.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FieldBox {
+    pub(crate) x: [f64; 2],
+    pub(crate) y: [f64; 2],
+}
+
+impl FieldBox {
+    /// Returns the longer side, nT.
+    pub(crate) fn extent(self) -> f64 {
+        (self.x[1] - self.x[0]).max(self.y[1] - self.y[0])
+    }
+}
+
+/// Headings and their directions, with the model's constant.
+pub(crate) struct HeadingGrid {
+    /// Sine and cosine of the magnetic heading.
+    heading: Vec<(f64, f64)>,
+    /// Sine and cosine of the heading plus the constant, which turns the reading.
+    read: Vec<(f64, f64)>,
+}
+
+/// A choice of soft iron in all the waters, to which magnets are added.
+pub(crate) struct Objective<'a> {
+    compass: &'a HeadingGrid,
+    waters: Vec<WaterField>,
+}
+
+struct WaterField {
+    weight: f64,
+    /// East and north parts of the field on all headings, without the magnets, nT.
+    fixed: Vec<(f64, f64)>,
+}
+
+impl HeadingGrid {
+    pub(crate) fn new(constant_deg: f64) -> HeadingGrid {
+        let angles = |turned: f64| {
+            let step = std::f64::consts::TAU / HEADINGS as f64;
+            (0..HEADINGS)
+                .map(|i| (i as f64 * step + turned).sin_cos())
+                .collect()
+        };
+        HeadingGrid {
+            heading: angles(0.0),
+            read: angles(constant_deg.to_radians()),
+        }
+    }
+}
+
+impl<'a> Objective<'a> {
+    /// Prepares a choice; `ship_at` gives the ship with this soft iron and without magnets
+    /// at a horizontal field.
+    pub(crate) fn new(
+        compass: &'a HeadingGrid,
+        waters: &[Water],
+        ship_at: impl Fn(f64) -> ShipMagnetism,
+    ) -> Objective<'a> {
+        let total: f64 = waters.iter().map(|water| water.weight).sum();
+        let counted = waters.iter().filter(|water| water.weight > 0.0);
+        let waters = counted.map(|water| {
+            let ship = ship_at(water.h_nt);
+            let fixed = compass
+                .heading
+                .iter()
+                .zip(&compass.read)
+                .map(|(heading, read)| {
+                    let earth = [water.h_nt * heading.1, -water.h_nt * heading.0, water.z_nt];
+                    let [x, y, _] = ship.field_at_compass(earth);
+                    east_north(*read, x, y)
+                });
+            WaterField {
+                weight: water.weight / total,
+                fixed: fixed.collect(),
+            }
+        });
+        Objective {
+            compass,
+            waters: waters.collect(),
+        }
+    }
+
+    /// Bounds the worst residual with any magnets, degrees.
+    pub(crate) fn bound_for_iron(&self) -> f64 {
+        self.weighted(|water| {
+            let half = HEADINGS / 2;
+            (0..half)
+                .map(|i| {
+                    let (one, other) = (water.fixed[i], water.fixed[i + half]);
+                    // In the other heading's axes, north and the induced field are turned
+                    // by half a circle; b is not, and drops out.
+                    tangent((one.0 + other.0, one.1 + other.1))
+                })
+                .fold(0.0, f64::max)
+        })
+    }
+
+    /// Returns the worst residual with magnets of this field, weighted over the waters,
+    /// degrees.
+    pub(crate) fn worst_deg(&self, b: [f64; 2]) -> f64 {
+        self.weighted(|water| {
+            let each = water.fixed.iter().zip(&self.compass.read);
+            each.map(|(fixed, read)| tangent(with(*fixed, *read, b)))
+                .fold(0.0, f64::max)
+        })
+    }
+
+    /// Bounds the worst residual with magnets within the box, degrees.
+    pub(crate) fn bound_deg(&self, within: &FieldBox) -> f64 {
+        self.bound_by(STRIDE, within)
+    }
+
+    /// Bounds it by every heading, for small boxes.
+    pub(crate) fn fine_bound_deg(&self, within: &FieldBox) -> f64 {
+        self.bound_by(1, within)
+    }
+
+    fn bound_by(&self, stride: usize, within: &FieldBox) -> f64 {
+        self.weighted(|water| {
+            let each = water.fixed.iter().zip(&self.compass.read).step_by(stride);
+            each.map(|(fixed, read)| least_tangent(*fixed, *read, within))
+                .fold(0.0, f64::max)
+        })
+    }
+
+    fn weighted(&self, worst: impl Fn(&WaterField) -> f64) -> f64 {
+        let each = self.waters.iter().map(|w| w.weight * worst(w).atan());
+        each.sum::<f64>().to_degrees()
+    }
+}
+
+/// Rotates a field in ship axes to its east and north parts on a heading.
+fn east_north((sin, cos): (f64, f64), x: f64, y: f64) -> (f64, f64) {
+    (x * sin + y * cos, x * cos - y * sin)
+}
+
+fn with(fixed: (f64, f64), read: (f64, f64), [x, y]: [f64; 2]) -> (f64, f64) {
+    let (east, north) = east_north(read, x, y);
+    (fixed.0 + east, fixed.1 + north)
+}
+
+/// Returns the tangent of the residual; infinite where the card would turn round.
+fn tangent((east, north): (f64, f64)) -> f64 {
+    if north > 0.0 {
+        east.abs() / north
+    } else {
+        f64::INFINITY
+    }
+}
+
+fn least_tangent(fixed: (f64, f64), read: (f64, f64), within: &FieldBox) -> f64 {
+    let (sin, cos) = read;
+    let (mid_x, half_x) = (
+        f64::midpoint(within.x[0], within.x[1]),
+        (within.x[1] - within.x[0]) / 2.0,
+    );
+    let (mid_y, half_y) = (
+        f64::midpoint(within.y[0], within.y[1]),
+        (within.y[1] - within.y[0]) / 2.0,
+    );
+    let east = fixed.0 + mid_x * sin + mid_y * cos;
+    if east.abs() <= half_x * sin.abs() + half_y * cos.abs() {
+        return 0.0;
+    }
+    let mut least = f64::INFINITY;
+    for x in within.x {
+        for y in within.y {
+            let corner = with(fixed, read, [x, y]);
+            if corner.1 <= 0.0 {
+                return 0.0;
+            }
+            least = least.min(corner.0.abs() / corner.1);
+        }
+    }
+    least
+}

@@ -1,0 +1,10 @@
+//! The ship's magnetism at the berth, and with any other setting.
+
+mod corrector_errors;
+mod field_drift;
+mod magnetic_state;
+
+mod earlier_lambda;
+
+pub(crate) use corrector_errors::{errors_between, setting_errors};
+pub(crate) use magnetic_state::{MagneticState, StateWithSetting};

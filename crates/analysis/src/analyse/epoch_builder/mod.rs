@@ -1,0 +1,6 @@
+//! Epochs by logbook and changes.
+
+mod builder;
+mod open_uncertainty;
+
+pub(super) use builder::EpochBuilder;

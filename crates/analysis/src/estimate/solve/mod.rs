@@ -1,0 +1,8 @@
+//! Iterated least squares on whitened rows, from a robust start to the evaluated estimate.
+
+mod estimator;
+mod least_squares;
+mod quality;
+mod start;
+
+pub(crate) use estimator::{Options, RoughEstimate, estimate, estimate_roughly};

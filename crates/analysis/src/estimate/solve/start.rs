@@ -1,0 +1,81 @@
+//! Robust first fit: Huber weights on rows taken as independent, with their spread from the
+//! median of the residuals.
+
+use crate::estimate::products::Products;
+use crate::estimate::rows::{
+    LinearisationPoint, Row, RowFrame, UNKNOWNS, USUAL_REFERENCE_SHARE, Unknowns, row,
+};
+use crate::observation::Observation;
+use nalgebra::{SMatrix, SVector};
+
+/// Greatest number of iterations: enough for any vessel whose headings are not ambiguous.
+const ITERATIONS: u32 = 30;
+/// Step, in population standard deviations, below which the fit has settled.
+const SETTLED: f64 = 3e-3;
+/// Number of rows beyond which the start gets no better.
+const ENOUGH: usize = 4000;
+/// Median of |x| of a Gaussian, as a part of its standard deviation.
+const MEDIAN_TO_SD: f64 = 0.674_489_8;
+/// Residual, in standard deviations, beyond which its pull is constant.
+const HUBER: f64 = 2.5;
+/// Least standard deviation: no instrument is better, and perfect data do not divide by
+/// zero.
+const LEAST_SD_DEG: f64 = 0.02;
+
+/// Returns the unknowns of an iteratively reweighted fit, and the residuals' robust
+/// standard deviation in degrees.
+pub(crate) fn start(
+    observations: &[Observation],
+    frames: &[RowFrame],
+    prior_mean: &Unknowns,
+    prior_information: &SMatrix<f64, UNKNOWNS, UNKNOWNS>,
+) -> (Unknowns, f64) {
+    let mut unknowns = *prior_mean;
+    let mut sd = f64::INFINITY;
+    // Every n-th row is as good a start as all of them.
+    let every = observations.len().div_ceil(ENOUGH).max(1);
+    let frames: Vec<&RowFrame> = frames.iter().step_by(every).collect();
+    for _ in 0..ITERATIONS {
+        let point = LinearisationPoint::at(&unknowns, USUAL_REFERENCE_SHARE);
+        let rows: Vec<Row> = observations
+            .iter()
+            .step_by(every)
+            .zip(&frames)
+            .map(|(o, s)| row(o, s, &point))
+            .collect();
+        sd = robust_sd(rows.iter().map(|r| r.residual));
+        let mut information = Products::new();
+        let mut score = prior_information * (SVector::from(*prior_mean) - SVector::from(unknowns));
+        for (r, s) in rows.iter().zip(&frames) {
+            let own_sd = s.white.variance(sd * sd).sqrt();
+            let weight = huber_weight(r.residual / own_sd) / (own_sd * own_sd);
+            information.add(&r.columns, weight);
+            score += SVector::from(r.columns) * (r.residual * weight);
+        }
+        let information = information.to_matrix() + prior_information;
+        let Some(factor) = information.cholesky() else {
+            break;
+        };
+        let step = factor.solve(&score);
+        for (u, d) in unknowns.iter_mut().zip(step.iter()) {
+            *u += d;
+        }
+        if step.amax() < SETTLED {
+            break;
+        }
+    }
+    (unknowns, sd)
+}
+
+/// Returns 1 up to [`HUBER`] standard deviations, and a weight falling as 1/|z| beyond.
+fn huber_weight(z: f64) -> f64 {
+    (HUBER / z.abs()).min(1.0)
+}
+
+/// Returns the standard deviation of the bulk of the residuals about zero.
+fn robust_sd(residuals: impl Iterator<Item = f64>) -> f64 {
+    let mut sizes: Vec<f64> = residuals.map(f64::abs).collect();
+    let middle = sizes.len() / 2;
+    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
+    (*median / MEDIAN_TO_SD).max(LEAST_SD_DEG)
+}

@@ -1,0 +1,82 @@
+//! Distribution of observations over headings.
+
+use crate::observation::Observation;
+use binnacle_compass::result::FitError;
+
+/// Sectors of heading, of 15° each.
+const SECTORS: usize = 24;
+const SECTOR_DEG: u32 = 15;
+/// Least number of sectors with samples.
+const NEEDED_SECTORS: u32 = 6;
+/// Widest gap: beyond a wider one the deviation would be the prior's alone.
+const ALLOWED_GAP_DEG: f64 = 240.0;
+
+/// Fails for observations on too few headings, with the missing sectors.
+pub(super) fn check_headings(rows: &[Observation]) -> Result<(), FitError> {
+    // Least and greatest heading in each degree: all gaps that matter lie between these.
+    let mut ends: [Option<(f64, f64)>; 360] = [None; 360];
+    for heading in rows.iter().map(|o| o.compass.degrees()) {
+        let (least, most) = ends[heading as usize % 360].get_or_insert((heading, heading));
+        *least = least.min(heading);
+        *most = most.max(heading);
+    }
+    let mut filled = [false; SECTORS];
+    for (filled, of) in filled.iter_mut().zip(ends.chunks(SECTOR_DEG as usize)) {
+        *filled = of.iter().any(Option::is_some);
+    }
+    let found = filled.iter().filter(|&&filled| filled).count() as u32;
+    let mut widest_gap_deg: f64 = 0.0;
+    let around = ends.iter().flatten().next();
+    let around = around.map(|(least, most)| (least + 360.0, most + 360.0));
+    let next = ends.iter().flatten().copied().skip(1).chain(around);
+    for ((_, most), (least, _)) in ends.iter().flatten().zip(next) {
+        widest_gap_deg = widest_gap_deg.max(least - most);
+    }
+    if found >= NEEDED_SECTORS && widest_gap_deg <= ALLOWED_GAP_DEG {
+        return Ok(());
+    }
+    Err(FitError::TooFewHeadings {
+        found,
+        needed: NEEDED_SECTORS,
+        widest_gap_deg,
+        allowed_gap_deg: ALLOWED_GAP_DEG,
+        missing_deg: missing(&filled),
+    })
+}
+
+/// Returns ranges of empty sectors, each by its first degree and the one after its last; a
+/// range through north ends beyond 360.
+fn missing(filled: &[bool; SECTORS]) -> Vec<(u32, u32)> {
+    let Some(first_filled) = filled.iter().position(|&filled| filled) else {
+        return vec![(0, 360)];
+    };
+    let mut ranges: Vec<(u32, u32)> = Vec::new();
+    for sector in (first_filled..first_filled + SECTORS).filter(|s| !filled[s % SECTORS]) {
+        let from = sector as u32 * SECTOR_DEG;
+        match ranges.last_mut() {
+            Some((_, to)) if *to == from => *to += SECTOR_DEG,
+            _ => ranges.push((from, from + SECTOR_DEG)),
+        }
+    }
+    for range in ranges.iter_mut().filter(|range| range.0 >= 360) {
+        *range = (range.0 - 360, range.1 - 360);
+    }
+    ranges.sort_unstable();
+    ranges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn missing_sectors_run_together_and_through_north() {
+        let mut filled = [true; SECTORS];
+        for sector in [0, 1, 6, 7, 8, 12, 23] {
+            filled[sector] = false;
+        }
+        let missing = missing(&filled);
+        assert_eq!(missing, [(90, 135), (180, 195), (345, 390)]);
+        assert_eq!(super::missing(&[false; SECTORS]), [(0, 360)]);
+    }
+}

@@ -1,0 +1,44 @@
+//! Rows far from the others in time: a wrong date, or a vessel not sampled for long.
+
+use crate::observation::Observation;
+use binnacle_compass::model::Caution;
+use binnacle_compass::time::Timestamp;
+
+/// Time without a sample after which the vessel may be another.
+const LONG_S: f64 = 365.0 * 86_400.0;
+/// Number of rows before such a time below which they say nothing of the vessel after it,
+/// and the ratio of the others to them from which a clock was wrong.
+const FEW: usize = 12;
+const OUTNUMBERED: usize = 10;
+
+/// Leaves out the few rows long before all others.
+pub(super) fn leave_out_early(observations: &[Observation], usable: &mut Vec<usize>) {
+    let Some(times) = in_order(usable.iter().map(|&i| &observations[i])) else {
+        return;
+    };
+    let most = (times.len() / (OUTNUMBERED + 1)).min(FEW - 1);
+    let is_gap = |pair: &[Timestamp]| pair[1].seconds_since(pair[0]) > LONG_S;
+    let Some(last) = times.windows(2).take(most).rposition(is_gap) else {
+        return;
+    };
+    let begin = times[last + 1];
+    usable.retain(|&i| observations[i].time.is_none_or(|time| time >= begin));
+}
+
+/// Returns a caution for the last long time without a row.
+pub(super) fn long_gap(rows: &[Observation]) -> Option<Caution> {
+    let times = in_order(rows.iter())?;
+    let gaps = times.windows(2).map(|pair| pair[1].seconds_since(pair[0]));
+    let gap = gaps.rev().find(|&gap| gap > LONG_S)?;
+    Some(Caution::LongGap {
+        days: gap / 86_400.0,
+        last: *times.last()?,
+    })
+}
+
+/// Returns the times in order; none where any is missing.
+fn in_order<'a>(rows: impl Iterator<Item = &'a Observation>) -> Option<Vec<Timestamp>> {
+    let mut times: Vec<Timestamp> = rows.map(|o| o.time).collect::<Option<_>>()?;
+    times.sort_unstable();
+    Some(times)
+}

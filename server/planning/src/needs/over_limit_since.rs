@@ -1,0 +1,134 @@
+//! Dates since which a compass's deviation at the vessel's position has exceeded each level.
+//!
+//! What always holds: an observation keeps a level and its date exactly if the deviation was at
+//! least that large at every observation since. A prediction that is too uncertain is no
+//! observation.
+
+use binnacle_platform::db::{Db, Result, Tx, execute, rows};
+use binnacle_platform::ids::{CompassId, OperatorId, VesselId};
+use chrono::NaiveDate;
+use std::collections::BTreeMap;
+
+/// Levels are whole multiples of this, degrees: they would be as many as days otherwise.
+const STEP_DEG: f64 = 0.1;
+
+/// Days, each with what the deviation has been at least since, degrees: later days have
+/// higher ones.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Since(Vec<(NaiveDate, f64)>);
+
+impl Since {
+    /// After one more look, at which it was so great.
+    pub(super) fn seen(&self, on: NaiveDate, worst_deg: f64) -> Since {
+        let level_deg = (worst_deg / STEP_DEG + 1e-6).floor() * STEP_DEG;
+        let mut levels = self.0.clone();
+        let mut since = on;
+        while let Some((day, _)) = levels.pop_if(|(_, deg)| *deg > level_deg - STEP_DEG / 2.0) {
+            since = since.min(day);
+        }
+        levels.push((since, level_deg));
+        Since(levels)
+    }
+
+    /// The days and levels, the earliest first.
+    pub(super) fn levels(&self) -> impl Iterator<Item = (NaiveDate, f64)> {
+        self.0.iter().copied()
+    }
+}
+
+/// Returns the stored history of each of an operator's compasses.
+pub(super) async fn noted(
+    db: &Db,
+    operator: OperatorId,
+) -> Result<BTreeMap<(VesselId, CompassId), Since>> {
+    let found = rows!(
+        db,
+        (VesselId, CompassId, String, f64),
+        "SELECT s.vessel_id, s.compass_id, s.since, s.at_least_deg FROM deviation_since s
+         JOIN vessels v ON v.id = s.vessel_id
+         WHERE v.operator_id = $1
+         ORDER BY s.vessel_id, s.compass_id, s.since",
+        operator
+    )?;
+    let mut noted: BTreeMap<_, Since> = BTreeMap::new();
+    for (vessel, compass, since, level_deg) in found {
+        let since: NaiveDate = since
+            .parse()
+            .map_err(|error: chrono::ParseError| sqlx::Error::Decode(error.into()))?;
+        noted
+            .entry((vessel, compass))
+            .or_default()
+            .0
+            .push((since, level_deg));
+    }
+    Ok(noted)
+}
+
+/// Notes it of a compass, in the place of what was.
+pub(super) async fn note(
+    tx: &mut Tx,
+    (vessel, compass): (VesselId, CompassId),
+    since: &Since,
+) -> Result<()> {
+    execute!(
+        &mut *tx,
+        "DELETE FROM deviation_since WHERE vessel_id = $1 AND compass_id = $2",
+        vessel,
+        compass
+    )?;
+    for (day, level_deg) in since.levels() {
+        execute!(
+            &mut *tx,
+            "INSERT INTO deviation_since (vessel_id, compass_id, since, at_least_deg)
+             VALUES ($1, $2, $3, $4)
+             ON CONFLICT (vessel_id, compass_id, since) DO UPDATE SET at_least_deg = $4",
+            vessel,
+            compass,
+            day.to_string(),
+            level_deg
+        )?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn day(of_november: u32) -> NaiveDate {
+        NaiveDate::from_ymd_opt(2026, 11, of_november).unwrap()
+    }
+
+    fn first_over(since: &Since, limit_deg: f64) -> Option<NaiveDate> {
+        let mut over = since.levels().filter(|(_, deg)| *deg > limit_deg);
+        over.next().map(|(day, _)| day)
+    }
+
+    #[test]
+    fn a_limit_is_passed_on_the_first_day_of_those_that_are_all_over_it() {
+        let looks = [(1, 4.0), (2, 6.0), (3, 5.5), (5, 7.25), (6, 5.5), (9, 6.0)];
+        let since = looks.iter().fold(Since::default(), |since, (on, deg)| {
+            since.seen(day(*on), *deg)
+        });
+        assert_eq!(first_over(&since, 3.0), Some(day(1)));
+        assert_eq!(first_over(&since, 5.0), Some(day(2)));
+        assert_eq!(first_over(&since, 5.8), Some(day(9)));
+        assert_eq!(first_over(&since, 6.5), None);
+    }
+
+    #[test]
+    fn a_day_below_the_limit_begins_it_anew() {
+        let since = Since::default().seen(day(1), 6.0).seen(day(2), 4.9);
+        assert_eq!(first_over(&since, 5.0), None);
+        assert_eq!(first_over(&since.seen(day(3), 6.0), 5.0), Some(day(3)));
+    }
+
+    #[test]
+    fn what_trembles_about_one_size_keeps_few_days() {
+        let trembling = (1..29).fold(Since::default(), |since, on| {
+            since.seen(day(on), 6.03 + 0.01 * f64::from(on % 5))
+        });
+        assert_eq!(trembling.levels().count(), 1);
+        assert_eq!(first_over(&trembling, 5.0), Some(day(1)));
+    }
+}

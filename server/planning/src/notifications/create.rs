@@ -1,0 +1,102 @@
+//! Something to be told, on its way to those whom it concerns.
+//!
+//! What always holds: it is written for each person in the transaction that makes it
+//! true, with when a letter is to tell of it; the list and the letters are made from that.
+
+use super::settings::Settings;
+use super::store;
+use super::way::Way;
+use binnacle_platform::db::{Tx, row, rows};
+use binnacle_platform::error::Result;
+use binnacle_platform::ids::UserId;
+use binnacle_platform::notices::{Kind, Notice, NoticesPublished};
+use binnacle_platform::session::Role;
+use binnacle_platform::tenants::Tenant;
+use binnacle_platform::time::Time;
+use futures_util::future::BoxFuture;
+
+/// Someone whom notice may concern.
+struct Person {
+    id: UserId,
+    role: Role,
+    settings: Settings,
+}
+
+/// Tells a tenant's people, but not who made the notice.
+pub(super) async fn tell(
+    tx: &mut Tx,
+    tenant: impl Into<Tenant>,
+    all: &[Notice],
+    by: Option<UserId>,
+    now: Time,
+) -> Result<()> {
+    if all.is_empty() {
+        return Ok(());
+    }
+    for person in people(tx, tenant.into()).await? {
+        let concerns =
+            |notice: &&Notice| notice.kind.concerns(person.role) && by != Some(person.id);
+        for notice in all.iter().filter(concerns) {
+            let way = person.settings.way(notice.kind, person.role);
+            if way == Way::Off {
+                continue;
+            }
+            let mut mail_at = person.settings.mail_at(way, notice.urgent, now);
+            if notice.kind == Kind::Alert && is_on_the_mailing_list(tx, person.id).await? {
+                mail_at = None;
+            }
+            store::insert(tx, person.id, notice, mail_at, now).await?;
+        }
+    }
+    Ok(())
+}
+
+async fn people(tx: &mut Tx, tenant: Tenant) -> Result<Vec<Person>> {
+    let found = rows!(
+        in tx,
+        (UserId, Role, Option<String>),
+        "SELECT u.id, u.role, s.settings FROM users u
+         LEFT JOIN notification_settings s ON s.user_id = u.id
+         WHERE (u.operator_id = $1 OR u.firm_id = $2) AND u.disabled_at IS NULL
+         ORDER BY u.id",
+        tenant.operator(),
+        tenant.firm()
+    )?;
+    let read = |(id, role, settings): (UserId, Role, Option<String>)| {
+        let settings = settings
+            .map(|text| serde_json::from_str(&text))
+            .transpose()?;
+        Ok(Person {
+            id,
+            role,
+            settings: settings.unwrap_or_default(),
+        })
+    };
+    found.into_iter().map(read).collect()
+}
+
+/// Returns whether a user is on the operator's mailing list, which gets a letter of each alert.
+async fn is_on_the_mailing_list(tx: &mut Tx, user: UserId) -> Result<bool> {
+    let found = row!(
+        in tx,
+        (i64,),
+        "SELECT COUNT(*) FROM users u
+         JOIN mail_recipients m ON m.operator_id = u.operator_id AND LOWER(m.address) = u.email
+         WHERE u.id = $1",
+        user
+    )?;
+    Ok(found.is_some_and(|(listed,)| listed > 0))
+}
+
+/// Creates the notifications of published notices.
+pub fn create<'a>(tx: &'a mut Tx, published: &'a NoticesPublished) -> BoxFuture<'a, Result<()>> {
+    Box::pin(async move {
+        let NoticesPublished {
+            tenant,
+            notices,
+            by,
+            at,
+        } = published;
+        tell(tx, *tenant, notices, *by, *at).await
+    })
+}

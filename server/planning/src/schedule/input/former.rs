@@ -1,0 +1,92 @@
+//! The jobs that a plan begins from: those agreed, pinned, and proposed by the plan before.
+
+use crate::needs::Need;
+use crate::schedule::plan::Plan;
+use binnacle_platform::ids::{CallId, CompassId, FirmId};
+use binnacle_schedule::input::{Firm, FormerJob, JobState};
+use chrono::NaiveDate;
+use std::collections::BTreeSet;
+
+/// Jobs of the plan before, and what has become of them since: each compass in one.
+pub(super) struct Former {
+    needs: BTreeSet<CompassId>,
+    firms: BTreeSet<String>,
+    /// Those that have a job.
+    pub(super) taken: BTreeSet<CompassId>,
+    jobs: Vec<FormerJob>,
+}
+
+impl Former {
+    pub(super) fn new(found: &[Need], firms: &[Firm]) -> Former {
+        Former {
+            needs: found.iter().map(|need| need.compass_id).collect(),
+            firms: firms.iter().map(|firm| firm.id.clone()).collect(),
+            taken: BTreeSet::new(),
+            jobs: Vec::new(),
+        }
+    }
+
+    /// Returns whether the compass has a need and the firm is in the plan.
+    pub(super) fn knows(&self, compass: &str, firm: &str) -> bool {
+        let mut needs = self.needs.iter();
+        needs.any(|need| need.to_string() == compass) && self.firms.contains(firm)
+    }
+
+    /// Adds a job for those of its compasses that have a need and no job yet; whether
+    /// there were any.
+    pub(super) fn add(
+        &mut self,
+        compasses: &[CompassId],
+        call: CallId,
+        firm: FirmId,
+        day: NaiveDate,
+        state: JobState,
+    ) -> bool {
+        let firm = firm.to_string();
+        if !self.firms.contains(&firm) {
+            return false;
+        }
+        let open = compasses
+            .iter()
+            .filter(|one| self.needs.contains(one) && !self.taken.contains(one));
+        let needs: Vec<CompassId> = open.copied().collect();
+        if needs.is_empty() {
+            return false;
+        }
+        self.taken.extend(needs.iter().copied());
+        self.jobs.push(FormerJob {
+            needs: needs.iter().map(CompassId::to_string).collect(),
+            call: call.to_string(),
+            firm,
+            day,
+            state,
+        });
+        true
+    }
+
+    /// Adds what the plan before proposed.
+    pub(super) fn add_proposed(&mut self, former: Option<&Plan>) {
+        for job in former.iter().flat_map(|plan| &plan.jobs) {
+            let compasses: Vec<CompassId> =
+                job.compasses.iter().map(|one| one.compass_id).collect();
+            let proposed = JobState::Proposed;
+            self.add(&compasses, job.call_id, job.firm_id, job.day, proposed);
+        }
+    }
+
+    /// The jobs; those of one ship that are alike are one.
+    pub(super) fn joined(&self) -> Vec<FormerJob> {
+        let mut joined: Vec<FormerJob> = Vec::new();
+        for job in &self.jobs {
+            let alike = joined.iter_mut().find(|other| {
+                (&other.call, &other.firm, other.day, other.state)
+                    == (&job.call, &job.firm, job.day, job.state)
+            });
+            match alike {
+                Some(other) => other.needs.extend(job.needs.iter().cloned()),
+                None => joined.push(job.clone()),
+            }
+        }
+        joined
+    }
+}

@@ -1,0 +1,136 @@
+//! Everybody's names, and which orders are jobs of the plan.
+
+use super::former::Former;
+use super::orders::Order;
+use crate::needs::Facts;
+use crate::port_calls::Row;
+use crate::schedule::plan::{Compass, UnderWay};
+use binnacle_orders::work_orders::State;
+use binnacle_platform::ids::{CallId, CompassId, FirmId, OrderId, VesselId};
+use binnacle_schedule::input::{Firm, JobState};
+use chrono::NaiveDate;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Everybody's names.
+#[derive(Default)]
+pub(in crate::schedule) struct Names {
+    pub(in crate::schedule) compasses: BTreeMap<CompassId, (VesselId, String, String)>,
+    pub(in crate::schedule) firms: BTreeMap<FirmId, String>,
+    pub(in crate::schedule) calls: BTreeMap<CallId, Row>,
+    pub(in crate::schedule) pinned: BTreeSet<CompassId>,
+    /// Orders that are jobs of the plan.
+    pub(in crate::schedule) agreed: BTreeMap<CompassId, Agreed>,
+    /// Orders that every firm has declined.
+    pub(in crate::schedule) declined: BTreeMap<CompassId, OrderId>,
+}
+
+/// Job that an order has agreed for a compass: firm, port call and day.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::schedule) struct Agreed {
+    pub(in crate::schedule) vessel_id: VesselId,
+    pub(in crate::schedule) order_id: OrderId,
+    pub(in crate::schedule) state: JobState,
+    pub(in crate::schedule) call_id: CallId,
+    pub(in crate::schedule) firm_id: FirmId,
+    pub(in crate::schedule) day: NaiveDate,
+}
+
+impl Names {
+    pub(super) fn of(facts: &[Facts]) -> Names {
+        let compasses = facts.iter().map(|one| {
+            let names = (
+                one.vessel_id,
+                one.vessel_name.clone(),
+                one.compass_name.clone(),
+            );
+            (one.compass_id, names)
+        });
+        Names {
+            compasses: compasses.collect(),
+            ..Names::default()
+        }
+    }
+
+    /// Takes the orders that are jobs of the plan; those beside it come back, and why.
+    pub(super) fn take_orders<'a>(
+        &mut self,
+        orders: &'a [Order],
+        ahead: &[Row],
+        planned_with: &[Firm],
+    ) -> Vec<(&'a Order, String)> {
+        let mut beside = Vec::new();
+        for order in orders {
+            if order.state == State::Declined {
+                self.declined.insert(order.compass_id, order.id);
+                continue;
+            }
+            let (Some(state), Some(firm_id)) = (order.job_state(), order.firm_id) else {
+                beside.push((
+                    order,
+                    "its order is being done, or offered to nobody".to_owned(),
+                ));
+                continue;
+            };
+            let id = firm_id.to_string();
+            if planned_with.iter().all(|firm| firm.id != id) {
+                let firm = self.firm(firm_id);
+                beside.push((order, format!("{firm}, which has its order, is left out")));
+                continue;
+            }
+            let Some(call_id) = order.call(ahead) else {
+                beside.push((
+                    order,
+                    "no port call is known at its order's port and time".to_owned(),
+                ));
+                continue;
+            };
+            let port = ahead.iter().find(|call| call.id == call_id);
+            let agreed = Agreed {
+                vessel_id: order.vessel_id,
+                order_id: order.id,
+                state,
+                call_id,
+                firm_id,
+                day: order.day(port.map(|call| call.port.as_str())),
+            };
+            self.agreed.insert(order.compass_id, agreed);
+        }
+        beside
+    }
+
+    /// Orders beside the plan, and why, with everybody's names.
+    pub(super) fn under_way(&self, beside: Vec<(&Order, String)>) -> Vec<UnderWay> {
+        let named = beside.into_iter().filter_map(|(order, why)| {
+            let (vessel_id, vessel_name, _) = self.compasses.get(&order.compass_id)?;
+            Some(UnderWay {
+                vessel_id: *vessel_id,
+                vessel_name: vessel_name.clone(),
+                compass: self.compass(order.compass_id),
+                order_id: order.id,
+                why,
+            })
+        });
+        named.collect()
+    }
+
+    /// The orders that are jobs of the plan before, each with its firm.
+    pub(super) fn planned(&self, former: &Former) -> BTreeMap<OrderId, FirmId> {
+        let agreed = self.agreed.iter();
+        agreed
+            .filter(|(compass, _)| former.taken.contains(compass))
+            .map(|(_, agreed)| (agreed.order_id, agreed.firm_id))
+            .collect()
+    }
+
+    pub(in crate::schedule) fn compass(&self, id: CompassId) -> Compass {
+        let known = self.compasses.get(&id);
+        Compass {
+            compass_id: id,
+            compass_name: known.map_or_else(String::new, |(_, _, name)| name.clone()),
+        }
+    }
+
+    pub(in crate::schedule) fn firm(&self, id: FirmId) -> String {
+        self.firms.get(&id).cloned().unwrap_or_default()
+    }
+}
