@@ -203,9 +203,8 @@ pub(crate) async fn must_have_turned(
         return Ok(());
     }
     Err(Error::WrongState(format!(
-        "{}: read the field again (second reading), or look at each corrector and say how they \
-         stand",
-        in_all
+        "{in_all}: read the field again (second reading), or look at each corrector and say how \
+         they stand"
     )))
 }
 
