@@ -29,7 +29,12 @@ deb: setup ## Make the agent's Debian package
 demo: build ## Sail a simulated fleet and open the dashboard (DAYS=60, PORT=8080)
 	@scripts/demo
 
-test: test-web test-rust test-api test-browser ## Run every test, real PostgreSQL and Chromium included
+ifdef CRATE
+test: web
+	@scripts/test-crate $(CRATE)
+else
+test: test-web test-rust test-api test-browser ## Run every test, real PostgreSQL and Chromium included (CRATE=orders: one crate's)
+endif
 
 test-web: web ## Test the dashboard's own functions
 	@scripts/web test

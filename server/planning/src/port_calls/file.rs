@@ -188,6 +188,10 @@ pub(super) fn by_vessel(
     Ok(found)
 }
 
+#[allow(
+    clippy::needless_pass_by_value,
+    reason = "it is what map_err hands over"
+)]
 /// Refusal of a file with mistakes, each named.
 pub(super) fn invalid_file(faults: FileErrors) -> Error {
     Error::Invalid {

@@ -130,7 +130,7 @@ pub fn one_line(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// Lines of at most [`WIDTH`] columns, the first after `lead`, the others indented
+/// Lines of at most 72 columns, the first after `lead`, the others indented
 /// alike.
 pub fn wrapped(lead: &str, text: &str) -> String {
     let mut lines = Vec::new();
