@@ -6,8 +6,8 @@
 //! hypothesis far likelier than the null hypothesis and than a transient is accepted; the
 //! row of its jump dates the change (docs/science.md, §9).
 //!
-//! The decision is taken in `detect/decision.rs`, by the constants of [`thresholds`] and
-//! [`priors`].
+//! The decision is taken in `detect/decision.rs`, by the constants of `thresholds` and
+//! `priors`.
 //!
 //! The order in which rows arrive changes nothing. A difference between two references is
 //! never attributed to the vessel. Every change has its evidence, and the probabilities of
