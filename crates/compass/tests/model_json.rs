@@ -69,7 +69,7 @@ fn the_example_is_a_model_and_is_written_as_it_is_printed() {
 
 #[test]
 fn every_field_is_described() {
-    let described = table("| field | unit | when absent | what it is |");
+    let described = table("| field | unit | when absent | meaning |");
     let described: Vec<&str> = described
         .iter()
         .map(|row| row[0].trim_matches('`'))
