@@ -4,7 +4,6 @@
 //! domain: a domain's refusal becomes a [`DomainProblem`] by its own conversion.
 
 use axum::Json;
-use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
@@ -247,7 +246,7 @@ impl From<sqlx::Error> for Error {
 }
 
 impl From<serde_json::Error> for Error {
-    /// Only for JSON of our own; a request's goes through [`JsonRejection`].
+    /// Only for JSON of our own; a request's goes through `JsonRejection`.
     fn from(error: serde_json::Error) -> Error {
         Error::Internal(error.into())
     }
@@ -262,38 +261,5 @@ impl From<anyhow::Error> for Error {
 impl From<tokio::task::JoinError> for Error {
     fn from(error: tokio::task::JoinError) -> Error {
         Error::Internal(error.into())
-    }
-}
-
-impl From<JsonRejection> for Error {
-    fn from(rejection: JsonRejection) -> Error {
-        match rejection {
-            JsonRejection::JsonDataError(error) => Error::Invalid {
-                field: "body",
-                detail: error.body_text(),
-            },
-            JsonRejection::MissingJsonContentType(error) => {
-                Error::UnsupportedMediaType(error.body_text())
-            }
-            JsonRejection::BytesRejection(error)
-                if error.status() == StatusCode::PAYLOAD_TOO_LARGE =>
-            {
-                Error::TooLarge(crate::http::MAX_JSON_BYTES)
-            }
-            other => Error::BadRequest(other.body_text()),
-        }
-    }
-}
-
-impl From<QueryRejection> for Error {
-    fn from(rejection: QueryRejection) -> Error {
-        Error::BadRequest(rejection.body_text())
-    }
-}
-
-impl From<PathRejection> for Error {
-    /// A path that does not parse names nothing that exists.
-    fn from(_: PathRejection) -> Error {
-        Error::NotFound("page")
     }
 }
