@@ -42,4 +42,5 @@ pub mod outbox;
 pub mod webhooks;
 
 pub mod http;
+pub mod outbound;
 pub mod tls;

@@ -1,7 +1,7 @@
 //! Server settings: flags, or `BINNACLE_*` variables.
 
+use crate::outbound::Reach;
 use crate::tls::Certificate;
-use crate::webhooks::Reach;
 use clap::Args;
 use sha2::{Digest, Sha256};
 use std::net::SocketAddr;

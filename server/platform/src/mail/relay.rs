@@ -4,8 +4,8 @@
 //! was checked; a relay without TLS is spoken to only within one's own network. No
 //! error names the password.
 
+use crate::outbound::is_public;
 use crate::outbox::Tried;
-use crate::webhooks::is_public;
 use anyhow::{Context, Result, bail};
 use lettre::address::Envelope;
 use lettre::transport::smtp::authentication::{Credentials, Mechanism};

@@ -5,7 +5,7 @@
 //! without. The server's own admin named the provider, which may be within the network
 //! then; but one on the public internet cannot send requests into it.
 
-use crate::webhooks::{self, Reach, is_public};
+use crate::outbound::{self, Reach, is_public};
 use anyhow::{Context, bail, ensure};
 use axum::http::header::AUTHORIZATION;
 use openidconnect::{AsyncHttpClient, HttpRequest, HttpResponse};
@@ -41,14 +41,14 @@ impl Http {
             Reach::Anywhere
         };
         Ok(Http {
-            client: webhooks::client(reach)?,
+            client: outbound::client(reach)?,
             reach,
             https_only: url.scheme() == "https",
         })
     }
 
     async fn ask(&self, mut request: HttpRequest) -> anyhow::Result<HttpResponse> {
-        let url = webhooks::check_url(&request.uri().to_string(), self.reach)?;
+        let url = outbound::check_url(&request.uri().to_string(), self.reach)?;
         ensure!(
             !self.https_only || url.scheme() == "https",
             "the provider names an address without https"

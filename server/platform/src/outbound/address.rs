@@ -1,5 +1,5 @@
-//! The addresses that a webhook may reach: only public ones, so that nobody can make the
-//! server call hosts of its own network.
+//! Public addresses, which a user may have the server call. It must not call hosts of its
+//! own network for anybody.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 
@@ -16,7 +16,7 @@ pub fn is_public(address: IpAddr) -> bool {
 }
 
 fn is_public_v4(address: Ipv4Addr) -> bool {
-    let [a, b, c, _] = address.octets();
+    let [a, b, c, _] = u32::from(address).to_be_bytes();
     let special = matches!(
         (a, b, c),
         (0 | 10 | 127 | 224.., _, _)       // this network, private, loopback, multicast and up

@@ -7,15 +7,13 @@
 //! - Nothing is sent to an address outside the public internet, unless the server is
 //!   configured to allow it.
 
-mod address;
 mod announce;
 mod send;
 mod store;
 mod webhook;
 
-pub use address::is_public;
 pub use announce::announce;
-pub use send::{Reach, SIGNATURE_HEADER, Sender, check_url, client};
+pub use send::{SIGNATURE_HEADER, Sender};
 
 use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;

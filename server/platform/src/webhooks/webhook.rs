@@ -1,9 +1,9 @@
 //! Webhooks as they are made and shown.
 
-use super::send::{Reach, check_url};
 use crate::error::{Error, Result};
 use crate::http::is_control;
 use crate::ids::WebhookId;
+use crate::outbound::{Reach, check_url};
 use crate::outbox::Kind;
 use crate::tenants::Tenant;
 use crate::time::Time;
