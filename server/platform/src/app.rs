@@ -4,7 +4,7 @@ use crate::clock::Clock;
 use crate::config::Serve;
 use crate::db::Db;
 use crate::events::Live;
-use crate::oidc::Provider;
+use crate::identity_provider::Provider;
 use metrics_exporter_prometheus::PrometheusHandle;
 use std::sync::Arc;
 use tokio::sync::{Notify, Semaphore};

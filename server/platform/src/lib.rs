@@ -26,6 +26,7 @@ pub mod audit;
 pub mod client_address;
 pub mod ed25519;
 pub mod idempotency;
+pub mod identity_provider;
 pub mod oidc;
 pub mod password;
 pub mod second_factor;

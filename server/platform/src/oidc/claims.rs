@@ -6,11 +6,10 @@
 //! (OpenID Connect Core 1.0, section 3.1.3.7).
 
 use super::attempt::Attempt;
-use super::provider::{self, Found, NEW_KEYS_AFTER_S};
 use super::refusal::Refusal;
-use super::sign_in::redirect_url;
 use crate::app::App;
-use crate::config::Oidc;
+use crate::config::{Oidc, Serve};
+use crate::identity_provider::Discovery;
 use chrono::{DateTime, Utc};
 use openidconnect::core::{
     CoreAuthenticationFlow, CoreClient, CoreClientAuthMethod, CoreIdToken, CoreIdTokenClaims,
@@ -19,11 +18,15 @@ use openidconnect::core::{
 use openidconnect::{
     AccessToken, AuthType, AuthorizationCode, ClaimsVerificationError, ClientId, ClientSecret,
     CsrfToken, EndpointMaybeSet, EndpointNotSet, EndpointSet, Nonce, OAuth2TokenResponse,
-    PkceCodeChallenge, PkceCodeVerifier, RequestTokenError, Scope, SignatureVerificationError,
-    TokenResponse,
+    PkceCodeChallenge, PkceCodeVerifier, RedirectUrl, RequestTokenError, Scope,
+    SignatureVerificationError, TokenResponse,
 };
 use reqwest::Url;
+use std::sync::Arc;
 use tracing::{info, warn};
+
+/// Path to which the provider redirects people.
+const CALLBACK: &str = "/api/v1/session/provider/callback";
 
 /// By which a provider may sign: with a key that only it has.
 const SIGNATURES: [CoreJwsSigningAlgorithm; 9] = [
@@ -54,7 +57,23 @@ pub(super) struct Identity {
     access: AccessToken,
 }
 
-fn client(app: &App, found: &Found) -> Result<Client, Refusal> {
+/// Returns the configured issuer; empty if no provider is set up.
+pub(super) fn issuer(app: &App) -> &str {
+    app.config.oidc.oidc_issuer.as_deref().unwrap_or_default()
+}
+
+/// Returns the provider's metadata.
+pub(super) async fn current(app: &App) -> Result<Arc<Discovery>, Refusal> {
+    Ok(app.provider.current(issuer(app), &app.clock).await?)
+}
+
+/// The address of [`CALLBACK`], as the provider knows it.
+fn redirect_url(config: &Serve) -> Option<RedirectUrl> {
+    let public = config.mail.public_url.as_deref()?.trim_end_matches('/');
+    RedirectUrl::new(format!("{public}{CALLBACK}")).ok()
+}
+
+fn client(app: &App, found: &Discovery) -> Result<Client, Refusal> {
     let config: &Oidc = &app.config.oidc;
     let id = config.oidc_client_id.clone().unwrap_or_default();
     let secret = config.oidc_client_secret.clone().map(ClientSecret::new);
@@ -72,7 +91,7 @@ fn client(app: &App, found: &Found) -> Result<Client, Refusal> {
 }
 
 /// Returns the provider's address at which a person signs in.
-pub(super) fn address(app: &App, found: &Found, attempt: &Attempt) -> Result<Url, Refusal> {
+pub(super) fn address(app: &App, found: &Discovery, attempt: &Attempt) -> Result<Url, Refusal> {
     let client = client(app, found)?;
     let (state, nonce) = (attempt.state(), attempt.nonce());
     let verifier = PkceCodeVerifier::new(attempt.verifier());
@@ -94,7 +113,7 @@ pub(super) async fn redeem(
     attempt: &Attempt,
     code: String,
 ) -> Result<Identity, Refusal> {
-    let found = provider::current(app).await?;
+    let found = current(app).await?;
     let client = client(app, &found)?;
     let request = client
         .exchange_code(AuthorizationCode::new(code))
@@ -124,7 +143,7 @@ pub(super) async fn redeem(
     if let Err(error) = &read
         && may_be_by_a_new_key(error)
     {
-        let found = provider::find(app, NEW_KEYS_AFTER_S).await?;
+        let found = app.provider.with_new_keys(issuer(app), &app.clock).await?;
         let client = self::client(app, &found)?;
         read = self::read(app, &client, token, &nonce);
     }
@@ -145,7 +164,7 @@ pub(super) async fn verified_email(app: &App, identity: &Identity) -> Result<Str
         return Ok(email.clone());
     }
     // Some tell it only to who asks besides (section 5.4).
-    let found = provider::current(app).await?;
+    let found = current(app).await?;
     let client = client(app, &found)?;
     let subject = openidconnect::SubjectIdentifier::new(identity.subject.clone());
     let Ok(request) = client.user_info(identity.access.clone(), Some(subject)) else {

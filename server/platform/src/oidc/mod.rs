@@ -13,12 +13,9 @@
 
 mod attempt;
 mod claims;
-mod http;
-mod provider;
 mod refusal;
 mod sign_in;
 mod store;
 
-pub use provider::Provider;
-pub use sign_in::{CALLBACK, router};
+pub use sign_in::router;
 pub use store::forget;

@@ -1,6 +1,7 @@
 //! Reasons for which a sign-in through the provider fails.
 
 use crate::error::Error;
+use crate::identity_provider::Unreachable;
 use tracing::error;
 
 /// Reason shown on the sign-in page.
@@ -56,6 +57,12 @@ impl From<Error> for Refusal {
         }
         error!(error = ?cause, "a sign-in by the provider failed");
         Refusal::Failed
+    }
+}
+
+impl From<Unreachable> for Refusal {
+    fn from(_: Unreachable) -> Refusal {
+        Refusal::Unreachable
     }
 }
 

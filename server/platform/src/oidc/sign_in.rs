@@ -2,13 +2,11 @@
 
 use super::attempt::{self, Attempt};
 use super::claims::{self, Identity};
-use super::provider;
 use super::refusal::Refusal;
 use super::store::{self, Known};
 use crate::app::App;
 use crate::audit::RequestContext;
 use crate::client_address::Origin;
-use crate::config::Serve;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Params, Valid};
 use crate::session::throttle::{self, Subjects};
@@ -19,15 +17,12 @@ use axum::extract::{FromRef, State};
 use axum::http::header::{LOCATION, SET_COOKIE};
 use axum::http::{HeaderMap, HeaderValue, StatusCode};
 use binnacle_compass::time::Timestamp;
-use openidconnect::RedirectUrl;
 use serde::{Deserialize, Serialize};
 use tracing::info;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// Path to which the provider redirects people.
-pub const CALLBACK: &str = "/api/v1/session/provider/callback";
 /// Address of the sign-in page, to which the outcome is appended.
 const SIGN_IN_PAGE: &str = "/?sign-in=";
 
@@ -95,7 +90,7 @@ async fn find_provider(State(app): State<App>) -> Json<Named> {
 async fn go_to_provider(State(app): State<App>) -> Result<(StatusCode, HeaderMap)> {
     must_be_set_up(&app)?;
     let attempt = Attempt::new(&app);
-    let address = match provider::current(&app).await {
+    let address = match claims::current(&app).await {
         Ok(found) => claims::address(&app, &found, &attempt),
         Err(refusal) => Err(refusal),
     };
@@ -178,12 +173,6 @@ fn must_be_set_up(app: &App) -> Result<()> {
     Err(Error::NotSetUp("this server was told of no provider"))
 }
 
-/// The address of [`CALLBACK`], as the provider knows it.
-pub(super) fn redirect_url(config: &Serve) -> Option<RedirectUrl> {
-    let public = config.mail.public_url.as_deref()?.trim_end_matches('/');
-    RedirectUrl::new(format!("{public}{CALLBACK}")).ok()
-}
-
 type Done = std::result::Result<(StatusCode, HeaderMap), Refusal>;
 
 async fn conclude(
@@ -235,7 +224,7 @@ async fn who(
     attempt: &Attempt,
     code: String,
 ) -> std::result::Result<User, Refusal> {
-    let issuer = app.config.oidc.oidc_issuer.as_deref().unwrap_or_default();
+    let issuer = claims::issuer(app);
     let identity = claims::redeem(app, attempt, code).await?;
     let subject = identity.subject.as_str();
     // PostgreSQL accepts no NUL in a text, and no provider uses one in a name.

@@ -17,7 +17,7 @@ const MOST_BYTES: usize = 1 << 20;
 
 /// HTTP client for requests to the provider.
 #[derive(Clone)]
-pub(super) struct Http {
+pub(crate) struct Http {
     client: Client,
     reach: Reach,
     https_only: bool,
@@ -26,7 +26,7 @@ pub(super) struct Http {
 /// Reason for a missing answer.
 #[derive(Debug, thiserror::Error)]
 #[error("{0:#}")]
-pub(super) struct NoAnswer(anyhow::Error);
+pub(crate) struct NoAnswer(anyhow::Error);
 
 impl Http {
     /// For the provider with this address.
