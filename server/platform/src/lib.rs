@@ -36,6 +36,7 @@ pub mod tenants;
 pub mod tokens;
 pub mod users;
 
+pub mod event_stream;
 pub mod events;
 pub mod mail;
 pub mod notices;

@@ -14,9 +14,10 @@ use binnacle_platform::client_address::Peer;
 use binnacle_platform::clock::Clock;
 use binnacle_platform::config::{Database, Serve};
 use binnacle_platform::db::Db;
+use binnacle_platform::event_stream::EventListener;
 use binnacle_platform::mail::Mailer;
 use binnacle_platform::tls::TlsListener;
-use binnacle_platform::{audit, events, outbox, webhooks};
+use binnacle_platform::{audit, outbox, webhooks};
 use std::future::Future;
 use std::io::Write;
 use std::net::SocketAddr;
@@ -75,8 +76,8 @@ where
     let state = ServerState::new(app.clone());
     let mailer = Mailer::new(&app.config.mail)?;
     let mut parts = JoinSet::new();
-    let line = events::Line::open(&app.db).await?;
-    parts.spawn(line.listen(app.clone()));
+    let events = EventListener::open(&app.db).await?;
+    parts.spawn(events.listen(app.clone()));
     let outdated = analysis::enqueue_outdated(&app.db, app.clock.now().into()).await?;
     if outdated > 0 {
         info!(vessels = outdated, "another estimator: analysing again");

@@ -20,7 +20,7 @@ use binnacle_orders::{api as orders_api, firms};
 use binnacle_planning::{calendar, needs, notifications, port_calls, reports, schedule};
 use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers};
 use binnacle_platform::{
-    audit, error, events, mail, oidc, second_factor, session, tokens, users, webhooks,
+    audit, error, event_stream, mail, oidc, second_factor, session, tokens, users, webhooks,
 };
 use std::time::Duration;
 use tower_http::catch_panic::CatchPanicLayer;
@@ -120,7 +120,7 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(webhooks::router())
         .merge(mail::router())
         .merge(notifications::router())
-        .merge(events::router())
+        .merge(event_stream::router())
 }
 
 /// The OpenAPI document.

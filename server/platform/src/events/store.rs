@@ -1,6 +1,5 @@
 //! Events in the database, kept for a day.
 
-use super::live::CHANNEL;
 use super::{Event, EventStored, Kind};
 use crate::db::{Connection, Db, Result, Tx, execute, row, rows};
 use crate::error;
@@ -8,6 +7,8 @@ use crate::ids::{EventId, FirmId, OperatorId, OrderId, VesselId};
 use crate::tenants::Tenant;
 use crate::time::Time;
 
+/// The channel of PostgreSQL's NOTIFY.
+pub(crate) const CHANNEL: &str = "binnacle_events";
 const KEPT_FOR_S: f64 = 86_400.0;
 /// Each process has its own clock, and a transaction may be seen late: how far to
 /// look back before the last event seen.
@@ -28,7 +29,8 @@ pub async fn insert(
 /// Stores an event of a work order, for its operator or for one firm.
 pub async fn insert_of_order(
     tx: &mut Tx,
-    (vessel_id, order): (VesselId, OrderId),
+    vessel_id: VesselId,
+    order: OrderId,
     firm: Option<FirmId>,
     now: Time,
 ) -> error::Result<Event> {
@@ -83,7 +85,7 @@ async fn write(
 
 /// Returns the events since the given one. If that event is already deleted, returns all
 /// events that are left.
-pub(super) async fn since(db: &Db, tenant: Tenant, last: EventId) -> Result<Vec<Event>> {
+pub(crate) async fn since(db: &Db, tenant: Tenant, last: EventId) -> Result<Vec<Event>> {
     rows!(
         db,
         Event,
@@ -103,7 +105,7 @@ pub(super) async fn since(db: &Db, tenant: Tenant, last: EventId) -> Result<Vec<
 }
 
 /// Returns the events of all tenants since a time, with a short overlap before it.
-pub(super) async fn all_since(db: &Db, from: Time) -> Result<Vec<Event>> {
+pub(crate) async fn all_since(db: &Db, from: Time) -> Result<Vec<Event>> {
     rows!(
         db,
         Event,
