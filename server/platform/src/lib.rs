@@ -23,6 +23,7 @@ pub mod time;
 
 pub mod access;
 pub mod audit;
+pub mod audit_api;
 pub mod client_address;
 pub mod ed25519;
 pub mod idempotency;

@@ -20,7 +20,8 @@ use binnacle_orders::{api as orders_api, firms};
 use binnacle_planning::{calendar, needs, notifications, port_calls, reports, schedule};
 use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers};
 use binnacle_platform::{
-    audit, error, event_stream, mail, oidc, second_factor, session, tokens, users, webhooks,
+    audit, audit_api, error, event_stream, mail, oidc, second_factor, session, tokens, users,
+    webhooks,
 };
 use std::time::Duration;
 use tower_http::catch_panic::CatchPanicLayer;
@@ -93,7 +94,7 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(second_factor::router())
         .merge(tokens::router())
         .merge(users::router())
-        .merge(audit::router())
+        .merge(audit_api::router())
         .merge(operators::router())
         .merge(firms::router())
         .merge(overview::router())
