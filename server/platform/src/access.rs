@@ -10,9 +10,10 @@ use crate::app::App;
 use crate::audit::{Actor, RequestContext};
 use crate::error::{Error, Result};
 use crate::ids::{FirmId, OperatorId, SessionId, TokenId, UserId};
+use crate::secret;
 use crate::session::{self, Role, User, cookie};
 use crate::tenants::Tenant;
-use crate::{secret, tokens};
+use crate::tokens::{self, Scope};
 use axum::extract::{FromRef, FromRequestParts};
 use axum::http::header::AUTHORIZATION;
 use axum::http::request::Parts;
@@ -232,9 +233,14 @@ impl Caller {
     async fn find(parts: &Parts, app: &App) -> Result<Caller> {
         let now = app.clock.now().into();
         if let Some(token) = bearer(parts) {
-            return tokens::caller(&app.db, token, now)
-                .await?
-                .ok_or(Error::Unauthenticated);
+            let holder = tokens::find_holder(&app.db, token, now).await?;
+            let holder = holder.ok_or(Error::Unauthenticated)?;
+            return Ok(Caller {
+                user: holder.user,
+                read_only: holder.scope == Scope::Read,
+                session: None,
+                token: Some(holder.token_id),
+            });
         }
         let token = cookie::token(parts, &app.config).ok_or(Error::Unauthenticated)?;
         let (user, session) = session::find_user(&app.db, &secret::hash(token), now, app.idle_s())

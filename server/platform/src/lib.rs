@@ -34,6 +34,7 @@ pub mod second_factor;
 pub mod secret;
 pub mod session;
 pub mod tenants;
+pub mod token_api;
 pub mod tokens;
 pub mod users;
 

@@ -20,7 +20,7 @@ use binnacle_orders::{api as orders_api, firms};
 use binnacle_planning::{calendar, needs, notifications, port_calls, reports, schedule};
 use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers};
 use binnacle_platform::{
-    audit, audit_api, error, event_stream, mail, oidc, second_factor, session, tokens, users,
+    audit, audit_api, error, event_stream, mail, oidc, second_factor, session, token_api, users,
     webhooks,
 };
 use std::time::Duration;
@@ -92,7 +92,7 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(session::router())
         .merge(oidc::router())
         .merge(second_factor::router())
-        .merge(tokens::router())
+        .merge(token_api::router())
         .merge(users::router())
         .merge(audit_api::router())
         .merge(operators::router())
