@@ -33,8 +33,8 @@ pub mod password;
 pub mod second_factor;
 pub mod secret;
 pub mod session;
+pub mod session_api;
 pub mod tenants;
-pub mod token_api;
 pub mod tokens;
 pub mod users;
 

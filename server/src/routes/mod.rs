@@ -20,8 +20,7 @@ use binnacle_orders::{api as orders_api, firms};
 use binnacle_planning::{calendar, needs, notifications, port_calls, reports, schedule};
 use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers};
 use binnacle_platform::{
-    audit, audit_api, error, event_stream, mail, oidc, second_factor, session, token_api, users,
-    webhooks,
+    audit, audit_api, error, event_stream, mail, oidc, session, session_api, users, webhooks,
 };
 use std::time::Duration;
 use tower_http::catch_panic::CatchPanicLayer;
@@ -89,10 +88,8 @@ fn for_agents() -> OpenApiRouter<ServerState> {
 
 fn for_people() -> OpenApiRouter<ServerState> {
     OpenApiRouter::new()
-        .merge(session::router())
+        .merge(session_api::router())
         .merge(oidc::router())
-        .merge(second_factor::router())
-        .merge(token_api::router())
         .merge(users::router())
         .merge(audit_api::router())
         .merge(operators::router())

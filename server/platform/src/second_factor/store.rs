@@ -19,7 +19,7 @@ struct Factor {
 
 /// Keeps a secret that is yet to be confirmed, in place of one that never was; false
 /// when there is a confirmed one.
-pub(super) async fn begin(
+pub(crate) async fn begin(
     request: &RequestContext,
     user: UserId,
     secret: &[u8],
@@ -43,7 +43,7 @@ pub(super) async fn begin(
 }
 
 /// Confirms the secret that was begun, by its first code.
-pub(super) async fn confirm(tx: &mut Tx, user: UserId, code: &str, now: Timestamp) -> Result<bool> {
+pub(crate) async fn confirm(tx: &mut Tx, user: UserId, code: &str, now: Timestamp) -> Result<bool> {
     if !use_code(tx, user, code, now).await? {
         return Ok(false);
     }
@@ -95,7 +95,7 @@ pub(super) async fn use_recovery_code(tx: &mut Tx, user: UserId, code: &str) -> 
 }
 
 /// Puts these recovery codes in place of those there were.
-pub(super) async fn set_recovery_codes(tx: &mut Tx, user: UserId, codes: &[String]) -> Result<()> {
+pub(crate) async fn set_recovery_codes(tx: &mut Tx, user: UserId, codes: &[String]) -> Result<()> {
     execute!(
         &mut *tx,
         "DELETE FROM recovery_codes WHERE user_id = $1",

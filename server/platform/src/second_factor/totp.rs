@@ -8,7 +8,7 @@ use binnacle_compass::time::Timestamp;
 use ring::hmac;
 
 /// Length of a secret in bytes, equal to the hash's (RFC 4226, section 4, requirement 6).
-pub(super) const SECRET_BYTES: usize = 20;
+pub(crate) const SECRET_BYTES: usize = 20;
 const STEP_S: i64 = 30;
 const CODES: u32 = 1_000_000;
 /// Steps that a telephone's clock may be off (RFC 6238, section 5.2).
@@ -50,7 +50,7 @@ fn same(one: &str, other: &str) -> bool {
 }
 
 /// RFC 4648, section 6, without padding: how secrets are typed.
-pub(super) fn base32(bytes: &[u8]) -> String {
+pub(crate) fn base32(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 32] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZ234567";
     let mut text = String::with_capacity(bytes.len() * 8 / 5 + 1);
     for chunk in bytes.chunks(5) {

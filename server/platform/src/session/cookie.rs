@@ -37,7 +37,7 @@ pub fn value<'a>(headers: &'a HeaderMap, wanted: &str) -> Option<&'a str> {
 }
 
 /// The header that gives a browser its cookie; an empty token takes it away.
-pub(super) fn set(config: &Serve, token: &str, max_age_s: u64) -> HeaderMap {
+pub(crate) fn set(config: &Serve, token: &str, max_age_s: u64) -> HeaderMap {
     let header = header(config, name(config), token, max_age_s, SameSite::Strict);
     HeaderMap::from_iter([(SET_COOKIE, header)])
 }

@@ -6,29 +6,14 @@
 //! not tell whether there is such a user.
 
 pub mod cookie;
-mod own;
-mod sign_in;
+mod credentials;
 mod store;
 pub mod throttle;
 mod user;
 
-pub use own::end_all;
-pub use sign_in::{open, prove};
-pub use store::{create_user, find_user, lasts, name_of, set_password};
+pub(crate) use credentials::check_password;
+pub use credentials::{open, prove};
+pub(crate) use store::{Session, end, list};
+pub use store::{create_user, end_all, find_user, lasts, name_of, set_password};
 pub(crate) use user::user_sql;
 pub use user::{Role, User, normal_email};
-
-use crate::app::App;
-use axum::extract::FromRef;
-use utoipa_axum::router::OpenApiRouter;
-
-/// The routes of this part.
-pub fn router<S>() -> OpenApiRouter<S>
-where
-    App: FromRef<S>,
-    S: Clone + Send + Sync + 'static,
-{
-    OpenApiRouter::new()
-        .merge(sign_in::router())
-        .merge(own::router())
-}

@@ -1,6 +1,5 @@
 //! Users and sessions in the database.
 
-use super::own::Session;
 use super::user::{Role, User, normal_email, user_sql};
 use crate::audit::RequestContext;
 use crate::client_address::Origin;
@@ -10,6 +9,8 @@ use crate::ids::{SessionId, UserId};
 use crate::secret;
 use crate::tenants::Tenant;
 use crate::time::Time;
+use serde::Serialize;
+use utoipa::ToSchema;
 
 /// Minimum age of `last_seen_at` before it is updated, seconds: most requests write nothing.
 const SEEN_NOTED_EVERY_S: f64 = 600.0;
@@ -113,6 +114,29 @@ pub(super) async fn find_by_email(db: &Db, email: &str) -> Result<Option<(User, 
     Ok(stored.map(|stored| (stored.user, stored.password_hash)))
 }
 
+/// A time that you are signed in for.
+#[derive(Serialize, ToSchema, sqlx::FromRow)]
+pub(crate) struct Session {
+    /// The session's id.
+    pub(crate) id: SessionId,
+    /// Time of the sign-in.
+    created_at: Time,
+    /// Time of the last request, to ten minutes.
+    last_seen_at: Time,
+    /// Latest end of the session.
+    expires_at: Time,
+    /// Network address of the sign-in; empty if unknown.
+    #[schema(example = "198.51.100.7")]
+    address: String,
+    /// The browser's own name for itself (`User-Agent`).
+    user_agent: String,
+    /// By whose word it was opened; none if by your password.
+    #[schema(required, example = json!(null))]
+    provider: Option<String>,
+    /// True for the session of this request.
+    pub(crate) current: bool,
+}
+
 /// A session to be opened.
 pub(super) struct NewSession<'a> {
     pub(super) token: &'a str,
@@ -154,7 +178,7 @@ pub(super) async fn open(
     tx.commit().await
 }
 
-pub(super) async fn list(
+pub(crate) async fn list(
     db: &Db,
     user: UserId,
     now: Time,
@@ -180,7 +204,7 @@ pub(super) async fn list(
 }
 
 /// Ends one of a user's sessions; false when it is none of theirs.
-pub(super) async fn end(request: &RequestContext, user: UserId, id: SessionId) -> Result<bool> {
+pub(crate) async fn end(request: &RequestContext, user: UserId, id: SessionId) -> Result<bool> {
     let mut tx = request.begin().await?;
     let ended = execute!(
         &mut tx,
@@ -193,13 +217,14 @@ pub(super) async fn end(request: &RequestContext, user: UserId, id: SessionId) -
 }
 
 /// Ends all of a user's sessions but the one to be kept.
-pub(super) async fn end_all(tx: &mut Tx, user: UserId, kept: Option<SessionId>) -> Result<u64> {
+pub async fn end_all(tx: &mut Tx, user: UserId, kept: Option<SessionId>) -> Result<()> {
     execute!(
         tx,
         "DELETE FROM sessions WHERE user_id = $1 AND id <> $2",
         user,
         kept.map_or(uuid::Uuid::nil(), |kept| kept.0)
-    )
+    )?;
+    Ok(())
 }
 
 /// Puts another password in place.

@@ -16,8 +16,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
-pub fn router<S>() -> OpenApiRouter<S>
+pub(super) fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
     S: Clone + Send + Sync + 'static,
@@ -29,34 +28,34 @@ where
 
 /// A token to be made.
 #[derive(Deserialize, ToSchema)]
-pub struct NewToken {
+struct NewToken {
     /// Purpose of the token.
     #[schema(min_length = 1, max_length = 200)]
-    pub name: String,
+    name: String,
     /// Scope of the token.
-    pub scope: Scope,
+    scope: Scope,
     /// Expiry time; one year from now by default.
-    pub expires_at: Option<Time>,
+    expires_at: Option<Time>,
 }
 
 /// A token just made.
 #[derive(Serialize, ToSchema)]
-pub struct MadeToken {
+struct MadeToken {
     /// The token.
     #[serde(flatten)]
-    pub about: Token,
+    about: Token,
     /// The secret, to be sent as `Authorization: Bearer …`; never shown again.
-    pub token: String,
+    token: String,
 }
 
 /// A page of tokens.
 #[derive(Serialize, ToSchema)]
-pub struct TokenList {
+struct TokenList {
     /// In the order in which they were made.
-    pub items: Vec<Token>,
+    items: Vec<Token>,
     /// `after` of the next page.
     #[schema(required)]
-    pub next: Option<String>,
+    next: Option<String>,
 }
 
 /// List your API tokens

@@ -1,18 +1,17 @@
 //! Signing in and out.
 
-use super::user::{User, normal_email};
-use super::{cookie, store, throttle};
 use crate::access::Caller;
 use crate::app::App;
 use crate::audit::RequestContext;
 use crate::client_address::Origin;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Valid};
-use crate::{password, second_factor, secret};
+use crate::second_factor;
+use crate::session::throttle::{self, Subjects};
+use crate::session::{self, User, cookie, normal_email};
 use axum::extract::{FromRef, State};
 use axum::http::{HeaderMap, StatusCode};
 use serde::Deserialize;
-use throttle::Subjects;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -55,32 +54,10 @@ async fn sign_in(
     Valid(given): Valid<SignIn>,
 ) -> Result<(HeaderMap, Json<User>)> {
     let user = judge(&app, &request, &from, given).await?;
-    Ok((open(&app, &request, &from, &user, None).await?, Json(user)))
-}
-
-/// Opens a session by the word of a provider, or by a password; the header gives the browser
-/// its cookie.
-///
-/// # Errors
-/// When the database does.
-pub async fn open(
-    app: &App,
-    request: &RequestContext,
-    from: &Origin,
-    user: &User,
-    provider: Option<&str>,
-) -> Result<HeaderMap> {
-    let now = app.clock.now();
-    let token = secret::new_token();
-    let lasts_s = u64::from(app.config.session_hours) * 3600;
-    let new = store::NewSession {
-        token: &token,
-        provider,
-        now: now.into(),
-        expires_at: now.plus_seconds(lasts_s as f64).into(),
-    };
-    store::open(request, user, from, &new).await?;
-    Ok(cookie::set(&app.config, &token, lasts_s))
+    Ok((
+        session::open(&app, &request, &from, &user, None).await?,
+        Json(user),
+    ))
 }
 
 /// Sign out
@@ -94,7 +71,7 @@ async fn sign_out(
     caller: Caller,
 ) -> Result<(StatusCode, HeaderMap)> {
     if let Some(session) = caller.session {
-        store::end(&request, caller.user.user_id, session).await?;
+        session::end(&request, caller.user.user_id, session).await?;
     }
     Ok((StatusCode::NO_CONTENT, cookie::set(&app.config, "", 0)))
 }
@@ -113,7 +90,7 @@ async fn judge(app: &App, request: &RequestContext, from: &Origin, given: SignIn
         return Err(Error::WrongPassword);
     }
     let email = normal_email(&given.email);
-    let user = with_password(app, request, from, &email, given.password).await?;
+    let user = session::check_password(app, request, from, &email, given.password).await?;
     request.record_actor(&user);
     if !user.second_factor {
         return Ok(user);
@@ -126,50 +103,4 @@ async fn judge(app: &App, request: &RequestContext, from: &Origin, given: SignIn
     }
     throttle::note_failure(request, &Subjects::person(&email, from), now).await?;
     Err(Error::WrongCode)
-}
-
-/// The user with this e-mail and this password.
-async fn with_password(
-    app: &App,
-    request: &RequestContext,
-    from: &Origin,
-    email: &str,
-    password: String,
-) -> Result<User> {
-    if password.len() > password::MOST_BYTES {
-        return Err(Error::WrongPassword);
-    }
-    let now = app.clock.now();
-    let subjects = Subjects::person(email, from);
-    throttle::check(&app.db, &subjects, now).await?;
-    let place = password::place(app).await?;
-    // Others may have failed while this attempt waited. Each keeps its place until
-    // its failure is noted, so that guesses sent at once do not outrun the count.
-    throttle::check(&app.db, &subjects, now).await?;
-    let found = store::find_by_email(&app.db, email).await?;
-    let (user, stored) = found.map_or((None, None), |(user, hash)| (Some(user), Some(hash)));
-    let (matches, place) = password::matches(place, password, stored).await?;
-    if let Some(user) = user.filter(|_| matches) {
-        return Ok(user);
-    }
-    throttle::note_failure(request, &subjects, now).await?;
-    drop(place);
-    Err(Error::WrongPassword)
-}
-
-/// Asks for the password again before something that whoever finds a session open
-/// is not to do.
-///
-/// # Errors
-/// When it is wrong, which counts like a failed sign-in.
-pub async fn prove(
-    app: &App,
-    request: &RequestContext,
-    user: &User,
-    from: &Origin,
-    password: String,
-) -> Result<()> {
-    with_password(app, request, from, &user.email, password)
-        .await
-        .map(drop)
 }
