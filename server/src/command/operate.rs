@@ -75,6 +75,7 @@ where
 {
     let state = ServerState::new(app.clone());
     let mailer = Mailer::new(&app.config.mail)?;
+    let mailer = mailer.map(|mailer| mailer.with_list(reports::MAILING_LIST));
     let mut parts = JoinSet::new();
     let events = EventListener::open(&app.db).await?;
     parts.spawn(events.listen(app.clone()));

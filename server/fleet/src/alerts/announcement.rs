@@ -39,7 +39,7 @@ pub(super) fn announcement(change: &AlertChange) -> Announcement {
             told: Vec::new(),
             path: format!("/vessels/{}", alert.vessel_id),
             about: Some(alert.id.0),
-            report: None,
+            files: None,
         },
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn letter_of(told: &[Notification]) -> Option<Result<String>> {
             text: one.text.clone(),
             told: Vec::new(),
             path: one.path.clone(),
-            report: None,
+            files: None,
             about: one.alert_id.map(|id| id.0).or(one.order_id.map(|id| id.0)),
         },
         all => together(all),
@@ -56,6 +56,6 @@ fn together(all: &[Notification]) -> Letter {
         told: told.collect(),
         path: "/notifications".to_owned(),
         about: None,
-        report: None,
+        files: None,
     }
 }

@@ -1,6 +1,6 @@
 //! The content of a letter: plain text, so that every mail program shows it the same.
 
-use crate::ids::OperatorId;
+use super::mailing_list::{FileReference, MailingList};
 use crate::severity::Severity;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
@@ -23,9 +23,9 @@ pub struct Letter {
     /// The alert or the order that it is about: mail programs show its letters together.
     #[serde(alias = "alert")]
     pub about: Option<Uuid>,
-    /// The report that goes with it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub report: Option<Attached>,
+    /// Files that go with it.
+    #[serde(rename = "report", default, skip_serializing_if = "Option::is_none")]
+    pub files: Option<FileReference>,
 }
 
 /// One of the things of which a letter tells.
@@ -48,22 +48,15 @@ impl Told {
     }
 }
 
-/// A monthly report that goes with a letter.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Attached {
-    pub operator: OperatorId,
-    pub month: String,
-}
-
 /// Reason for which a recipient gets a letter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Why {
     /// Someone is on the company's list for alerts from a severity on.
     Listed(Severity),
     /// Someone with an account chose this notification.
     Person,
-    /// Someone is on the company's list for monthly reports.
-    Reports,
+    /// Someone is on another list of the company.
+    MailingList(MailingList),
 }
 
 impl Letter {
@@ -76,7 +69,7 @@ impl Letter {
             told: Vec::new(),
             path: "/mail".to_owned(),
             about: None,
-            report: None,
+            files: None,
         }
     }
 
@@ -94,12 +87,13 @@ impl Letter {
                 format!("You get this because of what {address} is to be told of. You choose it:"),
                 "/settings",
             ),
-            Why::Reports => (
+            Why::MailingList(list) => (
                 format!(
-                    "You get this because {address} is on your company's list for monthly reports. \
-                     An administrator takes it off:"
+                    "You get this because {address} is on your company's list for {}. \
+                     An administrator takes it off:",
+                    list.subject
                 ),
-                "/reports",
+                list.page,
             ),
         };
         let told: String = self.told.iter().map(|one| one.text(public_url)).collect();

@@ -11,7 +11,7 @@
 
 mod announce;
 mod letter;
-mod monthly;
+mod mailing_list;
 mod recipient;
 mod relay;
 mod send;
@@ -19,7 +19,7 @@ mod store;
 
 pub use announce::{Announcement, announce};
 pub use letter::{Letter, Told, header, one_line, wrapped};
-pub use monthly::monthly_letter;
+pub use mailing_list::{Content, File, FileReference, Files, FindAddress, LoadFiles, MailingList};
 pub use recipient::address;
 pub use relay::Relay;
 pub use send::Mailer;

@@ -1,6 +1,5 @@
 //! Mail recipients in the database.
 
-use super::letter::Why;
 use super::recipient::{NewRecipient, Recipient};
 use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use crate::error::{Error, Result};
@@ -107,34 +106,25 @@ pub(super) async fn change(
     Ok(())
 }
 
-/// Returns a receiver's address and the reason for its mail; none if removed or disabled.
-pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, Why)>> {
-    let listed = row!(
+/// Returns the address and the minimum severity of a recipient of alerts.
+pub(super) async fn find_listed(db: &Db, id: Uuid) -> DbResult<Option<(String, Severity)>> {
+    row!(
         db,
         (String, Severity),
         "SELECT address, severity FROM mail_recipients WHERE id = $1 ORDER BY id",
         id
-    )?;
-    if let Some((address, least)) = listed {
-        return Ok(Some((address, Why::Listed(least))));
-    }
-    let report = row!(
-        db,
-        (String,),
-        "SELECT address FROM report_recipients WHERE id = $1 ORDER BY id",
-        id
-    )?;
-    if let Some((address,)) = report {
-        return Ok(Some((address, Why::Reports)));
-    }
-    // A person is a receiver under their own id.
+    )
+}
+
+/// Returns the address of a user who may sign in.
+pub(super) async fn find_person(db: &Db, id: Uuid) -> DbResult<Option<String>> {
     let person = row!(
         db,
         (String,),
         "SELECT email FROM users WHERE id = $1 AND disabled_at IS NULL ORDER BY id",
         id
     )?;
-    Ok(person.map(|(email,)| (email, Why::Person)))
+    Ok(person.map(|(email,)| email))
 }
 
 /// Returns the recipients of an operator's alerts, each with its minimum severity.
