@@ -12,9 +12,9 @@ use ed25519_dalek::{Signature, VerifyingKey};
 /// # Errors
 /// [`Error::Invalid`] if it is not a valid key.
 pub fn key(public_key: &str) -> Result<VerifyingKey> {
-    let octets = from_hex(public_key).and_then(|octets| octets.try_into().ok());
-    let octets = octets.ok_or_else(|| wrong("public_key", "is not 64 hexadecimal digits"))?;
-    let key = VerifyingKey::from_bytes(&octets)
+    let bytes = from_hex(public_key).and_then(|bytes| bytes.try_into().ok());
+    let bytes = bytes.ok_or_else(|| wrong("public_key", "is not 64 hexadecimal digits"))?;
+    let key = VerifyingKey::from_bytes(&bytes)
         .map_err(|_| wrong("public_key", "is no Ed25519 public key"))?;
     if key.is_weak() {
         return Err(wrong(
@@ -32,13 +32,14 @@ pub fn key(public_key: &str) -> Result<VerifyingKey> {
 /// [`Error::Invalid`] with the field.
 pub fn must_be_signed(
     key: &VerifyingKey,
-    (field, signature): (&'static str, &str),
+    field: &'static str,
+    signature: &str,
     text: &[u8],
     called: &str,
 ) -> Result<()> {
-    let octets = from_hex(signature).and_then(|octets| octets.try_into().ok());
-    let octets = octets.ok_or_else(|| wrong(field, "is not 128 hexadecimal digits"))?;
-    key.verify_strict(text, &Signature::from_bytes(&octets))
+    let bytes = from_hex(signature).and_then(|bytes| bytes.try_into().ok());
+    let bytes = bytes.ok_or_else(|| wrong(field, "is not 128 hexadecimal digits"))?;
+    key.verify_strict(text, &Signature::from_bytes(&bytes))
         .map_err(|_| wrong(field, &format!("is not this key's over {called}")))
 }
 
