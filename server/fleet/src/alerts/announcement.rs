@@ -36,7 +36,7 @@ pub(super) fn announcement(change: &AlertChange) -> Announcement {
         letter: Letter {
             subject: header(&subject),
             text,
-            told: Vec::new(),
+            items: Vec::new(),
             path: format!("/vessels/{}", alert.vessel_id),
             about: Some(alert.id.0),
             files: None,

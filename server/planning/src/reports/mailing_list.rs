@@ -28,7 +28,7 @@ pub(super) fn letter(text: &str, operator: OperatorId, month: &str) -> Letter {
     Letter {
         subject: format!("Compass report of {month}"),
         text: text.to_owned(),
-        told: Vec::new(),
+        items: Vec::new(),
         path: "/reports".to_owned(),
         about: None,
         files: Some(FileReference {

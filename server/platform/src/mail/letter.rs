@@ -15,9 +15,9 @@ pub struct Letter {
     pub subject: String,
     /// The text.
     pub text: String,
-    /// The single items of a letter about several things, in order.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub told: Vec<Told>,
+    /// Items of a letter about several things, in order.
+    #[serde(rename = "told", default, skip_serializing_if = "Vec::is_empty")]
+    pub items: Vec<LetterItem>,
     /// The page to look at, below the dashboard's address.
     pub path: String,
     /// The alert or the order that it is about: mail programs show its letters together.
@@ -28,10 +28,10 @@ pub struct Letter {
     pub files: Option<FileReference>,
 }
 
-/// One of the things of which a letter tells.
+/// Item of a letter about several things.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Told {
-    /// In a line.
+pub struct LetterItem {
+    /// Heading, one line.
     pub head: String,
     /// The text.
     pub text: String,
@@ -39,7 +39,7 @@ pub struct Told {
     pub path: String,
 }
 
-impl Told {
+impl LetterItem {
     fn text(&self, public_url: &str) -> String {
         let indented = |line: &str| format!("  {line}\n").trim_end().to_owned() + "\n";
         let lines: String = self.text.lines().map(indented).collect();
@@ -66,7 +66,7 @@ impl Letter {
             subject: "A test of Binnacle's mail".to_owned(),
             text: "This is a test: alerts of your fleet's compasses reach this address.\n"
                 .to_owned(),
-            told: Vec::new(),
+            items: Vec::new(),
             path: "/mail".to_owned(),
             about: None,
             files: None,
@@ -96,9 +96,13 @@ impl Letter {
                 list.page,
             ),
         };
-        let told: String = self.told.iter().map(|one| one.text(public_url)).collect();
+        let items: String = self
+            .items
+            .iter()
+            .map(|item| item.text(public_url))
+            .collect();
         format!(
-            "{told}{}\n{public_url}{}\n\n{}\n{public_url}{page}\n",
+            "{items}{}\n{public_url}{}\n\n{}\n{public_url}{page}\n",
             self.text,
             self.path,
             wrapped("", &why)

@@ -18,7 +18,7 @@ mod send;
 mod store;
 
 pub use announce::{Announcement, announce};
-pub use letter::{Letter, Told, header, one_line, wrapped};
+pub use letter::{Letter, LetterItem, header, one_line, wrapped};
 pub use mailing_list::{Content, File, FileReference, Files, FindAddress, LoadFiles, MailingList};
 pub use recipient::address;
 pub use relay::Relay;
