@@ -75,7 +75,7 @@ pub async fn step(app: &App) -> anyhow::Result<Option<Worked>> {
             never = keep_lease(app, job) => match never {},
         },
         _ => Err(Error::Internal(anyhow::anyhow!(
-            "its lease ended too often"
+            "its lease expired too often"
         ))),
     };
     histogram!("binnacle_analysis_seconds").record(begun.elapsed().as_secs_f64());

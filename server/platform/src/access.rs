@@ -154,7 +154,7 @@ impl Caller {
     fn operator(&self) -> Result<OperatorId> {
         self.must_have_second_factor()?;
         let operator = self.user.operator_id;
-        operator.ok_or(Error::Forbidden("only an operator's people have a fleet"))
+        operator.ok_or(Error::Forbidden("only an operator's users have a fleet"))
     }
 
     /// Returns the caller's tenant.
@@ -248,7 +248,7 @@ impl Caller {
             .ok_or(Error::Unauthenticated)?;
         if !parts.method.is_safe() && !parts.headers.contains_key(REQUEST_HEADER) {
             return Err(Error::Forbidden(
-                "a change asked for with a cookie needs the header X-Binnacle-Request: 1",
+                "a change authenticated by cookie needs the header X-Binnacle-Request: 1",
             ));
         }
         Ok(Caller {

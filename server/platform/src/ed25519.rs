@@ -15,11 +15,11 @@ pub fn key(public_key: &str) -> Result<VerifyingKey> {
     let bytes = from_hex(public_key).and_then(|bytes| bytes.try_into().ok());
     let bytes = bytes.ok_or_else(|| wrong("public_key", "is not 64 hexadecimal digits"))?;
     let key = VerifyingKey::from_bytes(&bytes)
-        .map_err(|_| wrong("public_key", "is no Ed25519 public key"))?;
+        .map_err(|_| wrong("public_key", "is not an Ed25519 public key"))?;
     if key.is_weak() {
         return Err(wrong(
             "public_key",
-            "is of small order: one signature by it fits every text",
+            "is a key of small order: one of its signatures fits every text",
         ));
     }
     Ok(key)
@@ -40,7 +40,7 @@ pub fn must_be_signed(
     let bytes = from_hex(signature).and_then(|bytes| bytes.try_into().ok());
     let bytes = bytes.ok_or_else(|| wrong(field, "is not 128 hexadecimal digits"))?;
     key.verify_strict(text, &Signature::from_bytes(&bytes))
-        .map_err(|_| wrong(field, &format!("is not this key's over {called}")))
+        .map_err(|_| wrong(field, &format!("is not this key's signature over {called}")))
 }
 
 fn wrong(field: &'static str, detail: &str) -> Error {

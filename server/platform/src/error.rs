@@ -31,7 +31,7 @@ pub enum Error {
     #[error("the code is wrong, or was used before")]
     WrongCode,
     /// Second factor required by the operator, but not set up by this user.
-    #[error("your company wants a second factor: set one up first")]
+    #[error("your company requires a second factor; set one up first")]
     SecondFactorRequired,
     /// Visible to the caller, but not allowed.
     #[error("{0}")]
@@ -75,10 +75,10 @@ pub enum Error {
         retry_after_s: u64,
     },
     /// Path that exists, but not for this method.
-    #[error("this path knows no such method")]
+    #[error("this path does not support the method")]
     MethodNotAllowed,
     /// Internal failure.
-    #[error("something went wrong here; it has been logged")]
+    #[error("internal error; it has been logged")]
     Internal(anyhow::Error),
 }
 

@@ -74,7 +74,7 @@ impl Key {
             tenant,
             key_hash.as_slice()
         )?
-        .ok_or_else(|| anyhow::anyhow!("an idempotency key vanished"))?;
+        .ok_or_else(|| anyhow::anyhow!("an idempotency key is missing"))?;
         if made_for != request_hash {
             return Err(Error::KeyReused);
         }
@@ -116,7 +116,7 @@ impl utoipa::IntoParams for Key {
                 .parameter_in(ParameterIn::Header)
                 .required(Required::False)
                 .description(Some(
-                    "The same key with the same request again creates nothing more",
+                    "Key of the request; the same request with the same key creates nothing more",
                 ))
                 .schema(Some(ObjectBuilder::new().schema_type(Type::String)))
                 .build(),

@@ -97,7 +97,7 @@ async fn create(request: &RequestContext, what: Create, now: Time) -> Made {
 async fn reset_user(request: &RequestContext, email: &str, now: Time) -> Made {
     match users::reset(request, email, now).await? {
         Some((code, expires_at)) => Ok(Ok(json!({ "code": code, "expires_at": expires_at }))),
-        None => Ok(Err(format!("--email: nobody signs in with {email:?}"))),
+        None => Ok(Err(format!("--email: no user has the address {email:?}"))),
     }
 }
 
@@ -189,7 +189,7 @@ async fn create_user(
     }
     let id = match created {
         Err(sqlx::Error::Database(error)) if error.is_unique_violation() => {
-            return Ok(Err(format!("--email: {email} has an account already")));
+            return Ok(Err(format!("--email: {email} already has an account")));
         }
         created => created?,
     };

@@ -145,7 +145,9 @@ fn describe(found: &Found) -> String {
 fn dropped(check: &ReferenceCheck) -> String {
     let line = |name: &str, count: u64| match count {
         0 => String::new(),
-        _ => format!("\n{name} not believed in {count} samples: stuck, or off from the other"),
+        _ => format!(
+            "\n{name} rejected in {count} samples: stuck, or in disagreement with the other reference"
+        ),
     };
     line("gyro", check.gyro_dropped) + &line("satellite compass", check.satellite_dropped)
 }
@@ -154,7 +156,7 @@ fn dropped(check: &ReferenceCheck) -> String {
 fn band(next: &SailNext) -> String {
     let here = &next.here;
     let mut lines = vec![format!(
-        "95 % band where she was last: ± {:.1}°, on the worst heading {:.1}°",
+        "95 % band at the last position: ± {:.1}°, on the worst heading {:.1}°",
         here.band.rms_deg, here.band.worst_deg
     )];
     lines.extend(here.suggestions.first().map(|best| {

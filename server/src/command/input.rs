@@ -118,7 +118,7 @@ impl Table {
             let what = match error.kind() {
                 csv::ErrorKind::UnequalLengths {
                     expected_len, len, ..
-                } => format!("{len} fields, where the first line has {expected_len}"),
+                } => format!("{len} fields, but the first line has {expected_len}"),
                 _ => error.to_string(),
             };
             BadInput(format!("{path}:{line}: {what}"))
@@ -137,7 +137,7 @@ impl Table {
             lines.push(line);
         }
         if rows.is_empty() {
-            let what = "the first line names the columns, and no row follows";
+            let what = "there is no row after the column names in the first line";
             return Err(BadInput(format!("{path}: {what}")));
         }
         Ok(Table { path, rows, lines })
@@ -166,9 +166,7 @@ fn check_header(path: &str, header: &StringRecord) -> Result<(), BadInput> {
     let names: Vec<&str> = header.iter().collect();
     for (index, name) in names.iter().enumerate() {
         if names[..index].contains(name) {
-            return Err(BadInput(format!(
-                "{path}:1: column {name} stands there twice"
-            )));
+            return Err(BadInput(format!("{path}:1: column {name} occurs twice")));
         }
     }
     binnacle_analysis::fit::check_columns(names)
@@ -204,7 +202,7 @@ fn row(header: &StringRecord, record: &StringRecord) -> Result<CsvRow, (String, 
         let number = match column {
             _ if !COLUMNS.contains(&column) => continue,
             _ if text.len() > LONGEST_VALUE => {
-                let what = format!("{} bytes are no value", text.len());
+                let what = format!("{} bytes are too long for a value", text.len());
                 return Err((column.to_owned(), what));
             }
             "time" => {

@@ -81,7 +81,10 @@ where
     parts.spawn(events.listen(app.clone()));
     let outdated = analysis::enqueue_outdated(&app.db, app.clock.now().into()).await?;
     if outdated > 0 {
-        info!(vessels = outdated, "another estimator: analysing again");
+        info!(
+            vessels = outdated,
+            "the estimator has changed; analysing again"
+        );
     }
     for _ in 0..app.config.analysis_workers {
         parts.spawn(worker::run(app.clone()));
@@ -119,12 +122,12 @@ where
     };
     tokio::select! {
         served = serving => served?,
-        () = deadline => warn!("requests under way were cut off"),
+        () = deadline => warn!("running requests were cut off"),
     }
     app.stopping.cancel();
     let finished = async { while parts.join_next().await.is_some() {} };
     if tokio::time::timeout(GRACE, finished).await.is_err() {
-        warn!("an analysis under way was cut off; its lease will end");
+        warn!("a running analysis was cut off; its lease will expire");
     }
     app.db.close().await;
     info!("stopped");

@@ -75,7 +75,7 @@ fn read_after(
     if let Some(refused) = outcome.refusals.first() {
         return Err(of(
             &arguments.berth,
-            format!("no plan was given: {}", refused.words),
+            format!("no plan is possible: {}", refused.words),
         ));
     }
     let after: PostCheckForm = input::json_file(file)?;

@@ -49,14 +49,14 @@ const PATIENCE: Duration = Duration::from_mins(2);
     modifiers(&Security),
     tags(
         (name = "session", description = "Signing in; one's sessions, second factor, API tokens"),
-        (name = "people", description = "Who may sign in, and how"),
+        (name = "people", description = "Users, and the rules for signing in"),
         (name = "platform", description = "Operators and firms, for platform admins"),
-        (name = "agents", description = "What the agents on board talk to"),
-        (name = "fleet", description = "Vessels, compasses, models"),
-        (name = "adjusting", description = "Binnacles, port calls and work orders. What is predicted here is \
-            a prediction, not a certificate"),
-        (name = "alerts", description = "What people must know of, and how they are told"),
-        (name = "notifications", description = "What you yourself are told, and in which ways"),
+        (name = "agents", description = "Interface of the agents on board"),
+        (name = "fleet", description = "Vessels, compasses and their models"),
+        (name = "adjusting", description = "Binnacles, port calls and work orders. Predictions here are not \
+            certificates"),
+        (name = "alerts", description = "Alerts, and their delivery by mail and webhook"),
+        (name = "notifications", description = "Your own notifications and their channels"),
         (name = "operations", description = "Health and metrics"),
     )
 )]

@@ -297,7 +297,10 @@ async fn a_redirect_is_a_failure_and_is_not_followed(shore: Shore) {
     assert_eq!(deliver(&shore).await, [Sent::Failed]);
     assert_eq!(elsewhere.got(), []);
     let listed = ada.get(&path(&webhook, "/deliveries")).await.good();
-    assert_eq!(listed["items"][0]["last_error"], "answered with status 307");
+    assert_eq!(
+        listed["items"][0]["last_error"],
+        "responded with status 307"
+    );
     shore.finish().await;
 }
 

@@ -117,7 +117,10 @@ async fn next_lines((app, selection, before): Rest) -> Result<Option<(Bytes, Res
     match lines.await {
         Ok((lines, next)) => Ok(Some((lines, (app, selection, next)))),
         Err(cause) => {
-            error!(error = format!("{cause:?}"), "an audit log was cut off");
+            error!(
+                error = format!("{cause:?}"),
+                "a download of the audit log was cut off"
+            );
             Err(cause)
         }
     }

@@ -101,7 +101,7 @@ fn metrics_token(text: &str) -> Result<MetricsToken, String> {
         return Ok(MetricsToken(text.to_owned()));
     }
     Err(format!(
-        "has {SHORTEST_TOKEN} letters, digits and signs of ASCII at least, and no blanks"
+        "must have at least {SHORTEST_TOKEN} printable ASCII characters and no blanks"
     ))
 }
 
@@ -228,6 +228,6 @@ fn issuer(text: &str) -> Result<String, String> {
     match url.scheme() {
         "https" => Ok(text.to_owned()),
         "http" if is_here => Ok(text.to_owned()),
-        _ => Err("must be https, unless it is this machine".to_owned()),
+        _ => Err("must be https, unless it is on this machine".to_owned()),
     }
 }

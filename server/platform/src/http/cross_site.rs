@@ -21,7 +21,7 @@ pub async fn refuse(State(app): State<App>, request: Request, next: Next) -> Res
     if request.method().is_safe() || is_of_our_own(request.headers(), public_url) {
         return next.run(request).await;
     }
-    Error::Forbidden("a change cannot be asked for from another site's page").into_response()
+    Error::Forbidden("a change cannot be requested from another site's page").into_response()
 }
 
 /// Checks that a request comes from one of our own pages, or from no page at all.

@@ -74,7 +74,7 @@ pub fn text(field: &'static str, value: &str) -> Result<String> {
     } else if value.chars().count() > MAX_TEXT {
         "is longer than 200 characters"
     } else if value.chars().any(is_control) {
-        "has control characters, or such as turn the direction of writing"
+        "has control characters, or characters that change the direction of writing"
     } else {
         return Ok(value.to_owned());
     };

@@ -66,7 +66,7 @@ impl Http {
         let mut body = Vec::new();
         while let Some(chunk) = answer.chunk().await? {
             if body.len() + chunk.len() > MOST_BYTES {
-                bail!("the answer is longer than {MOST_BYTES} bytes");
+                bail!("the response is longer than {MOST_BYTES} bytes");
             }
             body.extend_from_slice(&chunk);
         }

@@ -63,7 +63,7 @@ impl Letter {
     /// Returns the letter for a requested test.
     pub(super) fn test() -> Letter {
         Letter {
-            subject: "A test of Binnacle's mail".to_owned(),
+            subject: "Test mail from Binnacle".to_owned(),
             text: "This is a test: alerts of your fleet's compasses reach this address.\n"
                 .to_owned(),
             items: Vec::new(),
@@ -84,7 +84,9 @@ impl Letter {
                 "/mail",
             ),
             Why::Person => (
-                format!("You get this because of what {address} is to be told of. You choose it:"),
+                format!(
+                    "You get this because of the notification settings of {address}. Change them:"
+                ),
                 "/settings",
             ),
             Why::MailingList(list) => (

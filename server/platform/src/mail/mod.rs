@@ -76,7 +76,7 @@ async fn list_recipients(
     request_body = NewRecipient,
     responses((status = 201, body = Recipient), (status = 401, body = Problem),
               (status = 403, body = Problem),
-              (status = 409, description = "The server was not told how to send mail", body = Problem),
+              (status = 409, description = "Mail is not set up on this server", body = Problem),
               (status = 422, body = Problem)))]
 async fn create_recipient(
     State(app): State<App>,
@@ -159,7 +159,7 @@ async fn delete_recipient(
     params(("id" = RecipientId, Path)),
     responses((status = 202, body = Delivery), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "The server was not told how to send mail", body = Problem)))]
+              (status = 409, description = "Mail is not set up on this server", body = Problem)))]
 async fn test_recipient(
     State(app): State<App>,
     request: RequestContext,
@@ -223,6 +223,6 @@ pub fn must_be_set_up(app: &App) -> Result<()> {
         return Ok(());
     }
     Err(Error::NotSetUp(
-        "this server was not told how to send mail (--smtp-url)",
+        "mail is not set up on this server (--smtp-url)",
     ))
 }

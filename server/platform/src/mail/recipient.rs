@@ -98,7 +98,7 @@ pub fn address(field: &'static str, given: &str) -> Result<String> {
     }
     // Beyond ASCII an address asks every relay on its way for SMTPUTF8.
     if !given.is_ascii() {
-        return invalid("has letters beyond ASCII");
+        return invalid("has non-ASCII characters");
     }
     let Ok(address) = given.trim().parse::<Address>() else {
         return invalid("is not an address like name@example.com");

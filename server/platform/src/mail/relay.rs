@@ -57,7 +57,7 @@ impl Relay {
         let host = url.host_str().filter(|host| !host.is_empty());
         let host = host.context("names no host")?.to_owned();
         if !matches!(url.path(), "" | "/") || url.fragment().is_some() {
-            bail!("has more in it than user, password, host, port and tls=none");
+            bail!("may only have user, password, host, port and tls=none");
         }
         let tls = || tls_parameters(&host, authority);
         let (security, port) = match (url.scheme(), url.query()) {
@@ -71,7 +71,7 @@ impl Relay {
         };
         let credentials = credentials(&url)?;
         if credentials.is_some() && matches!(security, Security::Nothing) {
-            bail!("has a password that would go without TLS");
+            bail!("has a password that would be sent without TLS");
         }
         Ok(Relay {
             port: url.port().unwrap_or(port),
@@ -101,7 +101,7 @@ impl Relay {
             anyhow::Ok((relay, answer))
         };
         let talked = timeout(self.patience, talk).await;
-        let (mut relay, answer) = talked.context("the relay does not answer")??;
+        let (mut relay, answer) = talked.context("the relay does not respond")??;
         match answer {
             Ok(response) => {
                 // It has the letter, whatever it does from now on.
@@ -120,10 +120,12 @@ impl Relay {
 
     async fn connect(&self) -> Result<AsyncSmtpConnection> {
         let found = tokio::net::lookup_host((self.host.as_str(), self.port)).await;
-        let addresses: Vec<SocketAddr> = found.context("the relay's name means nothing")?.collect();
+        let addresses: Vec<SocketAddr> = found
+            .context("the relay's name cannot be resolved")?
+            .collect();
         let without_tls = matches!(self.security, Security::Nothing);
         if without_tls && addresses.iter().any(|address| is_public(address.ip())) {
-            bail!("the relay is not within the network, and is to be spoken to without TLS");
+            bail!("the relay is not within the network, so TLS is required");
         }
         let from_the_start = match &self.security {
             Security::Tls(tls) => Some(tls.clone()),
@@ -152,7 +154,8 @@ impl Relay {
 fn tls_parameters(host: &str, authority: Option<&[u8]>) -> Result<TlsParameters> {
     let mut parameters = TlsParameters::builder(host.to_owned());
     if let Some(authority) = authority {
-        let certificate = Certificate::from_pem(authority).context("the authority is not PEM")?;
+        let certificate =
+            Certificate::from_pem(authority).context("the certificate authority is not PEM")?;
         parameters = parameters.add_root_certificate(certificate);
     }
     Ok(parameters.build_rustls()?)

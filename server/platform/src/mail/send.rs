@@ -151,7 +151,7 @@ impl Carrier for Mailer {
 
     async fn carry(&self, app: &App, claimed: &Claimed) -> Result<Tried> {
         let found = self.find_addressee(&app.db, claimed.receiver_id).await?;
-        let to = found.context("the recipient was removed or is shut out")?;
+        let to = found.context("the recipient was removed or disabled")?;
         let letter: Letter = serde_json::from_str(&claimed.body)?;
         let files = match (&letter.files, self.list) {
             (Some(of), Some(list)) => (list.load_files)(&app.db, of).await?,

@@ -79,7 +79,7 @@ pub(super) async fn insert(
     if inserted == 0 {
         return Err(Error::Invalid {
             field: "address",
-            detail: "is on the list already".to_owned(),
+            detail: "is already on the list".to_owned(),
         });
     }
     Ok(())

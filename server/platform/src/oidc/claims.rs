@@ -123,7 +123,10 @@ pub(super) async fn redeem(
     let tokens = answer.map_err(|error| match error {
         RequestTokenError::Request(cause) => {
             let error = cause.to_string();
-            warn!(error, "the sign-in provider did not take a code");
+            warn!(
+                error,
+                "the sign-in provider cannot be reached to redeem a code"
+            );
             Refusal::Unreachable
         }
         RequestTokenError::ServerResponse(said) => {
@@ -132,7 +135,7 @@ pub(super) async fn redeem(
             Refusal::Untrusted
         }
         RequestTokenError::Parse(..) | RequestTokenError::Other(_) => {
-            warn!("the sign-in provider's answer to a code cannot be read");
+            warn!("the sign-in provider's response to a code cannot be read");
             Refusal::Untrusted
         }
     })?;
@@ -214,11 +217,11 @@ fn may_be_by_a_new_key(error: &ClaimsVerificationError) -> bool {
 /// Without what the token says.
 fn reason(error: &ClaimsVerificationError) -> &'static str {
     match error {
-        ClaimsVerificationError::Expired(_) => "it is over",
-        ClaimsVerificationError::InvalidAudience(_) => "it is for another",
-        ClaimsVerificationError::InvalidIssuer(_) => "it is by another",
-        ClaimsVerificationError::InvalidNonce(_) => "it is of another sign-in",
-        ClaimsVerificationError::SignatureVerification(_) => "its signature does not hold",
+        ClaimsVerificationError::Expired(_) => "it has expired",
+        ClaimsVerificationError::InvalidAudience(_) => "it is for another client",
+        ClaimsVerificationError::InvalidIssuer(_) => "it is by another issuer",
+        ClaimsVerificationError::InvalidNonce(_) => "it belongs to another sign-in",
+        ClaimsVerificationError::SignatureVerification(_) => "its signature is not valid",
         _ => "it cannot be read",
     }
 }

@@ -86,7 +86,7 @@ async fn find_provider(State(app): State<App>) -> Json<Named> {
 /// be reached they come to the sign-in page at once, which says so.
 #[utoipa::path(get, path = "/session/provider/start", tag = "session", security(()),
     responses((status = 303, description = "To the provider, or to the sign-in page"),
-              (status = 409, description = "There is no provider", body = Problem)))]
+              (status = 409, description = "No provider is set up", body = Problem)))]
 async fn go_to_provider(State(app): State<App>) -> Result<(StatusCode, HeaderMap)> {
     must_be_set_up(&app)?;
     let attempt = Attempt::new(&app);
@@ -107,7 +107,7 @@ async fn go_to_provider(State(app): State<App>) -> Result<(StatusCode, HeaderMap
 #[utoipa::path(get, path = "/session/provider/callback", tag = "session", params(Answer),
     security(()),
     responses((status = 303, description = "To the dashboard, or to the sign-in page"),
-              (status = 409, description = "There is no provider", body = Problem)))]
+              (status = 409, description = "No provider is set up", body = Problem)))]
 async fn return_from_provider(
     State(app): State<App>,
     request: RequestContext,
@@ -144,7 +144,7 @@ async fn send_code(
     headers: HeaderMap,
     Valid(sent): Valid<Code>,
 ) -> Result<(HeaderMap, Json<User>)> {
-    const OVER: Error = Error::Gone("this sign-in took too long; begin it again");
+    const OVER: Error = Error::Gone("this sign-in took too long; start again");
     let attempt = Attempt::of(&app, &headers).ok_or(OVER)?;
     let (state, now) = (attempt.state_hash(), app.clock.now());
     let user = store::awaited(&app.db, &state, now.into()).await?;
@@ -170,7 +170,9 @@ fn must_be_set_up(app: &App) -> Result<()> {
     if app.config.oidc.is_set_up() {
         return Ok(());
     }
-    Err(Error::NotSetUp("this server was told of no provider"))
+    Err(Error::NotSetUp(
+        "no sign-in provider is set up on this server",
+    ))
 }
 
 type Done = std::result::Result<(StatusCode, HeaderMap), Refusal>;

@@ -120,7 +120,7 @@ async fn change_password(
     if is_the_same {
         return Err(Error::Invalid {
             field: "new",
-            detail: "is the password that you have".to_owned(),
+            detail: "is your current password".to_owned(),
         });
     }
     let hash = password::hash(password::place(&app).await?, change.new).await?;

@@ -79,7 +79,7 @@ struct RecoveryCodes {
 #[utoipa::path(post, path = "/me/second-factor", tag = "session", request_body = Again,
     responses((status = 201, body = Begun), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem),
-              (status = 409, description = "There is one already", body = Problem),
+              (status = 409, description = "A second factor exists already", body = Problem),
               (status = 429, body = Problem)))]
 async fn begin_second_factor(
     State(app): State<App>,
@@ -109,7 +109,7 @@ async fn begin_second_factor(
 #[utoipa::path(post, path = "/me/second-factor/confirm", tag = "session", request_body = Code,
     responses((status = 200, body = RecoveryCodes), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem),
-              (status = 409, description = "None was begun, or it is confirmed", body = Problem)))]
+              (status = 409, description = "None is being set up, or it is already confirmed", body = Problem)))]
 async fn confirm_second_factor(
     State(app): State<App>,
     request: RequestContext,
@@ -119,7 +119,7 @@ async fn confirm_second_factor(
     let session = caller.must_be_signed_in()?;
     if caller.user.second_factor {
         return Err(Error::WrongState(
-            "the second factor is confirmed".to_owned(),
+            "the second factor is already confirmed".to_owned(),
         ));
     }
     let user = caller.user.user_id;
@@ -127,8 +127,7 @@ async fn confirm_second_factor(
     if !second_factor::confirm(&mut tx, user, &first.code, app.clock.now()).await? {
         return Err(Error::Invalid {
             field: "code",
-            detail: "is not the app's code of this moment; is the telephone's clock right?"
-                .to_owned(),
+            detail: "is not the app's current code; check the clock of the phone".to_owned(),
         });
     }
     let codes = new_recovery_codes(&mut tx, user).await?;

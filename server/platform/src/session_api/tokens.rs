@@ -92,7 +92,7 @@ async fn create_token(
     if expires_at.0 <= now {
         return Err(Error::Invalid {
             field: "expires_at",
-            detail: format!("{} is over", expires_at.0),
+            detail: format!("{} is in the past", expires_at.0),
         });
     }
     let token = format!("{PREFIX}{}", secret::new_token());

@@ -55,14 +55,14 @@ impl Certificate {
         let chain: Vec<CertificateDer<'static>> = CertificateDer::pem_file_iter(&self.chain)
             .and_then(Iterator::collect)
             .with_context(|| format!("{name}: cannot read the TLS certificate"))?;
-        ensure!(!chain.is_empty(), "{name}: there is no certificate in it");
+        ensure!(!chain.is_empty(), "{name}: contains no certificate");
         let name = self.key.display();
         let key = PrivateKeyDer::from_pem_file(&self.key)
             .with_context(|| format!("{name}: cannot read the TLS key"))?;
         let mut config = ServerConfig::builder()
             .with_no_client_auth()
             .with_single_cert(chain, key)
-            .with_context(|| format!("{name}: not the certificate's key"))?;
+            .with_context(|| format!("{name}: is not the certificate's key"))?;
         let mut once = config.clone();
         once.send_tls13_tickets = 0;
         config.alpn_protocols = vec![b"h2".to_vec(), b"http/1.1".to_vec()];

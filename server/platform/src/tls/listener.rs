@@ -47,11 +47,11 @@ impl TlsListener {
                 match certificate.load() {
                     Ok(new) => {
                         config.send_replace(new);
-                        info!("the TLS certificate was read anew");
+                        info!("the TLS certificate was reloaded");
                     }
                     Err(error) => {
                         let error = format!("{error:#}");
-                        error!(error, "the TLS certificate before stays in use");
+                        error!(error, "the previous TLS certificate stays in use");
                     }
                 }
             }
@@ -104,7 +104,7 @@ async fn accept(
         tokio::spawn(async move {
             match timeout(HANDSHAKE, handshake(stream, configs)).await {
                 Ok(Ok(connection)) => drop(done.send((connection, peer)).await),
-                Ok(Err(error)) => debug!(%peer, %error, "no TLS"),
+                Ok(Err(error)) => debug!(%peer, %error, "the TLS handshake failed"),
                 Err(_) => debug!(%peer, "the TLS handshake took too long"),
             }
             drop(permit);

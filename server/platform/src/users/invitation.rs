@@ -94,7 +94,7 @@ struct Invited {
     params(("id" = UserId, Path)),
     responses((status = 201, body = Invitation), (status = 401, body = Problem),
               (status = 404, body = Problem),
-              (status = 409, description = "The user is shut out", body = Problem)))]
+              (status = 409, description = "The user is disabled", body = Problem)))]
 async fn invite_again(
     State(app): State<App>,
     request: RequestContext,
@@ -105,7 +105,7 @@ async fn invite_again(
     let user = super::store::find(&mut tx, custodian.operator, id).await?;
     let user = user.ok_or(Error::NotFound("user"))?;
     if user.state == super::Standing::Disabled {
-        return Err(Error::WrongState("the user is shut out".to_owned()));
+        return Err(Error::WrongState("the user is disabled".to_owned()));
     }
     let invitation = make(&mut tx, &app, id).await?;
     tx.commit().await?;
@@ -121,7 +121,7 @@ async fn invite_again(
     request_body = Acceptance,
     responses((status = 200, body = Accepted),
               (status = 404, description = "There is no such code", body = Problem),
-              (status = 410, description = "The code has lapsed", body = Problem)))]
+              (status = 410, description = "The code has expired", body = Problem)))]
 async fn accept_invitation(
     State(app): State<App>,
     request: RequestContext,
@@ -133,7 +133,7 @@ async fn accept_invitation(
         .await?
         .ok_or(Error::NotFound("code"))?;
     if invited.expires_at.0 <= now {
-        return Err(Error::Gone("this code has lapsed; ask for another"));
+        return Err(Error::Gone("this code has expired; ask for another"));
     }
     let company = invited.company.as_deref().unwrap_or_default();
     let about = [invited.email.as_str(), &invited.name, company];

@@ -181,7 +181,7 @@ async fn list_users(
 /// once, for a week.
 #[utoipa::path(post, path = "/users", tag = "people", request_body = NewUser,
     responses((status = 201, body = InvitedUser), (status = 401, body = Problem),
-              (status = 409, description = "The e-mail has an account", body = Problem)))]
+              (status = 409, description = "The e-mail address already has an account", body = Problem)))]
 async fn invite_user(
     State(app): State<App>,
     request: RequestContext,
@@ -201,7 +201,9 @@ async fn invite_user(
         now,
     );
     let id = created.await?.ok_or_else(|| {
-        Error::WrongState(format!("{email} has an account already, here or elsewhere"))
+        Error::WrongState(format!(
+            "{email} already has an account, with this company or another"
+        ))
     })?;
     let invitation = invitation::make(&mut tx, &app, id).await?;
     let user = store::find(&mut tx, custodian.operator, id).await?;
@@ -217,7 +219,7 @@ async fn invite_user(
     request_body = ChangedUser,
     responses((status = 200, body = Person), (status = 401, body = Problem),
               (status = 404, body = Problem),
-              (status = 409, description = "It is the last admin", body = Problem)))]
+              (status = 409, description = "The user is the last admin", body = Problem)))]
 async fn change_user(
     State(app): State<App>,
     request: RequestContext,
@@ -253,7 +255,7 @@ async fn change_user(
 /// With their sessions and tokens. What they wrote keeps their name.
 #[utoipa::path(delete, path = "/users/{id}", tag = "people", params(("id" = UserId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "It is the last admin", body = Problem)))]
+              (status = 409, description = "The user is the last admin", body = Problem)))]
 async fn remove_user(
     request: RequestContext,
     custodian: Custodian,

@@ -97,7 +97,7 @@ pub(super) async fn must_have_admin(tx: &mut Tx, operator: OperatorId) -> Result
         operator
     )?;
     if left.is_none_or(|(admins,)| admins == 0) {
-        let last = "nobody would be left who is an admin and has a password";
+        let last = "no admin with a password would be left";
         return Err(Error::WrongState(last.to_owned()));
     }
     Ok(())

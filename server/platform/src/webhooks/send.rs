@@ -65,7 +65,7 @@ impl Carrier for Sender {
         Ok(match self.send(&url, &secret, seconds, body).await? {
             status @ 200..=299 => Tried::Taken(status),
             // The receiver may still be repaired, so nothing is refused for good.
-            status => Tried::Later(status, format!("answered with status {status}")),
+            status => Tried::Later(status, format!("responded with status {status}")),
         })
     }
 }

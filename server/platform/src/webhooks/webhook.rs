@@ -105,7 +105,10 @@ impl NewWebhook {
         self.kinds
             .retain(|kind| !matches!(kind, Kind::Test | Kind::Notification | Kind::Report));
         if tenant.firm().is_some() && !self.kinds.iter().all(|kind| kind.is_of_order()) {
-            return invalid("kinds", "a firm is told of work orders only".to_owned());
+            return invalid(
+                "kinds",
+                "a firm can only receive messages about work orders".to_owned(),
+            );
         }
         if self.kinds.is_empty() {
             return invalid("kinds", "is empty".to_owned());
