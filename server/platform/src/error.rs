@@ -82,10 +82,10 @@ pub enum Error {
     Internal(anyhow::Error),
 }
 
-/// A result whose error can be sent.
+/// Result whose error can be sent to the client.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Refusal that only one domain knows: its kind, its words, and fields of its own.
+/// Refusal by one domain: its kind, its text, and its own fields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DomainProblem {
     /// HTTP status.
@@ -94,9 +94,9 @@ pub struct DomainProblem {
     pub kind: &'static str,
     /// Kind in a few words.
     pub title: &'static str,
-    /// Sentence that says what is wrong this time.
+    /// Explanation of this occurrence.
     pub detail: String,
-    /// Fields of this kind alone, as members of the problem document.
+    /// Fields of this kind only, as members of the problem document.
     pub extra: Map<String, Value>,
 }
 
@@ -110,7 +110,7 @@ impl DomainProblem {
     /// Adds the fields of a serialisable struct.
     ///
     /// # Panics
-    /// When the value is no struct, which is a mistake in the code.
+    /// When the value is not a struct, which is a mistake in the code.
     #[must_use]
     pub fn with(mut self, extra: &impl Serialize) -> DomainProblem {
         let value = serde_json::to_value(extra).expect("a struct of plain fields is JSON");
@@ -131,7 +131,7 @@ impl From<DomainProblem> for Error {
 /// Error as it is sent (RFC 9457).
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Problem {
-    /// Names the kind of problem; ends in a word that programs may act on.
+    /// Kind of problem; ends in a word that programs may act on.
     #[serde(rename = "type")]
     pub kind: String,
     /// The kind in a few words.
@@ -140,7 +140,7 @@ pub struct Problem {
     pub status: u16,
     /// Details of this occurrence.
     pub detail: String,
-    /// Fields of one kind of problem alone; the document lists them by domain.
+    /// Fields of one kind of problem only; the document lists them by domain.
     #[serde(flatten)]
     #[schema(ignore)]
     pub extra: Map<String, Value>,
@@ -246,7 +246,7 @@ impl From<sqlx::Error> for Error {
 }
 
 impl From<serde_json::Error> for Error {
-    /// Only for JSON of our own; a request's goes through `JsonRejection`.
+    /// Converts an error in the server's own JSON; that of a request is a `JsonRejection`.
     fn from(error: serde_json::Error) -> Error {
         Error::Internal(error.into())
     }

@@ -220,7 +220,8 @@ impl Oidc {
     }
 }
 
-/// Parses the provider's address: its responses must not be altered on the way.
+/// Parses the provider's address. It must be https, so that responses cannot be altered in
+/// transit.
 fn issuer(text: &str) -> Result<String, String> {
     let url = reqwest::Url::parse(text).map_err(|error| error.to_string())?;
     let host = url.host_str().unwrap_or_default();

@@ -51,7 +51,7 @@ impl EventListener {
 async fn connect(pool: &PgPool) -> Result<PgListener, sqlx::Error> {
     let mut listener = PgListener::connect_with(pool).await?;
     listener.listen(CHANNEL).await?;
-    // A broken connection is an error here, not silence.
+    // A broken connection must be reported as an error.
     listener.eager_reconnect(false);
     Ok(listener)
 }

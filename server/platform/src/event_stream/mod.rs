@@ -29,7 +29,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-/// The routes of this part.
+/// Routes of the live events.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -38,14 +38,14 @@ where
     OpenApiRouter::new().routes(routes!(follow_events))
 }
 
-/// The data of an event.
+/// Data of an event.
 #[derive(Serialize, ToSchema)]
 pub struct VesselEvent {
     /// The vessel concerned.
     pub vessel_id: VesselId,
     /// Kind of event.
     pub kind: Kind,
-    /// The work order, if it is of one.
+    /// Work order concerned, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order_id: Option<OrderId>,
 }
@@ -73,7 +73,7 @@ async fn follow_events(
         .and_then(|text| Uuid::parse_str(text).ok())
         .map(EventId);
     let tenant = caller.party()?;
-    // Listening begins before the look back, so that nothing falls in between.
+    // Subscribing before reading the past events ensures that none is lost in between.
     let receiver = app.live.subscribe();
     let missed = match last {
         Some(last) => events::since(&app.db, tenant, last).await?,
@@ -127,7 +127,7 @@ impl Follower {
         }
     }
 
-    /// Too slow for the live channel: reads what was missed from the database.
+    /// Reads the missed events from the database, after the live channel was too fast.
     async fn catch_up(&mut self) -> Option<()> {
         let Some(last) = self.last else {
             return Some(());

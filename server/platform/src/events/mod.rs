@@ -24,34 +24,34 @@ use utoipa::ToSchema;
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = EventKind)]
 pub enum Kind {
-    /// A batch came.
+    /// A batch was received.
     Batch,
     /// A compass has a new model.
     Model,
     /// Something was reported, amended or withdrawn.
     Logbook,
-    /// An alert was raised, says something else, was acknowledged or cleared.
+    /// An alert was raised, updated, acknowledged or cleared.
     Alert,
-    /// A work order has gone on.
+    /// A work order has changed.
     WorkOrder,
     /// A port call was entered, amended or withdrawn.
     PortCall,
-    /// The schedule has another plan for it.
+    /// The schedule of the vessel has changed.
     Schedule,
-    /// A compass is to be adjusted soon, or sooner than before.
+    /// A compass needs adjustment soon, or sooner than before.
     Need,
 }
 
-/// An event, with those who may know of it.
+/// Event, with the tenants that may receive it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, sqlx::FromRow)]
 pub struct Event {
-    /// Its id, by which a dashboard resumes.
+    /// Id, from which a dashboard resumes.
     pub id: EventId,
     /// Operator of the vessel.
     pub operator_id: OperatorId,
-    /// The firm that receives the event; none if the operator does.
+    /// Firm that receives the event; none if the operator does.
     pub firm_id: Option<FirmId>,
-    /// The work order, if it is of one.
+    /// Work order concerned, if any.
     pub order_id: Option<OrderId>,
     /// The vessel concerned.
     pub vessel_id: VesselId,

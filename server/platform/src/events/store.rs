@@ -7,16 +7,16 @@ use crate::ids::{EventId, FirmId, OperatorId, OrderId, VesselId};
 use crate::tenants::Tenant;
 use crate::time::Time;
 
-/// The channel of PostgreSQL's NOTIFY.
+/// Channel of PostgreSQL's NOTIFY.
 pub(crate) const CHANNEL: &str = "binnacle_events";
 const KEPT_FOR_S: f64 = 86_400.0;
-/// Each process has its own clock, and a transaction may be seen late: how far to
-/// look back before the last event seen.
+/// Overlap before the last event seen, seconds: each process has its own clock, and a
+/// transaction may become visible late.
 const OVERLAP_S: f64 = 10.0;
 /// Maximum number of events sent after a pause; beyond that, a dashboard should reload its data.
 const MOST_MISSED: i64 = 1000;
 
-/// Stores an event, to be made known with the transaction's commit.
+/// Stores an event, which is announced when the transaction commits.
 pub async fn insert(
     tx: &mut Tx,
     vessel_id: VesselId,
@@ -118,7 +118,7 @@ pub(crate) async fn all_since(db: &Db, from: Time) -> Result<Vec<Event>> {
     )
 }
 
-/// Forgets what nobody will ask for any more.
+/// Deletes expired events.
 pub async fn prune(db: &Db, now: Time) -> Result<()> {
     let mut tx = db.begin().await?;
     execute!(

@@ -1,9 +1,9 @@
-//! Requests to the provider.
+//! HTTP requests to the provider.
 //!
-//! Invariants: each ends within ten seconds; redirects are not followed; no more
-//! is read than a provider has to say; a provider with a certificate is asked for nothing
-//! without. The server's own admin named the provider, which may be within the network
-//! then; but one on the public internet cannot send requests into it.
+//! Invariants: each request ends within ten seconds, and redirects are not followed. The size
+//! of a response is limited. A provider on https is never asked without TLS. The server's admin
+//! configured the provider, so it may be inside the local network. A provider on the public
+//! internet cannot direct requests into that network.
 
 use crate::outbound::{self, Reach, is_public};
 use anyhow::{Context, bail, ensure};
@@ -12,7 +12,7 @@ use openidconnect::{AsyncHttpClient, HttpRequest, HttpResponse};
 use reqwest::{Client, Url};
 use std::pin::Pin;
 
-/// Of a longer answer nothing is read: a hundred keys are a tenth of it.
+/// Longest accepted response, bytes: a hundred keys take a tenth of it.
 const MOST_BYTES: usize = 1 << 20;
 
 /// HTTP client for requests to the provider.
@@ -23,13 +23,13 @@ pub(crate) struct Http {
     https_only: bool,
 }
 
-/// Reason for a missing answer.
+/// Reason for a missing response.
 #[derive(Debug, thiserror::Error)]
 #[error("{0:#}")]
 pub(crate) struct NoAnswer(anyhow::Error);
 
 impl Http {
-    /// For the provider with this address.
+    /// Creates the client for the provider with this address.
     pub(super) async fn of(issuer: &str) -> anyhow::Result<Http> {
         let url = Url::parse(issuer).context("the issuer is not a URL")?;
         let host = url.host_str().context("the issuer has no host")?;

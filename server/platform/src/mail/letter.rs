@@ -1,14 +1,14 @@
-//! The content of a letter: plain text, so that every mail program shows it the same.
+//! Content of a letter: plain text, which every mail program shows alike.
 
 use super::mailing_list::{FileReference, MailingList};
 use crate::severity::Severity;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-/// Columns that text is wrapped to.
+/// Width of wrapped text, columns.
 const WIDTH: usize = 72;
 
-/// A letter as it waits to be sent.
+/// Letter in the outbox.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Letter {
     /// Subject line.
@@ -18,12 +18,12 @@ pub struct Letter {
     /// Items of a letter about several things, in order.
     #[serde(rename = "told", default, skip_serializing_if = "Vec::is_empty")]
     pub items: Vec<LetterItem>,
-    /// The page to look at, below the dashboard's address.
+    /// Page of the dashboard to link to.
     pub path: String,
-    /// The alert or the order that it is about: mail programs show its letters together.
+    /// Alert or order concerned: mail programs group the letters about it.
     #[serde(alias = "alert")]
     pub about: Option<Uuid>,
-    /// Files that go with it.
+    /// Files to attach.
     #[serde(rename = "report", default, skip_serializing_if = "Option::is_none")]
     pub files: Option<FileReference>,
 }
@@ -35,7 +35,7 @@ pub struct LetterItem {
     pub head: String,
     /// The text.
     pub text: String,
-    /// The page to look at, below the dashboard's address.
+    /// Page of the dashboard to link to.
     pub path: String,
 }
 
@@ -51,11 +51,11 @@ impl LetterItem {
 /// Reason for which a recipient gets a letter.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Why {
-    /// Someone is on the company's list for alerts from a severity on.
+    /// The recipient is on the company's list for alerts of a minimum severity.
     Listed(Severity),
-    /// Someone with an account chose this notification.
+    /// The recipient has an account and chose this notification.
     Person,
-    /// Someone is on another list of the company.
+    /// The recipient is on another list of the company.
     MailingList(MailingList),
 }
 
@@ -73,7 +73,7 @@ impl Letter {
         }
     }
 
-    /// The whole text, with where to look and why the recipient gets it.
+    /// Returns the whole text, with a link and the reason why the recipient gets it.
     pub(super) fn text_for(&self, address: &str, why: Why, public_url: &str) -> String {
         let (why, page) = match why {
             Why::Listed(least) => (
@@ -112,13 +112,13 @@ impl Letter {
     }
 }
 
-/// A subject as it goes into a header: a name that looks like an encoded word (RFC 2047,
-/// section 2) is none.
+/// Returns a subject for a header: text that looks like an encoded word (RFC 2047, section 2)
+/// is broken up.
 pub fn header(subject: &str) -> String {
     one_line(subject).replace("=?", "= ?")
 }
 
-/// Without anything that could end a line.
+/// Returns the text with every character that could end a line replaced by a blank.
 pub fn one_line(text: &str) -> String {
     let shown = |c: char| {
         if c.is_control() || "\u{2028}\u{2029}".contains(c) {
@@ -130,8 +130,8 @@ pub fn one_line(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// Lines of at most 72 columns, the first after `lead`, the others indented
-/// alike.
+/// Wraps text to 72 columns. The first line begins with `lead`, the others are indented to
+/// match.
 pub fn wrapped(lead: &str, text: &str) -> String {
     let mut lines = Vec::new();
     let mut line = lead.to_owned();

@@ -1,8 +1,7 @@
-//! The mail relay: what the settings say of it, and a conversation with it.
+//! Mail relay: its settings, and the SMTP session with it.
 //!
-//! Invariants: a name and a password go only over TLS with a certificate that
-//! was checked; a relay without TLS is spoken to only within one's own network. No
-//! error names the password.
+//! Invariants: user and password are sent only over TLS with a checked certificate. A relay
+//! without TLS is used only within the local network. No error contains the password.
 
 use crate::outbound::is_public;
 use crate::outbox::Tried;
@@ -17,41 +16,41 @@ use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// A relay that has not taken a letter by then is tried again; shorter than the
-/// lease on a delivery.
+/// Time limit for handing over a letter, after which it is retried; shorter than the lease of a
+/// delivery.
 pub(super) const PATIENCE: Duration = Duration::from_mins(1);
-/// Taking leave after a letter was taken or refused.
+/// Time limit for the QUIT command after a letter was accepted or refused.
 const QUIT_PATIENCE: Duration = Duration::from_secs(2);
 
-/// The mail relay that takes letters, and the way to reach it.
+/// Mail relay that accepts letters, and the way to reach it.
 #[derive(Clone)]
 pub struct Relay {
     host: String,
     port: u16,
     security: Security,
     credentials: Option<Credentials>,
-    /// Our own name in the SMTP greeting.
+    /// Name of this server in the SMTP greeting.
     name: ClientId,
     patience: Duration,
 }
 
 #[derive(Clone)]
 enum Security {
-    /// From the first byte (RFC 8314, section 3.3).
+    /// TLS from the first byte (RFC 8314, section 3.3).
     Tls(TlsParameters),
-    /// By STARTTLS, without which nothing is said (RFC 3207).
+    /// STARTTLS, without which no mail is sent (RFC 3207).
     StartTls(TlsParameters),
-    /// None.
+    /// No TLS.
     Nothing,
 }
 
 impl Relay {
-    /// Reads `smtps://USER:PASSWORD@HOST`, `smtp://…` for STARTTLS, or
-    /// `smtp://HOST?tls=none`. `authority` is PEM of one more authority that the
-    /// relay's certificate may be of, `name` what we call ourselves.
+    /// Parses `smtps://USER:PASSWORD@HOST`, `smtp://…` for STARTTLS, or `smtp://HOST?tls=none`.
+    /// `authority` is the PEM of an additional trusted authority, and `name` is the name of this
+    /// server in the greeting.
     ///
     /// # Errors
-    /// When the URL says something else; the error does not repeat it.
+    /// When the URL has another form; the error does not contain it.
     pub fn new(url: &str, authority: Option<&[u8]>, name: &str) -> Result<Relay> {
         let url = Url::parse(url).context("is not a URL")?;
         let host = url.host_str().filter(|host| !host.is_empty());
@@ -92,8 +91,7 @@ impl Relay {
     /// Hands a letter over.
     ///
     /// # Errors
-    /// When there was no answer, or none to this letter: whoever runs the relay may
-    /// yet mend it.
+    /// When the relay gave no response to the letter: the fault may be temporary.
     pub(super) async fn hand_over(&self, envelope: &Envelope, letter: &[u8]) -> Result<Tried> {
         let talk = async {
             let mut relay = self.connect().await?;
@@ -104,7 +102,7 @@ impl Relay {
         let (mut relay, answer) = talked.context("the relay does not respond")??;
         match answer {
             Ok(response) => {
-                // It has the letter, whatever it does from now on.
+                // The relay has the letter, whatever happens from now on.
                 let _ = timeout(QUIT_PATIENCE, relay.quit()).await;
                 Ok(Tried::Taken(response.code().into()))
             }

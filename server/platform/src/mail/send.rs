@@ -1,4 +1,4 @@
-//! A letter as it goes over the wire (RFC 5322), and its carrier.
+//! Letters as messages (RFC 5322), and their carrier.
 
 use super::letter::{Letter, Why};
 use super::mailing_list::{Content, Files, MailingList};
@@ -35,10 +35,10 @@ struct Addressee {
 }
 
 impl Mailer {
-    /// As the settings say; none if they say nothing of mail.
+    /// Creates the sender from the settings; `None` if mail is not set up.
     ///
     /// # Errors
-    /// When they make no sense; names the setting, and no password.
+    /// When a setting is not valid. The error names the setting, but no password.
     pub fn new(config: &config::Mail) -> Result<Option<Mailer>> {
         let (Some(relay), Some(from), Some(public_url)) =
             (&config.smtp_url, &config.mail_from, &config.public_url)
@@ -109,7 +109,7 @@ impl Mailer {
             .to(Mailbox::new(None, to.address.parse()?))
             .subject(letter.subject.as_str())
             .date(UNIX_EPOCH + Duration::from_micros(written))
-            // The id is the same at every try, so that a mailbox can detect a second copy.
+            // The id is the same at every attempt, so that a mailbox can detect a second copy.
             .message_id(Some(format!(
                 "<{}.{}@{domain}>",
                 claimed.id,

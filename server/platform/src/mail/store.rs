@@ -33,10 +33,10 @@ pub(super) async fn list(
     )
 }
 
-/// Someone who gets mail of the operator's.
+/// Returns a mail recipient of the operator.
 ///
 /// # Errors
-/// [`Error::NotFound`] when there is no such person.
+/// [`Error::NotFound`] when there is no such recipient.
 pub(super) async fn must_find(db: &Db, operator: OperatorId, id: RecipientId) -> Result<Recipient> {
     row!(
         db,
@@ -140,7 +140,7 @@ pub(super) async fn wishes(
     )
 }
 
-/// Returns the worst severity that a recipient was written of a topic.
+/// Returns the worst severity of a topic that was sent to a recipient.
 pub(super) async fn last_severity(
     tx: &mut Tx,
     recipient: RecipientId,
@@ -157,7 +157,7 @@ pub(super) async fn last_severity(
     Ok(found.map(|(severity,)| severity))
 }
 
-/// Notes the severity that a recipient is written of a topic.
+/// Notes the severity of a topic that is sent to a recipient.
 pub(super) async fn note_severity(
     tx: &mut Tx,
     recipient: RecipientId,
@@ -175,7 +175,7 @@ pub(super) async fn note_severity(
     Ok(())
 }
 
-/// Forgets a topic that is over, or is so for the recipient.
+/// Forgets a topic that has ended for the recipient.
 pub(super) async fn forget(tx: &mut Tx, recipient: RecipientId, topic: Uuid) -> DbResult<()> {
     execute!(
         tx,

@@ -1,9 +1,9 @@
-//! From the code that the browser brings to who the person is: what the provider says,
-//! and that it is the provider who says it.
+//! Claims of the provider about a person: redeems the code from the browser and verifies the
+//! identity token.
 //!
-//! Invariants: the token bears a signature by one of the provider's keys, never
-//! none and never one by a shared secret; it is for us, of this sign-in, and not over
-//! (OpenID Connect Core 1.0, section 3.1.3.7).
+//! Invariants: the token is signed by one of the provider's keys. A missing signature, or one
+//! by a shared secret, is rejected. The token is issued to this server, for this sign-in, and
+//! has not expired (OpenID Connect Core 1.0, section 3.1.3.7).
 
 use super::attempt::Attempt;
 use super::refusal::Refusal;
@@ -28,7 +28,7 @@ use tracing::{info, warn};
 /// Path to which the provider redirects people.
 const CALLBACK: &str = "/api/v1/session/provider/callback";
 
-/// By which a provider may sign: with a key that only it has.
+/// Accepted signature algorithms: those with a private key of the provider.
 const SIGNATURES: [CoreJwsSigningAlgorithm; 9] = [
     CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha256,
     CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha384,
@@ -50,7 +50,7 @@ type Client = CoreClient<
     EndpointMaybeSet,
 >;
 
-/// The person named by the provider, with the e-mail address it claims.
+/// Person named by the provider, with the claimed e-mail address.
 pub(super) struct Identity {
     pub(super) subject: String,
     email: Option<String>,
@@ -67,7 +67,7 @@ pub(super) async fn current(app: &App) -> Result<Arc<Discovery>, Refusal> {
     Ok(app.provider.current(issuer(app), &app.clock).await?)
 }
 
-/// The address of [`CALLBACK`], as the provider knows it.
+/// Returns the public address of [`CALLBACK`].
 fn redirect_url(config: &Serve) -> Option<RedirectUrl> {
     let public = config.mail.public_url.as_deref()?.trim_end_matches('/');
     RedirectUrl::new(format!("{public}{CALLBACK}")).ok()
@@ -107,7 +107,7 @@ pub(super) fn address(app: &App, found: &Discovery, attempt: &Attempt) -> Result
     Ok(address)
 }
 
-/// Redeems a code: who it stands for.
+/// Redeems a code for the identity of the person.
 pub(super) async fn redeem(
     app: &App,
     attempt: &Attempt,
@@ -130,7 +130,7 @@ pub(super) async fn redeem(
             Refusal::Unreachable
         }
         RequestTokenError::ServerResponse(said) => {
-            // Only the kind of the provider's error is kept: its text may hold what was sent.
+            // Only the kind of the provider's error is logged: its text may contain the request.
             info!(error = %said.error().as_ref(), "the sign-in provider refused a code");
             Refusal::Untrusted
         }
@@ -161,12 +161,12 @@ pub(super) async fn redeem(
     })
 }
 
-/// The e-mail, which the provider says is verified.
+/// Returns the e-mail address that the provider has verified.
 pub(super) async fn verified_email(app: &App, identity: &Identity) -> Result<String, Refusal> {
     if let Some(email) = &identity.email {
         return Ok(email.clone());
     }
-    // Some tell it only to who asks besides (section 5.4).
+    // Some providers give the address only in a separate request (section 5.4).
     let found = current(app).await?;
     let client = client(app, &found)?;
     let subject = openidconnect::SubjectIdentifier::new(identity.subject.clone());
@@ -214,7 +214,7 @@ fn may_be_by_a_new_key(error: &ClaimsVerificationError) -> bool {
     )
 }
 
-/// Without what the token says.
+/// Returns the reason of a refusal, without any content of the token.
 fn reason(error: &ClaimsVerificationError) -> &'static str {
     match error {
         ClaimsVerificationError::Expired(_) => "it has expired",

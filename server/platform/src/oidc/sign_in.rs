@@ -1,4 +1,4 @@
-//! The way to the provider, back from it, and through the second factor.
+//! Routes to the provider, back from it, and through the second factor.
 
 use super::attempt::{self, Attempt};
 use super::claims::{self, Identity};
@@ -26,7 +26,7 @@ use utoipa_axum::routes;
 /// Address of the sign-in page, to which the outcome is appended.
 const SIGN_IN_PAGE: &str = "/?sign-in=";
 
-/// The routes of this part.
+/// Routes of the sign-in through a provider.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -39,7 +39,7 @@ where
         .routes(routes!(send_code))
 }
 
-/// By whose word one may sign in.
+/// Provider through which users may sign in.
 #[derive(Serialize, ToSchema)]
 #[schema(as = SignInProvider, example = json!({ "name": "Example Lines" }))]
 struct Named {
@@ -52,20 +52,20 @@ struct Named {
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Answer {
-    /// Stands for who signed in; we redeem it.
+    /// Code that stands for the signed-in person.
     code: Option<String>,
-    /// As we gave it.
+    /// State value, as it was sent.
     state: Option<String>,
     /// Error code, if nobody signed in.
     error: Option<String>,
 }
 
-/// A code from the app.
+/// Code of a second factor.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = ProviderCode, example = json!({ "code": "287082" }))]
 struct Code {
-    /// Of the authenticator app, or a recovery code.
+    /// Code of the authenticator app, or a recovery code.
     code: String,
 }
 
@@ -82,8 +82,8 @@ async fn find_provider(State(app): State<App>) -> Json<Named> {
 
 /// Go to the provider to sign in
 ///
-/// For browsers: they come back to `/session/provider/callback`. While the provider cannot
-/// be reached they come to the sign-in page at once, which says so.
+/// For browsers. The provider redirects them to `/session/provider/callback`. While the
+/// provider cannot be reached, they are redirected to the sign-in page, which shows the reason.
 #[utoipa::path(get, path = "/session/provider/start", tag = "session", security(()),
     responses((status = 303, description = "To the provider, or to the sign-in page"),
               (status = 409, description = "No provider is set up", body = Problem)))]
@@ -100,10 +100,10 @@ async fn go_to_provider(State(app): State<App>) -> Result<(StatusCode, HeaderMap
     })
 }
 
-/// Come back from the provider
+/// Return from the provider
 ///
-/// With a session the browser goes on to the dashboard; with a second factor, or a reason
-/// why nobody was signed in, to the sign-in page.
+/// A signed-in browser is redirected to the dashboard. Otherwise it is redirected to the
+/// sign-in page, which asks for the second factor or shows the reason.
 #[utoipa::path(get, path = "/session/provider/callback", tag = "session", params(Answer),
     security(()),
     responses((status = 303, description = "To the dashboard, or to the sign-in page"),
@@ -115,7 +115,7 @@ async fn return_from_provider(
     headers: HeaderMap,
     Params(answer): Params<Answer>,
 ) -> Result<(StatusCode, HeaderMap)> {
-    // Whoever comes back from the provider signs in.
+    // A return from the provider signs somebody in.
     request.log_as_change();
     must_be_set_up(&app)?;
     Ok(
@@ -131,7 +131,7 @@ async fn return_from_provider(
 
 /// Send the second factor's code after the provider
 ///
-/// For who has a second factor here, in the browser that came back from the provider.
+/// For users with a second factor, in the browser that returned from the provider.
 #[utoipa::path(post, path = "/session/provider/code", tag = "session", security(()),
     request_body = Code,
     responses((status = 200, body = User), (status = 401, body = Problem),
@@ -151,7 +151,7 @@ async fn send_code(
     let user = user.ok_or(OVER)?;
     request.record_actor(&user);
     let subjects = Subjects::person(&user.email, &from);
-    // As with passwords, guesses sent at once do not outrun the count.
+    // As with passwords, simultaneous guesses must not escape the count.
     let _place = password::place(&app).await?;
     throttle::check(&app.db, &subjects, now).await?;
     if !second_factor::use_code(&request, user.user_id, &sent.code, now).await? {
@@ -219,7 +219,7 @@ async fn conclude(
     Ok((StatusCode::SEE_OTHER, cookies))
 }
 
-/// The user whom the provider means.
+/// Returns the user whom the provider identifies.
 async fn who(
     app: &App,
     request: &RequestContext,
@@ -242,7 +242,7 @@ async fn who(
     Ok(user)
 }
 
-/// The user with the e-mail of someone who comes for the first time.
+/// Binds a person who signs in for the first time to the user with the same e-mail address.
 async fn bound(
     app: &App,
     request: &RequestContext,
@@ -250,7 +250,7 @@ async fn bound(
     identity: &Identity,
 ) -> std::result::Result<User, Refusal> {
     let email = claims::verified_email(app, identity).await?;
-    // Nobody here has another; and what is alike in lower case is not the same.
+    // No user has a non-ASCII address, and lower-casing could make different addresses alike.
     if !email.is_ascii() || email.chars().any(char::is_control) {
         return Err(Refusal::Unknown);
     }
@@ -264,7 +264,7 @@ async fn bound(
         return Ok(user);
     }
     drop(tx);
-    // The same person may have come through two windows at once.
+    // The same person may have signed in through two windows at once.
     match store::find_known(&app.db, issuer, subject).await? {
         Some(Known::User(known)) if known.user_id == user.user_id => {
             request.record_actor(&user);
@@ -283,7 +283,7 @@ async fn open(
     session::open(app, request, from, user, Some(&app.config.oidc.oidc_name)).await
 }
 
-/// To the sign-in page, which says why.
+/// Redirects to the sign-in page, which shows the reason.
 fn sent_away(app: &App, refusal: &Refusal) -> (StatusCode, HeaderMap) {
     let page = format!("{SIGN_IN_PAGE}{}", refusal.word());
     redirect(&page, [attempt::forgotten(&app.config)])

@@ -1,5 +1,5 @@
-//! Public addresses, which a user may have the server call. It must not call hosts of its
-//! own network for anybody.
+//! Public addresses: the only ones that users may make the server call. Hosts of its own
+//! network must not be reachable through it.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 
@@ -33,7 +33,8 @@ fn is_public_v4(address: Ipv4Addr) -> bool {
     !special
 }
 
-/// Of global unicast 2000::/3 all but what carries other addresses or none.
+/// Checks for global unicast 2000::/3, without the ranges that embed other addresses or are
+/// reserved.
 fn is_public_v6(address: Ipv6Addr) -> bool {
     let [a, b, ..] = address.segments();
     let special = a == 0x2002                      // 6to4

@@ -1,4 +1,4 @@
-//! HTTP client, and checks of the addresses that it is given.
+//! HTTP client, and checks of the addresses for it.
 
 use super::address::is_public;
 use anyhow::{Context, bail};
@@ -14,19 +14,19 @@ const TIMEOUT: Duration = Duration::from_secs(10);
 /// Longest accepted URL, bytes.
 const MAX_URL: usize = 500;
 
-/// The addresses to which messages may go.
+/// Addresses that requests may reach.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
-    /// Over https, to addresses of the public internet.
+    /// Public addresses, over https.
     Public,
-    /// Anywhere, also over http: for receivers in one's own network.
+    /// Any address, also over http: for receivers in the local network.
     Anywhere,
 }
 
 /// Builds the client for requests to other servers: with a timeout, and without redirects.
 ///
 /// # Errors
-/// When this machine has no certificates to check others by.
+/// When this machine has no root certificates.
 pub fn client(reach: Reach) -> anyhow::Result<Client> {
     let mut client = Client::builder()
         .redirect(Policy::none())
@@ -39,10 +39,10 @@ pub fn client(reach: Reach) -> anyhow::Result<Client> {
     Ok(client.build()?)
 }
 
-/// An address that may be sent to, as far as it tells by itself.
+/// Parses a URL and checks that it may be requested, as far as the text shows.
 ///
 /// # Errors
-/// When it is none.
+/// When it may not.
 pub fn check_url(text: &str, reach: Reach) -> anyhow::Result<Url> {
     if text.len() > MAX_URL {
         bail!("is longer than {MAX_URL} characters");
@@ -67,8 +67,8 @@ pub fn check_url(text: &str, reach: Reach) -> anyhow::Result<Url> {
     Ok(url)
 }
 
-/// Finds only addresses of the public internet. The connection is made to what is
-/// found here, so that a name cannot mean another address a moment later.
+/// Resolver that returns only addresses of the public internet. The connection is made to the
+/// resolved address, so a name cannot resolve differently a moment later.
 struct PublicOnly;
 
 impl Resolve for PublicOnly {

@@ -1,4 +1,4 @@
-//! Sends what is due, one delivery after the other.
+//! Outbox worker: sends the due deliveries, one after the other.
 
 use super::delivery::Channel;
 use super::queue::{self, Claimed};
@@ -10,18 +10,18 @@ use tracing::{error, info, warn};
 
 /// Interval at which the worker looks for deliveries without a notification.
 const LOOK_EVERY: Duration = Duration::from_secs(2);
-/// Longest text that is kept of an error, characters.
+/// Longest stored text of an error, characters.
 const MAX_ERROR: usize = 300;
 
 /// Carrier of messages to the receivers of one channel.
 pub trait Carrier: Send + Sync {
-    /// The channel served.
+    /// Channel served.
     const CHANNEL: Channel;
 
-    /// Tries a delivery once.
+    /// Makes one attempt at a delivery.
     ///
     /// # Errors
-    /// When there was no answer; it will be tried again.
+    /// When there was no response; the delivery is retried.
     fn carry(
         &self,
         app: &App,
@@ -29,25 +29,25 @@ pub trait Carrier: Send + Sync {
     ) -> impl Future<Output = anyhow::Result<Tried>> + Send;
 }
 
-/// A receiver's answer to an attempt, with its status.
+/// Response of a receiver to an attempt, with its status.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Tried {
-    /// It took the message.
+    /// The message was accepted.
     Taken(u16),
-    /// Not now, for this reason.
+    /// The message was refused temporarily, with the reason.
     Later(u16, String),
-    /// Never, for this reason.
+    /// The message was refused permanently, with the reason.
     Refused(u16, String),
 }
 
 /// Outcome of one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sent {
-    /// The receiver has it.
+    /// The receiver has the message.
     Delivered,
-    /// It will be tried again.
+    /// The attempt failed and is retried.
     Failed,
-    /// It was given up.
+    /// The delivery was given up.
     Dead,
 }
 

@@ -9,20 +9,20 @@ use crate::error::{Error, Result};
 use crate::secret;
 use tokio::sync::OwnedSemaphorePermit;
 
-/// Fewest characters.
+/// Minimum length, characters.
 pub const LEAST: usize = 12;
-/// Argon2 takes any length; nobody types more.
+/// Maximum length, bytes: Argon2 accepts any length, but nobody types more.
 pub const MOST_BYTES: usize = 1024;
 /// Minimum number of characters left after all easily guessed parts are removed.
 const LEAST_LEFT: usize = 6;
 /// Minimum length of a word that counts as easily guessed.
 const LEAST_WORD: usize = 4;
 
-/// Refuses a password that is short or easily guessed; `about` is what is known of
-/// whose it is: e-mail, name, company.
+/// Refuses a password that is short or easily guessed. `about` is known of the user: e-mail,
+/// name, company.
 ///
 /// # Errors
-/// Naming `field`, with what is wrong.
+/// [`Error::Invalid`] with `field`.
 pub fn check(field: &'static str, password: &str, about: &[&str]) -> Result<()> {
     let wrong = |detail: String| Err(Error::Invalid { field, detail });
     if password.chars().count() < LEAST {
@@ -41,8 +41,8 @@ pub fn check(field: &'static str, password: &str, about: &[&str]) -> Result<()> 
     Ok(())
 }
 
-/// The characters that a guesser who knows common words, rows of letters and these
-/// names has still to find.
+/// Returns the number of characters that remain for an attacker who knows common words, rows of
+/// letters and these names.
 fn left_over(password: &str, about: &[&str]) -> usize {
     let mut rest = password.to_lowercase();
     let about: Vec<String> = about.iter().map(|text| text.to_lowercase()).collect();
@@ -69,7 +69,7 @@ fn left_over(password: &str, about: &[&str]) -> usize {
     letters.len() - rows
 }
 
-/// A place among those that are hashing: each takes 19 MB and a core.
+/// Acquires a permit for hashing: each hash takes 19 MB and a core.
 ///
 /// # Errors
 /// When the server is stopping.
@@ -78,8 +78,8 @@ pub async fn place(app: &App) -> Result<OwnedSemaphorePermit> {
     Ok(place.map_err(anyhow::Error::from)?)
 }
 
-/// Checks a password. The permit moves into the task, so that it stays taken for as long as
-/// the hashing lasts, even if nobody waits for the answer any more.
+/// Checks a password. The permit moves into the task, so that it is held while the hashing
+/// lasts, even if nobody waits for the result any more.
 ///
 /// # Errors
 /// When the server is stopping.
@@ -95,7 +95,7 @@ pub async fn matches(
     Ok(matches.await?)
 }
 
-/// A password's hash, as it is stored.
+/// Returns the hash of a password, as it is stored.
 ///
 /// # Errors
 /// When there is too little memory.

@@ -1,9 +1,9 @@
-//! A second factor for those who want one, or whose operator wants it: codes from an
-//! authenticator app (RFC 6238), and recovery codes for when the telephone is gone.
+//! Second factor: codes from an authenticator app (RFC 6238), and recovery codes for a lost
+//! phone. Users may set one up, and an operator may require it.
 //!
-//! Invariants: a code works once; recovery codes are stored as hashes and each
-//! works once; a factor counts only after a first code has come, so that nobody locks
-//! themselves out; the password is asked for again before anything of it changes.
+//! Invariants: a code works once. Recovery codes are stored as hashes, and each works once. A
+//! factor is active only after a first code has confirmed it, so that nobody locks themselves
+//! out. Every change requires the password.
 
 mod store;
 pub(crate) mod totp;
@@ -16,10 +16,10 @@ use crate::error::Result;
 use crate::ids::UserId;
 use binnacle_compass::time::Timestamp;
 
-/// Checks a code of the user's, from the app or a recovery code, and marks it as used.
+/// Checks a user's code, from the app or a recovery code, and marks it as used.
 ///
 /// # Errors
-/// When the database does.
+/// When the database fails.
 pub async fn use_code(
     request: &RequestContext,
     user: UserId,
@@ -33,10 +33,10 @@ pub async fn use_code(
     Ok(used)
 }
 
-/// Takes a user's second factor away; false when there was none.
+/// Removes a user's second factor; false when there was none.
 ///
 /// # Errors
-/// When the database does.
+/// When the database fails.
 pub async fn remove(tx: &mut Tx, user: UserId) -> Result<bool> {
     Ok(store::remove(tx, user).await?)
 }

@@ -1,4 +1,4 @@
-//! Password check, and the opening of a session after it.
+//! Password checks, and the start of sessions.
 
 use super::throttle::Subjects;
 use super::user::User;
@@ -10,11 +10,11 @@ use crate::error::{Error, Result};
 use crate::{password, secret};
 use axum::http::HeaderMap;
 
-/// Opens a session by the word of a provider, or by a password; the header gives the browser
-/// its cookie.
+/// Opens a session after a check by a provider or by password. Returns the header that sets its
+/// cookie.
 ///
 /// # Errors
-/// When the database does.
+/// When the database fails.
 pub async fn open(
     app: &App,
     request: &RequestContext,
@@ -53,8 +53,8 @@ pub(crate) async fn check_password(
     let subjects = Subjects::person(email, from);
     throttle::check(&app.db, &subjects, now).await?;
     let place = password::place(app).await?;
-    // Others may have failed while this attempt waited. Each keeps its place until
-    // its failure is noted, so that guesses sent at once do not outrun the count.
+    // Others may have failed while this attempt waited. Each holds its permit until its failure
+    // is noted, so that simultaneous guesses cannot escape the count.
     throttle::check(&app.db, &subjects, now).await?;
     let found = store::find_by_email(&app.db, email).await?;
     let (user, stored) = found.map_or((None, None), |(user, hash)| (Some(user), Some(hash)));
@@ -67,11 +67,11 @@ pub(crate) async fn check_password(
     Err(Error::WrongPassword)
 }
 
-/// Asks for the password again before something that whoever finds a session open
-/// is not to do.
+/// Checks the password again before a change that nobody may make who merely finds an open
+/// session.
 ///
 /// # Errors
-/// When it is wrong, which counts like a failed sign-in.
+/// When the password is wrong, which counts as a failed sign-in.
 pub async fn prove(
     app: &App,
     request: &RequestContext,

@@ -1,9 +1,8 @@
-//! Signing in and out; one's sessions and password.
+//! Sessions, users and password checks.
 //!
-//! Invariants: a session's token is stored only as a hash; it ends when its time
-//! is over, when it was idle for long, when it is ended, and when the password changes
-//! under another session. What a failed sign-in answers, and how long that takes, does
-//! not tell whether there is such a user.
+//! Invariants: a session's token is stored only as a hash. A session ends when it expires, is
+//! idle for too long, or is ended, and when the password is changed in another session. Neither
+//! the response to a failed sign-in nor its duration reveals whether the user exists.
 
 pub mod cookie;
 mod credentials;

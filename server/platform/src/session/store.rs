@@ -30,7 +30,7 @@ struct Holder {
     last_seen_at: Time,
 }
 
-/// The user whose session this is, if it has not ended and was not idle for so long.
+/// Returns the user of a session that has neither expired nor been idle for `idle_s`.
 pub async fn find_user(
     db: &Db,
     token_hash: &[u8],
@@ -67,10 +67,10 @@ pub async fn find_user(
     Ok(Some((holder.user, holder.session_id)))
 }
 
-/// Checks whether a session that was valid still is.
+/// Checks whether a session is still valid.
 ///
 /// # Errors
-/// When the database does.
+/// When the database fails.
 pub async fn lasts(db: &Db, id: SessionId, now: Time) -> Result<bool> {
     let found = row!(
         db,
@@ -85,7 +85,7 @@ pub async fn lasts(db: &Db, id: SessionId, now: Time) -> Result<bool> {
     Ok(found.is_some())
 }
 
-/// A user's name.
+/// Returns the name of a user.
 ///
 /// # Errors
 /// When there is no such user.
@@ -114,7 +114,7 @@ pub(super) async fn find_by_email(db: &Db, email: &str) -> Result<Option<(User, 
     Ok(stored.map(|stored| (stored.user, stored.password_hash)))
 }
 
-/// A time that you are signed in for.
+/// Session of the signed-in user.
 #[derive(Serialize, ToSchema, sqlx::FromRow)]
 pub(crate) struct Session {
     /// The session's id.
@@ -128,25 +128,25 @@ pub(crate) struct Session {
     /// Network address of the sign-in; empty if unknown.
     #[schema(example = "198.51.100.7")]
     address: String,
-    /// The browser's own name for itself (`User-Agent`).
+    /// Name that the browser gives itself (`User-Agent`).
     user_agent: String,
-    /// By whose word it was opened; none if by your password.
+    /// Provider of the sign-in; none for a sign-in by password.
     #[schema(required, example = json!(null))]
     provider: Option<String>,
     /// True for the session of this request.
     pub(crate) current: bool,
 }
 
-/// A session to be opened.
+/// Session to be opened.
 pub(super) struct NewSession<'a> {
     pub(super) token: &'a str,
-    /// By whose word; none: by a password.
+    /// Provider of the sign-in; none for a sign-in by password.
     pub(super) provider: Option<&'a str>,
     pub(super) now: Time,
     pub(super) expires_at: Time,
 }
 
-/// Opens a session; clears away those that ended, and the e-mail's failures.
+/// Opens a session. Deletes expired sessions and the failed attempts of the e-mail address.
 pub(super) async fn open(
     request: &RequestContext,
     user: &User,
@@ -203,7 +203,7 @@ pub(crate) async fn list(
     )
 }
 
-/// Ends one of a user's sessions; false when it is none of theirs.
+/// Ends one of a user's sessions; false when the user has no such session.
 pub(crate) async fn end(request: &RequestContext, user: UserId, id: SessionId) -> Result<bool> {
     let mut tx = request.begin().await?;
     let ended = execute!(
@@ -216,7 +216,7 @@ pub(crate) async fn end(request: &RequestContext, user: UserId, id: SessionId) -
     Ok(ended > 0)
 }
 
-/// Ends all of a user's sessions but the one to be kept.
+/// Ends all sessions of a user except the one to be kept.
 pub async fn end_all(tx: &mut Tx, user: UserId, kept: Option<SessionId>) -> Result<()> {
     execute!(
         tx,
@@ -227,7 +227,7 @@ pub async fn end_all(tx: &mut Tx, user: UserId, kept: Option<SessionId>) -> Resu
     Ok(())
 }
 
-/// Puts another password in place.
+/// Replaces the password.
 pub async fn set_password(tx: &mut Tx, user: UserId, password_hash: &str) -> Result<()> {
     execute!(
         tx,
@@ -238,7 +238,7 @@ pub async fn set_password(tx: &mut Tx, user: UserId, password_hash: &str) -> Res
     Ok(())
 }
 
-/// Stores a new user of a tenant, or of none; the e-mail must be new.
+/// Stores a new user of a tenant, or of none. The e-mail address must be new.
 pub async fn create_user(
     tx: &mut Tx,
     tenant: Option<Tenant>,

@@ -9,7 +9,7 @@ use crate::app::App;
 use axum::extract::FromRef;
 use utoipa_axum::router::OpenApiRouter;
 
-/// The routes of this part.
+/// Routes of the signed-in user.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,

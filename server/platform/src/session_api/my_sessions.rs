@@ -1,4 +1,4 @@
-//! One's own sessions, and one's password.
+//! Sessions and password of the signed-in user.
 
 use crate::access::Caller;
 use crate::app::App;
@@ -27,27 +27,27 @@ where
         .routes(routes!(change_password))
 }
 
-/// A page of sessions.
+/// Page of sessions.
 #[derive(Serialize, ToSchema)]
 struct SessionList {
-    /// In the order in which they were opened.
+    /// Sessions in the order in which they were opened.
     items: Vec<Session>,
-    /// `after` of the next page.
+    /// Value of `after` for the next page.
     #[schema(required)]
     next: Option<String>,
 }
 
-/// Another password.
+/// Password change.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "current": "seven gulls over the quay", "new": "a lantern astern at midnight"
 }))]
 struct ChangedPassword {
-    /// The one you sign in with now.
+    /// Current password.
     #[schema(format = Password)]
     current: String,
-    /// At least 12 characters; neither common nor easily guessed of you.
+    /// New password: at least 12 characters, neither common nor easily guessed.
     #[schema(format = Password)]
     new: String,
 }
@@ -99,7 +99,7 @@ async fn end_other_sessions(request: RequestContext, caller: Caller) -> Result<S
 
 /// Change your password
 ///
-/// All your other sessions end. API tokens go on.
+/// All your other sessions end. API tokens stay valid.
 #[utoipa::path(put, path = "/me/password", tag = "session", request_body = ChangedPassword,
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 422, body = Problem), (status = 429, body = Problem)))]

@@ -33,30 +33,30 @@ where
         .routes(routes!(renew_recovery_codes))
 }
 
-/// The password once more.
+/// Confirmation by password.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = PasswordAgain, example = json!({ "password": "seven gulls over the quay" }))]
 struct Again {
-    /// The one you sign in with.
+    /// Password that you sign in with.
     #[schema(format = Password)]
     password: String,
 }
 
-/// The secret from which an authenticator app makes codes.
+/// Secret from which an authenticator app computes codes.
 #[derive(Serialize, ToSchema)]
 #[schema(as = SecondFactorSecret, example = json!({
     "secret": "GEZDGNBVGY3TQOJQGEZDGNBVGY3TQOJQ",
     "uri": "otpauth://totp/Binnacle:ada%40example%2Ecom?secret=GEZDGNBVGY3TQOJQGEZDGNBVGY3TQOJQ&issuer=Binnacle"
 }))]
 struct Begun {
-    /// To be typed into the app; base 32. Never shown again.
+    /// Secret to be typed into the app, base 32. Never shown again.
     secret: String,
     /// The secret as a URI, to be shown as a QR code or opened on the phone.
     uri: String,
 }
 
-/// A code from the app.
+/// Code from the app.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = SecondFactorCode, example = json!({ "code": "287082" }))]
@@ -65,17 +65,17 @@ struct Code {
     code: String,
 }
 
-/// Codes for when the telephone is gone.
+/// Recovery codes for a lost phone.
 #[derive(Serialize, ToSchema)]
 #[schema(example = json!({ "recovery_codes": ["7QWM-0V3N-KX2D-9RTA"] }))]
 struct RecoveryCodes {
-    /// Each signs in once in place of a code from the app. Never shown again.
+    /// Codes that each work once in place of a code from the app. Never shown again.
     recovery_codes: Vec<String>,
 }
 
 /// Begin to set up a second factor
 ///
-/// It is asked for from the moment it is confirmed with a first code.
+/// It becomes active when it is confirmed with a first code.
 #[utoipa::path(post, path = "/me/second-factor", tag = "session", request_body = Again,
     responses((status = 201, body = Begun), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem),
@@ -160,7 +160,7 @@ async fn remove_second_factor(
 
 /// Make new recovery codes
 ///
-/// Those there were work no more.
+/// The previous codes stop working.
 #[utoipa::path(post, path = "/me/second-factor/recovery-codes", tag = "session",
     request_body = Again,
     responses((status = 200, body = RecoveryCodes), (status = 401, body = Problem),

@@ -1,4 +1,4 @@
-//! Signing in and out.
+//! Sign-in by password, and sign-out.
 
 use crate::access::Caller;
 use crate::app::App;
@@ -26,25 +26,25 @@ where
         .routes(routes!(me))
 }
 
-/// A user's credentials.
+/// Credentials of a user.
 #[derive(Deserialize, ToSchema)]
 #[schema(example = json!({ "email": "captain@example.com", "password": "seven gulls over the quay" }))]
 struct SignIn {
-    /// Without regard to case.
+    /// E-mail address, case-insensitive.
     email: String,
-    /// As it was set.
+    /// Password.
     #[schema(format = Password)]
     password: String,
-    /// Of the authenticator app, or a recovery code; only for who has a second factor.
+    /// Code of the authenticator app, or a recovery code; only for users with a second factor.
     code: Option<String>,
 }
 
 /// Sign in
 ///
-/// Answers with a session cookie. Whoever has a second factor and sends no code is
-/// answered `second-factor-needed` when the password is right, and sends all three. After
-/// five wrong passwords or codes for an e-mail, each further attempt has to wait, longer
-/// every time; so it is after fifty from one address.
+/// The response sets a session cookie. A user with a second factor who sends no code gets
+/// `second-factor-needed` if the password is right, and repeats the request with the code.
+/// After five wrong passwords or codes for an e-mail address, each further attempt has to wait,
+/// longer every time. The same holds after fifty from one network address.
 #[utoipa::path(post, path = "/session", tag = "session", request_body = SignIn, security(()),
     responses((status = 200, body = User), (status = 401, body = Problem), (status = 429, body = Problem)))]
 async fn sign_in(
@@ -62,7 +62,7 @@ async fn sign_in(
 
 /// Sign out
 ///
-/// The session ends for good, whoever holds its cookie.
+/// The session ends permanently, whoever holds its cookie.
 #[utoipa::path(delete, path = "/session", tag = "session",
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem)))]
 async fn sign_out(
@@ -83,7 +83,7 @@ async fn me(caller: Caller) -> Json<User> {
     Json(caller.user)
 }
 
-/// The user, if everything is right.
+/// Returns the user if password and code are right.
 async fn judge(app: &App, request: &RequestContext, from: &Origin, given: SignIn) -> Result<User> {
     // PostgreSQL accepts no NUL in a text, and nobody has such an e-mail address.
     if given.email.chars().any(char::is_control) {

@@ -26,7 +26,7 @@ where
         .routes(routes!(delete_token))
 }
 
-/// A token to be made.
+/// Token to be created.
 #[derive(Deserialize, ToSchema)]
 struct NewToken {
     /// Purpose of the token.
@@ -38,22 +38,22 @@ struct NewToken {
     expires_at: Option<Time>,
 }
 
-/// A token just made.
+/// Newly created token.
 #[derive(Serialize, ToSchema)]
 struct MadeToken {
-    /// The token.
+    /// Token.
     #[serde(flatten)]
     about: Token,
-    /// The secret, to be sent as `Authorization: Bearer …`; never shown again.
+    /// Secret, to be sent as `Authorization: Bearer …`; never shown again.
     token: String,
 }
 
-/// A page of tokens.
+/// Page of tokens.
 #[derive(Serialize, ToSchema)]
 struct TokenList {
-    /// In the order in which they were made.
+    /// Tokens in the order in which they were created.
     items: Vec<Token>,
-    /// `after` of the next page.
+    /// Value of `after` for the next page.
     #[schema(required)]
     next: Option<String>,
 }
@@ -71,7 +71,7 @@ async fn list_tokens(
     Ok(Json(TokenList { items, next }))
 }
 
-/// Make an API token
+/// Create an API token
 #[utoipa::path(post, path = "/tokens", tag = "session", request_body = NewToken,
     responses((status = 201, body = MadeToken), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem)))]

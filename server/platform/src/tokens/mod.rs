@@ -1,7 +1,7 @@
-//! API tokens: for programs that act for a user.
+//! API tokens: credentials of programs that act for a user.
 //!
-//! Invariants: a token is shown once and stored as a hash; it may do no
-//! more than its user, and only read unless its scope is `write`.
+//! Invariants: a token is shown once and stored as a hash. It may do no more than its user, and
+//! may only read unless its scope is `write`.
 
 mod store;
 
@@ -28,7 +28,7 @@ pub enum Scope {
     Write,
 }
 
-/// A token, without its secret.
+/// Token, without its secret.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 pub struct Token {
     /// The token's id.

@@ -1,4 +1,4 @@
-//! Queues messages for the webhooks that want them.
+//! Messages for webhooks.
 
 use super::store;
 use crate::db::Tx;
@@ -7,7 +7,7 @@ use crate::outbox::{self, Message};
 use crate::tenants::Tenant;
 use crate::time::Time;
 
-/// Queues messages for those of a tenant's webhooks that want them.
+/// Queues messages for the webhooks of a tenant that subscribe to their kinds.
 pub async fn announce(tx: &mut Tx, tenant: Tenant, messages: &[Message], now: Time) -> Result<()> {
     if messages.is_empty() {
         return Ok(());

@@ -1,4 +1,4 @@
-//! One delivery over HTTP, signed.
+//! Signed delivery over HTTP.
 //!
 //! Invariants: a message goes only to an address that was checked, see [`crate::outbound`].
 //! Nothing of the response is read but its status.
@@ -13,7 +13,7 @@ use reqwest::Client;
 use sha2::Sha256;
 use std::fmt::Write;
 
-/// Carries time and signature.
+/// Header with time and signature.
 pub const SIGNATURE_HEADER: &str = "Binnacle-Signature";
 
 /// Sender of webhook messages.
@@ -24,16 +24,16 @@ pub struct Sender {
 }
 
 impl Sender {
-    /// Without any connection yet.
+    /// Creates a sender without any connection.
     ///
     /// # Errors
-    /// When this machine has no certificates to check others by.
+    /// When this machine has no root certificates.
     pub fn new(reach: Reach) -> anyhow::Result<Sender> {
         let client = client(reach)?;
         Ok(Sender { client, reach })
     }
 
-    /// Sends a body; answers with the status, whatever it is.
+    /// Sends a body and returns the status of the response.
     async fn send(
         &self,
         url: &str,
@@ -64,14 +64,14 @@ impl Carrier for Sender {
         let body = claimed.body.clone();
         Ok(match self.send(&url, &secret, seconds, body).await? {
             status @ 200..=299 => Tried::Taken(status),
-            // The receiver may still be repaired, so nothing is refused for good.
+            // The receiver may still be repaired, so no failure is permanent.
             status => Tried::Later(status, format!("responded with status {status}")),
         })
     }
 }
 
-/// `t=SECONDS,v1=HEX`: HMAC-SHA-256 with the secret over the seconds since 1970, a
-/// full stop and the body.
+/// Returns the signature `t=SECONDS,v1=HEX`: HMAC-SHA-256 with the secret over the seconds
+/// since 1970, a full stop and the body.
 fn signature(secret: &str, seconds: i64, body: &str) -> String {
     let mut mac =
         Hmac::<Sha256>::new_from_slice(secret.as_bytes()).expect("HMAC takes a key of any length");
