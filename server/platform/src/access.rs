@@ -54,7 +54,7 @@ pub struct Writer {
 
 /// Operator's admin, who may read what only admins may.
 #[derive(Clone, Copy, Debug)]
-pub struct Overseer {
+pub struct AdminReader {
     /// Operator that the admin belongs to.
     pub operator: OperatorId,
     /// Calling user.
@@ -64,7 +64,7 @@ pub struct Overseer {
 /// Operator's admin with a session, who may manage users and sign-in rules. A leaked token
 /// must not be able to create users or to take over an account.
 #[derive(Clone, Copy, Debug)]
-pub struct Custodian {
+pub struct AdminWriter {
     /// Operator that the admin belongs to.
     pub operator: OperatorId,
     /// Calling user.
@@ -141,11 +141,11 @@ impl Caller {
     ///
     /// # Errors
     /// When the database fails.
-    pub async fn still_vouched_for(&self, app: &App) -> Result<bool> {
+    pub async fn is_still_valid(&self, app: &App) -> Result<bool> {
         let now = app.clock.now().into();
         let found = match (self.session, self.token) {
-            (Some(session), _) => session::lasts(&app.db, session, now).await?,
-            (None, Some(token)) => tokens::lasts(&app.db, token, now).await?,
+            (Some(session), _) => session::is_valid(&app.db, session, now).await?,
+            (None, Some(token)) => tokens::is_valid(&app.db, token, now).await?,
             (None, None) => false,
         };
         Ok(found)
@@ -206,7 +206,7 @@ impl Auditor {
 
 impl Platform {
     /// Returns the owner of the admin's idempotency keys; refuses a read-only token.
-    pub fn who_may_write(&self) -> Result<Tenant> {
+    pub fn must_be_writer(&self) -> Result<Tenant> {
         if self.read_only {
             return Err(Error::Forbidden("this token may only read"));
         }
@@ -296,37 +296,37 @@ where
     }
 }
 
-impl<S> FromRequestParts<S> for Overseer
+impl<S> FromRequestParts<S> for AdminReader
 where
     App: FromRef<S>,
     S: Send + Sync,
 {
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Overseer> {
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<AdminReader> {
         let caller = Caller::from_request_parts(parts, state).await?;
         let operator = caller.operator()?;
         caller.must_be_admin()?;
-        Ok(Overseer {
+        Ok(AdminReader {
             operator,
             user: caller.user.user_id,
         })
     }
 }
 
-impl<S> FromRequestParts<S> for Custodian
+impl<S> FromRequestParts<S> for AdminWriter
 where
     App: FromRef<S>,
     S: Send + Sync,
 {
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Custodian> {
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<AdminWriter> {
         let caller = Caller::from_request_parts(parts, state).await?;
         let operator = caller.operator()?;
         caller.must_be_admin()?;
         caller.must_be_signed_in()?;
-        Ok(Custodian {
+        Ok(AdminWriter {
             operator,
             user: caller.user.user_id,
         })
@@ -359,7 +359,7 @@ where
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<PartyWriter> {
         let caller = Caller::from_request_parts(parts, state).await?;
         let tenant = caller.party()?;
-        if !caller.user.role.may_bring_orders_on() {
+        if !caller.user.role.may_act_on_orders() {
             return Err(Error::Forbidden(
                 "only an admin or an adjuster may change this",
             ));

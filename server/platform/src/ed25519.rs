@@ -95,11 +95,11 @@ mod tests {
         let signature = "92a009a9f0d4cab8720e820b5f642540a2b27b5416503f8fb3762223ebdb69da\
                          085ac1e43e15996e458f3613d0f11d8c387b2eaeb4302aeeb00d291612bb0c00";
         let signed =
-            |key: &VerifyingKey, text: &[u8]| must_be_signed(key, ("proof", signature), text, "it");
+            |key: &VerifyingKey, text: &[u8]| must_be_signed(key, "proof", signature, text, "it");
         assert!(signed(&one, &[0x72]).is_ok());
         assert!(signed(&one, &[0x73]).is_err());
         assert!(signed(&other, &[0x72]).is_err());
-        let short = must_be_signed(&one, ("proof", "00"), &[0x72], "it").unwrap_err();
+        let short = must_be_signed(&one, "proof", "00", &[0x72], "it").unwrap_err();
         assert!(short.to_string().contains("128"), "{short}");
     }
 }

@@ -107,7 +107,7 @@ impl Follower {
         loop {
             if let Some(event) = self.pending.pop_front() {
                 // A client that was signed out, or whose token was revoked, gets no more events.
-                if !self.caller.still_vouched_for(&self.app).await.ok()? {
+                if !self.caller.is_still_valid(&self.app).await.ok()? {
                     return None;
                 }
                 self.last = Some(event.id);

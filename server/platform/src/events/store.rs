@@ -14,7 +14,7 @@ const KEPT_FOR_S: f64 = 86_400.0;
 /// transaction may become visible late.
 const OVERLAP_S: f64 = 10.0;
 /// Maximum number of events sent after a pause; beyond that, a dashboard should reload its data.
-const MOST_MISSED: i64 = 1000;
+const MAX_MISSED: i64 = 1000;
 
 /// Stores an event, which is announced when the transaction commits.
 pub async fn insert(
@@ -100,7 +100,7 @@ pub(crate) async fn since(db: &Db, tenant: Tenant, last: EventId) -> Result<Vec<
         tenant.firm(),
         last,
         (OVERLAP_S * 1e6) as i64,
-        MOST_MISSED
+        MAX_MISSED
     )
 }
 
@@ -114,7 +114,7 @@ pub(crate) async fn all_since(db: &Db, from: Time) -> Result<Vec<Event>> {
          ORDER BY id
          LIMIT $2",
         Time(from.0.plus_seconds(-OVERLAP_S)),
-        MOST_MISSED
+        MAX_MISSED
     )
 }
 

@@ -33,8 +33,8 @@ impl<S: Send + Sync, T: DeserializeOwned + Default> FromRequest<S> for ValidOrNo
         if bytes.is_empty() {
             return Ok(ValidOrNone(T::default()));
         }
-        let again = Request::from_parts(parts, Body::from(bytes));
-        let Valid(value) = Valid::<Option<T>>::from_request(again, state).await?;
+        let request = Request::from_parts(parts, Body::from(bytes));
+        let Valid(value) = Valid::<Option<T>>::from_request(request, state).await?;
         Ok(ValidOrNone(value.unwrap_or_default()))
     }
 }

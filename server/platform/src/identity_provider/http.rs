@@ -13,7 +13,7 @@ use reqwest::{Client, Url};
 use std::pin::Pin;
 
 /// Longest accepted response, bytes: a hundred keys take a tenth of it.
-const MOST_BYTES: usize = 1 << 20;
+const MAX_BYTES: usize = 1 << 20;
 
 /// HTTP client for requests to the provider.
 #[derive(Clone)]
@@ -26,7 +26,7 @@ pub(crate) struct Http {
 /// Reason for a missing response.
 #[derive(Debug, thiserror::Error)]
 #[error("{0:#}")]
-pub(crate) struct NoAnswer(anyhow::Error);
+pub(crate) struct NoResponse(anyhow::Error);
 
 impl Http {
     /// Creates the client for the provider with this address.
@@ -47,7 +47,7 @@ impl Http {
         })
     }
 
-    async fn ask(&self, mut request: HttpRequest) -> anyhow::Result<HttpResponse> {
+    async fn send(&self, mut request: HttpRequest) -> anyhow::Result<HttpResponse> {
         let url = outbound::check_url(&request.uri().to_string(), self.reach)?;
         ensure!(
             !self.https_only || url.scheme() == "https",
@@ -58,15 +58,15 @@ impl Http {
         }
         let request = reqwest::Request::try_from(request)?;
         let sent = self.client.execute(request).await;
-        let mut answer = sent.map_err(reqwest::Error::without_url)?;
-        let mut response = axum::http::Response::builder().status(answer.status());
+        let mut received = sent.map_err(reqwest::Error::without_url)?;
+        let mut response = axum::http::Response::builder().status(received.status());
         if let Some(headers) = response.headers_mut() {
-            headers.clone_from(answer.headers());
+            headers.clone_from(received.headers());
         }
         let mut body = Vec::new();
-        while let Some(chunk) = answer.chunk().await? {
-            if body.len() + chunk.len() > MOST_BYTES {
-                bail!("the response is longer than {MOST_BYTES} bytes");
+        while let Some(chunk) = received.chunk().await? {
+            if body.len() + chunk.len() > MAX_BYTES {
+                bail!("the response is longer than {MAX_BYTES} bytes");
             }
             body.extend_from_slice(&chunk);
         }
@@ -75,10 +75,10 @@ impl Http {
 }
 
 impl<'c> AsyncHttpClient<'c> for Http {
-    type Error = NoAnswer;
-    type Future = Pin<Box<dyn Future<Output = Result<HttpResponse, NoAnswer>> + Send + 'c>>;
+    type Error = NoResponse;
+    type Future = Pin<Box<dyn Future<Output = Result<HttpResponse, NoResponse>> + Send + 'c>>;
 
     fn call(&'c self, request: HttpRequest) -> Self::Future {
-        Box::pin(async move { self.ask(request).await.map_err(NoAnswer) })
+        Box::pin(async move { self.send(request).await.map_err(NoResponse) })
     }
 }

@@ -22,7 +22,7 @@ const KEPT_S: f64 = 3600.0;
 /// Minimum wait before another request for unknown keys, seconds.
 const NEW_KEYS_AFTER_S: f64 = 60.0;
 /// Minimum wait after a failure, seconds.
-const TRIED_AGAIN_AFTER_S: f64 = 5.0;
+const RETRY_AFTER_S: f64 = 5.0;
 
 /// Cache of the last discovery, whether it succeeded or failed.
 #[derive(Default)]
@@ -77,7 +77,7 @@ impl Provider {
             let age = now.seconds_since(*at);
             match found {
                 Some(found) if age < age_s => return Ok(Arc::clone(found)),
-                None if age < TRIED_AGAIN_AFTER_S => return Err(Unreachable),
+                None if age < RETRY_AFTER_S => return Err(Unreachable),
                 _ => {}
             }
         }

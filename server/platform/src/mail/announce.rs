@@ -34,7 +34,7 @@ pub async fn announce(
     all: &[Announcement],
     now: Time,
 ) -> Result<()> {
-    for (recipient, least) in store::wishes(tx, operator).await? {
+    for (recipient, least) in store::list_recipients(tx, operator).await? {
         for announcement in all {
             let is_due = note(tx, recipient, least, announcement).await?;
             if is_due && !is_replaced(announcement, least, all) {

@@ -4,7 +4,7 @@
 //! without TLS is used only within the local network. No error contains the password.
 
 use crate::outbound::is_public;
-use crate::outbox::Tried;
+use crate::outbox::Attempt;
 use anyhow::{Context, Result, bail};
 use lettre::address::Envelope;
 use lettre::transport::smtp::authentication::{Credentials, Mechanism};
@@ -92,7 +92,7 @@ impl Relay {
     ///
     /// # Errors
     /// When the relay gave no response to the letter: the fault may be temporary.
-    pub(super) async fn hand_over(&self, envelope: &Envelope, letter: &[u8]) -> Result<Tried> {
+    pub(super) async fn hand_over(&self, envelope: &Envelope, letter: &[u8]) -> Result<Attempt> {
         let talk = async {
             let mut relay = self.connect().await?;
             let answer = relay.send(envelope, letter).await;
@@ -104,13 +104,13 @@ impl Relay {
             Ok(response) => {
                 // The relay has the letter, whatever happens from now on.
                 let _ = timeout(QUIT_PATIENCE, relay.quit()).await;
-                Ok(Tried::Taken(response.code().into()))
+                Ok(Attempt::Accepted(response.code().into()))
             }
             Err(error) => match error.status() {
                 Some(code) if error.is_permanent() => {
-                    Ok(Tried::Refused(code.into(), plain(&error)))
+                    Ok(Attempt::Refused(code.into(), plain(&error)))
                 }
-                Some(code) => Ok(Tried::Later(code.into(), plain(&error))),
+                Some(code) => Ok(Attempt::Deferred(code.into(), plain(&error))),
                 None => Err(error.into()),
             },
         }

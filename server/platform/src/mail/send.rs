@@ -7,7 +7,7 @@ use super::store;
 use crate::app::App;
 use crate::config;
 use crate::db::{self, Db};
-use crate::outbox::{Carrier, Channel, Claimed, Tried};
+use crate::outbox::{Attempt, Carrier, Channel, Claimed};
 use anyhow::{Context, Result};
 use lettre::address::Envelope;
 use lettre::message::header::{ContentType, HeaderName, HeaderValue};
@@ -149,7 +149,7 @@ fn with_files(text: String, files: Files) -> Result<MultiPart> {
 impl Carrier for Mailer {
     const CHANNEL: Channel = Channel::Mail;
 
-    async fn carry(&self, app: &App, claimed: &Claimed) -> Result<Tried> {
+    async fn carry(&self, app: &App, claimed: &Claimed) -> Result<Attempt> {
         let found = self.find_addressee(&app.db, claimed.receiver_id).await?;
         let to = found.context("the recipient was removed or disabled")?;
         let letter: Letter = serde_json::from_str(&claimed.body)?;

@@ -128,7 +128,7 @@ pub(super) async fn find_person(db: &Db, id: Uuid) -> DbResult<Option<String>> {
 }
 
 /// Returns the recipients of an operator's alerts, each with its minimum severity.
-pub(super) async fn wishes(
+pub(super) async fn list_recipients(
     tx: &mut Tx,
     operator: OperatorId,
 ) -> DbResult<Vec<(RecipientId, Severity)>> {

@@ -71,14 +71,14 @@ impl Attempt {
 
     /// Returns the header that sets the cookie. The redirect comes from another site, so the
     /// cookie must be sent when a link is followed.
-    pub(super) fn kept(&self, config: &Serve) -> HeaderValue {
+    pub(super) fn set_cookie(&self, config: &Serve) -> HeaderValue {
         let lasts_s = LASTS_S.unsigned_abs();
         cookie::header(config, name(config), &self.cookie, lasts_s, SameSite::Lax)
     }
 }
 
 /// Returns the header that deletes the cookie.
-pub(super) fn forgotten(config: &Serve) -> HeaderValue {
+pub(super) fn clear_cookie(config: &Serve) -> HeaderValue {
     cookie::header(config, name(config), "", 0, SameSite::Lax)
 }
 

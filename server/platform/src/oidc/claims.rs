@@ -119,8 +119,8 @@ pub(super) async fn redeem(
         .exchange_code(AuthorizationCode::new(code))
         .map_err(|_| Refusal::Untrusted)?
         .set_pkce_verifier(PkceCodeVerifier::new(attempt.verifier()));
-    let answer: Result<CoreTokenResponse, _> = request.request_async(&found.http).await;
-    let tokens = answer.map_err(|error| match error {
+    let response: Result<CoreTokenResponse, _> = request.request_async(&found.http).await;
+    let tokens = response.map_err(|error| match error {
         RequestTokenError::Request(cause) => {
             let error = cause.to_string();
             warn!(
@@ -129,9 +129,9 @@ pub(super) async fn redeem(
             );
             Refusal::Unreachable
         }
-        RequestTokenError::ServerResponse(said) => {
+        RequestTokenError::ServerResponse(error_response) => {
             // Only the kind of the provider's error is logged: its text may contain the request.
-            info!(error = %said.error().as_ref(), "the sign-in provider refused a code");
+            info!(error = %error_response.error().as_ref(), "the sign-in provider refused a code");
             Refusal::Untrusted
         }
         RequestTokenError::Parse(..) | RequestTokenError::Other(_) => {
@@ -173,8 +173,8 @@ pub(super) async fn verified_email(app: &App, identity: &Identity) -> Result<Str
     let Ok(request) = client.user_info(identity.access.clone(), Some(subject)) else {
         return Err(Refusal::Unverified);
     };
-    let answer: Result<CoreUserInfoClaims, _> = request.request_async(&found.http).await;
-    let claims = answer.map_err(|_| Refusal::Unverified)?;
+    let response: Result<CoreUserInfoClaims, _> = request.request_async(&found.http).await;
+    let claims = response.map_err(|_| Refusal::Unverified)?;
     let is_verified = claims.email_verified() == Some(true);
     let email = claims.email().filter(|_| is_verified);
     email

@@ -51,7 +51,7 @@ struct Named {
 /// Query parameters of the provider's redirect.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-struct Answer {
+struct CallbackQuery {
     /// Code that stands for the signed-in person.
     code: Option<String>,
     /// State value, as it was sent.
@@ -95,8 +95,8 @@ async fn go_to_provider(State(app): State<App>) -> Result<(StatusCode, HeaderMap
         Err(refusal) => Err(refusal),
     };
     Ok(match address {
-        Ok(address) => redirect(address.as_str(), [attempt.kept(&app.config)]),
-        Err(refusal) => sent_away(&app, &refusal),
+        Ok(address) => redirect(address.as_str(), [attempt.set_cookie(&app.config)]),
+        Err(refusal) => redirect_to_sign_in_page(&app, &refusal),
     })
 }
 
@@ -104,7 +104,7 @@ async fn go_to_provider(State(app): State<App>) -> Result<(StatusCode, HeaderMap
 ///
 /// A signed-in browser is redirected to the dashboard. Otherwise it is redirected to the
 /// sign-in page, which asks for the second factor or shows the reason.
-#[utoipa::path(get, path = "/session/provider/callback", tag = "session", params(Answer),
+#[utoipa::path(get, path = "/session/provider/callback", tag = "session", params(CallbackQuery),
     security(()),
     responses((status = 303, description = "To the dashboard, or to the sign-in page"),
               (status = 409, description = "No provider is set up", body = Problem)))]
@@ -113,17 +113,17 @@ async fn return_from_provider(
     request: RequestContext,
     from: Origin,
     headers: HeaderMap,
-    Params(answer): Params<Answer>,
+    Params(query): Params<CallbackQuery>,
 ) -> Result<(StatusCode, HeaderMap)> {
     // A return from the provider signs somebody in.
     request.log_as_change();
     must_be_set_up(&app)?;
     Ok(
-        match conclude(&app, &request, &from, &headers, answer).await {
+        match conclude(&app, &request, &from, &headers, query).await {
             Ok(done) => done,
             Err(refusal) => {
                 info!(why = refusal.word(), "nobody was signed in by the provider");
-                sent_away(&app, &refusal)
+                redirect_to_sign_in_page(&app, &refusal)
             }
         },
     )
@@ -152,7 +152,7 @@ async fn send_code(
     request.record_actor(&user);
     let subjects = Subjects::person(&user.email, &from);
     // As with passwords, simultaneous guesses must not escape the count.
-    let _place = password::place(&app).await?;
+    let _permit = password::acquire_permit(&app).await?;
     throttle::check(&app.db, &subjects, now).await?;
     if !second_factor::use_code(&request, user.user_id, &sent.code, now).await? {
         throttle::note_failure(&request, &subjects, now).await?;
@@ -162,7 +162,7 @@ async fn send_code(
         return Err(OVER);
     }
     let mut cookies = open(&app, &request, &from, &user).await?;
-    cookies.append(SET_COOKIE, attempt::forgotten(&app.config));
+    cookies.append(SET_COOKIE, attempt::clear_cookie(&app.config));
     Ok((cookies, Json(user)))
 }
 
@@ -175,18 +175,18 @@ fn must_be_set_up(app: &App) -> Result<()> {
     ))
 }
 
-type Done = std::result::Result<(StatusCode, HeaderMap), Refusal>;
+type Concluded = std::result::Result<(StatusCode, HeaderMap), Refusal>;
 
 async fn conclude(
     app: &App,
     request: &RequestContext,
     from: &Origin,
     headers: &HeaderMap,
-    answer: Answer,
-) -> Done {
+    query: CallbackQuery,
+) -> Concluded {
     let attempt = Attempt::of(app, headers).ok_or(Refusal::Over)?;
     // Hashes are compared, so that the timing does not reveal how much is right.
-    let state = answer.state.unwrap_or_default();
+    let state = query.state.unwrap_or_default();
     if secret::hash(&state) != attempt.state_hash() {
         return Err(Refusal::Over);
     }
@@ -197,10 +197,10 @@ async fn conclude(
     if !store::note_return(request, &attempt.state_hash(), now.into(), until.into()).await? {
         return Err(Refusal::Over);
     }
-    let (None, Some(code)) = (answer.error, answer.code) else {
+    let (None, Some(code)) = (query.error, query.code) else {
         return Err(Refusal::Cancelled);
     };
-    let user = match who(app, request, &attempt, code).await {
+    let user = match identify(app, request, &attempt, code).await {
         Ok(user) => user,
         Err(refusal) => {
             if refusal.counts() {
@@ -214,13 +214,13 @@ async fn conclude(
         return Ok(redirect(&format!("{SIGN_IN_PAGE}code"), []));
     }
     let mut cookies = open(app, request, from, &user).await?;
-    cookies.append(SET_COOKIE, attempt::forgotten(&app.config));
+    cookies.append(SET_COOKIE, attempt::clear_cookie(&app.config));
     cookies.insert(LOCATION, HeaderValue::from_static("/"));
     Ok((StatusCode::SEE_OTHER, cookies))
 }
 
 /// Returns the user whom the provider identifies.
-async fn who(
+async fn identify(
     app: &App,
     request: &RequestContext,
     attempt: &Attempt,
@@ -236,14 +236,14 @@ async fn who(
     let user = match store::find_known(&app.db, issuer, subject).await? {
         Some(Known::User(user)) => *user,
         Some(Known::Disabled) => return Err(Refusal::Unknown),
-        None => return bound(app, request, issuer, &identity).await,
+        None => return bind_first_sign_in(app, request, issuer, &identity).await,
     };
     request.record_actor(&user);
     Ok(user)
 }
 
 /// Binds a person who signs in for the first time to the user with the same e-mail address.
-async fn bound(
+async fn bind_first_sign_in(
     app: &App,
     request: &RequestContext,
     issuer: &str,
@@ -284,9 +284,9 @@ async fn open(
 }
 
 /// Redirects to the sign-in page, which shows the reason.
-fn sent_away(app: &App, refusal: &Refusal) -> (StatusCode, HeaderMap) {
+fn redirect_to_sign_in_page(app: &App, refusal: &Refusal) -> (StatusCode, HeaderMap) {
     let page = format!("{SIGN_IN_PAGE}{}", refusal.word());
-    redirect(&page, [attempt::forgotten(&app.config)])
+    redirect(&page, [attempt::clear_cookie(&app.config)])
 }
 
 fn redirect<const N: usize>(to: &str, cookies: [HeaderValue; N]) -> (StatusCode, HeaderMap) {

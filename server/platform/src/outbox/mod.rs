@@ -19,4 +19,4 @@ pub use delivery::{Channel, Delivery, DeliveryList, Filter, Kind, Message};
 pub use history::{list, queue_one, send_again};
 pub use queue::{Claimed, queue};
 pub use receivers::{delete, enable, ensure, forget, insert};
-pub use worker::{Carrier, Sent, Tried, run, step};
+pub use worker::{Attempt, Carrier, Sent, run, step};

@@ -17,7 +17,7 @@ use uuid::Uuid;
 const LEASE_S: f64 = 90.0;
 /// Maximum number of a tenant's receivers served at once, so that slow receivers do not delay
 /// those of other tenants.
-const MOST_OF_TENANT: i64 = 2;
+const MAX_OF_TENANT: i64 = 2;
 const FIRST_RETRY_S: f64 = 10.0;
 const LONGEST_RETRY_S: f64 = 3600.0;
 /// Time after which an undelivered message is given up, seconds.
@@ -132,7 +132,7 @@ pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option
          LIMIT 1",
         now,
         channel,
-        MOST_OF_TENANT
+        MAX_OF_TENANT
     )?;
     if due.is_empty() {
         return Ok(None);
@@ -145,7 +145,7 @@ pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option
                 .bind(now)
                 .bind(lease_until)
                 .bind(channel)
-                .bind(MOST_OF_TENANT)
+                .bind(MAX_OF_TENANT)
                 .fetch_optional(&mut **tx)
                 .await?
         }
@@ -155,7 +155,7 @@ pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option
                 .bind(now)
                 .bind(lease_until)
                 .bind(channel)
-                .bind(MOST_OF_TENANT)
+                .bind(MAX_OF_TENANT)
                 .fetch_optional(&mut **tx)
                 .await?
         }
@@ -183,7 +183,7 @@ pub(super) async fn succeed(db: &Db, claimed: &Claimed, status: u16, now: Time) 
 }
 
 /// Checks whether the retry period of a delivery is over.
-pub(super) fn is_tried_enough(claimed: &Claimed, now: Time) -> bool {
+pub(super) fn is_given_up(claimed: &Claimed, now: Time) -> bool {
     now.0.seconds_since(claimed.tries_since.0) >= GIVEN_UP_AFTER_S
 }
 

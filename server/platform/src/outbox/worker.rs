@@ -26,16 +26,16 @@ pub trait Carrier: Send + Sync {
         &self,
         app: &App,
         claimed: &Claimed,
-    ) -> impl Future<Output = anyhow::Result<Tried>> + Send;
+    ) -> impl Future<Output = anyhow::Result<Attempt>> + Send;
 }
 
 /// Response of a receiver to an attempt, with its status.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Tried {
+pub enum Attempt {
     /// The message was accepted.
-    Taken(u16),
+    Accepted(u16),
     /// The message was refused temporarily, with the reason.
-    Later(u16, String),
+    Deferred(u16, String),
     /// The message was refused permanently, with the reason.
     Refused(u16, String),
 }
@@ -78,8 +78,8 @@ pub async fn step<C: Carrier>(app: &App, carrier: &C) -> anyhow::Result<Option<S
     let Some(claimed) = queue::claim(&app.db, C::CHANNEL, now).await? else {
         return Ok(None);
     };
-    let tried = carrier.carry(app, &claimed).await;
-    let sent = note(app, &claimed, tried).await?;
+    let attempt = carrier.carry(app, &claimed).await;
+    let sent = note(app, &claimed, attempt).await?;
     let result = match sent {
         Sent::Delivered => "delivered",
         Sent::Failed => "failed",
@@ -91,21 +91,25 @@ pub async fn step<C: Carrier>(app: &App, carrier: &C) -> anyhow::Result<Option<S
     Ok(Some(sent))
 }
 
-async fn note(app: &App, claimed: &Claimed, tried: anyhow::Result<Tried>) -> anyhow::Result<Sent> {
+async fn note(
+    app: &App,
+    claimed: &Claimed,
+    attempt: anyhow::Result<Attempt>,
+) -> anyhow::Result<Sent> {
     let now = app.clock.now().into();
     let receiver = claimed.receiver_id;
-    let (status, problem, for_good) = match tried {
-        Ok(Tried::Taken(status)) => {
+    let (status, problem, for_good) = match attempt {
+        Ok(Attempt::Accepted(status)) => {
             queue::succeed(&app.db, claimed, status, now).await?;
             info!(%receiver, event = %claimed.id, "a message was delivered");
             return Ok(Sent::Delivered);
         }
-        Ok(Tried::Later(status, problem)) => (Some(status), problem, false),
-        Ok(Tried::Refused(status, problem)) => (Some(status), problem, true),
+        Ok(Attempt::Deferred(status, problem)) => (Some(status), problem, false),
+        Ok(Attempt::Refused(status, problem)) => (Some(status), problem, true),
         Err(error) => (None, format!("{error:#}"), false),
     };
     let problem: String = problem.chars().take(MAX_ERROR).collect();
-    let dead = for_good || queue::is_tried_enough(claimed, now);
+    let dead = for_good || queue::is_given_up(claimed, now);
     queue::fail(&app.db, claimed, status, &problem, dead, now).await?;
     if dead {
         warn!(%receiver, event = %claimed.id, problem, "a message was given up");

@@ -46,24 +46,24 @@ pub(crate) async fn check_password(
     email: &str,
     password: String,
 ) -> Result<User> {
-    if password.len() > password::MOST_BYTES {
+    if password.len() > password::MAX_BYTES {
         return Err(Error::WrongPassword);
     }
     let now = app.clock.now();
     let subjects = Subjects::person(email, from);
     throttle::check(&app.db, &subjects, now).await?;
-    let place = password::place(app).await?;
+    let permit = password::acquire_permit(app).await?;
     // Others may have failed while this attempt waited. Each holds its permit until its failure
     // is noted, so that simultaneous guesses cannot escape the count.
     throttle::check(&app.db, &subjects, now).await?;
     let found = store::find_by_email(&app.db, email).await?;
     let (user, stored) = found.map_or((None, None), |(user, hash)| (Some(user), Some(hash)));
-    let (matches, place) = password::matches(place, password, stored).await?;
+    let (matches, permit) = password::matches(permit, password, stored).await?;
     if let Some(user) = user.filter(|_| matches) {
         return Ok(user);
     }
     throttle::note_failure(request, &subjects, now).await?;
-    drop(place);
+    drop(permit);
     Err(Error::WrongPassword)
 }
 
@@ -72,7 +72,7 @@ pub(crate) async fn check_password(
 ///
 /// # Errors
 /// When the password is wrong, which counts as a failed sign-in.
-pub async fn prove(
+pub async fn confirm_password(
     app: &App,
     request: &RequestContext,
     user: &User,

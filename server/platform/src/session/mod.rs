@@ -11,8 +11,8 @@ pub mod throttle;
 mod user;
 
 pub(crate) use credentials::check_password;
-pub use credentials::{open, prove};
+pub use credentials::{confirm_password, open};
 pub(crate) use store::{Session, end, list};
-pub use store::{create_user, end_all, find_user, lasts, name_of, set_password};
+pub use store::{create_user, end_all, find_user, is_valid, name_of, set_password};
 pub(crate) use user::user_sql;
 pub use user::{Role, User, normal_email};

@@ -71,7 +71,7 @@ pub async fn find_user(
 ///
 /// # Errors
 /// When the database fails.
-pub async fn lasts(db: &Db, id: SessionId, now: Time) -> Result<bool> {
+pub async fn is_valid(db: &Db, id: SessionId, now: Time) -> Result<bool> {
     let found = row!(
         db,
         (SessionId,),

@@ -95,7 +95,7 @@ impl Role {
     }
 
     /// Checks whether the role allows actions on work orders.
-    pub fn may_bring_orders_on(self) -> bool {
+    pub fn may_act_on_orders(self) -> bool {
         matches!(self, Role::Admin | Role::Adjuster)
     }
 }

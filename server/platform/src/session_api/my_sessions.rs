@@ -116,14 +116,14 @@ async fn change_password(
     let about = [&user.email, &user.name, company.unwrap_or(&user.name)];
     password::check("new", &change.new, &about.map(String::as_str))?;
     let is_the_same = change.new == change.current;
-    session::prove(&app, &request, user, &from, change.current).await?;
+    session::confirm_password(&app, &request, user, &from, change.current).await?;
     if is_the_same {
         return Err(Error::Invalid {
             field: "new",
             detail: "is your current password".to_owned(),
         });
     }
-    let hash = password::hash(password::place(&app).await?, change.new).await?;
+    let hash = password::hash(password::acquire_permit(&app).await?, change.new).await?;
     let mut tx = request.begin().await?;
     session::set_password(&mut tx, user.user_id, &hash).await?;
     session::end_all(&mut tx, user.user_id, Some(session)).await?;

@@ -89,7 +89,7 @@ async fn begin_second_factor(
     Valid(again): Valid<Again>,
 ) -> Result<(StatusCode, Json<Begun>)> {
     caller.must_be_signed_in()?;
-    session::prove(&app, &request, &caller.user, &from, again.password).await?;
+    session::confirm_password(&app, &request, &caller.user, &from, again.password).await?;
     let user = &caller.user;
     let secret: [u8; totp::SECRET_BYTES] = secret::random();
     let now = app.clock.now().into();
@@ -149,7 +149,7 @@ async fn remove_second_factor(
     Valid(again): Valid<Again>,
 ) -> Result<StatusCode> {
     caller.must_be_signed_in()?;
-    session::prove(&app, &request, &caller.user, &from, again.password).await?;
+    session::confirm_password(&app, &request, &caller.user, &from, again.password).await?;
     let mut tx = request.begin().await?;
     if !second_factor::remove(&mut tx, caller.user.user_id).await? {
         return Err(Error::NotFound("second factor"));
@@ -174,7 +174,7 @@ async fn renew_recovery_codes(
     Valid(again): Valid<Again>,
 ) -> Result<Json<RecoveryCodes>> {
     caller.must_be_signed_in()?;
-    session::prove(&app, &request, &caller.user, &from, again.password).await?;
+    session::confirm_password(&app, &request, &caller.user, &from, again.password).await?;
     if !caller.user.second_factor {
         return Err(Error::NotFound("second factor"));
     }

@@ -53,7 +53,7 @@ async fn sign_in(
     from: Origin,
     Valid(given): Valid<SignIn>,
 ) -> Result<(HeaderMap, Json<User>)> {
-    let user = judge(&app, &request, &from, given).await?;
+    let user = authenticate(&app, &request, &from, given).await?;
     Ok((
         session::open(&app, &request, &from, &user, None).await?,
         Json(user),
@@ -84,7 +84,12 @@ async fn me(caller: Caller) -> Json<User> {
 }
 
 /// Returns the user if password and code are right.
-async fn judge(app: &App, request: &RequestContext, from: &Origin, given: SignIn) -> Result<User> {
+async fn authenticate(
+    app: &App,
+    request: &RequestContext,
+    from: &Origin,
+    given: SignIn,
+) -> Result<User> {
     // PostgreSQL accepts no NUL in a text, and nobody has such an e-mail address.
     if given.email.chars().any(char::is_control) {
         return Err(Error::WrongPassword);

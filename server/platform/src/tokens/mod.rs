@@ -6,7 +6,7 @@
 mod store;
 
 pub(crate) use store::{delete, find_holder, insert, list};
-pub use store::{delete_all, lasts};
+pub use store::{delete_all, is_valid};
 
 use crate::ids::TokenId;
 use crate::time::Time;

@@ -54,7 +54,7 @@ pub(crate) async fn find_holder(db: &Db, token: &str, now: Time) -> Result<Optio
 ///
 /// # Errors
 /// When the database fails.
-pub async fn lasts(db: &Db, id: TokenId, now: Time) -> Result<bool> {
+pub async fn is_valid(db: &Db, id: TokenId, now: Time) -> Result<bool> {
     let found = row!(
         db,
         (TokenId,),

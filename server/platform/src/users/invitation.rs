@@ -3,7 +3,7 @@
 //! Invariants: a code is stored as a hash and works once, for a week. Its user sets a password
 //! and gets no other access; the sign-in follows with the password.
 
-use crate::access::Custodian;
+use crate::access::AdminWriter;
 use crate::app::App;
 use crate::audit::{Actor, RequestContext};
 use crate::db::{Db, DomainEvent, Tx, execute, row};
@@ -98,13 +98,13 @@ struct Invited {
 async fn invite_again(
     State(app): State<App>,
     request: RequestContext,
-    custodian: Custodian,
+    admin: AdminWriter,
     Id(id): Id<UserId>,
 ) -> Result<(StatusCode, Json<Invitation>)> {
     let mut tx = request.begin().await?;
-    let user = super::store::find(&mut tx, custodian.operator, id).await?;
+    let user = super::store::find(&mut tx, admin.operator, id).await?;
     let user = user.ok_or(Error::NotFound("user"))?;
-    if user.state == super::Standing::Disabled {
+    if user.state == super::AccountState::Disabled {
         return Err(Error::WrongState("the user is disabled".to_owned()));
     }
     let invitation = make(&mut tx, &app, id).await?;
@@ -137,7 +137,7 @@ async fn accept_invitation(
     let company = invited.company.as_deref().unwrap_or_default();
     let about = [invited.email.as_str(), &invited.name, company];
     password::check("password", &acceptance.password, &about)?;
-    let hash = password::hash(password::place(&app).await?, acceptance.password).await?;
+    let hash = password::hash(password::acquire_permit(&app).await?, acceptance.password).await?;
     let mut tx = request.begin().await?;
     let used = execute!(
         &mut tx,

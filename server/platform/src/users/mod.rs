@@ -9,7 +9,7 @@ mod store;
 
 pub use invitation::{AccessEnded, reset};
 
-use crate::access::{Custodian, Overseer};
+use crate::access::{AdminReader, AdminWriter};
 use crate::app::App;
 use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
@@ -56,7 +56,7 @@ struct Person {
     /// Role of the user.
     role: Role,
     /// State of the account.
-    state: Standing,
+    state: AccountState,
     /// True if the user has a second factor.
     second_factor: bool,
     /// Creation time of the user.
@@ -74,7 +74,7 @@ struct Person {
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = UserState)]
-enum Standing {
+enum AccountState {
     /// The user has not set a password yet.
     Invited,
     /// The user can sign in.
@@ -165,11 +165,11 @@ struct SignInRules {
     responses((status = 200, body = UserList), (status = 401, body = Problem)))]
 async fn list_users(
     State(app): State<App>,
-    overseer: Overseer,
+    admin: AdminReader,
     page: Page,
 ) -> Result<Json<UserList>> {
     let after = page.after_id()?;
-    let found = store::list(&app.db, overseer.operator, after, page.fetch()).await?;
+    let found = store::list(&app.db, admin.operator, after, page.fetch()).await?;
     let Listed { items, next } = page.cut(found, |user| user.id.to_string());
     Ok(Json(UserList { items, next }))
 }
@@ -184,28 +184,21 @@ async fn list_users(
 async fn invite_user(
     State(app): State<App>,
     request: RequestContext,
-    custodian: Custodian,
+    admin: AdminWriter,
     Valid(new): Valid<NewUser>,
 ) -> Result<(StatusCode, Json<InvitedUser>)> {
     let email = checked_email(&new.email)?;
     let name = text("name", &new.name)?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
-    let created = store::insert(
-        &mut tx,
-        custodian.operator,
-        &email,
-        &name,
-        new.role.into(),
-        now,
-    );
+    let created = store::insert(&mut tx, admin.operator, &email, &name, new.role.into(), now);
     let id = created.await?.ok_or_else(|| {
         Error::WrongState(format!(
             "{email} already has an account, with this company or another"
         ))
     })?;
     let invitation = invitation::make(&mut tx, &app, id).await?;
-    let user = store::find(&mut tx, custodian.operator, id).await?;
+    let user = store::find(&mut tx, admin.operator, id).await?;
     tx.commit().await?;
     let user = user.ok_or(Error::NotFound("user"))?;
     Ok((StatusCode::CREATED, Json(InvitedUser { user, invitation })))
@@ -222,7 +215,7 @@ async fn invite_user(
 async fn change_user(
     State(app): State<App>,
     request: RequestContext,
-    custodian: Custodian,
+    admin: AdminWriter,
     Id(id): Id<UserId>,
     Valid(change): Valid<ChangedUser>,
 ) -> Result<Json<Person>> {
@@ -234,8 +227,8 @@ async fn change_user(
     let role = change.role.map(Role::from);
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
-    store::lock(&mut tx, custodian.operator).await?;
-    let before = store::find(&mut tx, custodian.operator, id).await?;
+    store::lock(&mut tx, admin.operator).await?;
+    let before = store::find(&mut tx, admin.operator, id).await?;
     before.ok_or(Error::NotFound("user"))?;
     store::update(&mut tx, id, name.as_deref(), role).await?;
     match change.disabled {
@@ -243,8 +236,8 @@ async fn change_user(
         Some(false) => store::enable(&mut tx, id).await?,
         None => {}
     }
-    store::must_have_admin(&mut tx, custodian.operator).await?;
-    let after = store::find(&mut tx, custodian.operator, id).await?;
+    store::must_have_admin(&mut tx, admin.operator).await?;
+    let after = store::find(&mut tx, admin.operator, id).await?;
     tx.commit().await?;
     Ok(Json(after.ok_or(Error::NotFound("user"))?))
 }
@@ -257,15 +250,15 @@ async fn change_user(
               (status = 409, description = "The user is the last admin", body = Problem)))]
 async fn remove_user(
     request: RequestContext,
-    custodian: Custodian,
+    admin: AdminWriter,
     Id(id): Id<UserId>,
 ) -> Result<StatusCode> {
     let mut tx = request.begin().await?;
-    store::lock(&mut tx, custodian.operator).await?;
-    if !store::delete(&mut tx, custodian.operator, id).await? {
+    store::lock(&mut tx, admin.operator).await?;
+    if !store::delete(&mut tx, admin.operator, id).await? {
         return Err(Error::NotFound("user"));
     }
-    store::must_have_admin(&mut tx, custodian.operator).await?;
+    store::must_have_admin(&mut tx, admin.operator).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
 }
@@ -278,11 +271,11 @@ async fn remove_user(
     responses((status = 204), (status = 401, body = Problem), (status = 404, body = Problem)))]
 async fn reset_second_factor(
     request: RequestContext,
-    custodian: Custodian,
+    admin: AdminWriter,
     Id(id): Id<UserId>,
 ) -> Result<StatusCode> {
     let mut tx = request.begin().await?;
-    let user = store::find(&mut tx, custodian.operator, id).await?;
+    let user = store::find(&mut tx, admin.operator, id).await?;
     user.ok_or(Error::NotFound("user"))?;
     second_factor::remove(&mut tx, id).await?;
     tx.commit().await?;
@@ -294,9 +287,9 @@ async fn reset_second_factor(
     responses((status = 200, body = SignInRules), (status = 401, body = Problem)))]
 async fn find_sign_in_rules(
     State(app): State<App>,
-    overseer: Overseer,
+    admin: AdminReader,
 ) -> Result<Json<SignInRules>> {
-    Ok(Json(store::rules(&app.db, overseer.operator).await?))
+    Ok(Json(store::rules(&app.db, admin.operator).await?))
 }
 
 /// Change your operator's sign-in rules
@@ -307,16 +300,16 @@ async fn find_sign_in_rules(
               (status = 409, description = "You have no second factor yourself", body = Problem)))]
 async fn change_sign_in_rules(
     request: RequestContext,
-    custodian: Custodian,
+    admin: AdminWriter,
     Valid(rules): Valid<SignInRules>,
 ) -> Result<Json<SignInRules>> {
     let mut tx = request.begin().await?;
-    let asking = store::find(&mut tx, custodian.operator, custodian.user).await?;
+    let asking = store::find(&mut tx, admin.operator, admin.user).await?;
     if rules.second_factor_required && !asking.is_some_and(|user| user.second_factor) {
         let first = "set up a second factor of your own first";
         return Err(Error::WrongState(first.to_owned()));
     }
-    store::set_rules(&mut tx, custodian.operator, rules).await?;
+    store::set_rules(&mut tx, admin.operator, rules).await?;
     tx.commit().await?;
     Ok(Json(rules))
 }

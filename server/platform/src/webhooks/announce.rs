@@ -12,7 +12,7 @@ pub async fn announce(tx: &mut Tx, tenant: Tenant, messages: &[Message], now: Ti
     if messages.is_empty() {
         return Ok(());
     }
-    for (webhook, kinds) in store::wishes(tx, tenant).await? {
+    for (webhook, kinds) in store::list_subscriptions(tx, tenant).await? {
         for message in messages
             .iter()
             .filter(|message| kinds.0.contains(&message.kind))

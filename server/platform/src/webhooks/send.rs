@@ -6,7 +6,7 @@
 use super::store;
 use crate::app::App;
 use crate::outbound::{Reach, check_url, client};
-use crate::outbox::{Carrier, Channel, Claimed, Tried};
+use crate::outbox::{Attempt, Carrier, Channel, Claimed};
 use anyhow::Context;
 use hmac::{Hmac, KeyInit, Mac};
 use reqwest::Client;
@@ -49,23 +49,23 @@ impl Sender {
             .header(SIGNATURE_HEADER, signature(secret, seconds, &body))
             .body(body);
         // An address may contain a secret of the receiver, so no error message quotes it.
-        let answer = request.send().await.map_err(reqwest::Error::without_url)?;
-        Ok(answer.status().as_u16())
+        let response = request.send().await.map_err(reqwest::Error::without_url)?;
+        Ok(response.status().as_u16())
     }
 }
 
 impl Carrier for Sender {
     const CHANNEL: Channel = Channel::Webhook;
 
-    async fn carry(&self, app: &App, claimed: &Claimed) -> anyhow::Result<Tried> {
+    async fn carry(&self, app: &App, claimed: &Claimed) -> anyhow::Result<Attempt> {
         let found = store::address(&app.db, claimed.receiver_id).await?;
         let (url, secret) = found.context("the webhook was removed")?;
         let seconds = app.clock.now().micros() / 1_000_000;
         let body = claimed.body.clone();
         Ok(match self.send(&url, &secret, seconds, body).await? {
-            status @ 200..=299 => Tried::Taken(status),
+            status @ 200..=299 => Attempt::Accepted(status),
             // The receiver may still be repaired, so no failure is permanent.
-            status => Tried::Later(status, format!("responded with status {status}")),
+            status => Attempt::Deferred(status, format!("responded with status {status}")),
         })
     }
 }

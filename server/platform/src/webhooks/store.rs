@@ -137,7 +137,7 @@ pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, Strin
 }
 
 /// Returns a tenant's enabled webhooks, each with the kinds of messages it receives.
-pub(super) async fn wishes(tx: &mut Tx, tenant: Tenant) -> Result<Vec<(Uuid, Kinds)>> {
+pub(super) async fn list_subscriptions(tx: &mut Tx, tenant: Tenant) -> Result<Vec<(Uuid, Kinds)>> {
     let found = rows!(
         in tx,
         (Uuid, String),
