@@ -28,7 +28,7 @@ const PRUNE_EVERY: Duration = Duration::from_hours(1);
 pub enum Worked {
     /// A vessel was analysed, with new results for this number of compasses.
     Analysed(VesselId, usize),
-    /// A job failed, and was put back or given up.
+    /// A job failed, and was requeued or given up.
     Failed(VesselId),
 }
 

@@ -1,5 +1,4 @@
-//! `admin create …`: what must exist before anyone can sign in; `admin reset-user` and
-//! `admin revoke-agent`.
+//! `admin`: creates operators, firms and users, resets users and revokes agents.
 
 use super::operate::block_on;
 use super::{BadInput, answer};
@@ -204,7 +203,7 @@ async fn create_user(
     Ok(Ok(made))
 }
 
-/// The password from standard input, or a new one.
+/// Returns the password from standard input, or generates one.
 fn read_password(person: &Person, about: &[&str]) -> Result<Result<Option<String>, String>> {
     if !person.password_stdin {
         return Ok(Ok(Some(secret::new_password())));

@@ -1,4 +1,4 @@
-//! `deviation`: what a model says about every heading at one place.
+//! `deviation`: prints the deviation that a model predicts on every heading at one place.
 
 use super::{BadInput, answer, input, json, table};
 use crate::cli::Deviation;

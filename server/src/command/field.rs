@@ -1,4 +1,4 @@
-//! `field`: the earth's field at a place and time.
+//! `field`: prints the earth's field at a place and time.
 
 use super::{BadInput, answer, input, json};
 use crate::cli::{Field, FieldModel};

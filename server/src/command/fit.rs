@@ -1,4 +1,4 @@
-//! `fit`: a model from a file.
+//! `fit`: fits a model to a file.
 
 use super::{BadInput, answer, input, json, table};
 use crate::cli::{Fit, Method};
@@ -19,7 +19,7 @@ use std::process::ExitCode;
 struct Found {
     model: Model,
     check: ReferenceCheck,
-    /// Only of the product's own fit.
+    /// Advice on headings; only with the product's estimator.
     sail_next: Option<SailNext>,
 }
 
@@ -77,7 +77,7 @@ fn what_to_sail(
         model: &fit.model,
         noise: &fit.noise,
         reference_constant_sd_deg: check.constant_sd_deg,
-        // Beside a satellite compass a gyro has little weight.
+        // Beside a satellite compass the gyro has little weight.
         gyro_share: if last.gyro_share < 1.0 { 0.0 } else { 1.0 },
         here: EarthField {
             h_nt: last.h_nt,
@@ -152,7 +152,7 @@ fn dropped(check: &ReferenceCheck) -> String {
     line("gyro", check.gyro_dropped) + &line("satellite compass", check.satellite_dropped)
 }
 
-/// The band, here and elsewhere, and what would narrow it.
+/// Describes the confidence band, here and elsewhere, and the headings that would narrow it.
 fn band(next: &SailNext) -> String {
     let here = &next.here;
     let mut lines = vec![format!(
@@ -220,7 +220,7 @@ fn worth(quality: &Quality) -> String {
     })
 }
 
-/// Fields to the nanotesla, angles to the hundredth, ratios to the fourth place.
+/// Formats a value: fields to a nanotesla, angles to 0.01°, ratios to 0.0001.
 fn number(name: &str, value: f64) -> String {
     if name.ends_with("_nt") {
         format!("{value:.0}")

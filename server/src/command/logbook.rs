@@ -1,9 +1,7 @@
-//! Reading a logbook from a file: a list of entries, or a page of them as the API
-//! answers it.
+//! Logbook files: a list of entries, or a page of them as the API returns it.
 //!
-//! What always holds: what is wrong is said with file, line and field, and a field
-//! that is not known is wrong, for it may be a known one misspelt. An entry that was
-//! withdrawn does not count.
+//! Invariants: an error names the file, the line and the field. An unknown field is an error,
+//! because it may be a misspelt one. Withdrawn entries are ignored.
 
 use super::BadInput;
 use super::input::{json_complaint, text_file};
@@ -14,7 +12,7 @@ use serde_json::value::RawValue;
 use std::fmt::Display;
 use std::path::Path;
 
-/// As `GET /vessels/{id}/logbook` answers.
+/// Response of `GET /vessels/{id}/logbook`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a list of logbook entries")]
 struct Page<'a> {
@@ -23,7 +21,7 @@ struct Page<'a> {
     next: Option<String>,
 }
 
-/// An entry, each field of which is read when it is known which one it is.
+/// Entry whose fields are still raw JSON, so that an error can name the field.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a logbook entry")]
 struct Written<'a> {
@@ -38,7 +36,7 @@ struct Written<'a> {
     #[serde(borrow)]
     note: Option<&'a RawValue>,
     withdrawn_at: Option<IgnoredAny>,
-    // What an entry of the API says beside it, and no analysis asks for.
+    // Fields of an entry in the API that no analysis needs.
     #[serde(rename = "id")]
     _id: Option<IgnoredAny>,
     #[serde(rename = "compass_id")]
@@ -65,13 +63,13 @@ struct Written<'a> {
     _withdrawal_reason: Option<IgnoredAny>,
 }
 
-/// A file, and its text.
+/// File and its text.
 struct Book<'a> {
     path: &'a Path,
     text: &'a str,
 }
 
-/// The entries of a file that count.
+/// Returns the entries of a file, without the withdrawn ones.
 pub(super) fn read(path: &Path) -> Result<Vec<LogbookEntry>, BadInput> {
     let text = text_file(path)?;
     let book = Book { path, text: &text };
@@ -135,7 +133,7 @@ impl Book<'_> {
         BadInput(format!("{}:{line}: {what}", self.path.display()))
     }
 
-    /// A value is a part of the text.
+    /// The value is a slice of the text.
     fn lines_before(&self, value: &RawValue) -> usize {
         let begin = value.get().as_ptr() as usize - self.text.as_ptr() as usize;
         self.text[..begin].matches('\n').count()

@@ -34,13 +34,13 @@ const GRACE: Duration = Duration::from_secs(20);
 
 /// Number of webhooks sent concurrently, so that a slow receiver delays only its own.
 const WEBHOOK_SENDERS: usize = 4;
-/// All letters go through one relay.
+/// Number of letters sent concurrently: all go through one relay.
 const MAIL_SENDERS: usize = 2;
 
-/// Serves until told to stop.
+/// Serves until the process is stopped.
 ///
 /// # Errors
-/// When the database or the address cannot be had.
+/// When the database cannot be opened or the address is not available.
 pub fn serve(config: Serve) -> Result<ExitCode> {
     start_log(config.log_json);
     block_on(async {
@@ -63,8 +63,7 @@ pub fn serve(config: Serve) -> Result<ExitCode> {
     })
 }
 
-/// Serves an application on a listener until it is told to stop, by a signal or
-/// by its own `stopping`.
+/// Serves an application on a listener until a signal or its own `stopping` stops it.
 ///
 /// # Errors
 /// When the listener fails.
@@ -102,7 +101,7 @@ where
                     parts.spawn(outbox::run(app.clone(), sender.clone()));
                 }
             }
-            // A machine without certificates can still take batches.
+            // A machine without root certificates can still receive batches.
             Err(error) => error!(error = format!("{error:#}"), "webhooks cannot be sent"),
         }
         if let Some(mailer) = mailer {
@@ -145,7 +144,7 @@ async fn stop_on_signal(app: App) {
     app.stopping.cancel();
 }
 
-/// Tells whoever started us where to reach us.
+/// Prints the address for whoever started the server.
 fn announce(scheme: &str, listener: &impl Listener<Addr = SocketAddr>) -> Result<()> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "listening on {scheme}://{}", listener.local_addr()?)?;
@@ -176,7 +175,7 @@ pub fn openapi() -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Runs something asynchronous to its end.
+/// Runs a future to completion.
 pub(super) fn block_on<T>(work: impl Future<Output = Result<T>>) -> Result<T> {
     tokio::runtime::Builder::new_multi_thread()
         .enable_all()

@@ -1,8 +1,8 @@
-//! `plan`: from a model, a binnacle and a reading at the berth, how to set the
-//! correctors; and from another reading after the steps, whether they stand so.
+//! `plan`: plans the setting of the correctors from a model, a binnacle and a reading at the
+//! berth. With another reading after the steps it checks the result.
 //!
-//! A refusal is an answer: it says why, and what would cure it. A mistake in a file that
-//! alone explains a berth that does not fit is bad input.
+//! A refusal is a regular result, with its reason and its cures. If a mistake in a file alone
+//! explains readings that do not fit, the file is invalid input.
 
 use super::{BadInput, answer, input, json};
 use crate::cli::Plan;
@@ -25,7 +25,7 @@ struct Planned {
     outcome: Outcome,
 }
 
-/// Prints the best few plans, or why there is none, as JSON.
+/// Prints the best plans, or the reasons why there is none, as JSON.
 ///
 /// # Errors
 /// When standard output cannot be written.

@@ -1,4 +1,4 @@
-//! `schedule`: from ships, needs, port calls and firms, who does what where and when.
+//! `schedule`: plans adjustments from vessels, needs, port calls and firms.
 
 use super::{BadInput, answer, input, json};
 use crate::cli::Schedule;

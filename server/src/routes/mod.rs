@@ -1,4 +1,4 @@
-//! Every route, the document that describes them, and what surrounds them.
+//! All routes, their OpenAPI document and their middleware.
 
 mod docs;
 mod document;
@@ -32,7 +32,7 @@ use utoipa::OpenApi;
 use utoipa::openapi::security::{ApiKey, ApiKeyValue, Http, HttpAuthScheme, SecurityScheme};
 use utoipa_axum::router::OpenApiRouter;
 
-/// A batch over a satellite link may take its time; nothing takes longer.
+/// Time limit of a request: a batch over a satellite link may take long.
 const PATIENCE: Duration = Duration::from_mins(2);
 
 #[derive(OpenApi)]
@@ -121,13 +121,13 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(event_stream::router())
 }
 
-/// The OpenAPI document.
+/// Returns the OpenAPI document.
 pub fn openapi() -> utoipa::openapi::OpenApi {
     let (_, _, document) = parts();
     document
 }
 
-/// The routes of agents, those of people, and the document of both.
+/// Returns the routes of agents, those of people, and the document of both.
 fn parts() -> (
     Router<ServerState>,
     Router<ServerState>,
@@ -175,7 +175,7 @@ fn span(request: &Request) -> Span {
     debug_span!("http", method = %request.method(), route)
 }
 
-/// The whole server.
+/// Returns the router of the whole server.
 pub fn router(state: ServerState) -> Router {
     let app = state.app.clone();
     let (agents, mut people, _) = parts();
