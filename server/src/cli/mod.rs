@@ -107,8 +107,8 @@ pub enum GyroSpeedError {
 }
 
 impl From<GyroSpeedError> for binnacle_compass::settings::GyroSpeedError {
-    fn from(said: GyroSpeedError) -> Self {
-        match said {
+    fn from(choice: GyroSpeedError) -> Self {
+        match choice {
             GyroSpeedError::Corrected => Self::Corrected,
             GyroSpeedError::Uncorrected => Self::Uncorrected,
         }

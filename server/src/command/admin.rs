@@ -1,7 +1,7 @@
 //! `admin`: creates operators, firms and users, resets users and revokes agents.
 
 use super::operate::block_on;
-use super::{BadInput, answer};
+use super::{BadInput, print_result};
 use crate::cli::{Admin, AdminCommand, Create, FleetRole, Person};
 use crate::subscriptions::subscribers;
 use anyhow::Result;
@@ -34,7 +34,7 @@ pub fn admin(arguments: Admin) -> Result<ExitCode> {
         let request = RequestContext::of_command(&db, name, now);
         let made = run(&request, arguments.command, now).await;
         db.close().await;
-        answer(made?.map(|made| made.to_string()).map_err(BadInput))
+        print_result(made?.map(|made| made.to_string()).map_err(BadInput))
     })
 }
 

@@ -1,6 +1,6 @@
 //! `analyse`: analyses a file as the server analyses a vessel's uploads.
 
-use super::{BadInput, answer, input, json, logbook};
+use super::{BadInput, input, json, logbook, print_result};
 use crate::cli::Analyse;
 use binnacle_analysis::advice::sail_next;
 use binnacle_analysis::analyse::analyse as run;
@@ -27,14 +27,14 @@ struct Analysed {
 /// # Errors
 /// When standard output cannot be written.
 pub fn analyse(arguments: &Analyse) -> anyhow::Result<ExitCode> {
-    answer(find(arguments))
+    print_result(find(arguments))
 }
 
 fn find(arguments: &Analyse) -> Result<String, BadInput> {
     let table = input::Table::read(&arguments.file)?;
     // Input that `fit` refuses is refused here too.
     readings_from_csv(&table.rows, arguments.gyro_speed_error.into())
-        .map_err(|error| table.complaint(&error))?;
+        .map_err(|error| table.error_at(&error))?;
     let mut samples = Vec::with_capacity(table.rows.len());
     for (index, row) in table.rows.iter().enumerate() {
         samples.push(sample(row).map_err(|(column, what)| table.invalid(index, column, what))?);

@@ -1,7 +1,7 @@
 //! `bursts`: imports batches that were sent as short-burst messages, one per file.
 
 use super::operate::block_on;
-use super::{BadInput, answer, json};
+use super::{BadInput, json, print_result};
 use crate::cli::Bursts;
 use crate::subscriptions::subscribers;
 use anyhow::{Context, Result};
@@ -26,7 +26,7 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
         let name = path.display().to_string();
         match read(path) {
             Ok(bytes) => messages.push((name, bytes)),
-            Err(error) => return answer(Err(BadInput(format!("{name}: {error}")))),
+            Err(error) => return print_result(Err(BadInput(format!("{name}: {error}")))),
         }
     }
     let vessel = VesselId(arguments.vessel);
@@ -44,7 +44,7 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
             write_whole(&path, bytes).with_context(|| path.display().to_string())?;
         }
     }
-    let printed = answer(Ok(json(&imported)))?;
+    let printed = print_result(Ok(json(&imported)))?;
     for refused in &imported.refused {
         let (message, problem) = (&refused.message, &refused.problem);
         writeln!(io::stderr().lock(), "binnacle-server: {message}: {problem}")?;

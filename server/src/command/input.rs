@@ -53,15 +53,15 @@ pub(super) fn json_file<T: DeserializeOwned>(path: &Path) -> Result<T, BadInput>
             "." => String::new(),
             field => format!("{field}: "),
         };
-        json_complaint(path, 0, &field, error.inner())
+        json_error(path, 0, &field, error.inner())
     })?;
     json.end()
-        .map_err(|error| json_complaint(path, 0, "", &error))?;
+        .map_err(|error| json_error(path, 0, "", &error))?;
     Ok(read)
 }
 
 /// Describes an error in JSON that begins some lines down a file, with its field.
-pub(super) fn json_complaint(
+pub(super) fn json_error(
     path: &Path,
     lines_before: usize,
     field: &str,
@@ -144,7 +144,7 @@ impl Table {
     }
 
     /// Returns an error about a row, with its line.
-    pub(super) fn complaint(&self, error: &CsvRowError) -> BadInput {
+    pub(super) fn error_at(&self, error: &CsvRowError) -> BadInput {
         let line = error
             .row()
             .and_then(|row| self.lines.get(row))
@@ -154,7 +154,7 @@ impl Table {
 
     /// Returns an error about a column of one row.
     pub(super) fn invalid(&self, row: usize, column: &'static str, message: String) -> BadInput {
-        self.complaint(&CsvRowError::Invalid {
+        self.error_at(&CsvRowError::Invalid {
             row,
             column,
             message,

@@ -4,7 +4,7 @@
 //! because it may be a misspelt one. Withdrawn entries are ignored.
 
 use super::BadInput;
-use super::input::{json_complaint, text_file};
+use super::input::{json_error, text_file};
 use binnacle_compass::logbook::LogbookEntry;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
@@ -82,7 +82,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<LogbookEntry>, BadInput> {
 
 impl Book<'_> {
     fn items(&self) -> Result<Vec<&RawValue>, BadInput> {
-        let failed = |error: serde_json::Error| json_complaint(self.path, 0, "", &error);
+        let failed = |error: serde_json::Error| json_error(self.path, 0, "", &error);
         if !self.text.trim_start().starts_with('{') {
             return serde_json::from_str(self.text).map_err(failed);
         }
@@ -96,9 +96,9 @@ impl Book<'_> {
 
     fn entry(&self, item: &RawValue) -> Result<Option<LogbookEntry>, BadInput> {
         let written: Written<'_> = serde_json::from_str(item.get())
-            .map_err(|error| json_complaint(self.path, self.lines_before(item), "", &error))?;
+            .map_err(|error| json_error(self.path, self.lines_before(item), "", &error))?;
         let required = |name, value: Option<_>| {
-            value.ok_or_else(|| self.complaint(item, format!("{name}: is missing")))
+            value.ok_or_else(|| self.error_at(item, format!("{name}: is missing")))
         };
         let entry = LogbookEntry {
             kind: self.field("kind", required("kind", written.kind)?)?,
@@ -109,7 +109,7 @@ impl Book<'_> {
         };
         let entry = entry
             .checked()
-            .map_err(|error| self.complaint(item, error))?;
+            .map_err(|error| self.error_at(item, error))?;
         Ok(written.withdrawn_at.is_none().then_some(entry))
     }
 
@@ -124,11 +124,11 @@ impl Book<'_> {
     fn field<T: DeserializeOwned>(&self, name: &str, value: &RawValue) -> Result<T, BadInput> {
         serde_json::from_str(value.get()).map_err(|error| {
             let field = format!("{name}: ");
-            json_complaint(self.path, self.lines_before(value), &field, &error)
+            json_error(self.path, self.lines_before(value), &field, &error)
         })
     }
 
-    fn complaint(&self, item: &RawValue, what: impl Display) -> BadInput {
+    fn error_at(&self, item: &RawValue, what: impl Display) -> BadInput {
         let line = self.lines_before(item) + 1;
         BadInput(format!("{}:{line}: {what}", self.path.display()))
     }

@@ -47,8 +47,8 @@ impl BadInput {
 }
 
 /// Prints a command's result, or the problem of its input.
-fn answer(answer: Result<String, BadInput>) -> anyhow::Result<ExitCode> {
-    match answer {
+fn print_result(result: Result<String, BadInput>) -> anyhow::Result<ExitCode> {
+    match result {
         Ok(text) => {
             print(text.trim_end())?;
             Ok(ExitCode::SUCCESS)

@@ -4,7 +4,7 @@
 //! A refusal is a regular result, with its reason and its cures. If a mistake in a file alone
 //! explains readings that do not fit, the file is invalid input.
 
-use super::{BadInput, answer, input, json};
+use super::{BadInput, input, json, print_result};
 use crate::cli::Plan;
 use binnacle_adjustment::adjust::{
     AdjustError, Adjustment, BerthForm, CompletedStep, Outcome, PostCheckForm,
@@ -30,7 +30,7 @@ struct Planned {
 /// # Errors
 /// When standard output cannot be written.
 pub fn plan(arguments: &Plan) -> anyhow::Result<ExitCode> {
-    answer(find(arguments))
+    print_result(find(arguments))
 }
 
 fn find(arguments: &Plan) -> Result<String, BadInput> {

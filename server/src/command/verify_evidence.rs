@@ -1,6 +1,6 @@
 //! `verify-evidence`: checks an archive of evidence by its own content alone.
 
-use super::{BadInput, answer};
+use super::{BadInput, print_result};
 use crate::cli::VerifyEvidence;
 use binnacle_orders::evidence::{self, Found};
 use std::fs;
@@ -15,7 +15,7 @@ pub fn verify_evidence(arguments: &VerifyEvidence) -> anyhow::Result<ExitCode> {
     let checked = fs::read(&arguments.file)
         .map_err(|error| BadInput(format!("{file}: {error}")))
         .and_then(|bytes| describe(&file.to_string(), &evidence::verify(&bytes)));
-    answer(checked)
+    print_result(checked)
 }
 
 fn describe(file: &str, found: &Found) -> Result<String, BadInput> {
