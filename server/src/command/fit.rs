@@ -136,9 +136,15 @@ fn describe(found: &FitResult) -> String {
         ),
         model.samples_used,
         model.samples_rejected
-    ) + &model.quality.as_ref().map_or_else(String::new, describe_quality)
+    ) + &model
+        .quality
+        .as_ref()
+        .map_or_else(String::new, describe_quality)
         + &describe_rejected(&found.check)
-        + &found.sail_next.as_ref().map_or_else(String::new, describe_band)
+        + &found
+            .sail_next
+            .as_ref()
+            .map_or_else(String::new, describe_band)
 }
 
 /// Names the reference that was rejected.
