@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 use tracing::{error, info, warn};
 
 /// Interval between checks for jobs without a notification.
-const LOOK_EVERY: Duration = Duration::from_secs(1);
+const POLL_EVERY: Duration = Duration::from_secs(1);
 /// Interval between renewals of a job's lease: three per lease.
 const RENEW_EVERY: Duration = Duration::from_secs(20);
 /// Interval between removals of old events.
@@ -53,7 +53,7 @@ pub async fn run(app: App) {
         tokio::select! {
             () = app.stopping.cancelled() => {}
             () = app.work.notified() => {}
-            () = tokio::time::sleep(LOOK_EVERY) => {}
+            () = tokio::time::sleep(POLL_EVERY) => {}
         }
     }
 }

@@ -6,11 +6,11 @@
 //! - Grey is the only colour, so that a printed sheet shows the same as the screen.
 //! - The same sheet gives the same bytes: nothing here reads the time.
 
+pub mod angles;
 mod font;
 pub mod paper;
 mod pdf;
 mod svg;
-pub mod words;
 
 pub use font::{Face, cut, width, wrap};
 pub use pdf::{About, pdf};
@@ -96,7 +96,7 @@ impl Sheet {
     }
 
     /// Returns a blank sheet in landscape format.
-    pub fn a4_lying() -> Sheet {
+    pub fn a4_landscape() -> Sheet {
         Sheet {
             width: A4.1,
             height: A4.0,

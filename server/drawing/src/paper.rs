@@ -59,7 +59,7 @@ impl Paper {
     }
 
     /// Breaks the page unless the given number of lines fits on it.
-    pub fn room_for(&mut self, lines: usize) {
+    pub fn keep_together(&mut self, lines: usize) {
         if self.y + LINE * lines as f32 > BOTTOM {
             self.turn();
         }
@@ -80,7 +80,7 @@ impl Paper {
 
     /// Writes a heading.
     pub fn title(&mut self, text: &str) {
-        self.room_for(4);
+        self.keep_together(4);
         self.y += 7.0;
         self.put(LEFT, Style::bold(10.5), text);
         self.y += LINE + 2.0;
@@ -89,7 +89,7 @@ impl Paper {
     /// Writes a text from `x` on, wrapped over as many lines as it needs.
     pub fn lines(&mut self, x: f32, style: Style, text: &str) {
         for line in wrap(text, style.face, style.size, RIGHT - x) {
-            self.room_for(1);
+            self.keep_together(1);
             self.put(x, style, &line);
             self.y += LINE;
         }
@@ -104,7 +104,7 @@ impl Paper {
             .iter()
             .enumerate()
         {
-            self.room_for(1);
+            self.keep_together(1);
             if index == 0 {
                 self.put(LEFT, Style::plain(SIZE).grey(90), label);
             }
@@ -115,7 +115,7 @@ impl Paper {
 
     /// Writes a table row whose cells end at the given x coordinates.
     pub fn row(&mut self, style: Style, first: &str, cells: &[(f32, String)]) {
-        self.room_for(1);
+        self.keep_together(1);
         self.put(LEFT, style, first);
         for (x, cell) in cells {
             self.put(*x, style.end(), cell);

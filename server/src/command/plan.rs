@@ -100,7 +100,7 @@ fn read_after(
         now: Some(&plan.setting),
         ..adjustment.clone()
     };
-    let again = check_second_reading(
+    let checked = check_second_reading(
         &adjustment,
         &done,
         &there.reading,
@@ -108,7 +108,7 @@ fn read_after(
         after.reading.compass_deg,
         after.reading.unit,
     );
-    Ok(json(&again.map_err(|error| of(file, error))?))
+    Ok(json(&checked.map_err(|error| of(file, error))?))
 }
 
 fn of(file: &Path, what: impl std::fmt::Display) -> BadInput {

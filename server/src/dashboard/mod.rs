@@ -29,7 +29,7 @@ pub async fn serve(State(app): State<App>, request: Request) -> Response {
     let (mut parts, _) = request.into_parts();
     let path = parts.uri.path().trim_start_matches('/').to_owned();
     if let Some(file) = Files::get(&path) {
-        return answer(&path, &file, &parts.headers);
+        return respond(&path, &file, &parts.headers);
     }
     // A missing asset is an error, not a page: a stale page must not run it.
     if path.starts_with("assets/") {
@@ -37,21 +37,21 @@ pub async fn serve(State(app): State<App>, request: Request) -> Response {
     }
     match Files::get("index.html") {
         Some(page) => {
-            let mut answer = answer("index.html", &page, &parts.headers);
+            let mut response = respond("index.html", &page, &parts.headers);
             let vessel = preload::vessel(&path);
             let reads =
                 vessel.is_some() && Reader::from_request_parts(&mut parts, &app).await.is_ok();
             preload::add(
                 preload::links(vessel, reads, &parts.headers),
-                answer.headers_mut(),
+                response.headers_mut(),
             );
-            answer
+            response
         }
         None => Html(NOT_BUILT).into_response(),
     }
 }
 
-fn answer(path: &str, file: &EmbeddedFile, request: &HeaderMap) -> Response {
+fn respond(path: &str, file: &EmbeddedFile, request: &HeaderMap) -> Response {
     let hash = file.metadata.sha256_hash();
     let [a, b, c, d, e, f, g, h, ..] = hash;
     let tag = format!("\"{:016x}\"", u64::from_be_bytes([a, b, c, d, e, f, g, h]));

@@ -41,9 +41,9 @@ pub(super) fn complete(document: &mut OpenApi) {
         ];
         for operation in all.into_iter().flatten() {
             add_problems(operation);
-            for (status, answer) in &mut operation.responses.responses {
-                if let RefOr::T(answer) = answer {
-                    describe(status, answer);
+            for (status, response) in &mut operation.responses.responses {
+                if let RefOr::T(response) = response {
+                    describe(status, response);
                 }
             }
         }
@@ -52,8 +52,12 @@ pub(super) fn complete(document: &mut OpenApi) {
 
 /// Lists the problems for which a request may be refused before the operation runs.
 fn add_problems(operation: &mut Operation) {
-    let answers = &mut operation.responses.responses;
-    let Some(problem) = answers.get("401").or_else(|| answers.get("404")).cloned() else {
+    let responses = &mut operation.responses.responses;
+    let Some(problem) = responses
+        .get("401")
+        .or_else(|| responses.get("404"))
+        .cloned()
+    else {
         return;
     };
     let parameters = || {
@@ -76,25 +80,25 @@ fn add_problems(operation: &mut Operation) {
         ("415", json),
         ("422", json),
     ] {
-        if may_be && !answers.contains_key(status) {
-            answers.insert(status.to_owned(), problem.clone());
+        if may_be && !responses.contains_key(status) {
+            responses.insert(status.to_owned(), problem.clone());
         }
     }
 }
 
-fn describe(status: &str, answer: &mut Response) {
+fn describe(status: &str, response: &mut Response) {
     let Ok(status) = status.parse::<StatusCode>() else {
         return;
     };
-    if answer.description.is_empty() {
+    if response.description.is_empty() {
         status
             .canonical_reason()
             .unwrap_or("Answer")
-            .clone_into(&mut answer.description);
+            .clone_into(&mut response.description);
     }
     if status.is_client_error() {
-        let content = mem::take(&mut answer.content).into_values();
-        answer.content = content
+        let content = mem::take(&mut response.content).into_values();
+        response.content = content
             .map(|content| ("application/problem+json".to_owned(), content))
             .collect();
     }

@@ -2,7 +2,7 @@
 
 use axum::http::StatusCode;
 use binnacle_compass::deviation::DeviationError;
-use binnacle_drawing::words::heading;
+use binnacle_drawing::angles::heading;
 use binnacle_platform::error::{DomainProblem, Error};
 use binnacle_platform::time::Time;
 use serde_json::Map;

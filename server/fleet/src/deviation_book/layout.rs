@@ -4,7 +4,7 @@ use super::entry::{Entry, Reference};
 use super::select::Occasion;
 use crate::card;
 use binnacle_compass::result::SampleReason;
-use binnacle_drawing::words::{east_west, heading_to_a_tenth, latitude, longitude, signed};
+use binnacle_drawing::angles::{east_west, heading_to_a_tenth, latitude, longitude, signed};
 use binnacle_drawing::{A4, Face, MARGIN, Pen, Sheet, Style, cut, wrap};
 use binnacle_platform::time::Time;
 
@@ -49,7 +49,7 @@ pub(super) fn sheets(book: &Book, entries: &[Entry]) -> Vec<Sheet> {
     };
     let of = pages.len();
     let page = |(index, rows): (usize, &&[Entry])| {
-        let mut sheet = Sheet::a4_lying();
+        let mut sheet = Sheet::a4_landscape();
         head(&mut sheet, book, index + 1, of);
         for (line, entry) in rows.iter().enumerate() {
             row(&mut sheet, entry, TOP + LINE * line as f32, line);

@@ -1,8 +1,8 @@
 //! A report on sheets of A4.
 
 use super::report::{DueCompass, FeeFrom, Job, Report};
+use binnacle_drawing::angles::{east_west, heading};
 use binnacle_drawing::paper::{LEFT, LINE, Paper, RIGHT, SIZE};
-use binnacle_drawing::words::{east_west, heading};
 use binnacle_drawing::{Face, Sheet, Style, cut, wrap};
 use binnacle_schedule::needs::Urgency;
 
@@ -122,7 +122,7 @@ fn saved_in_short(report: &Report) -> String {
 }
 
 fn due(paper: &mut Paper, report: &Report) {
-    paper.room_for(SOME_LINES);
+    paper.keep_together(SOME_LINES);
     paper.title("Due within the terms for \"soon\", and overdue");
     let (now, later): (Vec<&DueCompass>, Vec<&DueCompass>) =
         report.due.iter().partition(|due| due.presses());
@@ -160,7 +160,7 @@ fn due(paper: &mut Paper, report: &Report) {
 }
 
 fn deviation(paper: &mut Paper, report: &Report) {
-    paper.room_for(SOME_LINES);
+    paper.keep_together(SOME_LINES);
     paper.title("Greatest deviation");
     let known = report
         .deviation
@@ -196,7 +196,7 @@ fn deviation(paper: &mut Paper, report: &Report) {
 }
 
 fn jobs(paper: &mut Paper, report: &Report) {
-    paper.room_for(SOME_LINES);
+    paper.keep_together(SOME_LINES);
     paper.title("Adjusted in this time");
     if report.jobs.is_empty() {
         paper.lines(LEFT, Style::plain(SIZE), "No compass.");
@@ -226,7 +226,7 @@ fn fee(job: &Job) -> String {
 
 fn saved(paper: &mut Paper, report: &Report) {
     let saved = &report.saved;
-    paper.room_for(SOME_LINES);
+    paper.keep_together(SOME_LINES);
     paper.title("Saved against swinging");
     let failed = report.jobs.len() - saved.jobs;
     let mut sentences = vec![format!(
@@ -257,7 +257,7 @@ fn saved(paper: &mut Paper, report: &Report) {
 }
 
 fn titles(paper: &mut Paper, columns: &[Column]) {
-    paper.room_for(2);
+    paper.keep_together(2);
     for (title, x) in columns {
         paper.put(*x, Style::plain(7.0).grey(90), title);
     }
@@ -275,7 +275,7 @@ fn row(paper: &mut Paper, columns: &[Column], cells: &[(String, Style)]) {
         })
         .collect();
     let lines = wrapped.iter().map(Vec::len).max().unwrap_or(0).max(1);
-    paper.room_for(lines);
+    paper.keep_together(lines);
     for line in 0..lines {
         for (((_, x), (_, style)), cell) in columns.iter().zip(cells).zip(&wrapped) {
             if let Some(text) = cell.get(line) {

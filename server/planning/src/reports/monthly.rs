@@ -168,7 +168,7 @@ impl Report {
     fn words(&self) -> String {
         let pressing = self.due.iter().filter(|due| due.presses()).count();
         let largest = self.deviation.first().and_then(|one| {
-            let size = binnacle_drawing::words::east_west(one.deviation_deg?);
+            let size = binnacle_drawing::angles::east_west(one.deviation_deg?);
             Some(format!("{size} on {}", one.vessel_name))
         });
         let lines = [

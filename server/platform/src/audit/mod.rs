@@ -32,7 +32,7 @@ use utoipa::{IntoParams, ToSchema};
 use uuid::Uuid;
 
 /// Interval between removals of expired lines.
-const FORGET_EVERY: Duration = Duration::from_hours(1);
+const PRUNE_EVERY: Duration = Duration::from_hours(1);
 
 /// Action that was done or tried.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
@@ -130,7 +130,7 @@ pub async fn watch(app: App) {
         }
         tokio::select! {
             () = app.stopping.cancelled() => {}
-            () = tokio::time::sleep(FORGET_EVERY) => {}
+            () = tokio::time::sleep(PRUNE_EVERY) => {}
         }
     }
 }

@@ -19,14 +19,14 @@ const FETCH_SITE: &str = "sec-fetch-site";
 /// Refuses a change that another site requests.
 pub async fn refuse(State(app): State<App>, request: Request, next: Next) -> Response {
     let public_url = app.config.mail.public_url.as_deref();
-    if request.method().is_safe() || is_of_our_own(request.headers(), public_url) {
+    if request.method().is_safe() || is_own_request(request.headers(), public_url) {
         return next.run(request).await;
     }
     Error::Forbidden("a change cannot be requested from another site's page").into_response()
 }
 
 /// Checks that a request comes from one of our own pages, or from no page at all.
-fn is_of_our_own(headers: &HeaderMap, public_url: Option<&str>) -> bool {
+fn is_own_request(headers: &HeaderMap, public_url: Option<&str>) -> bool {
     if let Some(site) = headers.get(FETCH_SITE) {
         return site == "same-origin" || site == "none";
     }
@@ -57,7 +57,7 @@ mod tests {
                 HeaderValue::from_static(value),
             )
         });
-        is_of_our_own(&pairs.collect(), Some("https://binnacle.example/"))
+        is_own_request(&pairs.collect(), Some("https://binnacle.example/"))
     }
 
     #[test]

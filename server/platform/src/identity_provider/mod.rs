@@ -18,7 +18,7 @@ use tokio::sync::Mutex;
 use tracing::warn;
 
 /// Time after which the provider is asked again, seconds.
-const KEPT_S: f64 = 3600.0;
+const CACHED_S: f64 = 3600.0;
 /// Minimum wait before another request for unknown keys, seconds.
 const NEW_KEYS_AFTER_S: f64 = 60.0;
 /// Minimum wait after a failure, seconds.
@@ -27,10 +27,10 @@ const RETRY_AFTER_S: f64 = 5.0;
 /// Cache of the last discovery, whether it succeeded or failed.
 #[derive(Default)]
 pub struct Provider {
-    kept: Mutex<Option<Kept>>,
+    cached: Mutex<Option<CachedDiscovery>>,
 }
 
-struct Kept {
+struct CachedDiscovery {
     at: Timestamp,
     found: Option<Arc<Discovery>>,
 }
@@ -52,7 +52,7 @@ impl Provider {
         issuer: &str,
         clock: &Clock,
     ) -> Result<Arc<Discovery>, Unreachable> {
-        self.find(issuer, clock, KEPT_S).await
+        self.find(issuer, clock, CACHED_S).await
     }
 
     /// Returns the metadata with the keys of now, fetched anew unless that was just done.
@@ -71,9 +71,9 @@ impl Provider {
         clock: &Clock,
         age_s: f64,
     ) -> Result<Arc<Discovery>, Unreachable> {
-        let mut kept = self.kept.lock().await;
+        let mut cached = self.cached.lock().await;
         let now = clock.now();
-        if let Some(Kept { at, found }) = &*kept {
+        if let Some(CachedDiscovery { at, found }) = &*cached {
             let age = now.seconds_since(*at);
             match found {
                 Some(found) if age < age_s => return Ok(Arc::clone(found)),
@@ -87,7 +87,7 @@ impl Provider {
             warn!(issuer, error, "the sign-in provider cannot be reached");
         }
         let found = found.ok();
-        *kept = Some(Kept {
+        *cached = Some(CachedDiscovery {
             // A failed attempt may have taken long too.
             at: clock.now(),
             found: found.clone(),

@@ -50,7 +50,7 @@ impl LetterItem {
 
 /// Reason for which a recipient gets a letter.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Why {
+pub(super) enum Reason {
     /// The recipient is on the company's list for alerts of a minimum severity.
     Listed(Severity),
     /// The recipient has an account and chose this notification.
@@ -74,22 +74,22 @@ impl Letter {
     }
 
     /// Returns the whole text, with a link and the reason why the recipient gets it.
-    pub(super) fn text_for(&self, address: &str, why: Why, public_url: &str) -> String {
-        let (why, page) = match why {
-            Why::Listed(least) => (
+    pub(super) fn text_for(&self, address: &str, reason: Reason, public_url: &str) -> String {
+        let (reason, page) = match reason {
+            Reason::Listed(least) => (
                 format!(
                     "You get this because {address} is on your company's list for alerts from {least} \
                      on. An administrator takes it off:"
                 ),
                 "/mail",
             ),
-            Why::Person => (
+            Reason::Person => (
                 format!(
                     "You get this because of the notification settings of {address}. Change them:"
                 ),
                 "/settings",
             ),
-            Why::MailingList(list) => (
+            Reason::MailingList(list) => (
                 format!(
                     "You get this because {address} is on your company's list for {}. \
                      An administrator takes it off:",
@@ -107,7 +107,7 @@ impl Letter {
             "{items}{}\n{public_url}{}\n\n{}\n{public_url}{page}\n",
             self.text,
             self.path,
-            wrapped("", &why)
+            wrapped("", &reason)
         )
     }
 }

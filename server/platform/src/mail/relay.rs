@@ -93,14 +93,14 @@ impl Relay {
     /// # Errors
     /// When the relay gave no response to the letter: the fault may be temporary.
     pub(super) async fn hand_over(&self, envelope: &Envelope, letter: &[u8]) -> Result<Attempt> {
-        let talk = async {
+        let session = async {
             let mut relay = self.connect().await?;
-            let answer = relay.send(envelope, letter).await;
-            anyhow::Ok((relay, answer))
+            let sent = relay.send(envelope, letter).await;
+            anyhow::Ok((relay, sent))
         };
-        let talked = timeout(self.patience, talk).await;
-        let (mut relay, answer) = talked.context("the relay does not respond")??;
-        match answer {
+        let outcome = timeout(self.patience, session).await;
+        let (mut relay, sent) = outcome.context("the relay does not respond")??;
+        match sent {
             Ok(response) => {
                 // The relay has the letter, whatever happens from now on.
                 let _ = timeout(QUIT_PATIENCE, relay.quit()).await;
@@ -174,8 +174,8 @@ fn credentials(url: &Url) -> Result<Option<Credentials>> {
 
 /// Returns the relay's error message as one line.
 fn plain(error: &lettre::transport::smtp::Error) -> String {
-    let said = error.to_string();
-    said.split_whitespace().collect::<Vec<_>>().join(" ")
+    let message = error.to_string();
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

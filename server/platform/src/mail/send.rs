@@ -1,6 +1,6 @@
 //! Letters as messages (RFC 5322), and their carrier.
 
-use super::letter::{Letter, Why};
+use super::letter::{Letter, Reason};
 use super::mailing_list::{Content, Files, MailingList};
 use super::relay::Relay;
 use super::store;
@@ -31,7 +31,7 @@ pub struct Mailer {
 /// Recipient of a letter, with the reason for it.
 struct Addressee {
     address: String,
-    why: Why,
+    reason: Reason,
 }
 
 impl Mailer {
@@ -80,19 +80,19 @@ impl Mailer {
     /// Finds the addressee of a receiver's letters; `None` if removed or disabled.
     async fn find_addressee(&self, db: &Db, receiver: Uuid) -> db::Result<Option<Addressee>> {
         if let Some((address, least)) = store::find_listed(db, receiver).await? {
-            let why = Why::Listed(least);
-            return Ok(Some(Addressee { address, why }));
+            let reason = Reason::Listed(least);
+            return Ok(Some(Addressee { address, reason }));
         }
         if let Some(list) = self.list
             && let Some(address) = (list.find_address)(db, receiver).await?
         {
-            let why = Why::MailingList(list);
-            return Ok(Some(Addressee { address, why }));
+            let reason = Reason::MailingList(list);
+            return Ok(Some(Addressee { address, reason }));
         }
         // A person is a receiver under their own id.
         let person = store::find_person(db, receiver).await?;
-        let why = Why::Person;
-        Ok(person.map(|address| Addressee { address, why }))
+        let reason = Reason::Person;
+        Ok(person.map(|address| Addressee { address, reason }))
     }
 
     fn message(
@@ -118,7 +118,7 @@ impl Mailer {
         if let Some(about) = letter.about {
             builder = builder.references(format!("<{about}@{domain}>"));
         }
-        let text = letter.text_for(&to.address, to.why, &self.public_url);
+        let text = letter.text_for(&to.address, to.reason, &self.public_url);
         let mut message = match files {
             None => builder.header(ContentType::TEXT_PLAIN).body(text)?,
             Some(files) => builder.multipart(with_files(text, files)?)?,

@@ -42,7 +42,7 @@ where
 /// Provider through which users may sign in.
 #[derive(Serialize, ToSchema)]
 #[schema(as = SignInProvider, example = json!({ "name": "Example Lines" }))]
-struct Named {
+struct ProviderName {
     /// Name of the provider; none if no provider is set up.
     #[schema(required)]
     name: Option<String>,
@@ -73,11 +73,11 @@ struct Code {
 ///
 /// This is the OpenID Connect provider, if one is set up on this server.
 #[utoipa::path(get, path = "/session/provider", tag = "session", security(()),
-    responses((status = 200, body = Named)))]
-async fn find_provider(State(app): State<App>) -> Json<Named> {
+    responses((status = 200, body = ProviderName)))]
+async fn find_provider(State(app): State<App>) -> Json<ProviderName> {
     let config = &app.config.oidc;
     let name = config.is_set_up().then(|| config.oidc_name.clone());
-    Json(Named { name })
+    Json(ProviderName { name })
 }
 
 /// Go to the provider to sign in

@@ -9,7 +9,7 @@ use std::time::Duration;
 use tracing::{error, info, warn};
 
 /// Interval at which the worker looks for deliveries without a notification.
-const LOOK_EVERY: Duration = Duration::from_secs(2);
+const POLL_EVERY: Duration = Duration::from_secs(2);
 /// Longest stored text of an error, characters.
 const MAX_ERROR: usize = 300;
 
@@ -64,7 +64,7 @@ pub async fn run<C: Carrier>(app: App, carrier: C) {
         }
         tokio::select! {
             () = app.stopping.cancelled() => {}
-            () = tokio::time::sleep(LOOK_EVERY) => {}
+            () = tokio::time::sleep(POLL_EVERY) => {}
         }
     }
 }

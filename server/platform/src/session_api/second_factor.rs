@@ -37,7 +37,7 @@ where
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = PasswordAgain, example = json!({ "password": "seven gulls over the quay" }))]
-struct Again {
+struct PasswordConfirmation {
     /// Password that you sign in with.
     #[schema(format = Password)]
     password: String,
@@ -49,7 +49,7 @@ struct Again {
     "secret": "GEZDGNBVGY3TQOJQGEZDGNBVGY3TQOJQ",
     "uri": "otpauth://totp/Binnacle:ada%40example%2Ecom?secret=GEZDGNBVGY3TQOJQGEZDGNBVGY3TQOJQ&issuer=Binnacle"
 }))]
-struct Begun {
+struct NewSecret {
     /// Secret to be typed into the app, base 32. Never shown again.
     secret: String,
     /// The secret as a URI, to be shown as a QR code or opened on the phone.
@@ -76,8 +76,8 @@ struct RecoveryCodes {
 /// Begin to set up a second factor
 ///
 /// It becomes active when it is confirmed with a first code.
-#[utoipa::path(post, path = "/me/second-factor", tag = "session", request_body = Again,
-    responses((status = 201, body = Begun), (status = 401, body = Problem),
+#[utoipa::path(post, path = "/me/second-factor", tag = "session", request_body = PasswordConfirmation,
+    responses((status = 201, body = NewSecret), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem),
               (status = 409, description = "A second factor exists already", body = Problem),
               (status = 429, body = Problem)))]
@@ -86,10 +86,10 @@ async fn begin_second_factor(
     request: RequestContext,
     caller: Caller,
     from: Origin,
-    Valid(again): Valid<Again>,
-) -> Result<(StatusCode, Json<Begun>)> {
+    Valid(confirmation): Valid<PasswordConfirmation>,
+) -> Result<(StatusCode, Json<NewSecret>)> {
     caller.must_be_signed_in()?;
-    session::confirm_password(&app, &request, &caller.user, &from, again.password).await?;
+    session::confirm_password(&app, &request, &caller.user, &from, confirmation.password).await?;
     let user = &caller.user;
     let secret: [u8; totp::SECRET_BYTES] = secret::random();
     let now = app.clock.now().into();
@@ -100,7 +100,7 @@ async fn begin_second_factor(
     let secret = totp::base32(&secret);
     let account = utf8_percent_encode(&user.email, NON_ALPHANUMERIC);
     let uri = format!("otpauth://totp/Binnacle:{account}?secret={secret}&issuer=Binnacle");
-    Ok((StatusCode::CREATED, Json(Begun { secret, uri })))
+    Ok((StatusCode::CREATED, Json(NewSecret { secret, uri })))
 }
 
 /// Confirm a second factor with its first code
@@ -137,7 +137,7 @@ async fn confirm_second_factor(
 }
 
 /// Remove your second factor
-#[utoipa::path(post, path = "/me/second-factor/remove", tag = "session", request_body = Again,
+#[utoipa::path(post, path = "/me/second-factor/remove", tag = "session", request_body = PasswordConfirmation,
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 404, body = Problem), (status = 422, body = Problem),
               (status = 429, body = Problem)))]
@@ -146,10 +146,10 @@ async fn remove_second_factor(
     request: RequestContext,
     caller: Caller,
     from: Origin,
-    Valid(again): Valid<Again>,
+    Valid(confirmation): Valid<PasswordConfirmation>,
 ) -> Result<StatusCode> {
     caller.must_be_signed_in()?;
-    session::confirm_password(&app, &request, &caller.user, &from, again.password).await?;
+    session::confirm_password(&app, &request, &caller.user, &from, confirmation.password).await?;
     let mut tx = request.begin().await?;
     if !second_factor::remove(&mut tx, caller.user.user_id).await? {
         return Err(Error::NotFound("second factor"));
@@ -162,7 +162,7 @@ async fn remove_second_factor(
 ///
 /// The previous codes stop working.
 #[utoipa::path(post, path = "/me/second-factor/recovery-codes", tag = "session",
-    request_body = Again,
+    request_body = PasswordConfirmation,
     responses((status = 200, body = RecoveryCodes), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 422, body = Problem), (status = 429, body = Problem)))]
@@ -171,10 +171,10 @@ async fn renew_recovery_codes(
     request: RequestContext,
     caller: Caller,
     from: Origin,
-    Valid(again): Valid<Again>,
+    Valid(confirmation): Valid<PasswordConfirmation>,
 ) -> Result<Json<RecoveryCodes>> {
     caller.must_be_signed_in()?;
-    session::confirm_password(&app, &request, &caller.user, &from, again.password).await?;
+    session::confirm_password(&app, &request, &caller.user, &from, confirmation.password).await?;
     if !caller.user.second_factor {
         return Err(Error::NotFound("second factor"));
     }

@@ -4,7 +4,7 @@ use super::table::{Lines, line_name};
 use super::{GREY, LINE, RIGHT};
 use crate::card::contents::{Card, CardRow};
 use crate::deviation::Row;
-use binnacle_drawing::words::east_west;
+use binnacle_drawing::angles::east_west;
 use binnacle_drawing::{Pen, Point, Sheet, Style};
 
 const LEFT: f32 = 352.0;

@@ -5,7 +5,7 @@ use super::{GREY, LEFT, RIGHT, UNKNOWN, draw_labelled, known};
 use crate::binnacles::in_words;
 use crate::card::contents::{Card, CargoAboard};
 use binnacle_compass::deviation::CoefficientsInDegrees;
-use binnacle_drawing::words::signed;
+use binnacle_drawing::angles::signed;
 use binnacle_drawing::{A4, Face, MARGIN, Sheet, Style, wrap};
 use binnacle_platform::time::Time;
 

@@ -3,7 +3,7 @@
 use super::{LEFT, RIGHT, fact, known};
 use crate::card::contents::Card;
 use crate::compasses::Role;
-use binnacle_drawing::words::{east_west, latitude, longitude};
+use binnacle_drawing::angles::{east_west, latitude, longitude};
 use binnacle_drawing::{MARGIN, Sheet, Style};
 
 const FACT_LINE: f32 = 12.5;

@@ -2,7 +2,7 @@
 
 use super::{GREY, LEFT, LINE};
 use crate::card::contents::{Card, CardRow};
-use binnacle_drawing::words::{east_west, heading, heading_to_a_tenth, signed};
+use binnacle_drawing::angles::{east_west, heading, heading_to_a_tenth, signed};
 use binnacle_drawing::{Face, Pen, Sheet, Style};
 
 /// Right edges of the columns; the last one ends the table.

@@ -8,8 +8,8 @@ mod tables;
 use crate::work_orders::log_entry::sha256_hex;
 use anyhow::Context;
 use binnacle_compass::time::Timestamp;
+use binnacle_drawing::angles::{east_west, heading_to_a_tenth, latitude, longitude};
 use binnacle_drawing::paper::{LEFT, Paper, RIGHT};
-use binnacle_drawing::words::{east_west, heading_to_a_tenth, latitude, longitude};
 use binnacle_drawing::{About, Sheet, Style, pdf, svg};
 use binnacle_platform::time::Time;
 use serde_json::Value;
@@ -329,7 +329,7 @@ fn photos(paper: &mut Paper, record: &Value) {
 
 fn signed(paper: &mut Paper, record: &Value) {
     let adjuster = &record["adjuster"];
-    paper.room_for(8);
+    paper.keep_together(8);
     paper.title("Signed");
     paper.fact(
         "Adjuster",

@@ -3,8 +3,8 @@
 
 use super::{minute, number, word};
 use binnacle_adjustment::binnacle::{Binnacle, Setting, Shape};
+use binnacle_drawing::angles::{east_west, heading, heading_to_a_tenth, signed};
 use binnacle_drawing::paper::{LEFT, Paper, SIZE, VALUE};
-use binnacle_drawing::words::{east_west, heading, heading_to_a_tenth, signed};
 use binnacle_drawing::{Style, cut};
 use binnacle_fleet::binnacles::in_words;
 use serde_json::Value;
@@ -52,7 +52,7 @@ pub(super) fn settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result
     let binnacle: Binnacle = serde_json::from_value(record["binnacle_after"].clone())?;
     let said = record["settings_as_said"].as_array().into_iter().flatten();
     for (index, said) in said.enumerate() {
-        paper.room_for(3);
+        paper.keep_together(3);
         if index == 0 {
             paper.title("Correctors, as they were said to stand");
         }
@@ -92,7 +92,7 @@ pub(super) fn steps(paper: &mut Paper, record: &Value) {
         let said = &step["said"];
         let turned =
             (number(&said["after_deg"]) - number(&said["before_deg"]) + 540.0).rem_euclid(360.0);
-        paper.room_for(3);
+        paper.keep_together(3);
         let words = format!("{}. {}", index + 1, word(&step["words"]));
         paper.lines(LEFT, Style::plain(SIZE), &words);
         let showed = format!(
@@ -114,7 +114,7 @@ pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
     let readings = record["second_readings"].as_array();
     let readings = readings.into_iter().flatten();
     for (index, reading) in readings.enumerate() {
-        paper.room_for(5);
+        paper.keep_together(5);
         if index == 0 {
             paper.title("The magnetometer after the steps");
         }
@@ -171,7 +171,7 @@ pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
     }
     let steps = hidden["steps"].as_array().into_iter().flatten();
     let steps: Vec<String> = steps.map(word).collect();
-    paper.room_for(4);
+    paper.keep_together(4);
     paper.fact("Not shown", &steps.join("; "));
     paper.fact("which means", &word(&hidden["words"]));
 }
@@ -188,7 +188,7 @@ pub(super) fn predicted(paper: &mut Paper, record: &Value) {
     });
     let tables: Vec<(&str, &Value)> = before.chain(after).collect();
     for some in tables.chunks(PLACES) {
-        paper.room_for(30);
+        paper.keep_together(30);
         paper.title("Deviation foretold, with its 95 % band, by compass heading");
         let across = |index: usize| LEFT + 110.0 + (COLUMN + 16.0) * index as f32;
         let cells = |cell: &dyn Fn(&str, &Value) -> String| -> Vec<(f32, String)> {
@@ -231,7 +231,7 @@ pub(super) fn parameters(paper: &mut Paper, record: &Value) {
     if models.iter().any(|model| !model.is_object()) {
         return;
     }
-    paper.room_for(13);
+    paper.keep_together(13);
     paper.title("The model before and after, with standard errors");
     let across = |index: usize| VALUE + 110.0 + 130.0 * index as f32;
     let titles = ["before", "after"].into_iter().enumerate();
