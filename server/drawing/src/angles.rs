@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn east_and_west_are_never_taken_for_each_other_and_nil_has_no_side() {
+    fn east_and_west_have_their_letters_and_zero_has_none() {
         let cases = [2.34, -2.34, 0.04, -0.04, 0.06, -0.06, -0.0];
         let words = [
             "2.3° E", "2.3° W", "0.0°", "0.0°", "0.1° E", "0.1° W", "0.0°",

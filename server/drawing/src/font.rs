@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_cards_need_is_in_the_fonts() {
+    fn the_fonts_have_the_characters_of_the_cards() {
         for face in [Face::Regular, Face::Bold] {
             for drawn in face.draw("Ñandú Ωμέγα Адмирал 0°–359° ±½ λχ −…")
             {
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_without_room_is_cut_and_says_so() {
+    fn a_text_that_does_not_fit_is_truncated_with_an_ellipsis() {
         assert_eq!(cut("Nao", Face::Regular, 10.0, 100.0), "Nao");
         let text = cut("Nao Victoria", Face::Regular, 10.0, 40.0);
         assert!(text.starts_with("Nao") && text.ends_with('…'), "{text}");

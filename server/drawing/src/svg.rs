@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn text_that_ends_somewhere_begins_its_own_width_before() {
+    fn end_anchored_text_begins_its_width_before_its_point() {
         let mut sheet = Sheet::a4();
         sheet.text((100.0, 10.0), Style::plain(10.0).end(), "00");
         let long = width("00", Face::Regular, 10.0);

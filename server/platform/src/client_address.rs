@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn only_our_own_proxies_are_believed() {
+    fn only_own_proxies_are_trusted() {
         let forged = ["203.0.113.9, 198.51.100.7"];
         assert_eq!(seen(&forged, 0), "192.0.2.1");
         assert_eq!(seen(&forged, 1), "198.51.100.7");

@@ -106,7 +106,7 @@ mod tests {
     const VESSELS_PAGE: &str = "vessels/0199aa00-0000-7000-8000-000000000003";
 
     #[test]
-    fn a_page_brings_its_own_files_and_what_they_import_but_none_of_every_page() {
+    fn a_page_preloads_its_own_files_and_imports_but_none_of_every_page() {
         let manifest = serde_json::from_str(
             r#"{
                 "index.html": { "file": "assets/index.js", "isEntry": true },
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn data_is_named_to_who_may_be_signed_in_and_of_the_vessel_that_the_address_names() {
+    fn data_is_preloaded_only_for_users_who_may_be_signed_in_and_for_the_vessel_of_the_path() {
         let nobody = HeaderMap::new();
         let somebody = HeaderMap::from_iter([(COOKIE, HeaderValue::from_static("a=b"))]);
         let links = |path: &str, request: &HeaderMap| {

@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_of_ours_and_a_program_may() {
+    fn changes_by_own_pages_and_programs_are_accepted() {
         let host = ("host", "10.0.0.7:8080");
         assert!(judged(&[host]));
         assert!(judged(&[host, ("sec-fetch-site", "same-origin")]));
@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn another_sites_page_may_not() {
+    fn changes_by_pages_of_other_sites_are_refused() {
         let host = ("host", "binnacle.example");
         for said in [
             ("sec-fetch-site", "cross-site"),

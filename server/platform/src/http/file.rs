@@ -29,7 +29,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_gets_out_of_a_header_or_a_folder() {
+    fn a_file_name_cannot_escape_a_header_or_a_folder() {
         let words = ["card", "../Nao \"Victória\"\r\n", "v2"];
         assert_eq!(file_name(&words, "pdf"), "card-nao-vict-ria-v2.pdf");
         assert_eq!(file_name(&["card", "船"], "pdf"), "card.pdf");

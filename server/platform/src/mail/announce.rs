@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn an_end_is_announced_where_the_alert_that_follows_it_is_not() {
+    fn an_end_is_announced_if_the_next_alert_is_not() {
         let over = announced(Kind::AlertCleared, "one", Severity::Critical);
         let next = announced(Kind::AlertRaised, "one", Severity::Notice);
         let all = [over.clone(), next];

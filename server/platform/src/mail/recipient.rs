@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_one_address_is_one() {
+    fn only_a_single_address_is_accepted() {
         assert_eq!(
             checked(" Ada.L@Example.COM ").as_deref(),
             Some("Ada.L@example.com")

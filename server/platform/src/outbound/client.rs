@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_name_that_means_an_address_within_the_network_is_not_found() {
+    async fn a_name_that_resolves_to_a_local_address_is_not_found() {
         let found = PublicOnly.resolve("localhost".parse().unwrap()).await;
         let problem = found.err().unwrap().to_string();
         assert!(

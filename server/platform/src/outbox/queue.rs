@@ -233,7 +233,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tries_come_ever_more_seldom_and_not_all_at_once() {
+    fn retries_back_off_with_jitter() {
         let (one, other) = (DeliveryId::new(), DeliveryId::new());
         for attempts in 1..40 {
             let least_s = (10.0 * 2_f64.powi(attempts - 1)).min(3600.0);

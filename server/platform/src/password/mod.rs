@@ -119,7 +119,7 @@ mod tests {
     ];
 
     #[test]
-    fn what_is_short_common_or_known_of_the_person_is_refused() {
+    fn a_short_common_or_personal_password_is_refused() {
         for weak in [
             "x7!kQ2#vB9z",
             "password1234",
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn any_letters_do_if_there_are_enough() {
+    fn any_characters_are_accepted_if_there_are_enough() {
         for good in [
             "correct horse battery",
             "vk9rw2hqx7mt",
