@@ -24,6 +24,7 @@ pub mod samples;
 pub mod adjustments;
 pub mod alerts;
 pub mod analysis;
+pub mod analysis_queue;
 pub mod changes;
 pub mod deviation;
 pub mod models;

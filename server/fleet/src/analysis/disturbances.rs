@@ -9,7 +9,7 @@
 //!   their alerts alone.
 
 use super::findings::{Findings, FoundChange};
-use super::queue;
+use crate::analysis_queue;
 use binnacle_compass::position::Position;
 use binnacle_compass::result::{FleetDisturbance, weigh_with_fleet};
 use binnacle_compass::time::Timestamp;
@@ -139,7 +139,7 @@ async fn queue_others(
         Time(began_at.0.plus_seconds(-LONGEST_S))
     )?;
     for (other,) in others {
-        queue::enqueue(tx, other, now, DELAY_S).await?;
+        analysis_queue::enqueue(tx, other, now, DELAY_S).await?;
     }
     Ok(())
 }

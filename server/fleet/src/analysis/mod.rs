@@ -15,18 +15,14 @@ mod disturbances;
 mod findings;
 pub mod input;
 mod left_out;
-pub mod queue;
 mod refusal;
 pub mod store;
 mod track;
-mod wait;
 
 pub use disturbances::{compare_with_fleet, compare_with_fleet_in};
 pub use findings::{FailedLately, Findings, FoundChange};
 pub use input::{Input, input_hash};
 pub use left_out::LeftOut;
-pub use queue::{Job, claim, count as count_jobs, enqueue, enqueue_outdated, renew};
 pub use refusal::RefusalSchema;
 pub use store::{Chunk, Covered, Found, chunk, chunks, chunks_between, coverage, refusal};
 pub use track::Track;
-pub use wait::done;

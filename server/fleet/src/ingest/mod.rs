@@ -19,7 +19,7 @@ pub use bursts::{Imported, Incomplete, Refused, import};
 
 use crate::enrolment;
 use crate::enrolment::Agent;
-use crate::{alerts, analysis};
+use crate::{alerts, analysis_queue};
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{DefaultBodyLimit, FromRef, State};
@@ -119,7 +119,7 @@ async fn put_batch(
     counter!("binnacle_batches_total", "result" => result).increment(1);
     if let Some(wait_s) = has.wait.filter(|_| !batch.samples.is_empty()) {
         let at_most = Duration::from_secs(wait_s.into()).min(LONGEST_WAIT);
-        analysis::done(&app, agent.vessel_id, at_most).await?;
+        analysis_queue::wait_until_done(&app, agent.vessel_id, at_most).await?;
     }
     downlink::answer(&app, agent, stream, has).await
 }
@@ -150,7 +150,7 @@ async fn take(
             alerts::check_duplicate_agent(tx, agent, batch.stream.0, batch.seq, now).await?,
         );
         if !batch.samples.is_empty() || !batch.alerts.is_empty() {
-            analysis::enqueue(tx, vessel, now, delay_s).await?;
+            analysis_queue::enqueue(tx, vessel, now, delay_s).await?;
         }
         events_out.push(events::insert(tx, vessel, events::Kind::Batch, now).await?);
     }

@@ -1,7 +1,7 @@
 //! Logbook entries in the database.
 
 use super::entry::{AuthorKind, CheckedFilter, LogbookEntry, NewEntry, Revision};
-use crate::analysis;
+use crate::analysis_queue;
 use crate::enrolment::Agent;
 use anyhow::Context;
 use binnacle_platform::app::App;
@@ -95,7 +95,7 @@ impl<'a> Change<'a> {
 
     /// Makes it durable, has the vessel analysed anew, and tells the dashboards.
     pub(super) async fn commit(mut self) -> Result<()> {
-        analysis::enqueue(&mut self.tx, self.vessel, self.now, 0.0).await?;
+        analysis_queue::enqueue(&mut self.tx, self.vessel, self.now, 0.0).await?;
         let event = events::insert(&mut self.tx, self.vessel, Kind::Logbook, self.now).await?;
         self.tx.commit().await?;
         self.app.publish(event);
@@ -164,7 +164,7 @@ pub async fn write_adjustment(tx: &mut Tx, adjusted: &Adjusted<'_>) -> Result<()
         board_revision: None,
     };
     insert(tx, adjusted.vessel, adjusted.id, &entry, &author).await?;
-    analysis::enqueue(tx, adjusted.vessel, adjusted.now, 0.0).await?;
+    analysis_queue::enqueue(tx, adjusted.vessel, adjusted.now, 0.0).await?;
     Ok(())
 }
 

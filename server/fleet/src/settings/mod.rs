@@ -9,7 +9,7 @@ mod store;
 pub use store::find;
 
 use crate::alerts::AlertLimits;
-use crate::analysis;
+use crate::analysis_queue;
 use crate::vessels;
 use axum::extract::{FromRef, State};
 use binnacle_compass::settings::AnalysisSettings;
@@ -153,7 +153,7 @@ async fn change_settings(
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
     store::change(&mut tx, id, &wanted, now).await?;
-    analysis::enqueue(&mut tx, id, now, 0.0).await?;
+    analysis_queue::enqueue(&mut tx, id, now, 0.0).await?;
     tx.commit().await?;
     app.work.notify_one();
     Ok(Json(find(&app.db, id).await?))

@@ -1,7 +1,7 @@
 //! A vessel goes out of service, or comes back.
 
 use super::store::{Row, set_out_of_service};
-use crate::{alerts, analysis};
+use crate::{alerts, analysis_queue};
 use binnacle_platform::db::{DomainEvent, Tx};
 use binnacle_platform::error::Result;
 use binnacle_platform::events::{self, Event};
@@ -50,7 +50,7 @@ pub(super) async fn set(
     if in_service {
         set_out_of_service(tx, vessel.id, None).await?;
         // It raises what alerts there were again, if they still are called for.
-        analysis::enqueue(tx, vessel.id, now, 0.0).await?;
+        analysis_queue::enqueue(tx, vessel.id, now, 0.0).await?;
         return Ok(events_out);
     }
     set_out_of_service(tx, vessel.id, Some(now)).await?;
