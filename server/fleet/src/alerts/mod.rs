@@ -21,7 +21,6 @@ mod cause;
 mod causes;
 mod clearing;
 mod desired;
-mod limits;
 mod publish;
 mod reconcile;
 mod schema;
@@ -33,7 +32,6 @@ pub use alert::{Alert, Evidence, State};
 pub use api::router;
 pub use cause::Cause;
 pub use causes::{Effect, JobAtRisk, UnconfirmedAdjustment};
-pub use limits::AlertLimits;
 pub use publish::AlertChange;
 pub use reconcile::end_all;
 pub use sources::{

@@ -4,11 +4,12 @@
 //! Invariants: a change makes a new version, which agents get with their next downlink, and a new
 //! analysis. Without a row the defaults hold, version 0.
 
+mod alert_limits;
 mod store;
 
+pub use alert_limits::AlertLimits;
 pub use store::find;
 
-use crate::alerts::AlertLimits;
 use crate::analysis_queue;
 use crate::vessels;
 use axum::extract::{FromRef, State};

@@ -1,7 +1,6 @@
 //! Settings in the database.
 
-use super::VesselSettings;
-use crate::alerts::AlertLimits;
+use super::{AlertLimits, VesselSettings};
 use binnacle_compass::settings::AnalysisSettings;
 use binnacle_platform::db::{Db, Tx, execute, row};
 use binnacle_platform::error::Result;

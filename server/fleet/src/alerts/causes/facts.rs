@@ -3,8 +3,8 @@
 use super::hysteresis::SLACK_DEG;
 use crate::alerts::alert::KnownAlert;
 use crate::alerts::cause::Cause;
-use crate::alerts::limits::AlertLimits;
 use crate::analysis::{Findings, FoundChange};
+use crate::settings::AlertLimits;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::ids::OrderId;
 use binnacle_platform::severity::Severity;

@@ -2,10 +2,10 @@
 
 use super::agent_alerts::reconcile_reports;
 use crate::alerts::causes::{CAUSES, Ending, Facts, Silence, Source, evaluate};
-use crate::alerts::limits::AlertLimits;
 use crate::alerts::publish::publish_changes;
 use crate::alerts::reconcile::reconcile_source;
 use crate::alerts::store;
+use crate::settings::AlertLimits;
 use binnacle_platform::app::App;
 use binnacle_platform::error::Result;
 use binnacle_platform::time::Time;

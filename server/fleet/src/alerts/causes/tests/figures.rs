@@ -2,9 +2,9 @@
 
 use crate::alerts::cause::Cause;
 use crate::alerts::causes::{Facts, Silence, evaluate, evaluate_analysis};
-use crate::alerts::limits::AlertLimits;
 use crate::analysis::{FailedLately, Findings};
 use crate::deviation::Worst;
+use crate::settings::AlertLimits;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
