@@ -17,6 +17,7 @@ pub mod particulars;
 pub mod settings;
 pub mod vessels;
 
+pub mod agent_auth;
 pub mod enrolment;
 pub mod ingest;
 pub mod samples;

@@ -5,7 +5,7 @@ use super::cause::Cause;
 use super::causes::Source;
 use super::desired::DesiredAlert;
 use super::schema::Filter;
-use crate::enrolment::Agent;
+use crate::agent_auth::Agent;
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{AlertId, CompassId, OperatorId, VesselId};

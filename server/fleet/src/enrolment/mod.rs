@@ -3,12 +3,11 @@
 //! Invariants: a code works once, before it expires, and opens exactly one installation. Code and
 //! token are stored only as hashes. A revoked token is never accepted again.
 
-mod agent;
 mod store;
 
-pub use agent::Agent;
 pub use store::{open_stream, revoke};
 
+use crate::agent_auth::Agent;
 use crate::compasses;
 use crate::vessels;
 use axum::extract::{FromRef, State};

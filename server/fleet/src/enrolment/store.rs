@@ -1,7 +1,7 @@
 //! Codes, agents and their streams in the database.
 
-use super::Agent;
 use super::{Aboard, AgentStream, LinkWeek};
+use crate::agent_auth::Agent;
 use crate::alerts;
 use crate::compasses::Compass;
 use binnacle_platform::audit::RequestContext;
@@ -134,23 +134,6 @@ pub async fn open_stream(tx: &mut Tx, agent: Agent, now: Time) -> Result<StreamI
         now
     )?;
     Ok(stream)
-}
-
-/// The agent that a token belongs to.
-pub(super) async fn find_agent(
-    db: &Db,
-    vessel: VesselId,
-    token_hash: &[u8],
-) -> Result<Option<Agent>> {
-    row!(
-        db,
-        Agent,
-        "SELECT vessel_id, id AS agent_id, compass_id FROM agents
-         WHERE vessel_id = $1 AND token_hash = $2 AND revoked_at IS NULL
-         ORDER BY id",
-        vessel,
-        token_hash
-    )
 }
 
 /// From now on the agent is known by this token, and not by the one before.

@@ -5,7 +5,7 @@
 //! change nothing. A message that cannot be read keeps no other back.
 
 use super::take;
-use crate::enrolment::Agent;
+use crate::agent_auth::Agent;
 use binnacle_platform::db::{Db, row};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::VesselId;

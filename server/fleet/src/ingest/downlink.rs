@@ -1,6 +1,6 @@
 //! Downlink: the acknowledgement and everything that the agent lacks.
 
-use crate::enrolment::Agent;
+use crate::agent_auth::Agent;
 use crate::models::{self, ModelSchema, StoredModel};
 use crate::settings::{self, AgentSettings};
 use axum::Json;

@@ -17,8 +17,8 @@ mod store;
 
 pub use bursts::{Imported, Incomplete, Refused, import};
 
+use crate::agent_auth::Agent;
 use crate::enrolment;
-use crate::enrolment::Agent;
 use crate::{alerts, analysis_queue};
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;

@@ -1,6 +1,6 @@
 //! Batches in the database.
 
-use crate::enrolment::Agent;
+use crate::agent_auth::Agent;
 use axum::http::StatusCode;
 use binnacle_compass::sample::Sample;
 use binnacle_platform::db::{Result as DbResult, Tx, execute, row};

@@ -3,7 +3,7 @@
 use super::entry::{NewEntry, invalid_report};
 use super::schema::{BoardAnswerSchema, BoardReportSchema};
 use super::store::{self, Author, Change};
-use crate::enrolment::Agent;
+use crate::agent_auth::Agent;
 use axum::extract::{FromRef, State};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;

@@ -1,8 +1,8 @@
 //! Logbook entries in the database.
 
 use super::entry::{AuthorKind, CheckedFilter, LogbookEntry, NewEntry, Revision};
+use crate::agent_auth::Agent;
 use crate::analysis_queue;
-use crate::enrolment::Agent;
 use anyhow::Context;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
