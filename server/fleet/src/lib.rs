@@ -28,6 +28,7 @@ pub mod analysis;
 pub mod analysis_queue;
 pub mod changes;
 pub mod deviation;
+pub mod deviation_table;
 pub mod models;
 
 pub mod card;

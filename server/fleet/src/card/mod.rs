@@ -26,7 +26,7 @@ use crate::alerts;
 use crate::analysis;
 use crate::binnacles;
 use crate::compasses;
-use crate::deviation;
+use crate::deviation_table;
 use crate::logbook;
 use crate::models::{self, StoredModel};
 use crate::settings::{self, VesselSettings};
@@ -178,7 +178,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     let last = vessel.last_position();
     let last_at = last.map_or(model.place_at, |last| last.at);
     let last = last.map_or((model.lat, model.lon), |last| (last.lat, last.lon));
-    let position = deviation::position(query.lat, query.lon, last)?;
+    let position = deviation_table::position(query.lat, query.lon, last)?;
     let place = place(position, query.at(&model, last_at)?, &settings)?;
     let now = app.clock.now().into();
     let (from, until) = match (model.foretold_by, model.epoch_from) {
