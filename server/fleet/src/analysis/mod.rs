@@ -14,15 +14,11 @@
 mod disturbances;
 mod findings;
 pub mod input;
-mod left_out;
-mod refusal;
 pub mod store;
 mod track;
 
 pub use disturbances::{compare_with_fleet, compare_with_fleet_in};
 pub use findings::{FailedLately, Findings, FoundChange};
 pub use input::{Input, input_hash};
-pub use left_out::LeftOut;
-pub use refusal::RefusalSchema;
-pub use store::{Chunk, Covered, Found, chunk, chunks, chunks_between, coverage, refusal};
+pub use store::{Chunk, Covered, Found, chunk, chunks, chunks_between, coverage};
 pub use track::Track;

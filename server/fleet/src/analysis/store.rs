@@ -2,13 +2,10 @@
 
 use super::disturbances::store_disturbances;
 use super::findings::Findings;
-use super::left_out::LeftOut;
 use super::track::track;
 use crate::models::{self, ModelJson, StoredModel};
 use binnacle_compass::coverage::Coverage;
-use binnacle_compass::result::{
-    Analysis, Epoch, FitError, ReferenceCheck, SailNext, SampleDiagnostic,
-};
+use binnacle_compass::result::{Analysis, Epoch, ReferenceCheck, SailNext, SampleDiagnostic};
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::db::{Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
@@ -65,39 +62,6 @@ pub async fn last_hash(db: &Db, vessel: VesselId, compass: CompassId) -> Result<
         compass
     )?;
     Ok(found.map(|(hash,)| hash))
-}
-
-/// Returns the reason for which the current epoch has no model, and the samples that the logbook
-/// leaves out. The reason is none before the first analysis.
-pub async fn refusal(
-    db: &Db,
-    vessel: VesselId,
-    compass: CompassId,
-) -> Result<(Option<FitError>, LeftOut)> {
-    #[derive(Deserialize)]
-    struct Refused {
-        refusal: Option<FitError>,
-    }
-    #[derive(Default, Deserialize)]
-    struct Beside {
-        #[serde(default)]
-        left_out: LeftOut,
-    }
-    let found = row!(
-        db,
-        (String, Option<String>),
-        "SELECT epochs, findings FROM analyses WHERE vessel_id = $1 AND compass_id = $2
-         ORDER BY compass_id",
-        vessel,
-        compass
-    )?;
-    let Some((epochs, findings)) = found else {
-        return Ok((None, LeftOut::default()));
-    };
-    let mut epochs: Vec<Refused> = serde_json::from_str(&epochs)?;
-    let beside = findings.map(|text| serde_json::from_str::<Beside>(&text));
-    let left_out = beside.transpose()?.unwrap_or_default().left_out;
-    Ok((epochs.pop().and_then(|epoch| epoch.refusal), left_out))
 }
 
 /// Returns the coverage of a compass's samples; empty before the first analysis.

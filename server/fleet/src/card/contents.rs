@@ -6,7 +6,7 @@
 use crate::binnacles::SettingSchema;
 use crate::compasses::Compass;
 use crate::deviation::{HandbookSchema, Row, Worst};
-use crate::ingest::CardWithdrawnSchema;
+use crate::models::CardWithdrawnSchema;
 use binnacle_adjustment::binnacle::{Setting, Shape};
 use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_platform::ids::{ModelId, OrderId, VesselId};

@@ -5,9 +5,10 @@
 
 use super::schema::{CauseProbabilitySchema, CauseSchema, StepSchema};
 use super::store::{Analysed, StoredEpoch, Version};
-use crate::analysis::{FoundChange, RefusalSchema};
+use crate::analysis::FoundChange;
 use crate::deviation::{self, Row};
 use crate::logbook::LogbookKindSchema;
+use crate::models::RefusalSchema;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::result::{Cause, CauseProbability, FitError, LastPlace, Step};
 use binnacle_compass::ship::EarthField;

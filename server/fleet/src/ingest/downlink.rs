@@ -1,7 +1,7 @@
 //! Downlink: the acknowledgement and everything that the agent lacks.
 
 use crate::agent_auth::Agent;
-use crate::models::{self, ModelSchema, StoredModel};
+use crate::models::{self, CardWithdrawnSchema, ModelSchema, StoredModel};
 use crate::settings::{self, AgentSettings};
 use axum::Json;
 use axum::body::Body;
@@ -91,19 +91,6 @@ pub(super) struct ModelDownlinkSchema {
     #[schema(required = false)]
     replaces: Option<CardWithdrawnSchema>,
     model: ModelSchema,
-}
-
-/// Withdrawal of earlier cards.
-#[derive(ToSchema)]
-#[schema(as = CardWithdrawn)]
-#[allow(dead_code, reason = "describes binnacle_wire::messages::CardWithdrawn")]
-pub struct CardWithdrawnSchema {
-    /// Time from which they do not hold.
-    since: Time,
-    /// Change of the ship's magnetism or the compass: a kind of logbook entry, a detected cause, or
-    /// `ship_as_before`.
-    #[schema(example = "adjustment")]
-    reason: String,
 }
 
 /// A stream just opened.

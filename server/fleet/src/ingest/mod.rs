@@ -34,7 +34,6 @@ use binnacle_platform::time::Time;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::codec::MAX_BYTES;
 use binnacle_wire::messages::OpenStreamAnswer;
-pub use downlink::CardWithdrawnSchema;
 use downlink::{Answer, DownlinkSchema, Has, OpenStreamSchema};
 use metrics::counter;
 use std::time::Duration;

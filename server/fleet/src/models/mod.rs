@@ -2,12 +2,18 @@
 //! but while a change has ended its epoch and no other model has taken its place.
 
 mod downlink_policy;
+mod left_out;
 mod missing;
+mod refusal;
 mod schema;
 mod store;
 
+pub use left_out::LeftOut;
 pub use missing::{NoModel, NoModelFields};
-pub use schema::{IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema};
+pub use refusal::RefusalSchema;
+pub use schema::{
+    CardWithdrawnSchema, IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema,
+};
 pub use store::{
     StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, foretold, in_force,
     insert, lately, of_version, withdrawn,
@@ -15,7 +21,7 @@ pub use store::{
 
 use crate::compasses::{self, WhichCompass};
 use crate::deviation::{HandbookSchema, Worst};
-use crate::{analysis, vessels};
+use crate::vessels;
 use axum::extract::{FromRef, State};
 use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_compass::ship::EarthField;
@@ -164,7 +170,7 @@ pub async fn must_have(app: &App, vessel: VesselId, compass: CompassId) -> Resul
     if let Some(model) = current(&app.db, vessel, compass).await? {
         return Ok(model);
     }
-    let (refusal, left_out) = analysis::refusal(&app.db, vessel, compass).await?;
+    let (refusal, left_out) = missing::find_refusal(&app.db, vessel, compass).await?;
     Err(NoModel {
         refusal,
         left_out,

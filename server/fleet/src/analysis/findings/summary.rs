@@ -1,8 +1,8 @@
 //! Summary of one compass's analysis.
 
 use super::change_findings::{FoundChange, found_changes};
-use crate::analysis::left_out::LeftOut;
 use crate::deviation::{self, Worst};
+use crate::models::LeftOut;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{Analysis, Epoch, FitError, LastPlace, SampleDiagnostic};
