@@ -1,7 +1,7 @@
 //! Words in which a change of an alert is announced: a letter, a webhook's message, a notice.
 
 use super::alert::Alert;
-use super::publish::AlertChange;
+use super::change::AlertChange;
 use binnacle_platform::ids::OperatorId;
 use binnacle_platform::mail::{Announcement, Letter, header, one_line, wrapped};
 use binnacle_platform::notices::{self, Notice, NoticesPublished};

@@ -1,7 +1,8 @@
 //! HTTP API of alerts.
 
 use super::alert::{Alert, State};
-use super::publish::{PendingChange, publish_changes};
+use super::change::PendingChange;
+use super::publish::publish_changes;
 use super::schema::{Acknowledgement, AlertList, Clearing, Filter};
 use super::store::{self, Remark};
 use axum::extract::{FromRef, State as Shared};

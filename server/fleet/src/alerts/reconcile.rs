@@ -8,9 +8,10 @@
 
 use super::alert::{KnownAlert, State};
 use super::causes::Source;
+use super::change::PendingChange;
 use super::clearing::{FOLLOWED, OUT_OF_SERVICE, OVER};
 use super::desired::DesiredAlert;
-use super::publish::{PendingChange, publish_changes};
+use super::publish::publish_changes;
 use super::store;
 use crate::{compasses, vessels};
 use binnacle_platform::db::Tx;

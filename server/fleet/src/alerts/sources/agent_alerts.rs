@@ -8,8 +8,9 @@
 
 use crate::adjustments;
 use crate::alerts::causes::{AgentReports, Facts, Source, evaluate};
+use crate::alerts::change::PendingChange;
 use crate::alerts::clearing::{ADJUSTED, NOT_JUDGED, OVER};
-use crate::alerts::publish::{PendingChange, publish_changes};
+use crate::alerts::publish::publish_changes;
 use crate::alerts::reconcile::reconcile;
 use crate::alerts::store;
 use binnacle_compass::time::Timestamp;
