@@ -15,6 +15,7 @@ pub mod operators;
 pub mod overview;
 pub mod particulars;
 pub mod settings;
+pub mod vessel_api;
 pub mod vessels;
 
 pub mod agent_auth;

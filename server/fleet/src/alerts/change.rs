@@ -18,7 +18,7 @@ pub(super) struct PendingChange {
 
 /// A change of an alert, with the alert as it is now.
 #[derive(Clone, Debug)]
-pub struct AlertChange {
+pub(super) struct AlertChange {
     /// The event's id.
     pub id: DeliveryId,
     /// Kind of change.

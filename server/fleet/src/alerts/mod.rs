@@ -33,7 +33,6 @@ pub use alert::{Alert, Evidence, State};
 pub use api::router;
 pub use cause::Cause;
 pub use causes::{Effect, JobAtRisk, UnconfirmedAdjustment};
-pub use change::AlertChange;
 pub use reconcile::end_all;
 pub use sources::{
     check_duplicate_agent, check_silence, check_timed, end_duplicate_agent, reconcile_analysis,

@@ -1,6 +1,6 @@
 //! A vessel goes out of service, or comes back.
 
-use super::store::{Row, set_out_of_service};
+use crate::vessels::{VesselRow, set_out_of_service};
 use crate::{alerts, analysis_queue};
 use binnacle_platform::db::{DomainEvent, Tx};
 use binnacle_platform::error::Result;
@@ -31,7 +31,7 @@ impl DomainEvent for ServiceChanged {}
 pub(super) async fn set(
     tx: &mut Tx,
     operator: OperatorId,
-    vessel: &Row,
+    vessel: &VesselRow,
     in_service: bool,
     now: Time,
 ) -> Result<Vec<Event>> {
