@@ -66,7 +66,7 @@ pub async fn completed(
 }
 
 /// Returns the version of the model that an order's adjustment was predicted from, by its record.
-pub async fn foretold_from(db: &Db, vessel: VesselId, order: OrderId) -> Result<Option<i64>> {
+pub async fn predicted_from(db: &Db, vessel: VesselId, order: OrderId) -> Result<Option<i64>> {
     let found = row!(
         db,
         (Option<String>,),

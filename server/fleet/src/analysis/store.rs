@@ -176,12 +176,12 @@ pub async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>
     let analysis = &found.analysis;
     let withdrawn_before = models::withdrawn(tx, found.vessel_id, found.compass_id).await?;
     // The prediction of an adjustment holds from its moment on, and through its epoch.
-    let foretold = models::foretold(tx, found.vessel_id, found.compass_id).await?;
-    let foretold = foretold.filter(|model| {
+    let predicted = models::predicted(tx, found.vessel_id, found.compass_id).await?;
+    let predicted = predicted.filter(|model| {
         let from = analysis.current_epoch().and_then(|epoch| epoch.from);
         from.map(Time) <= model.epoch_from
     });
-    let withdrawn = match foretold {
+    let withdrawn = match predicted {
         Some(_) => None,
         None => withdrawal(analysis)?,
     };
@@ -215,9 +215,9 @@ pub async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>
     store_disturbances(tx, vessel, compass, &found.findings, now).await?;
     let next = next_model(found, now)?;
     let next = next.filter(|next| {
-        foretold.is_none_or(|known| {
+        predicted.is_none_or(|known| {
             // A model of the vessel before the adjustment says nothing about it now.
-            next.epoch_from >= known.epoch_from && next.knows_more_than(&known)
+            next.epoch_from >= known.epoch_from && next.replaces_prediction(&known)
         })
     });
     let Some(model) = next else {

@@ -53,7 +53,8 @@ struct BinnacleInShort {
     serial: String,
     /// All correctors on board, those in use included.
     #[schema(value_type = AboardSchema)]
-    aboard: Inventory,
+    #[serde(rename = "aboard")]
+    inventory: Inventory,
     /// Number of measured effects.
     measured_effects: usize,
     /// Counts from 1.
@@ -119,7 +120,7 @@ impl BinnacleInShort {
             maker: binnacle.design.maker.clone(),
             model: binnacle.design.model.clone(),
             serial: binnacle.serial.clone(),
-            aboard: binnacle.inventory.clone(),
+            inventory: binnacle.inventory.clone(),
             measured_effects: binnacle.calibration.len(),
             revision: written.revision,
             at: written.at,

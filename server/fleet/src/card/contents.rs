@@ -16,7 +16,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 /// Returns the statement of a card whose prediction no headings at sea have verified.
-pub(super) fn foretold(adjusted_at: Time, order: OrderId) -> String {
+pub(super) fn predicted_at_berth(adjusted_at: Time, order: OrderId) -> String {
     format!(
         "Foretold when the compass was adjusted at the berth on {} by work order {order}: \
          headings at sea have not verified it. Not a certificate of adjustment: no adjuster has \
@@ -81,7 +81,7 @@ pub struct Card {
     #[schema(required)]
     pub correctors: Option<Correctors>,
     /// Magnetic cargo on board at that date, by the logbook.
-    pub cargo: Vec<CargoAboard>,
+    pub cargo: Vec<MagneticCargo>,
     /// State of the degaussing coils, as recorded of the vessel.
     #[schema(required, example = "no coils fitted")]
     pub degaussing: Option<String>,
@@ -264,7 +264,8 @@ pub struct Correctors {
 
 /// Magnetic cargo on board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
-pub struct CargoAboard {
+#[schema(as = CargoAboard)]
+pub struct MagneticCargo {
     /// Time from which it is on board.
     pub since: Time,
     /// Its kind: `steel`, `scrap`, `containers` or `other`; none where the logbook does not say.

@@ -4,8 +4,8 @@
 //! is asked for. The time of asking only decides whether the model is too old.
 
 use super::contents::{
-    AdjustedBy, Card, CardRow, CargoAboard, Coefficients, Correctors, NotRecorded, PREDICTED,
-    Place, Ship, Source, Status, VerifiedAtSea, foretold, verified,
+    AdjustedBy, Card, CardRow, Coefficients, Correctors, MagneticCargo, NotRecorded, PREDICTED,
+    Place, Ship, Source, Status, VerifiedAtSea, predicted_at_berth, verified,
 };
 use super::due::{self, next_due};
 use super::observed::{Observed, STEP_DEG};
@@ -91,7 +91,7 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
         status: verified_by.map_or(Status::Predicted, |_| Status::Verified),
         statement: match (&verified_by, unverified, model.foretold_by) {
             (Some(by), _, _) => verified(by),
-            (None, Some(order), Some(_)) => foretold(order.at, order.order),
+            (None, Some(order), Some(_)) => predicted_at_berth(order.at, order.order),
             (None, _, _) => PREDICTED.to_owned(),
         },
         verified: verified_by,
@@ -249,8 +249,8 @@ fn correctors(found: &Revised) -> Correctors {
     }
 }
 
-fn cargo_at(logbook: &[LogbookEntry], at: Time) -> Vec<CargoAboard> {
-    let aboard = logbook.iter().filter(|entry| {
+fn cargo_at(logbook: &[LogbookEntry], at: Time) -> Vec<MagneticCargo> {
+    let on_board = logbook.iter().filter(|entry| {
         entry.kind == LogbookKind::MagneticCargo
             && entry.from <= at.0
             && entry.to.is_none_or(|to| to >= at.0)
@@ -259,8 +259,8 @@ fn cargo_at(logbook: &[LogbookEntry], at: Time) -> Vec<CargoAboard> {
         let cargo = serde_json::to_value(entry.cargo?).ok()?;
         cargo.as_str().map(str::to_owned)
     };
-    aboard
-        .map(|entry| CargoAboard {
+    on_board
+        .map(|entry| MagneticCargo {
             since: Time(entry.from),
             cargo: words(entry),
         })
@@ -273,7 +273,7 @@ fn last(logbook: &[LogbookEntry], kind: LogbookKind, at: Time) -> Option<Time> {
     before.filter(|time| *time <= at).max()
 }
 
-fn notes(model: &StoredModel, alerts: &[OpenAlert], cargo: &[CargoAboard]) -> Vec<String> {
+fn notes(model: &StoredModel, alerts: &[OpenAlert], cargo: &[MagneticCargo]) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(replaced) = model.replaces() {
         notes.push(sentence(&replaced.of_older_cards()));

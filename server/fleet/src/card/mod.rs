@@ -228,7 +228,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
 /// those of the model before the adjustment.
 async fn data_of(app: &App, model: &StoredModel) -> Result<(Time, Time)> {
     let from = match model.foretold_by {
-        Some(order) => adjustments::foretold_from(&app.db, model.vessel_id, order).await?,
+        Some(order) => adjustments::predicted_from(&app.db, model.vessel_id, order).await?,
         None => None,
     };
     let behind = match from {

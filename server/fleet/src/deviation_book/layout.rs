@@ -161,13 +161,13 @@ fn remarks(entry: &Entry) -> String {
         Some(card::Status::Verified) => "card verified",
         Some(card::Status::Predicted) | None => "",
     };
-    let doubt = entry.reason.map_or("", doubt);
-    let all = [occasion, doubt, card].into_iter();
+    let reason = entry.reason.map_or("", reason_in_words);
+    let all = [occasion, reason, card].into_iter();
     let said = all.filter(|words| !words.is_empty());
     said.collect::<Vec<_>>().join("; ")
 }
 
-fn doubt(reason: SampleReason) -> &'static str {
+fn reason_in_words(reason: SampleReason) -> &'static str {
     match reason {
         SampleReason::NoReference => "no reference",
         SampleReason::ReferenceFailed => "reference failed",

@@ -90,13 +90,14 @@ pub struct AgentStream {
     pub last_week: LinkWeek,
     /// State on board as the agent last reported it with a batch; none before.
     #[schema(required)]
-    pub aboard: Option<Aboard>,
+    #[serde(rename = "aboard")]
+    pub on_board: Option<BoardStatus>,
 }
 
 /// State of an agent's spool and budget, reported with a batch.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[schema(as = AgentAboard)]
-pub struct Aboard {
+pub struct BoardStatus {
     /// Batches that waited on board besides the one that was sent.
     pub batches_waiting: i64,
     /// Rest of the link's budget where that is less than a day's, in hundredths of a day's,
@@ -113,7 +114,8 @@ pub struct LinkWeek {
     /// Batches that came.
     pub batches: i64,
     /// Bytes in them, without the overhead of the protocols below.
-    pub octets: i64,
+    #[serde(rename = "octets")]
+    pub bytes: i64,
     /// Longest delay of the latest sample of a batch, seconds: time for which it waited for the
     /// link. None without samples.
     #[schema(required)]

@@ -1,6 +1,6 @@
 //! Codes, agents and their streams in the database.
 
-use super::{Aboard, AgentStream, LinkWeek};
+use super::{AgentStream, BoardStatus, LinkWeek};
 use crate::agent_auth::Agent;
 use crate::alerts;
 use crate::compasses::Compass;
@@ -194,7 +194,7 @@ pub(super) struct StreamRow {
     samples: i64,
     tally: String,
     week_batches: i64,
-    week_octets: i64,
+    week_bytes: i64,
     week_wait: Option<i64>,
     batches_waiting: Option<i64>,
     budget_left_percent: Option<i64>,
@@ -203,9 +203,9 @@ pub(super) struct StreamRow {
 
 impl StreamRow {
     pub(super) fn read(self) -> error::Result<AgentStream> {
-        let aboard = self.batches_waiting.zip(self.aboard_at);
+        let on_board = self.batches_waiting.zip(self.aboard_at);
         Ok(AgentStream {
-            aboard: aboard.map(|(batches_waiting, at)| Aboard {
+            on_board: on_board.map(|(batches_waiting, at)| BoardStatus {
                 batches_waiting,
                 budget_left_percent: self.budget_left_percent,
                 at,
@@ -224,7 +224,7 @@ impl StreamRow {
             samples: self.samples,
             last_week: LinkWeek {
                 batches: self.week_batches,
-                octets: self.week_octets,
+                bytes: self.week_bytes,
                 longest_wait_s: self.week_wait.map(|micros| micros.max(0) / 1_000_000),
             },
         })
@@ -243,12 +243,12 @@ pub(super) async fn list_streams(
         StreamRow,
         "SELECT s.id AS stream, s.agent_id, a.revoked_at, s.compass_id, c.name AS compass_name, a.agent_version,
                 s.opened_at, s.last_upload_at, s.contiguous_seq, s.batches, s.samples, s.tally,
-                COALESCE(w.batches, 0) AS week_batches, COALESCE(w.octets, 0) AS week_octets,
+                COALESCE(w.batches, 0) AS week_batches, COALESCE(w.bytes, 0) AS week_bytes,
                 w.wait AS week_wait, s.batches_waiting, s.budget_left_percent, s.aboard_at
          FROM streams s
          JOIN compasses c ON c.vessel_id = s.vessel_id AND c.id = s.compass_id
          JOIN agents a ON a.vessel_id = s.vessel_id AND a.id = s.agent_id
-         LEFT JOIN (SELECT stream, COUNT(*) AS batches, SUM(LENGTH(bytes)) AS octets,
+         LEFT JOIN (SELECT stream, COUNT(*) AS batches, SUM(LENGTH(bytes)) AS bytes,
                            MAX(received_at - last_sample_at) AS wait
                     FROM batches WHERE vessel_id = $1 AND received_at > $3
                     GROUP BY stream) w ON w.stream = s.id

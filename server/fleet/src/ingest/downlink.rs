@@ -161,5 +161,5 @@ async fn should_send(app: &App, model: &StoredModel, card: Option<&str>) -> Resu
     }
     let known = models::lately(&app.db, model.vessel_id, model.compass_id).await?;
     let known = known.iter().find(|known| card == card_tag(known.id.0));
-    Ok(known.is_none_or(|known| model.matters_after(known)))
+    Ok(known.is_none_or(|known| model.is_update_of(known)))
 }

@@ -108,7 +108,8 @@ async fn put_batch(
     };
     let taken = take(&mut tx, agent, &batch, &bytes, now, delay_s).await?;
     if let Some(waits) = has.waits.or(has.wait.map(|_| 0)) {
-        store::note_aboard(&mut tx, agent.vessel_id, stream, (waits, has.budget), now).await?;
+        store::record_board_status(&mut tx, agent.vessel_id, stream, waits, has.budget, now)
+            .await?;
     }
     tx.commit().await?;
     for event in taken.events_out {

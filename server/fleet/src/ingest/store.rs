@@ -87,12 +87,13 @@ pub(super) async fn insert(
     Ok(true)
 }
 
-/// Keeps how it is on board: batches that wait, and what is left of the budget.
-pub(super) async fn note_aboard(
+/// Records the agent's state on board: batches that wait, and the rest of the budget.
+pub(super) async fn record_board_status(
     tx: &mut Tx,
     vessel: VesselId,
     stream: Uuid,
-    (waits, budget): (u32, Option<i32>),
+    waits: u32,
+    budget_percent: Option<i32>,
     now: Time,
 ) -> DbResult<()> {
     execute!(
@@ -103,7 +104,7 @@ pub(super) async fn note_aboard(
         vessel,
         stream,
         i64::from(waits),
-        budget.map(i64::from),
+        budget_percent.map(i64::from),
         now
     )?;
     Ok(())

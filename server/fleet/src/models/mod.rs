@@ -15,8 +15,8 @@ pub use schema::{
     CardWithdrawnSchema, IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema,
 };
 pub use store::{
-    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, foretold, in_force,
-    insert, lately, of_version, withdrawn,
+    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, in_force, insert,
+    lately, of_version, predicted, withdrawn,
 };
 
 use crate::compasses::{self, WhichCompass};

@@ -209,7 +209,7 @@ fn read_withdrawn((since, reason): (Option<Time>, Option<String>)) -> Option<Car
 
 /// Returns the compass's highest model if an adjustment predicted it and no heading at sea
 /// contradicts it.
-pub async fn foretold(
+pub async fn predicted(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,

@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_has_no_more_dots_than_can_be_told_apart() {
+    fn a_picture_has_no_more_dots_than_the_eye_distinguishes() {
         let many: Vec<SampleDiagnostic> = (0..3_000)
             .map(|i| sample(600.0 * f64::from(i), Some(0.1), true))
             .collect();

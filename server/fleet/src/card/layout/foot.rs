@@ -3,7 +3,7 @@
 
 use super::{GREY, LEFT, RIGHT, UNKNOWN, draw_labelled, known};
 use crate::binnacles::in_words;
-use crate::card::contents::{Card, CargoAboard};
+use crate::card::contents::{Card, MagneticCargo};
 use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_drawing::words::signed;
 use binnacle_drawing::{A4, Face, MARGIN, Sheet, Style, wrap};
@@ -116,8 +116,8 @@ fn next_due(card: &Card) -> String {
     format!("{}: {}{flags}", due.on, due.reason)
 }
 
-fn cargo(aboard: &[CargoAboard]) -> String {
-    let words: Vec<String> = aboard
+fn cargo(on_board: &[MagneticCargo]) -> String {
+    let words: Vec<String> = on_board
         .iter()
         .map(|cargo| {
             let what = cargo.cargo.as_deref().unwrap_or("of a kind not said");

@@ -32,9 +32,9 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card) -> f32 {
 
 /// Draws the card's status, so that nobody can overlook it.
 fn mark(sheet: &mut Sheet, card: &Card) {
-    let foretold = card.model.foretold_by.and(card.unverified_order);
+    let predicted_by = card.model.foretold_by.and(card.unverified_order);
     let (word, why) = match &card.verified {
-        None if foretold.is_some() => (
+        None if predicted_by.is_some() => (
             "PREDICTED",
             "foretold from an adjustment at the berth; not verified at sea".to_owned(),
         ),
