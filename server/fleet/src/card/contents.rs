@@ -18,9 +18,8 @@ use utoipa::ToSchema;
 /// Returns the statement of a card whose prediction no headings at sea have verified.
 pub(super) fn predicted_at_berth(adjusted_at: Time, order: OrderId) -> String {
     format!(
-        "Foretold when the compass was adjusted at the berth on {} by work order {order}: \
-         headings at sea have not verified it. Not a certificate of adjustment: no adjuster has \
-         signed it.",
+        "Predicted from the adjustment at the berth on {} by work order {order}. Not yet \
+         verified by headings at sea. Not a certificate of adjustment: no adjuster has signed it.",
         adjusted_at.day()
     )
 }
@@ -32,9 +31,9 @@ pub(super) const PREDICTED: &str = "Predicted from observations under way by a m
 /// Returns the statement of a verified card: its verification, and that it is no certificate.
 pub(super) fn verified(by: &VerifiedAtSea) -> String {
     format!(
-        "Verified at sea: {} headings up to {} agree, to {:.1} degrees, with what was foretold \
-         when the compass was adjusted on {} by work order {}. Not a certificate of adjustment: \
-         no adjuster has signed it.",
+        "Verified at sea: {} headings up to {} agree to {:.1} degrees with the prediction of the \
+         adjustment on {} by work order {}. Not a certificate of adjustment: no adjuster has \
+         signed it.",
         by.headings,
         by.until.to_the_minute(),
         by.rms_deg,

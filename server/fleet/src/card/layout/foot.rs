@@ -203,7 +203,7 @@ fn source(sheet: &mut Sheet, card: &Card) {
     let lines = if let Some(order) = model.foretold_by {
         [
             format!(
-                "{made}: foretold by work order {order} from {} samples of {} to {}.",
+                "{made}: predicted by work order {order} from {} samples of {} to {}.",
                 model.samples_used,
                 model.data_from.day(),
                 model.data_until.day()

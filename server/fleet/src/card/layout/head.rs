@@ -36,7 +36,7 @@ fn mark(sheet: &mut Sheet, card: &Card) {
     let (word, why) = match &card.verified {
         None if predicted_by.is_some() => (
             "PREDICTED",
-            "foretold from an adjustment at the berth; not verified at sea".to_owned(),
+            "predicted from an adjustment at the berth; not verified at sea".to_owned(),
         ),
         None => (
             "PREDICTED",
@@ -45,7 +45,7 @@ fn mark(sheet: &mut Sheet, card: &Card) {
         Some(by) => (
             "VERIFIED AT SEA",
             format!(
-                "{} headings to {} agree with what was foretold",
+                "{} headings to {} agree with the prediction",
                 by.headings,
                 by.until.day()
             ),
