@@ -249,7 +249,7 @@ impl Query {
         if let Some(from) = model.epoch_from.filter(|from| at < *from) {
             return Err(Error::Invalid {
                 field: "at",
-                detail: format!("the model holds from {} on, not before", from.0),
+                detail: format!("the model is valid only from {} on", from.0),
             });
         }
         Ok(at)

@@ -175,7 +175,7 @@ impl Range {
         if from.zip(to).is_some_and(|(from, to)| to < from) {
             return Err(Error::Invalid {
                 field: "to",
-                detail: "it is before from".to_owned(),
+                detail: "is earlier than from".to_owned(),
             });
         }
         let wanted = Wanted {

@@ -312,7 +312,7 @@ async fn replace_token(
     if !secret::is_vessel_token(&new.token, agent.vessel_id.0) {
         return Err(Error::Invalid {
             field: "token",
-            detail: "is not one that was made for this agent".to_owned(),
+            detail: "was not made for this agent".to_owned(),
         });
     }
     store::replace_token(&request, agent, &new.token).await?;

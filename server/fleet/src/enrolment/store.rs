@@ -76,7 +76,7 @@ pub(super) async fn enrol(
     .ok_or(Error::NotFound("enrolment code"))?;
     if found.expires_at <= now {
         return Err(Error::Gone(
-            "this enrolment code has expired: have a new one made ashore",
+            "this enrolment code has expired: ask the operator for a new one",
         ));
     }
     // Of two that come at once, the database lets one through.
@@ -88,7 +88,7 @@ pub(super) async fn enrol(
     )?;
     if used == 0 {
         return Err(Error::Gone(
-            "this enrolment code was used before: have a new one made ashore",
+            "this enrolment code has been used before: ask the operator for a new one",
         ));
     }
     let token = secret::new_vessel_token(found.vessel_id.0);

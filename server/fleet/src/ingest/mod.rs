@@ -189,7 +189,7 @@ fn read(bytes: &[u8], stream: StreamId, seq: u64) -> Result<Batch> {
     if batch.stream != stream {
         return Err(Error::Invalid {
             field: "stream",
-            detail: format!("the frame is of stream {}", batch.stream),
+            detail: format!("the frame belongs to stream {}", batch.stream),
         });
     }
     if batch.seq >= SEQ_END {
@@ -201,7 +201,7 @@ fn read(bytes: &[u8], stream: StreamId, seq: u64) -> Result<Batch> {
     if batch.seq != seq {
         return Err(Error::Invalid {
             field: "seq",
-            detail: format!("the frame is number {}", batch.seq),
+            detail: format!("the frame has number {}", batch.seq),
         });
     }
     Ok(batch)

@@ -186,7 +186,7 @@ impl NewEntry {
         if self.compass_id.is_some() && !may_name_a_compass(report.kind) {
             return Err(Error::Invalid {
                 field: "compass_id",
-                detail: "what is reported concerns the whole ship".to_owned(),
+                detail: "an entry of this kind concerns the whole vessel".to_owned(),
             });
         }
         Ok(NewEntry { report, ..self })

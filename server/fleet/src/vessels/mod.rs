@@ -60,7 +60,9 @@ impl NewVessel {
         {
             return Err(Error::Invalid {
                 field: "imo_number",
-                detail: format!("{number} is not an IMO number: seven digits, the last a check"),
+                detail: format!(
+                    "{number} is not an IMO number: seven digits, the last one a check digit"
+                ),
             });
         }
         Ok(NewVessel {

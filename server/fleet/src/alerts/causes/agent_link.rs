@@ -12,7 +12,7 @@ const SHOWN_FOR_S: f64 = 7.0 * 86_400.0;
 /// No upload for the days of the vessel's limit.
 pub(super) const SILENT_AGENT: CauseRow = CauseRow {
     cause: Cause::SilentAgent,
-    title: "no word from the vessel",
+    title: "no data from the vessel",
     finders: &[Finder::Clock(silent)],
     severity: |_| Severity::Notice,
     advice: |_| {
