@@ -1,4 +1,4 @@
-//! The fleet: operators, vessels, compasses, their samples, models, alerts and documents.
+//! Fleet: operators, vessels, compasses, their samples, models, alerts and documents.
 
 #![allow(
     clippy::missing_errors_doc,

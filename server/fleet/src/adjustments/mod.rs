@@ -1,8 +1,7 @@
-//! Completed adjustments of a compass: by whom, and whether headings at sea confirm them.
+//! Completed adjustments of a compass: adjuster, firm, and verification by headings at sea.
 //!
-//! What always holds: an adjustment bears on the model that it predicted and on what was
-//! fitted later to the epoch that it began, and on no other. Work orders write these rows;
-//! they are only read here.
+//! Invariants: an adjustment applies to the model that it predicted, to later fits of the epoch
+//! that it began, and to no other. Work orders write these rows; this crate only reads them.
 
 use crate::models::StoredModel;
 use binnacle_adjustment::adjust::Verification;

@@ -1,4 +1,4 @@
-//! Words in which a change of an alert is announced: a letter, a webhook's message, a notice.
+//! Text of an announced alert: letter, webhook message and notice.
 
 use super::alert::Alert;
 use super::change::AlertChange;

@@ -1,4 +1,4 @@
-//! Reasons that an alert gives for clearing itself.
+//! Reasons for which an alert clears itself.
 
 /// The cause is over.
 pub(super) const OVER: &str = "it is over";

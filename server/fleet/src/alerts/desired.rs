@@ -1,4 +1,4 @@
-//! Alerts that ought to be open, whatever is stored.
+//! Alerts that ought to be open, before they are compared with stored ones.
 
 use super::alert::{Evidence, KnownAlert};
 use super::cause::Cause;

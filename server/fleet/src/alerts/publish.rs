@@ -1,4 +1,4 @@
-//! Publication of changed alerts: to dashboards, webhooks, mail and notifications.
+//! Publication of changed alerts to dashboards, webhooks, mail and notifications.
 //!
 //! Invariant: it is part of the transaction that changes the alert.
 

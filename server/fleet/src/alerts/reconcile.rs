@@ -1,10 +1,10 @@
-//! Reconciliation of a compass's stored alerts with those that ought to be open.
+//! Reconciliation of a compass's stored alerts with the desired ones.
 //!
 //! Invariants:
 //!
-//! - Whoever changes a compass's alerts holds its lock until the transaction ends.
-//! - An alert is about one event. Another event of its cause is another alert, whatever people
-//!   said of the first.
+//! - A transaction that changes a compass's alerts holds their lock until it ends.
+//! - An alert is about one event. Another event of its cause is another alert, whatever remarks the
+//!   first one has.
 
 use super::alert::{KnownAlert, State};
 use super::causes::Source;

@@ -1,12 +1,12 @@
-//! Passing disturbances, compared across the ships of all fleets.
+//! Transient disturbances, compared across the ships of all fleets.
 //!
 //! Invariants:
 //!
-//! - The findings of a ship's own analysis are stored as they are. They are compared with those
-//!   of other ships when they are read.
-//! - Of another ship nothing is revealed but its presence.
-//! - A new disturbance queues the analyses of the ships disturbed at the same time. That changes
-//!   their alerts alone.
+//! - The findings of a ship's own analysis are stored unchanged. They are compared with those of
+//!   other ships when they are read.
+//! - Nothing is revealed of another ship but its presence.
+//! - A new disturbance enqueues the analyses of the ships disturbed at the same time. That changes
+//!   only their alerts.
 
 use super::findings::{Findings, FoundChange};
 use crate::analysis_queue;

@@ -1,8 +1,7 @@
 //! Recent places of a ship, as few as a map of the fleet shows.
 //!
-//! What always holds: a track depends on the samples alone, not on how they came. It
-//! has one place for each twelve hours in which there were samples, the last one there,
-//! of the month before the last sample.
+//! Invariant: a track depends on the samples alone, not on the order of their arrival. It has the
+//! last place of each twelve hours with samples, over the month before the last sample.
 
 use binnacle_compass::result::SampleDiagnostic;
 use serde::{Deserialize, Serialize};

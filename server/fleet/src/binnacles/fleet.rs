@@ -1,4 +1,4 @@
-//! The binnacles of a fleet, in a line each: who stands in what, and where none is entered.
+//! List of the binnacles of a fleet, one line for each compass, also without a binnacle.
 
 use super::schema::AboardSchema;
 use super::store;

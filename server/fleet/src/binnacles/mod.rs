@@ -1,9 +1,11 @@
-//! Binnacles: the designs that come with the product, and the one that each compass
-//! stands in, with the correctors on board and how they stand.
+//! Binnacles: built-in designs, and the binnacle of each compass with its correctors and their
+//! setting.
 //!
-//! What always holds: a binnacle that is stored was checked whole, and no revision of
-//! one is ever changed or lost. What is sent in and what is given out are the same form
-//! (docs/binnacle.md), which `plan --binnacle` reads too.
+//! Invariants:
+//!
+//! - A stored binnacle has been checked as a whole. No revision of one is ever changed or deleted.
+//! - Requests and responses have the same form (docs/binnacle.md), which `plan --binnacle` reads
+//!   too.
 
 mod design_schema;
 mod fleet;

@@ -1,4 +1,4 @@
-//! The designs that come with the product.
+//! Designs of binnacles that are built into the product.
 
 use super::schema::DesignSchema;
 use anyhow::Context;

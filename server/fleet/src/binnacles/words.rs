@@ -1,4 +1,4 @@
-//! Text that describes the setting of a binnacle's correctors.
+//! Description of a binnacle's corrector setting as text.
 
 use binnacle_adjustment::binnacle::{Red, Setting, Shape, Side, Tray};
 

@@ -1,7 +1,7 @@
-//! From a model to a card, or to the reason why there is none.
+//! Construction of a card from a model, or its refusal.
 //!
-//! What always holds: a card is a function of what is stored and of where and when it
-//! is asked for. The time of asking only decides whether the model is too old.
+//! Invariant: a card is a function of the stored records and of the requested place and time. The
+//! time of the request only decides whether the model is too old.
 
 use super::contents::{
     AdjustedBy, Card, CardRow, Coefficients, Correctors, MagneticCargo, NotRecorded, PREDICTED,

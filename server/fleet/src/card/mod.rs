@@ -1,13 +1,11 @@
-//! Deviation cards: what a compass's model says on each heading at a place, with all
-//! that belongs on a card, as PDF, SVG, CSV and JSON.
+//! Deviation cards: a model's deviation on each heading at a place, as PDF, SVG, CSV and JSON.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - A card says whether it is predicted, or verified by headings at sea, and that it is
-//!   no certificate; what nobody has recorded is said to be so, or left blank for a
-//!   person's pen.
+//! - A card states whether it is predicted or verified by headings at sea, and that it is not a
+//!   certificate. Facts that nobody has recorded are marked so, or left blank for a person's pen.
 //! - Each compass has a card of its own.
-//! - Where a card would mislead, there is none: the answer says why.
+//! - A card that would mislead is refused, with the reason.
 //! - The same model, place and date make the same card, to the byte.
 
 mod contents;

@@ -1,4 +1,4 @@
-//! A change of what is written of a compass.
+//! Amendment of a compass's record.
 
 use super::{Compass, Role};
 use binnacle_platform::error::Result;

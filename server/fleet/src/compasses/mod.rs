@@ -1,4 +1,4 @@
-//! A vessel's compasses.
+//! Compasses of a vessel: the record of each magnetic element.
 
 mod amendment;
 mod store;

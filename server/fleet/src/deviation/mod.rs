@@ -1,4 +1,4 @@
-//! Predictions of a model on every heading at one place.
+//! Deviation that a model predicts on every heading at one place.
 
 use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::deviation::CoefficientsInDegrees;

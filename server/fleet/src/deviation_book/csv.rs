@@ -1,4 +1,4 @@
-//! A book as CSV.
+//! Deviation book as CSV.
 
 use super::entry::Entry;
 use binnacle_platform::error::{Error, Result};

@@ -1,4 +1,4 @@
-//! An entry of a deviation book: what was observed, beside what the card said.
+//! Entry of a deviation book: an observed deviation, beside the card's.
 
 use super::select::{Occasion, choose};
 use crate::adjustments::CompletedOrder;

@@ -1,4 +1,4 @@
-//! A book on sheets of A4, lying.
+//! Layout of a deviation book on sheets of A4 in landscape.
 
 use super::entry::{Entry, Reference};
 use super::select::Occasion;

@@ -1,9 +1,10 @@
-//! The compass deviation book: compass errors as they were observed under way, one in
-//! each watch and one after each large alteration of course, beside what the card of
-//! the time said.
+//! Compass deviation book: compass errors observed under way, beside the card of that time.
 //!
-//! What always holds: the book is what the samples say, and has no entry that nobody
-//! observed; a card counts only for what was observed after it was made.
+//! Invariants:
+//!
+//! - Every entry is an observation: one in each watch, and one after each large alteration of
+//!   course.
+//! - A card counts only for observations after it was made.
 
 mod csv;
 mod entry;

@@ -1,4 +1,4 @@
-//! A book's entries from what is stored, a month of samples at a time.
+//! Reader of a book's entries, one month of stored samples at a time.
 
 use super::entry::{Ends, Entry, entries};
 use crate::adjustments::{self, CompletedOrder};

@@ -1,8 +1,10 @@
-//! Batches that came as short-burst messages, over whatever gateway.
+//! Import of batches that arrived as short-burst messages, through any gateway.
 //!
-//! They are stored as if the ship had sent them over an ordinary link, each frame in a
-//! transaction of its own: the same messages again, or the same batch over both links,
-//! change nothing. A message that cannot be read keeps no other back.
+//! Invariants:
+//!
+//! - They are stored like batches over an ordinary link, each frame in its own transaction.
+//!   Repeated messages, or the same batch over both links, change nothing.
+//! - An unreadable message does not hold back any other.
 
 use super::take;
 use crate::agent_auth::Agent;

@@ -1,4 +1,4 @@
-//! Downlink: the acknowledgement and everything that the agent lacks.
+//! Downlink: the acknowledgement, and updates that the agent lacks.
 
 use crate::agent_auth::Agent;
 use crate::models::{self, CardWithdrawnSchema, ModelSchema, StoredModel};

@@ -1,14 +1,13 @@
-//! Ingest: batches in, acknowledgement and downlink out.
+//! Ingest of batches from agents, answered with an acknowledgement and the downlink.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - A batch is acknowledged only when it and the job to analyse it are on disk,
-//!   in one transaction.
-//! - The same batch again changes nothing; other bytes under the same number are
-//!   refused and change nothing.
-//! - An alert of the ship's own is taken in that transaction too, and so is the sign of
-//!   another computer that sends as the same agent.
-//! - `contiguous_seq` covers only batches that are here, all from 1 on.
+//! - A batch is acknowledged only when it and the job to analyse it are on disk, in one
+//!   transaction.
+//! - The same batch again changes nothing. Other bytes under the same number are refused.
+//! - The same transaction records the agent's own alerts, and signs of a second computer that runs
+//!   as the same agent.
+//! - `contiguous_seq` covers only batches that are stored, all from 1 on.
 //! - An agent reaches its own streams and nothing else.
 
 mod bursts;

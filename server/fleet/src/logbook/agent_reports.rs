@@ -1,4 +1,4 @@
-//! Reports from on board.
+//! Logbook reports that agents send from on board.
 
 use super::entry::{NewEntry, invalid_report};
 use super::schema::{BoardAnswerSchema, BoardReportSchema};

@@ -1,4 +1,4 @@
-//! A change of an entry: what is left out stays, null takes a value away.
+//! Amendment of an entry. Absent fields stay as they are; null removes a value.
 
 use super::entry::NewEntry;
 use super::schema::{CargoSchema, KindSchema};

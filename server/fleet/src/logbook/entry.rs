@@ -1,4 +1,4 @@
-//! An entry of the logbook, as it is asked for, written and shown.
+//! Entries of the logbook, as requests and responses carry them.
 
 use super::schema::{KindSchema, ReportSchema};
 use binnacle_compass::logbook::{Cargo, LogbookKind};

@@ -1,13 +1,13 @@
-//! The magnetic logbook: what operators and officers report about a vessel.
+//! Magnetic logbook: reports of operators and officers about a vessel.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - An entry is never removed and no revision of it is lost. One that was wrong is
-//!   withdrawn: it stays in its place, marked, and counts no more.
-//! - Each change is stored together with its revision, a job to analyse the vessel
-//!   anew, and an event for the dashboards, in one transaction.
-//! - A report from on board has the id that it was given there: the same again, or
-//!   an older revision that comes late, changes nothing.
+//! - An entry is never deleted, and every revision of it is kept. A wrong entry is withdrawn: it
+//!   stays in its place, marked, and no longer counts.
+//! - One transaction stores a change with its revision, a job to analyse the vessel, and an event
+//!   for the dashboards.
+//! - A report from on board has the id that it was given there. The same report again, or an older
+//!   revision that arrives late, changes nothing.
 
 mod agent_reports;
 mod amendment;

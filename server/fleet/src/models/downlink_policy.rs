@@ -1,5 +1,5 @@
-//! Policy that decides whether an agent gets a newer model: a model costs more bytes than the
-//! samples that it was made from.
+//! Policy that decides whether an agent gets a newer model. A model costs more bytes than the
+//! samples that it was fitted to.
 //!
 //! Invariants: a model of another epoch is sent. So is one whose difference shows on board, or one
 //! three days younger than the agent's.

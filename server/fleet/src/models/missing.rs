@@ -1,4 +1,4 @@
-//! Reason for which a compass has no model, and the withdrawal of its last one.
+//! Reason for which a compass has no model.
 
 use super::left_out::LeftOut;
 use super::refusal::RefusalSchema;

@@ -1,5 +1,7 @@
-//! The models of a vessel's compasses: every version is kept, the highest is current,
-//! but while a change has ended its epoch and no other model has taken its place.
+//! Models of a vessel's compasses.
+//!
+//! Invariants: every version is kept, and the highest is current. A compass has no current model
+//! after a change has ended its epoch, until the next model.
 
 mod downlink_policy;
 mod left_out;

@@ -1,6 +1,6 @@
-//! Companies with a fleet: the tenants that see vessels.
+//! Operators: companies with a fleet, each a tenant.
 //!
-//! What always holds: only a platform admin sees that there are others.
+//! Invariant: only a platform admin sees that there are others.
 
 mod store;
 

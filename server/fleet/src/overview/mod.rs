@@ -1,8 +1,7 @@
-//! The fleet at a glance: every vessel in one answer, for a map and a table side by side.
+//! Overview of a fleet: every vessel in one response, for a map and a table side by side.
 //!
-//! What always holds: it is one operator's whole fleet, or the one vessel of it that was
-//! asked for, in the order in which they were entered. It says nothing that the vessel's
-//! own pages do not say; it says it in few words, because a slow link carries them.
+//! Invariants: it is one operator's whole fleet, or the one vessel requested, in the order of
+//! entry. It repeats facts of the vessels' own pages in short, because a slow link carries them.
 
 mod store;
 

@@ -1,4 +1,4 @@
-//! `/vessels/{id}/particulars`: facts about a vessel that rules on adjusting use.
+//! Particulars of a vessel: facts that the rules on adjusting use.
 //!
 //! Invariant: an unknown fact counts as if it bound the vessel. So no fact is required, and each
 //! known fact can only give more time.

@@ -1,4 +1,4 @@
-//! A compass's samples and what became of each in the last analysis.
+//! Samples of a compass, each with its outcome in the last analysis.
 
 mod coverage;
 mod export;

@@ -1,6 +1,6 @@
-//! A compass's samples as a picture shows them: dots, and means over time.
+//! Summary of a compass's samples for a chart: dots, and means over time.
 //!
-//! What always holds: the means and counts are of all samples; only the dots are picked.
+//! Invariant: means and counts cover all samples; only the dots are a selection.
 
 use binnacle_compass::result::SampleDiagnostic;
 use binnacle_compass::time::Timestamp;

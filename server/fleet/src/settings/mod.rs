@@ -1,8 +1,8 @@
 //! Settings of a vessel: sampling and sending of its agents, analysis of its samples, limits of its
 //! alerts.
 //!
-//! Invariants: a change makes a new version, which agents get with their next downlink, and a new
-//! analysis. Without a row the defaults hold, version 0.
+//! Invariants: a change makes a new version, which agents get with their next downlink, and
+//! enqueues an analysis. Without a row the defaults apply, as version 0.
 
 mod alert_limits;
 mod store;

@@ -1,4 +1,4 @@
-//! A change of what is written of a vessel.
+//! Amendment of a vessel's record.
 
 use crate::vessels::{NewVessel, VesselRow};
 use binnacle_platform::error::Result;

@@ -1,4 +1,4 @@
-//! A vessel goes out of service, or comes back.
+//! Transition of a vessel out of service, or back into it.
 
 use crate::vessels::{VesselRow, set_out_of_service};
 use crate::{alerts, analysis_queue};

@@ -1,4 +1,4 @@
-//! Agents that fall silent, or that two computers send as.
+//! Silent agents, and agents that two computers run.
 
 use super::facts::{Silence, StreamConflict};
 use super::row::{CauseRow, Condition, Effect, Ending, Finder};

@@ -1,7 +1,7 @@
-//! The alert of the ship's own agent: compass and gyro have parted.
+//! Alert that the ship's own agent reports: compass and gyro have parted.
 //!
-//! Invariant: reports that follow each other within [`QUIET_S`] are one alert. It is over when
-//! they have not parted for so long, by the ship's samples or the clock.
+//! Invariant: reports within [`QUIET_S`] of each other are one alert. It is over after that time
+//! without a further report, by the ship's samples or the clock.
 
 use super::facts::AgentReports;
 use super::row::{Case, CauseRow, Condition, Effect, Ending, Finder, Size};

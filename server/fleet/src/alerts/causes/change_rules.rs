@@ -1,11 +1,11 @@
-//! Rules that all causes have in common which the change detector finds.
+//! Rules common to all causes that the change detector finds.
 //!
 //! Invariants:
 //!
-//! - A change of the ship calls for an alert for a week, and longer until the model is as
-//!   certain again as the vessel's limit asks, unless the change is over.
-//! - A disturbance or a reference's fault calls for one while it lasts.
-//! - Work on correctors, compass or ship that the logbook reports calls for none.
+//! - A change of the ship is an alert for a week, and until the model is as certain as the vessel's
+//!   limit requires, unless the change is over.
+//! - A disturbance or a reference's fault is an alert while it lasts.
+//! - Work on correctors, compass or ship that the logbook reports is no alert.
 
 use super::facts::{DetectedChange, Stage};
 use super::hysteresis::hysteresis_deg;

@@ -1,4 +1,4 @@
-//! Facts that the predicates of causes read: one type for each kind of finder.
+//! Facts that the predicates of the table read: one type for each kind of finder.
 
 use super::hysteresis::SLACK_DEG;
 use crate::alerts::alert::KnownAlert;

@@ -1,4 +1,4 @@
-//! Models that are missing, or less certain than the vessel's limit asks.
+//! Models that are missing, or less certain than the vessel's limit requires.
 
 use super::facts::Situation;
 use super::hysteresis::compare;

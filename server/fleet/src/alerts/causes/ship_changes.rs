@@ -1,6 +1,6 @@
 //! Changes of the ship's magnetism, or of the compass's zero.
 //!
-//! Invariant: each lasts until the model has learned it; none is over by itself but cargo.
+//! Invariant: each lasts until the model includes it. Only cargo ends by itself.
 
 use super::change_rules::{advice, by_size, condition};
 use super::facts::Stage;

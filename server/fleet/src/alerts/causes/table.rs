@@ -1,4 +1,4 @@
-//! The table itself.
+//! Rows of all causes, and access to the row of one.
 
 use super::row::{CauseRow, Effect};
 use super::{

@@ -1,4 +1,4 @@
-//! Alerts that an analysis raises and clears, in the transaction that stores it.
+//! Source of alerts: an analysis, in the transaction that stores it.
 
 use super::agent_alerts::reconcile_reports;
 use crate::adjustments;

@@ -1,7 +1,7 @@
-//! Two computers that send as one agent.
+//! Source of alerts: batches of two computers that run as one agent.
 //!
 //! Invariant: an agent that has sent in a new stream sends nothing new in an older one. A batch
-//! there is another computer's, with a copy of the first one's files.
+//! there is from another computer with a copy of the first one's files.
 
 use crate::agent_auth::Agent;
 use crate::alerts::causes::{Facts, Source, StreamConflict, evaluate};

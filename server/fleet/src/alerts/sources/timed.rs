@@ -1,4 +1,4 @@
-//! Alerts that time alone raises and clears.
+//! Source of alerts: time alone.
 
 use super::agent_alerts::reconcile_reports;
 use crate::alerts::causes::{CAUSES, Ending, Facts, Silence, Source, evaluate};

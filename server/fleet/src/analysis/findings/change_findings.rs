@@ -1,11 +1,11 @@
-//! Changes, with their effect where the ship is now.
+//! Changes that an analysis found, with their effect at the ship's present place.
 //!
 //! Invariants:
 //!
 //! - A change that began an epoch, or ended when one began, names it.
-//! - Its size is of the place of the last sample where there are models on both sides of it,
-//!   otherwise of the place where it was found.
-//! - Ships mostly return to the same waters: those of the last weeks stand for those ahead.
+//! - Its size is for the place of the last sample where models exist on both sides of it, otherwise
+//!   for the place where it was found.
+//! - Ships mostly return to the same waters: those of the last weeks stand for those to come.
 
 use binnacle_compass::angle::{CompassHeading, wrap_180};
 use binnacle_compass::logbook::LogbookEntry;

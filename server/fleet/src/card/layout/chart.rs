@@ -1,4 +1,4 @@
-//! The curve beside the table, headings downwards, west to the left.
+//! Curve beside the table, with headings downwards and west to the left.
 
 use super::table::{Lines, line_name};
 use super::{GREY, LINE, RIGHT};

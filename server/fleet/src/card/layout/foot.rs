@@ -1,5 +1,4 @@
-//! The lower part: coefficients, the ship's state, what to know, who signs, and where
-//! it all comes from.
+//! Lower part of the sheet: coefficients, the ship's state, notes, signatures and the source.
 
 use super::{GREY, LEFT, RIGHT, UNKNOWN, draw_labelled, known};
 use crate::binnacles::in_words;

@@ -1,4 +1,4 @@
-//! The upper part: what the sheet is, of which ship and compass, where and when.
+//! Upper part of the sheet: status, ship, compass, place and time.
 
 use super::{LEFT, RIGHT, fact, known};
 use crate::card::contents::Card;

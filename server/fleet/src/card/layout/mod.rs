@@ -1,7 +1,7 @@
-//! A card on a sheet of A4: what stands where.
+//! Layout of a card on a sheet of A4.
 //!
-//! What always holds: table and curve share their lines, so that a heading is read
-//! straight across; all that the card says of itself stands on the one sheet.
+//! Invariants: table and curve share their lines, so that a heading is read straight across. All
+//! statements of the card stand on the one sheet.
 
 mod chart;
 mod foot;

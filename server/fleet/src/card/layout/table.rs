@@ -1,4 +1,4 @@
-//! The table: deviation by compass heading.
+//! Table of deviations by compass heading.
 
 use super::{GREY, LEFT, LINE};
 use crate::card::contents::{Card, CardRow};

@@ -1,4 +1,4 @@
-//! The table of causes, and the alerts that its predicates call for.
+//! Tests of the table of causes, and of the alerts that its predicates raise.
 
 mod agent_reports;
 mod changes;
