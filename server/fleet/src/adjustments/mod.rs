@@ -44,7 +44,7 @@ pub struct AtSea {
     pub rms_deg: f64,
 }
 
-/// The adjustments of a compass that orders brought about, in order of time.
+/// Lists the adjustments of a compass that work orders completed, in order of time.
 pub async fn completed(
     db: &Db,
     vessel: VesselId,
@@ -149,7 +149,7 @@ impl Row {
 }
 
 impl AtSea {
-    /// None of a verdict that is no agreement.
+    /// Returns `None` for a verdict other than agreement.
     fn of(verified_at: Time, verified: &Verdict) -> Option<AtSea> {
         let Verification::Passed {
             headings, rms_deg, ..

@@ -75,7 +75,7 @@ impl Stored {
     }
 }
 
-/// In order of time, each once: a batch sent again in a new stream counts once.
+/// Sorts samples by time and removes repetitions: a batch sent again in a new stream counts once.
 fn distinct(samples: Vec<Sample>) -> anyhow::Result<Vec<Sample>> {
     let mut keyed = Vec::with_capacity(samples.len());
     for sample in samples {
@@ -86,10 +86,10 @@ fn distinct(samples: Vec<Sample>) -> anyhow::Result<Vec<Sample>> {
     Ok(keyed.into_iter().map(|(_, _, sample)| sample).collect())
 }
 
-/// SHA-256 over estimator, settings, logbook and samples, as hexadecimal.
+/// Returns the SHA-256 of estimator, settings, logbook and samples, as hexadecimal.
 ///
 /// # Errors
-/// When they cannot be written as JSON.
+/// Fails when they cannot be written as JSON.
 pub fn input_hash(input: &Input) -> anyhow::Result<String> {
     let mut hash = Sha256::new();
     hash.update(ESTIMATOR);

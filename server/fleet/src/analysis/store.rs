@@ -51,7 +51,7 @@ pub struct Covered {
     pub references: Option<ReferenceCheck>,
 }
 
-/// The input of the compass's last analysis.
+/// Returns the hash of the input of a compass's last analysis.
 pub async fn last_hash(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Option<String>> {
     let found = row!(
         db,
@@ -117,7 +117,7 @@ pub struct Chunk {
     pub to: Time,
 }
 
-/// The rows that [`chunks`] brings, to be read one by one.
+/// Lists the rows that [`chunks`] returns, to be read one by one.
 pub async fn chunks_between(
     db: &Db,
     vessel: VesselId,
@@ -150,7 +150,7 @@ pub async fn chunks_between(
     found.into_iter().map(chunk).collect()
 }
 
-/// The samples of a row as a JSON array; an empty one if it is there no more.
+/// Returns the samples of a row as a JSON array, empty if the row no longer exists.
 pub async fn chunk(db: &Db, vessel: VesselId, compass: CompassId, chunk: &Chunk) -> Result<String> {
     let found = row!(
         db,
@@ -282,7 +282,7 @@ async fn save_diagnostics(tx: &mut Tx, found: &Found) -> Result<()> {
     Ok(())
 }
 
-/// The current epoch's model as a row; none when it was refused.
+/// Returns the current epoch's model as a row, or `None` if it was refused.
 fn next_model(found: &Found, now: Time) -> Result<Option<StoredModel>> {
     let epoch = found.analysis.current_epoch();
     let model = epoch.and_then(|epoch| epoch.model.clone());

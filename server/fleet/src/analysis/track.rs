@@ -23,7 +23,7 @@ impl TryFrom<String> for Track {
     }
 }
 
-/// The track of samples that are in order of time.
+/// Returns the track of samples in order of time.
 pub(super) fn track(samples: &[SampleDiagnostic]) -> Track {
     let step = |sample: &SampleDiagnostic| sample.sample.time.micros().div_euclid(STEP_MICROS);
     let Some(last) = samples.last().map(step) else {
@@ -49,7 +49,7 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    /// A sample every three hours, each a quarter of a degree further east.
+    /// Returns a sample every three hours, each a quarter of a degree further east.
     fn passage(samples: u32) -> Vec<SampleDiagnostic> {
         (0..samples)
             .map(|i| {

@@ -48,7 +48,7 @@ pub struct BinnacleAmended {
 
 impl DomainEvent for BinnacleAmended {}
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -213,7 +213,7 @@ async fn must_be_of_fleet(
     Ok(())
 }
 
-/// Refusal of a binnacle that cannot be.
+/// Returns the refusal of an invalid binnacle.
 #[allow(
     clippy::needless_pass_by_value,
     reason = "it is what map_err hands over"

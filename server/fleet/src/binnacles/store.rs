@@ -49,7 +49,7 @@ impl TryFrom<String> for BinnacleJson {
 }
 
 impl Revised {
-    /// As people see it.
+    /// Returns the revision as the API shows it.
     pub fn shown(self) -> BinnacleRevision {
         BinnacleRevision {
             revision: self.revision,
@@ -61,7 +61,7 @@ impl Revised {
     }
 }
 
-/// The binnacle as it is; none where none was ever written.
+/// Returns the latest revision of a compass's binnacle; `None` before the first.
 pub async fn current(db: &Db, vessel: VesselId, compass: CompassId) -> DbResult<Option<Revised>> {
     Ok(list(db, vessel, compass, None, 1).await?.pop())
 }
@@ -121,7 +121,7 @@ impl Standing {
     }
 }
 
-/// The compasses of an operator's vessels in service, from after an id.
+/// Lists the compasses of an operator's vessels in service, beginning after an id.
 pub(super) async fn of_fleet(
     db: &Db,
     operator: OperatorId,

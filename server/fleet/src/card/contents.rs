@@ -143,7 +143,7 @@ pub struct VerifiedAtSea {
 }
 
 impl Status {
-    /// In a word, as in JSON.
+    /// Returns the status in a word, as in JSON.
     pub fn word(self) -> &'static str {
         match self {
             Status::Predicted => "predicted",

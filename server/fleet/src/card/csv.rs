@@ -24,7 +24,7 @@ const COLUMNS: [&str; 16] = [
     "verified_headings",
 ];
 
-/// A line for each row of the card.
+/// Writes a line for each row of the card.
 pub(super) fn csv(card: &Card) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(COLUMNS)?;

@@ -53,7 +53,7 @@ pub(super) struct Basis {
     pub(super) now: Time,
 }
 
-/// The card.
+/// Makes the card, or returns the reason for refusing it.
 pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
     let Basis { model, place, .. } = &basis;
     not_suspected(&basis.alerts)?;
@@ -156,7 +156,7 @@ fn verified_by(model: &StoredModel, completed: &[CompletedOrder]) -> Option<Veri
     })
 }
 
-/// The adjustment that the model comes from, while nothing at sea has verified it.
+/// Returns the adjustment that the model comes from, while no headings at sea have verified it.
 fn unverified<'a>(
     model: &StoredModel,
     completed: &'a [CompletedOrder],
@@ -165,8 +165,8 @@ fn unverified<'a>(
     Some(by).filter(|order| order.at_sea.is_none())
 }
 
-/// A compass that stands still, or has parted from the gyro on board, is not described
-/// by any model.
+/// Fails while an alert blocks the card: no model describes a stuck compass, or one that has parted
+/// from the gyro.
 fn not_suspected(alerts: &[OpenAlert]) -> Result<(), Refusal> {
     let blocks = |alert: &&OpenAlert| alert.cause.effect_on_card() == Effect::Block;
     match alerts.iter().find(blocks) {

@@ -78,7 +78,7 @@ pub(super) fn observed(
 }
 
 impl Seen<'_> {
-    /// Measured less predicted deviation, and its weight.
+    /// Returns measured less predicted deviation, and its weight.
     fn residual(self, sample: &Sample) -> Option<(f64, f64)> {
         match self {
             Seen::Fitted => Some((sample.residual_deg?, sample.weight)).filter(|_| sample.used),

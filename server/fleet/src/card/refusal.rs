@@ -53,7 +53,7 @@ pub enum Refusal {
 }
 
 impl Refusal {
-    /// The last word of the problem's type, and its title.
+    /// Returns the last word of the problem's type, and its title.
     fn kind(&self) -> (&'static str, &'static str) {
         match self {
             Refusal::TooOld { .. } => ("model-too-old", "The model is too old for a card"),

@@ -23,7 +23,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -113,7 +113,7 @@ pub struct WhichCompass {
     pub compass: Option<CompassId>,
 }
 
-/// The compass that was asked for, or the vessel's first.
+/// Finds a compass of the vessel, or its first one by default.
 ///
 /// # Errors
 /// [`Error::NotFound`] when the vessel has no such compass.

@@ -58,10 +58,10 @@ pub struct HandbookSchema {
     E: f64,
 }
 
-/// Deviation on compass headings from 0, each `step_deg`.
+/// Returns the deviation on compass headings from 0, in steps of `step_deg`.
 ///
 /// # Errors
-/// When the field there is too weak for a compass, or headings are ambiguous.
+/// Fails when the field is too weak for a compass, or headings are ambiguous.
 pub fn table(model: &Model, earth: EarthField, step_deg: f64) -> Result<Vec<Row>, DeviationError> {
     if earth.h_nt < WEAKEST_H_NT {
         return Err(DeviationError::FieldTooWeak {
@@ -87,13 +87,12 @@ fn row(model: &Model, earth: EarthField, compass_deg: f64) -> Result<Row, Deviat
     })
 }
 
-/// The heading with the greatest deviation, to 5°; none where headings are
-/// ambiguous.
+/// Finds the heading with the greatest deviation, to 5°; `None` where headings are ambiguous.
 pub fn worst(model: &Model, earth: EarthField) -> Option<Worst> {
     worst_of(&table(model, earth, 5.0).ok()?)
 }
 
-/// The row with the greatest deviation.
+/// Finds the row with the greatest deviation.
 pub fn worst_of(rows: &[Row]) -> Option<Worst> {
     let worst = rows
         .iter()
@@ -105,7 +104,7 @@ pub fn worst_of(rows: &[Row]) -> Option<Worst> {
     })
 }
 
-/// The handbook's coefficients; none where headings are ambiguous.
+/// Returns the handbook's coefficients; `None` where headings are ambiguous.
 pub fn handbook(model: &Model, earth: EarthField) -> Option<CoefficientsInDegrees> {
     model.approximate_coefficients(earth).ok()
 }

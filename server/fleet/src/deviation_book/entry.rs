@@ -107,8 +107,8 @@ pub(super) struct Ends {
     pub(super) withdrawn: Option<Time>,
 }
 
-/// The entries that samples make, with the cards of `models`, in order of version, and
-/// what headings at sea had said of them by then.
+/// Makes the entries of samples, with the cards of `models` in order of version, and their
+/// verification at that time.
 pub(super) fn entries(
     samples: Vec<SampleDiagnostic>,
     models: &[StoredModel],
@@ -142,7 +142,7 @@ impl Ends {
     }
 }
 
-/// None for a sample without a deviation.
+/// Returns `None` for a sample without a deviation.
 fn entry(
     occasion: Occasion,
     found: &SampleDiagnostic,

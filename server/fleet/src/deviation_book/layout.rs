@@ -41,7 +41,7 @@ pub(super) struct Book {
     pub(super) to: Option<Time>,
 }
 
-/// The book's sheets; one that says so where there is no entry.
+/// Draws the book's sheets. Without an entry, one sheet states that.
 pub(super) fn sheets(book: &Book, entries: &[Entry]) -> Vec<Sheet> {
     let pages: Vec<&[Entry]> = match entries {
         [] => vec![&[]],

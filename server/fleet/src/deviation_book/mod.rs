@@ -38,7 +38,7 @@ use utoipa_axum::routes;
 /// Entries of a printed book: some 150 sheets.
 const MOST_PRINTED: usize = 5_000;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -216,7 +216,7 @@ impl Book {
     }
 }
 
-/// The next month's lines; what fails half-way is cut off, and logged.
+/// Returns the next month's lines. A failure ends the file, and is logged.
 async fn next_lines(mut source: Source) -> Result<Option<(Bytes, Source)>> {
     let lines = async {
         let entries = source.next().await?;

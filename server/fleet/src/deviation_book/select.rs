@@ -25,7 +25,7 @@ pub(super) enum Occasion {
     Alteration,
 }
 
-/// The entries among samples in order of time, which begin with a watch's first.
+/// Selects entries from samples in order of time, which begin with a watch's first.
 pub(super) fn choose(samples: Vec<SampleDiagnostic>) -> Vec<(Occasion, SampleDiagnostic)> {
     let mut chosen: Vec<(Occasion, SampleDiagnostic)> = Vec::new();
     for sample in samples {
@@ -55,7 +55,7 @@ fn occasion(sample: &SampleDiagnostic, last: Option<&SampleDiagnostic>) -> Optio
 mod tests {
     use super::*;
 
-    /// A sample so many minutes after midnight.
+    /// Returns a sample at a number of minutes after midnight.
     fn sample(minute: u32, compass_deg: f64) -> SampleDiagnostic {
         let (hour, minute) = (minute / 60, minute % 60);
         serde_json::from_value(serde_json::json!({

@@ -26,7 +26,7 @@ pub(super) struct Source {
 }
 
 impl Source {
-    /// The entries from an instant on and before another.
+    /// Opens the book for entries from one instant until before another.
     pub(super) async fn open(
         db: &Db,
         vessel: VesselId,
@@ -54,7 +54,7 @@ impl Source {
         })
     }
 
-    /// The entries of the next stretch, which may be none; none after the last.
+    /// Returns the entries of the next stretch, maybe empty; `None` after the last.
     pub(super) async fn next(&mut self) -> Result<Option<Vec<Entry>>> {
         let Some(chunk) = self.left.pop_front() else {
             return Ok(None);
@@ -75,7 +75,7 @@ impl Source {
         Ok(Some(made.await??))
     }
 
-    /// At most so many entries, and whether that is all.
+    /// Reads up to `most` entries. Returns whether they are all.
     pub(super) async fn at_most(&mut self, most: usize) -> Result<(Vec<Entry>, bool)> {
         let mut found = Vec::new();
         while let Some(more) = self.next().await? {

@@ -19,7 +19,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -110,10 +110,10 @@ impl Query {
     }
 }
 
-/// The place of a query, or where the vessel was last, degrees north and east.
+/// Returns the requested place, or else the last one, degrees north and east.
 ///
 /// # Errors
-/// When it is none, or half of one.
+/// Fails when the place is invalid or incomplete.
 pub fn position(lat: Option<f64>, lon: Option<f64>, last: (f64, f64)) -> Result<Position> {
     match (lat, lon) {
         (Some(lat), Some(lon)) => {

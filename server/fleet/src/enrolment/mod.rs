@@ -34,7 +34,7 @@ const WEEK_S: f64 = 7.0 * 86_400.0;
 const DEFAULT_VALID_FOR_S: u32 = 3 * 86_400;
 const LONGEST_VALID_FOR_S: u32 = 14 * 86_400;
 
-/// The routes that people use.
+/// Returns the routes for people.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -45,7 +45,7 @@ where
         .routes(routes!(revoke_agent))
 }
 
-/// The routes that agents use.
+/// Returns the routes for agents.
 pub fn agent_router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,

@@ -136,7 +136,7 @@ pub async fn open_stream(tx: &mut Tx, agent: Agent, now: Time) -> Result<StreamI
     Ok(stream)
 }
 
-/// From now on the agent is known by this token, and not by the one before.
+/// Replaces the agent's token.
 pub(super) async fn replace_token(
     request: &RequestContext,
     agent: Agent,
@@ -153,7 +153,7 @@ pub(super) async fn replace_token(
     tx.commit().await
 }
 
-/// From now on the agent's token is known no more; to be published.
+/// Revokes the agent's token. Returns an event to publish.
 ///
 /// # Errors
 /// [`Error::NotFound`] when the vessel has no such agent.

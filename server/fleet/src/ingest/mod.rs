@@ -46,7 +46,7 @@ const SEQ_END: u64 = 1 << 53;
 /// No answer waits longer for an analysis: proxies give up after a minute.
 const LONGEST_WAIT: Duration = Duration::from_secs(55);
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -130,7 +130,7 @@ struct Taken {
     events_out: Vec<events::Event>,
 }
 
-/// Stores a batch and all that follows from it, whichever way it came.
+/// Stores a batch with all its consequences, on whichever link it arrived.
 async fn take(
     tx: &mut Tx,
     agent: Agent,
@@ -172,8 +172,7 @@ async fn downlink(
     downlink::answer(&app, agent, stream, has).await
 }
 
-/// Other batches may follow soon, and are analysed with it; what the ship raised an
-/// alert of is not kept waiting.
+/// Returns the delay in which further batches may arrive; none for a batch with an alert.
 fn analysis_delay_s(app: &App, batch: &Batch) -> f64 {
     if batch.alerts.is_empty() {
         return f64::from(app.config.analysis_delay_s);
@@ -181,7 +180,7 @@ fn analysis_delay_s(app: &App, batch: &Batch) -> f64 {
     0.0
 }
 
-/// Reads a frame and makes sure that it is the one that the path names.
+/// Decodes a frame, and checks that it is the one that the path names.
 fn read(bytes: &[u8], stream: StreamId, seq: u64) -> Result<Batch> {
     let batch =
         binnacle_wire::decode(bytes).map_err(|error| Error::BadRequest(error.to_string()))?;

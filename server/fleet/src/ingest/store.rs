@@ -136,7 +136,7 @@ async fn advance(tx: &mut Tx, vessel: VesselId, batch: &Batch, progress: Progres
     Ok(())
 }
 
-/// The last batch before the first gap, given one up to which there is none.
+/// Returns the last batch before the first gap, given one without a gap before it.
 async fn contiguous_seq(tx: &mut Tx, vessel: VesselId, stream: Uuid, known: i64) -> DbResult<i64> {
     let next = row!(
         in &mut *tx,
@@ -192,7 +192,7 @@ async fn note_on_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time)
     Ok(())
 }
 
-/// Refusal of a batch whose number is taken by other bytes.
+/// Returns the refusal of a batch whose number is taken by other bytes.
 fn forked(seq: u64) -> Error {
     let problem = DomainProblem {
         status: StatusCode::CONFLICT,

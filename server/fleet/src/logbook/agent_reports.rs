@@ -15,7 +15,7 @@ use binnacle_wire::messages::{LogbookAnswer, LogbookReport};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The route that agents use.
+/// Returns the route for agents.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,

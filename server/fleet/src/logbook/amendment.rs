@@ -48,7 +48,7 @@ pub(super) struct AmendmentSchema {
 }
 
 impl Amendment {
-    /// The entry with what is to be changed.
+    /// Returns the entry with the amendment applied.
     pub(super) fn applied_to(self, entry: NewEntry) -> NewEntry {
         let report = entry.report;
         NewEntry {

@@ -179,7 +179,7 @@ pub(super) struct CheckedFilter {
 }
 
 impl NewEntry {
-    /// The entry, if it can be one at this time.
+    /// Returns the entry, if it is valid at this time.
     pub(super) fn checked(self, now: Timestamp) -> Result<NewEntry> {
         let report = self.report.checked(now).map_err(invalid_report)?;
         let report = report.ending_within_a_year(now).map_err(invalid_report)?;
@@ -202,7 +202,7 @@ impl LogbookEntry {
         }
     }
 
-    /// `after` of a page that begins behind it.
+    /// Returns `after` of the page that begins behind it.
     pub(super) fn cursor(&self) -> String {
         format!("{}.{}", self.report.from.micros(), self.id)
     }
@@ -219,7 +219,7 @@ impl Filter {
     }
 }
 
-/// Refusal of a report that cannot be.
+/// Returns the refusal of an invalid report.
 pub(super) fn invalid_report(error: ReportError) -> Error {
     Error::Invalid {
         field: error.field,

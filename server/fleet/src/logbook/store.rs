@@ -93,7 +93,7 @@ impl<'a> Change<'a> {
         &mut self.tx
     }
 
-    /// Makes it durable, has the vessel analysed anew, and tells the dashboards.
+    /// Commits the change, enqueues an analysis of the vessel, and notifies dashboards.
     pub(super) async fn commit(mut self) -> Result<()> {
         analysis_queue::enqueue(&mut self.tx, self.vessel, self.now, 0.0).await?;
         let event = events::insert(&mut self.tx, self.vessel, Kind::Logbook, self.now).await?;
@@ -205,7 +205,7 @@ pub(super) async fn list(
     found.into_iter().map(Row::read).collect()
 }
 
-/// An entry of the vessel's.
+/// Finds an entry of the vessel.
 ///
 /// # Errors
 /// [`Error::NotFound`] when it has no such entry.
@@ -349,7 +349,7 @@ pub(super) async fn withdraw(
     Ok(())
 }
 
-/// Each revision of an entry, the first one first.
+/// Lists the revisions of an entry, the first one first.
 pub(super) async fn revisions(db: &Db, vessel: VesselId, id: EntryId) -> Result<Vec<Revision>> {
     let found = rows!(
         db,
@@ -474,7 +474,7 @@ impl Row {
     }
 }
 
-/// A word as it stands in JSON.
+/// Returns a word as it stands in JSON.
 fn word(value: &impl Serialize) -> Result<String> {
     match serde_json::to_value(value)? {
         Value::String(word) => Ok(word),

@@ -72,8 +72,8 @@ impl StoredModel {
     }
 }
 
-/// A model whose permanent field has wandered for so long as is usual (docs/science.md,
-/// table of (9)): nothing that was observed since is in it.
+/// Returns a model whose permanent field has drifted for the usual time (docs/science.md, table of
+/// (9)), without later observations.
 fn drifted(model: &Model, seconds: f64) -> Model {
     let mut drifted = model.clone();
     let variance = USUAL_DRIFT_NT.powi(2) * seconds / DRIFT_S;
@@ -94,7 +94,7 @@ mod tests {
     use binnacle_platform::time::Time;
     use serde_json::json;
 
-    /// A model of half a month of data, with a band of a degree.
+    /// Returns a model of half a month of data, with a band of a degree.
     fn model(bx_nt: f64, constant_variance: f64) -> StoredModel {
         let mut covariance = [[0.0; 8]; 8];
         covariance[7][7] = constant_variance;

@@ -39,7 +39,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -164,10 +164,10 @@ async fn list_models(
     }))
 }
 
-/// The current model, or why there is none.
+/// Returns the current model.
 ///
 /// # Errors
-/// [`NoModel`] with what is missing.
+/// [`NoModel`], with the reason, when there is none.
 pub async fn must_have(app: &App, vessel: VesselId, compass: CompassId) -> Result<StoredModel> {
     if let Some(model) = current(&app.db, vessel, compass).await? {
         return Ok(model);
@@ -182,7 +182,7 @@ pub async fn must_have(app: &App, vessel: VesselId, compass: CompassId) -> Resul
 }
 
 impl StoredModel {
-    /// The model in a line.
+    /// Summarizes the model in a line.
     pub fn summary(&self) -> ModelSummary {
         ModelSummary {
             id: self.id,
@@ -195,7 +195,7 @@ impl StoredModel {
         }
     }
 
-    /// The heading with the greatest deviation, at the last sample's place.
+    /// Finds the heading with the greatest deviation, at the last sample's place.
     pub fn worst(&self) -> Option<Worst> {
         crate::deviation::worst(&self.model.0, self.earth())
     }
@@ -215,7 +215,7 @@ impl StoredModel {
         }
     }
 
-    /// The version, whole.
+    /// Returns the whole version, as the API shows it.
     pub fn version(self) -> ModelVersion {
         ModelVersion {
             handbook: crate::deviation::handbook(&self.model.0, self.earth()),

@@ -33,7 +33,7 @@ pub struct StoredModel {
     pub foretold_by: Option<OrderId>,
 }
 
-/// The current model of a compass; none while its card is withdrawn.
+/// Returns the current model of a compass; `None` while its card is withdrawn.
 pub async fn current(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Option<StoredModel>> {
     row!(
         db,
@@ -50,7 +50,7 @@ pub async fn current(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Op
     )
 }
 
-/// The current models of a vessel's compasses.
+/// Lists the current models of a vessel's compasses.
 pub async fn current_of_vessel(db: &Db, vessel: VesselId) -> Result<Vec<StoredModel>> {
     rows!(
         db,
@@ -67,7 +67,7 @@ pub async fn current_of_vessel(db: &Db, vessel: VesselId) -> Result<Vec<StoredMo
     )
 }
 
-/// The current models of an operator's vessels from one id to another.
+/// Lists the current models of an operator's vessels in a range of ids.
 pub async fn current_of_fleet(
     db: &Db,
     operator: OperatorId,
@@ -92,7 +92,7 @@ pub async fn current_of_fleet(
     )
 }
 
-/// A compass's models, the newest first, from before a version.
+/// Lists a compass's models before a version, the newest first.
 pub(super) async fn list(
     db: &Db,
     vessel: VesselId,
@@ -114,14 +114,14 @@ pub(super) async fn list(
     )
 }
 
-/// A compass's last models, as many as a ship that calls now and then may be behind.
+/// Lists a compass's last models, as many as an agent that rarely calls may be behind.
 pub async fn lately(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Vec<StoredModel>> {
     const LATELY: i64 = 32;
     list(db, vessel, compass, None, LATELY).await
 }
 
-/// The models of a compass that were current at some time between two instants, the
-/// oldest first: those made between them, and the last one made before.
+/// Lists the models of a compass that were current at some time between two instants, the oldest
+/// first: those made between them, and the last one made before.
 pub async fn in_force(
     db: &Db,
     vessel: VesselId,
@@ -145,7 +145,7 @@ pub async fn in_force(
     )
 }
 
-/// One model of a compass by its version.
+/// Finds a model of a compass by its version.
 pub async fn of_version(
     db: &Db,
     vessel: VesselId,

@@ -31,7 +31,7 @@ use utoipa_axum::routes;
 /// Of more vessels than this an answer has no tracks.
 const MOST_WITH_TRACKS: usize = 200;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -181,7 +181,7 @@ fn assemble(found: store::Found) -> Fleet {
     }
 }
 
-/// The first of each vessel's.
+/// Returns the first item of each vessel.
 fn by_vessel<T>(items: Vec<T>, vessel: impl Fn(&T) -> VesselId) -> HashMap<VesselId, T> {
     let mut found = HashMap::with_capacity(items.len());
     for item in items {
@@ -235,7 +235,7 @@ impl NextCall {
     }
 }
 
-/// Without the digits that nobody reads and every link carries.
+/// Rounds figures to a thousandth, to save a slow link bytes.
 fn in_short(worst: Worst) -> Worst {
     Worst {
         compass_deg: worst.compass_deg,

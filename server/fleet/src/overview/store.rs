@@ -79,13 +79,13 @@ impl WorstAlert {
         self.state == State::Raised
     }
 
-    /// The greatest comes first.
+    /// Returns the key by which the most urgent alert is the greatest.
     pub(super) fn urgency(&self) -> (Severity, bool, AlertId) {
         (self.severity, self.is_raised(), self.id)
     }
 }
 
-/// An operator's vessels, or the one that is named.
+/// Reads the records of an operator's vessels, or of one of them.
 pub(super) async fn find(
     db: &Db,
     operator: OperatorId,

@@ -36,7 +36,7 @@ pub struct ParticularsChanged {
 
 impl DomainEvent for ParticularsChanged {}
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -249,14 +249,14 @@ impl Particulars {
     }
 }
 
-/// The field of a canal is that of its middle, degrees north and east.
+/// Returns the middle of a canal, degrees north and east. Its field stands for the whole canal.
 pub fn place_of(canal: Canal) -> (f64, f64) {
     match canal {
         Canal::Panama => (9.1, -79.7),
     }
 }
 
-/// A flag as people write it: two letters, or the name of one of the great registers.
+/// Parses a flag as people write it: two letters, or the name of one of the great registers.
 fn flag_of(text: &str) -> Option<Flag> {
     const NAMES: [(&str, &str); 16] = [
         ("panama", "PA"),

@@ -71,7 +71,7 @@ pub(super) struct SampleDots {
     used: Vec<bool>,
 }
 
-/// The picture of samples that are in order of time.
+/// Summarizes samples in order of time.
 pub(super) fn picture(samples: &[SampleDiagnostic]) -> SamplePicture {
     let measured: Vec<&SampleDiagnostic> = samples
         .iter()
@@ -171,8 +171,8 @@ mod tests {
 
     const DAY_S: f64 = 86_400.0;
 
-    /// A sample so long after the beginning of 12 October; one without a residual is of an
-    /// epoch without a model.
+    /// Returns a sample at a time after the beginning of 12 October. One without a residual is of
+    /// an epoch without a model.
     fn sample(after_s: f64, residual_deg: Option<f64>, used: bool) -> SampleDiagnostic {
         let begin = Timestamp::parse("2026-10-12T00:00:00Z").unwrap();
         let diagnostic = json!({

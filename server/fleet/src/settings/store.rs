@@ -8,7 +8,7 @@ use binnacle_platform::ids::VesselId;
 use binnacle_platform::time::Time;
 use binnacle_wire::messages::Settings;
 
-/// The vessel's settings, or the defaults.
+/// Returns the vessel's settings, or the defaults.
 pub async fn find(db: &Db, vessel: VesselId) -> Result<VesselSettings> {
     let stored = row!(
         db,

@@ -46,7 +46,7 @@ pub(super) struct AmendmentSchema {
 }
 
 impl Amendment {
-    /// The vessel's particulars with what is to be changed.
+    /// Returns the vessel's particulars with the amendment applied.
     pub(super) fn applied_to(self, vessel: VesselRow) -> Result<NewVessel> {
         let amended = NewVessel {
             name: self.name.unwrap_or(vessel.name),

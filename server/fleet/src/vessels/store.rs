@@ -70,7 +70,7 @@ pub(crate) async fn list(
     )
 }
 
-/// A vessel of the operator's; of nobody else's.
+/// Finds a vessel of the operator.
 pub async fn find_row(db: &Db, operator: OperatorId, id: VesselId) -> Result<Option<VesselRow>> {
     row!(
         db,
@@ -99,7 +99,7 @@ pub async fn must_be_in_fleet(
         .ok_or(Error::NotFound("vessel"))
 }
 
-/// The fleet's vessels, with their names and IMO numbers.
+/// Lists the fleet's vessels, with their names and IMO numbers.
 pub async fn names(
     db: &Db,
     operator: OperatorId,
@@ -136,7 +136,7 @@ pub(crate) async fn insert(
     Ok(())
 }
 
-/// The vessel, to be changed: others who would change it wait.
+/// Locks a vessel for a change, and returns it.
 ///
 /// # Errors
 /// [`Error::NotFound`] when it does not exist or is another operator's.
@@ -158,7 +158,7 @@ pub(crate) async fn lock(
     found.ok_or(Error::NotFound("vessel"))
 }
 
-/// Writes a vessel's particulars anew.
+/// Overwrites a vessel's particulars.
 pub(crate) async fn update(tx: &mut Tx, id: VesselId, amended: &NewVessel) -> Result<()> {
     execute!(
         tx,

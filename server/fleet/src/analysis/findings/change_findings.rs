@@ -190,7 +190,7 @@ mod tests {
     use binnacle_compass::sample::Sample;
     use binnacle_compass::settings::AnalysisSettings;
 
-    /// Of a ship on the meridian of Greenwich.
+    /// Returns a sample of a ship on the meridian of Greenwich.
     fn sample(time: &str, lat: f64) -> Sample {
         serde_json::from_value(serde_json::json!({
             "time": time, "lat": lat, "lon": 0.0, "compass_deg": 10.0, "gyro_deg": 12.0,

@@ -15,7 +15,7 @@ struct Across {
     most_deg: f64,
 }
 
-/// Draws it.
+/// Draws the curve.
 pub(super) fn draw(sheet: &mut Sheet, card: &Card, lines: &Lines) {
     let curve: Vec<Row> = around(&card.curve);
     let (step_deg, steps) = scale(&curve, &card.rows);
@@ -35,7 +35,7 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card, lines: &Lines) {
     legend(sheet, lines);
 }
 
-/// The curve from 0 to 360.
+/// Closes the curve from 0 to 360.
 fn around(curve: &[Row]) -> Vec<Row> {
     let again = curve.first().map(|row| Row {
         compass_deg: 360.0,
@@ -108,12 +108,12 @@ fn grid(sheet: &mut Sheet, lines: &Lines, across: &Across, step_deg: f64, steps:
     }
 }
 
-/// Without the tenth where there is none.
+/// Formats degrees, without the tenth where it is zero.
 fn whole(degrees: f64) -> String {
     east_west(degrees).replace(".0°", "°")
 }
 
-/// The mean deviation observed near a heading.
+/// Returns the mean deviation observed near a heading.
 fn observed_deg(row: &CardRow) -> Option<f64> {
     Some(row.deviation_deg + row.residual_deg?)
 }

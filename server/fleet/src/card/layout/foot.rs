@@ -13,7 +13,7 @@ const SECOND: f32 = 262.0;
 const SIGNATURES: f32 = A4.1 - MARGIN - 68.0;
 const NOTE_LINE: f32 = 9.4;
 
-/// Draws it below `top`.
+/// Draws the lower part below `top`.
 pub(super) fn draw(sheet: &mut Sheet, card: &Card, top: f32) {
     coefficients(sheet, card, top + 8.0);
     let below = state(sheet, card, top + 8.0).max(top + 80.0);
@@ -51,7 +51,7 @@ fn coefficients(sheet: &mut Sheet, card: &Card, top: f32) {
     sheet.text((LEFT + 6.0, top + 66.0), Style::plain(6.8).grey(GREY), says);
 }
 
-/// Answers with where the next thing begins.
+/// Draws the ship's state. Returns the lower edge.
 fn state(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
     let in_logbook = |time: Option<Time>| {
         time.map_or("none in the logbook".to_owned(), |time| {
@@ -129,8 +129,7 @@ fn cargo(on_board: &[MagneticCargo]) -> String {
     }
 }
 
-/// Two beside each other, as many lines as they take; answers with where the next thing
-/// begins.
+/// Draws the correctors in pairs, each as many lines as it takes. Returns the lower edge.
 fn correctors(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
     let Some(found) = &card.correctors else {
         return top;
@@ -147,7 +146,7 @@ fn correctors(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
     })
 }
 
-/// As many as there is room for; the last line says how many more there are.
+/// Draws as many notes as fit. The last line counts those left out.
 fn notes(sheet: &mut Sheet, card: &Card, top: f32) {
     const SIZE: f32 = 7.5;
     let room = ((SIGNATURES - 14.0 - top) / NOTE_LINE) as usize;
@@ -177,7 +176,7 @@ fn notes(sheet: &mut Sheet, card: &Card, top: f32) {
     }
 }
 
-/// Blank: a person's pen fills them in.
+/// Draws blank lines for signatures.
 fn signatures(sheet: &mut Sheet) {
     sheet.rule((LEFT, SIGNATURES), (RIGHT, SIGNATURES), 0.4);
     let width = (RIGHT - LEFT - 3.0 * 14.0) / 4.0;

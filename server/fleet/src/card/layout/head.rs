@@ -10,7 +10,7 @@ const FACT_LINE: f32 = 12.5;
 /// Left edge of the right column, and its width.
 const SECOND: f32 = 306.0;
 
-/// Draws it; answers with its lower edge.
+/// Draws the upper part. Returns its lower edge.
 pub(super) fn draw(sheet: &mut Sheet, card: &Card) -> f32 {
     sheet.text((LEFT, MARGIN + 20.0), Style::bold(20.0), "Deviation card");
     mark(sheet, card);
@@ -119,7 +119,7 @@ fn facts(card: &Card) -> (Facts, Facts) {
     (of_ship, of_compass)
 }
 
-/// A field model's name as its makers write it.
+/// Returns a field model's name as its makers write it.
 fn source(name: &str) -> String {
     name.to_uppercase().replace("IGRF", "IGRF-")
 }

@@ -18,7 +18,7 @@ const LINE: f32 = 13.0;
 /// Grey of what is not the first thing to be read.
 const GREY: u8 = 90;
 
-/// The card's sheet.
+/// Draws the card's sheet.
 pub(super) fn sheet(card: &Card) -> Sheet {
     let mut sheet = Sheet::a4();
     let below_head = head::draw(&mut sheet, card);
@@ -47,7 +47,7 @@ pub(super) fn about(card: &Card) -> About {
 /// Smaller than this nobody reads.
 const SMALLEST: f32 = 6.0;
 
-/// A word in grey and what it says, in a room of its own.
+/// Draws a label in grey and its value within a width.
 fn fact(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) {
     const LABEL: f32 = 74.0;
     let style = Style::plain(8.0);
@@ -79,7 +79,7 @@ fn draw_labelled(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f
 /// Text for an unknown value.
 const UNKNOWN: &str = "not recorded";
 
-/// A value, or that there is none.
+/// Returns the value, or a mark for a missing one.
 fn known(value: Option<&str>) -> &str {
     value.unwrap_or(UNKNOWN)
 }
