@@ -3,7 +3,7 @@
 use binnacle_analysis::advice::sail_next;
 use binnacle_analysis::analyse::analyse;
 use binnacle_fleet::analysis::Findings;
-use binnacle_fleet::analysis::{Covered, Found, input, store};
+use binnacle_fleet::analysis::{AnalysisResult, Covered, input, store};
 use binnacle_fleet::{alerts, analysis_queue, compasses, settings};
 use binnacle_orders::verification;
 use binnacle_platform::app::App;
@@ -111,12 +111,12 @@ async fn keep_lease(app: &App, job: analysis_queue::Job) -> Infallible {
 /// Analyses a vessel's compasses and stores what is new.
 async fn work(app: &App, job: analysis_queue::Job) -> Result<usize> {
     let mut news = Vec::new();
-    let mut comes_true = None;
+    let mut next_entry_at = None;
     let now: Time = app.clock.now().into();
     let compasses = compasses::of_vessel(&app.db, job.vessel_id).await?;
     for compass in &compasses {
         let stored = input::load(&app.db, job.vessel_id, compass.id, now.0).await?;
-        comes_true = comes_true.into_iter().chain(stored.comes_true).min();
+        next_entry_at = next_entry_at.into_iter().chain(stored.next_entry_at).min();
         news.extend(analyse_compass(app, job.vessel_id, compass.id, stored).await?);
     }
     let limits = settings::find(&app.db, job.vessel_id).await?.alerts;
@@ -125,7 +125,7 @@ async fn work(app: &App, job: analysis_queue::Job) -> Result<usize> {
     if !analysis_queue::finish(&mut tx, job).await? {
         return Err(Error::Internal(anyhow::anyhow!("the lease was lost")));
     }
-    if let Some(time) = comes_true {
+    if let Some(time) = next_entry_at {
         let delay_s = time.seconds_since(now.0).max(0.0);
         analysis_queue::enqueue(&mut tx, job.vessel_id, now, delay_s).await?;
     }
@@ -156,10 +156,10 @@ async fn analyse_compass(
     app: &App,
     vessel_id: VesselId,
     compass_id: CompassId,
-    stored: input::Stored,
-) -> Result<Option<Found>> {
+    stored: input::StoredInput,
+) -> Result<Option<AnalysisResult>> {
     let last_hash = store::last_hash(&app.db, vessel_id, compass_id).await?;
-    let found = tokio::task::spawn_blocking(move || -> anyhow::Result<Option<Found>> {
+    let found = tokio::task::spawn_blocking(move || -> anyhow::Result<Option<AnalysisResult>> {
         let input = stored.decode()?;
         let input_hash = input::input_hash(&input)?;
         if input.samples.is_empty() || last_hash.as_ref() == Some(&input_hash) {
@@ -171,7 +171,7 @@ async fn analyse_compass(
             sail_next: sail_next(&analysis),
             references: analysis.current_epoch().and_then(|epoch| epoch.references),
         };
-        Ok(Some(Found {
+        Ok(Some(AnalysisResult {
             vessel_id,
             compass_id,
             input_hash,

@@ -40,7 +40,7 @@ pub struct AtSea {
     pub samples: usize,
     /// The time of the last of these.
     pub until: Time,
-    /// Root mean square of what the headings were off, degrees.
+    /// Root mean square of the headings' differences from the prediction, degrees.
     pub rms_deg: f64,
 }
 
@@ -64,7 +64,7 @@ pub async fn completed(
     found.into_iter().map(Row::read).collect()
 }
 
-/// Returns the version of the model that an order's adjustment was predicted from, by its record.
+/// Returns the version of the model from which an order's record predicted the adjustment.
 pub async fn predicted_from(db: &Db, vessel: VesselId, order: OrderId) -> Result<Option<i64>> {
     let found = row!(
         db,
@@ -80,10 +80,7 @@ pub async fn predicted_from(db: &Db, vessel: VesselId, order: OrderId) -> Result
     Ok(record["data"]["model_version"].as_i64())
 }
 
-/// Returns when a compass's last adjustment by an order was.
-///
-/// # Errors
-/// When the database cannot be read.
+/// Returns the time of a compass's last adjustment by an order.
 pub async fn last_adjusted_at(
     tx: &mut Tx,
     vessel: VesselId,
@@ -112,7 +109,7 @@ struct Verdict {
 
 impl CompletedOrder {
     /// Tells whether a model was predicted by this order, or is of the epoch that it began.
-    pub fn bears_on(&self, model: &StoredModel) -> bool {
+    pub fn is_source_of(&self, model: &StoredModel) -> bool {
         let begun_by = model.epoch_begun_by.as_deref();
         model.foretold_by == Some(self.order)
             || (begun_by == Some("adjustment") && model.epoch_from == Some(self.at))

@@ -44,7 +44,7 @@ pub(super) fn announcement(change: &AlertChange) -> Announcement {
     }
 }
 
-/// Names what alerts that follow one another have in common: compass and cause.
+/// Names the series of alerts with the same compass and cause.
 fn series(alert: &Alert) -> String {
     format!("{}: {:?}", alert.compass_id, alert.cause)
 }

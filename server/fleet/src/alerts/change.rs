@@ -10,7 +10,7 @@ use binnacle_platform::severity::Severity;
 pub(super) struct PendingChange {
     /// The alert.
     pub alert: AlertId,
-    /// Kind of change; none where only its words are others.
+    /// Kind of change; none where only the text changed.
     pub kind: Option<Kind>,
     /// The severity before, where it changed.
     pub was: Option<Severity>,

@@ -37,7 +37,7 @@ pub(super) struct EventWindow {
 
 impl DesiredAlert {
     /// Tells whether a stored alert already says the same.
-    pub(super) fn is_said_by(&self, known: &KnownAlert) -> bool {
+    pub(super) fn is_stored_as(&self, known: &KnownAlert) -> bool {
         self.severity == known.severity
             && self.summary == known.summary
             && self.advice == known.advice

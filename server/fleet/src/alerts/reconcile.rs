@@ -51,7 +51,7 @@ pub async fn end_all(tx: &mut Tx, vessel: VesselId, now: Time) -> Result<Vec<Eve
     Ok(events)
 }
 
-/// Brings the known alerts in line with the desired ones; the compass's alerts are locked.
+/// Reconciles the known alerts with the desired ones. The compass's alerts are locked.
 pub(super) async fn reconcile(
     tx: &mut Tx,
     vessel: VesselId,
@@ -107,7 +107,7 @@ async fn open_or_update(
         let id = store::insert(tx, vessel, compass, desired, now).await?;
         return Ok(cleared.into_iter().chain([raised(id)]).collect());
     }
-    if is_cleared || desired.is_said_by(known) {
+    if is_cleared || desired.is_stored_as(known) {
         return Ok(Vec::new());
     }
     store::update(tx, vessel, known, desired, now).await?;

@@ -376,7 +376,7 @@ pub(super) async fn last_uploads(db: &Db) -> DbResult<Vec<LastUpload>> {
     )
 }
 
-/// Lists the compasses whose alert of a cause goes on, and was not updated since.
+/// Lists the compasses with an open alert of a cause that was not updated since.
 pub(super) async fn not_updated_since(
     db: &Db,
     cause: Cause,

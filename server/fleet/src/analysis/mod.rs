@@ -17,7 +17,7 @@ pub mod store;
 mod track;
 
 pub use disturbances::{compare_with_fleet, compare_with_fleet_in};
-pub use findings::{FailedLately, Findings, FoundChange};
+pub use findings::{ChangeFinding, FailedLately, Findings};
 pub use input::{Input, input_hash};
-pub use store::{Chunk, Covered, Found, chunk, chunks, chunks_between, coverage};
+pub use store::{AnalysisResult, Chunk, Covered, chunk, chunks, chunks_between, coverage};
 pub use track::Track;

@@ -16,11 +16,11 @@ use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Samples are kept in rows of so many microseconds: 30 days.
+/// Period of a stored row of samples, microseconds: 30 days.
 const CHUNK_MICROS: i64 = 30 * 86_400 * 1_000_000;
 
 /// Results of one compass's analysis.
-pub struct Found {
+pub struct AnalysisResult {
     /// The vessel.
     pub vessel_id: VesselId,
     /// The compass.
@@ -42,11 +42,10 @@ pub struct Covered {
     /// Counts of samples.
     #[serde(flatten)]
     pub coverage: Coverage,
-    /// None without a model, and in what was stored before there was advice.
+    /// None without a model, and in old rows from before there was advice.
     #[serde(default)]
     pub sail_next: Option<SailNext>,
-    /// None where they could not be compared, and in what was stored before they
-    /// were.
+    /// None where they could not be compared, and in old rows.
     #[serde(default)]
     pub references: Option<ReferenceCheck>,
 }
@@ -84,7 +83,7 @@ pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<C
     Ok(serde_json::from_str(&text)?)
 }
 
-/// Returns rows that hold the diagnostics of a range of time, and some before and after it. Each is
+/// Returns the rows with the diagnostics of a range of time, and some before and after it. Each is
 /// a JSON array.
 pub async fn chunks(
     db: &Db,
@@ -107,11 +106,11 @@ pub async fn chunks(
     Ok(found.into_iter().map(|(samples,)| samples).collect())
 }
 
-/// A row of samples, and the time that it is of.
+/// A row of samples, with its period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chunk {
     number: i64,
-    /// Its beginning, which is that of a day.
+    /// Its beginning, which is the beginning of a day.
     pub from: Time,
     /// The instant after its end.
     pub to: Time,
@@ -169,10 +168,9 @@ fn number_of(time: Time) -> i64 {
     time.0.micros().div_euclid(CHUNK_MICROS)
 }
 
-/// Stores what was found in place of what was found before; a new model is the
-/// compass's next version. Answers with an event if there is one, or the card holds
-/// no more.
-pub async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>> {
+/// Stores a result in place of the previous one. A new model becomes the compass's next version.
+/// Returns an event if the model, or the withdrawal of the card, changed.
+pub async fn save(tx: &mut Tx, found: &AnalysisResult, now: Time) -> Result<Option<Event>> {
     let analysis = &found.analysis;
     let withdrawn_before = models::withdrawn(tx, found.vessel_id, found.compass_id).await?;
     // The prediction of an adjustment holds from its moment on, and through its epoch.
@@ -254,7 +252,7 @@ fn begun_by(epoch: &Epoch) -> Result<Option<String>> {
     Ok(word.as_str().map(str::to_owned))
 }
 
-async fn save_diagnostics(tx: &mut Tx, found: &Found) -> Result<()> {
+async fn save_diagnostics(tx: &mut Tx, found: &AnalysisResult) -> Result<()> {
     execute!(
         &mut *tx,
         "DELETE FROM diagnostics WHERE vessel_id = $1 AND compass_id = $2",
@@ -283,7 +281,7 @@ async fn save_diagnostics(tx: &mut Tx, found: &Found) -> Result<()> {
 }
 
 /// Returns the current epoch's model as a row, or `None` if it was refused.
-fn next_model(found: &Found, now: Time) -> Result<Option<StoredModel>> {
+fn next_model(found: &AnalysisResult, now: Time) -> Result<Option<StoredModel>> {
     let epoch = found.analysis.current_epoch();
     let model = epoch.and_then(|epoch| epoch.model.clone());
     let (Some(epoch), Some(model)) = (epoch, model) else {

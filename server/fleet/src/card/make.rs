@@ -143,7 +143,10 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
 
 /// Returns the verification of the adjustment that the model comes from.
 fn verified_by(model: &StoredModel, completed: &[CompletedOrder]) -> Option<VerifiedAtSea> {
-    let by = completed.iter().rev().find(|order| order.bears_on(model))?;
+    let by = completed
+        .iter()
+        .rev()
+        .find(|order| order.is_source_of(model))?;
     let at_sea = by.at_sea?;
     Some(VerifiedAtSea {
         order: by.order,
@@ -161,7 +164,10 @@ fn unverified<'a>(
     model: &StoredModel,
     completed: &'a [CompletedOrder],
 ) -> Option<&'a CompletedOrder> {
-    let by = completed.iter().rev().find(|order| order.bears_on(model))?;
+    let by = completed
+        .iter()
+        .rev()
+        .find(|order| order.is_source_of(model))?;
     Some(by).filter(|order| order.at_sea.is_none())
 }
 

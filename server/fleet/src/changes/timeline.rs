@@ -5,7 +5,7 @@
 
 use super::schema::{CauseProbabilitySchema, CauseSchema, StepSchema};
 use super::store::{Analysed, StoredEpoch, Version};
-use crate::analysis::FoundChange;
+use crate::analysis::ChangeFinding;
 use crate::deviation::{self, Row};
 use crate::logbook::LogbookKindSchema;
 use crate::models::RefusalSchema;
@@ -247,12 +247,12 @@ fn version(epoch: &StoredEpoch, versions: &[Version]) -> Option<i64> {
 
 /// Tells whether a change is shown. A disturbance too small to be certain by this ship alone is
 /// shown once other ships confirm it.
-fn is_shown(found: &FoundChange) -> bool {
+fn is_shown(found: &ChangeFinding) -> bool {
     !found.change.is_weak_transient()
 }
 
-impl From<FoundChange> for ChangeFound {
-    fn from(found: FoundChange) -> ChangeFound {
+impl From<ChangeFinding> for ChangeFound {
+    fn from(found: ChangeFinding) -> ChangeFound {
         let change = found.change;
         ChangeFound {
             from: change.from.into(),

@@ -185,7 +185,7 @@ fn entry(
 
 /// Returns the status of a model's card at a time.
 fn status(model: &StoredModel, completed: &[CompletedOrder], at: Time) -> card::Status {
-    let mut bearing = completed.iter().filter(|order| order.bears_on(model));
+    let mut bearing = completed.iter().filter(|order| order.is_source_of(model));
     let was_verified =
         bearing.any(|order| order.at_sea.is_some_and(|at_sea| at_sea.verified_at <= at));
     if was_verified {

@@ -5,8 +5,8 @@ use super::row::{CauseRow, Condition, Effect, Ending, Finder};
 use crate::alerts::cause::Cause;
 use binnacle_platform::severity::Severity;
 
-/// Time after which a second sender that has not shown itself is gone, seconds: both may send
-/// once in three days only.
+/// Time without a batch after which a second sender counts as gone, seconds. Both may send only
+/// once in three days.
 const SHOWN_FOR_S: f64 = 7.0 * 86_400.0;
 
 /// No upload for the days of the vessel's limit.

@@ -12,7 +12,7 @@ use super::hysteresis::hysteresis_deg;
 use super::row::{Case, Condition, Size};
 use crate::alerts::cause::Cause;
 use crate::alerts::desired::EventWindow;
-use crate::analysis::{Findings, FoundChange};
+use crate::analysis::{ChangeFinding, Findings};
 use binnacle_compass::result;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::severity::Severity;
@@ -49,7 +49,7 @@ pub(super) fn outcome(cause: Cause, since: Time, findings: &Findings) -> Option<
         .filter(|found| window(found, findings).includes(since));
     let (own, others): (Vec<_>, Vec<_>) =
         at_that_time.partition(|found| alert_cause(found.change.cause) == cause);
-    let stays = |found: &&&FoundChange| {
+    let stays = |found: &&&ChangeFinding| {
         let change = &found.change;
         change.confirmed && !change.withdrawn && change.ended.is_none()
     };
@@ -161,7 +161,7 @@ fn holds(detected: &DetectedChange<'_>, stage: Stage) -> bool {
 /// Later samples date a change better, by days if they fill a gap, and may name another cause.
 /// An alert was about the change nearest to its date, among those of the ship, those of its
 /// references, or the others.
-fn window(found: &FoundChange, findings: &Findings) -> EventWindow {
+fn window(found: &ChangeFinding, findings: &Findings) -> EventWindow {
     let at = found.change.from;
     let kind = |cause: result::Cause| {
         (
@@ -225,12 +225,12 @@ fn name(cause: result::Cause) -> &'static str {
 }
 
 /// Returns the size on the waters ahead, where it is worth a mention beside that here.
-fn ahead_deg(found: &FoundChange) -> Option<f64> {
+fn ahead_deg(found: &ChangeFinding) -> Option<f64> {
     let (here, ahead) = found.size_deg.zip(found.size_ahead_deg)?;
     (ahead > here + MENTION_DEG).then_some(ahead)
 }
 
-fn summary(found: &FoundChange, stage: Stage) -> String {
+fn summary(found: &ChangeFinding, stage: Stage) -> String {
     let change = &found.change;
     let since = Time(change.from).to_the_minute();
     let cause = name(change.cause);

@@ -3,7 +3,7 @@
 use super::hysteresis::SLACK_DEG;
 use crate::alerts::alert::KnownAlert;
 use crate::alerts::cause::Cause;
-use crate::analysis::{Findings, FoundChange};
+use crate::analysis::{ChangeFinding, Findings};
 use crate::settings::AlertLimits;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::ids::OrderId;
@@ -51,7 +51,7 @@ pub(in crate::alerts) struct Situation<'a> {
 #[derive(Clone, Copy)]
 pub(in crate::alerts) struct DetectedChange<'a> {
     /// The change.
-    pub found: &'a FoundChange,
+    pub found: &'a ChangeFinding,
     /// All findings.
     pub findings: &'a Findings,
     /// The vessel's limits.

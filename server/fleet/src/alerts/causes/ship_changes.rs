@@ -34,7 +34,7 @@ pub(super) const MAGNETIC_CARGO: CauseRow = CauseRow {
     ..SHIP_CHANGE
 };
 
-/// Drift.
+/// Slow drift.
 pub(super) const DRIFT: CauseRow = CauseRow {
     cause: Cause::Drift,
     title: "drift of the ship's magnetism",

@@ -68,7 +68,7 @@ pub async fn check_silence(app: &App) -> Result<()> {
     Ok(())
 }
 
-/// Ends the alerts that nothing has shown for the time of their row.
+/// Ends the alerts that nothing has shown for the time that their row states.
 async fn end_quiet(app: &App) -> Result<()> {
     let now: Time = app.clock.now().into();
     for row in &CAUSES {

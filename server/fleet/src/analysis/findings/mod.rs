@@ -6,5 +6,5 @@
 mod change_findings;
 mod summary;
 
-pub use change_findings::FoundChange;
+pub use change_findings::ChangeFinding;
 pub use summary::{FailedLately, Findings};

@@ -1,6 +1,6 @@
 //! Summary of one compass's analysis.
 
-use super::change_findings::{FoundChange, found_changes};
+use super::change_findings::{ChangeFinding, found_changes};
 use crate::deviation::{self, Worst};
 use crate::models::LeftOut;
 use binnacle_compass::angle::wrap_180;
@@ -36,7 +36,7 @@ pub struct Findings {
     pub failed_lately: Option<FailedLately>,
     /// Changes of the ship's magnetism, real or apparent, in order of time.
     #[serde(default)]
-    pub changes: Vec<FoundChange>,
+    pub changes: Vec<ChangeFinding>,
     /// Effects of logbook entries on the samples, a sentence each.
     #[serde(default)]
     pub notices: Vec<String>,

@@ -5,7 +5,7 @@ use crate::alerts::causes::CAUSES;
 use crate::alerts::causes::change_rules::{Outcome, outcome};
 use crate::alerts::causes::evaluate::evaluate_changes;
 use crate::alerts::desired::DesiredAlert;
-use crate::analysis::{Findings, FoundChange};
+use crate::analysis::{ChangeFinding, Findings};
 use crate::settings::AlertLimits;
 use binnacle_compass::result::{Cause as Found, CauseProbability, Change};
 use binnacle_compass::time::Timestamp;
@@ -16,9 +16,9 @@ fn at(text: &str) -> Timestamp {
     Timestamp::parse(text).unwrap()
 }
 
-fn found(cause: Found, size_deg: f64) -> FoundChange {
+fn found(cause: Found, size_deg: f64) -> ChangeFinding {
     let from = at("2026-11-18T12:00:00Z");
-    FoundChange {
+    ChangeFinding {
         change: Change {
             from,
             from_earliest: from,
@@ -46,14 +46,14 @@ fn found(cause: Found, size_deg: f64) -> FoundChange {
 }
 
 /// Returns the alerts after so many days at sea, with such a band by then.
-fn sailed(changes: Vec<FoundChange>, days: f64, band95_deg: Option<f64>) -> Vec<DesiredAlert> {
+fn sailed(changes: Vec<ChangeFinding>, days: f64, band95_deg: Option<f64>) -> Vec<DesiredAlert> {
     known_as(None, changes, days, band95_deg)
 }
 
 /// Returns the alerts where one of severity `was` is open of each cause.
 fn known_as(
     was: Option<Severity>,
-    changes: Vec<FoundChange>,
+    changes: Vec<ChangeFinding>,
     days: f64,
     band95_deg: Option<f64>,
 ) -> Vec<DesiredAlert> {
@@ -157,11 +157,11 @@ fn the_advice_follows_the_model_and_the_alert_ends_with_its_certainty() {
 fn a_change_that_became_calls_for_no_alert_and_clears_its_own() {
     let mut none = found(Found::LightningOrShock, 3.0);
     let since: Time = none.change.from.into();
-    let findings = |change: &FoundChange| Findings {
+    let findings = |change: &ChangeFinding| Findings {
         changes: vec![change.clone()],
         ..Findings::default()
     };
-    let of = |cause, change: &FoundChange| outcome(cause, since, &findings(change));
+    let of = |cause, change: &ChangeFinding| outcome(cause, since, &findings(change));
     let lightning = Cause::LightningOrShock;
     assert_eq!(of(lightning, &none), Some(Outcome::Learned));
     (none.change.confirmed, none.change.withdrawn) = (false, true);
@@ -176,7 +176,7 @@ fn a_change_that_became_calls_for_no_alert_and_clears_its_own() {
 fn only_what_ended_is_over() {
     let mut struck = found(Found::LightningOrShock, 3.0);
     let since: Time = struck.change.from.into();
-    let of = |cause, change: &FoundChange| {
+    let of = |cause, change: &ChangeFinding| {
         let changes = vec![change.clone()];
         outcome(
             cause,
