@@ -4,8 +4,9 @@
 //! time of the request only decides whether the model is too old.
 
 use super::contents::{
-    AdjustedBy, Card, CardRow, Coefficients, Correctors, MagneticCargo, NotRecorded, PREDICTED,
-    Place, Ship, Source, Status, VerifiedAtSea, predicted_at_berth, verified,
+    Card, CardAdjuster, CardCoefficients, CardCorrectors, CardModel, CardNotRecorded, CardPlace,
+    CardRow, CardStatus, CardVerification, CardVessel, MagneticCargo, PREDICTED,
+    predicted_at_berth, verified,
 };
 use super::due::{self, next_due};
 use super::observed::{Observed, STEP_DEG};
@@ -14,7 +15,7 @@ use crate::adjustments::CompletedOrder;
 use crate::alerts::{Effect, OpenAlert};
 use crate::binnacles::Revised;
 use crate::compasses::Compass;
-use crate::deviation::{self, Row};
+use crate::deviation::{self, DeviationRow};
 use crate::models::StoredModel;
 use binnacle_compass::deviation::{Coefficients as Exact, DeviationError};
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
@@ -28,10 +29,10 @@ const CURVE_STEP_DEG: f64 = 5.0;
 const NO_BAND_DEG: f64 = 180.0;
 
 /// Everything that a card is made from.
-pub(super) struct Basis {
-    pub(super) vessel: Ship,
+pub(super) struct CardInput {
+    pub(super) vessel: CardVessel,
     pub(super) compass: Compass,
-    pub(super) place: Place,
+    pub(super) place: CardPlace,
     pub(super) model: StoredModel,
     /// The first and the last sample that it rests on.
     pub(super) data: (Time, Time),
@@ -54,41 +55,41 @@ pub(super) struct Basis {
 }
 
 /// Makes the card, or returns the reason for refusing it.
-pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
-    let Basis { model, place, .. } = &basis;
-    not_suspected(&basis.alerts)?;
-    not_too_old(model.data_until, place.at.max(basis.now))?;
+pub(super) fn make(input: CardInput) -> Result<Card, Refusal> {
+    let CardInput { model, place, .. } = &input;
+    not_suspected(&input.alerts)?;
+    not_too_old(model.data_until, place.at.max(input.now))?;
     let earth = EarthField {
         h_nt: place.h_nt,
         z_nt: place.z_nt,
     };
     let ship = &model.model.0;
     let curve = deviation::table(ship, earth, CURVE_STEP_DEG)?;
-    let widest_band95_deg = widest(&curve, basis.limit_deg)?;
+    let widest_band95_deg = widest(&curve, input.limit_deg)?;
     let lines = deviation::table(ship, earth, STEP_DEG)?;
-    let coefficients = Coefficients {
+    let coefficients = CardCoefficients {
         exact: Exact::new(&ship.parameters_over_lambda, earth)?.to_degrees(),
         constant_deg: ship.constant_deg,
         handbook: ship.approximate_coefficients(earth)?,
     };
     let at = place.at;
-    let cargo = cargo_at(&basis.logbook, at);
-    let adjusted_at = last(&basis.logbook, LogbookKind::Adjustment, at);
-    let adjusted_by = adjusted_by(&basis.completed, adjusted_at);
+    let cargo = cargo_at(&input.logbook, at);
+    let adjusted_at = last(&input.logbook, LogbookKind::Adjustment, at);
+    let adjusted_by = adjusted_by(&input.completed, adjusted_at);
     let worst = deviation::worst_of(&curve).ok_or(DeviationError::NotFinite)?;
-    let verified_by = verified_by(model, &basis.completed);
-    let unverified = unverified(model, &basis.completed);
+    let verified_by = verified_by(model, &input.completed);
+    let unverified = unverified(model, &input.completed);
     let next_due = next_due(&due::Facts {
-        flag: basis.vessel.flag.as_deref(),
+        flag: input.vessel.flag.as_deref(),
         // What nothing at sea supports starts no term.
         adjusted_at: adjusted_at.filter(|_| unverified.is_none()),
-        logbook: &basis.logbook,
+        logbook: &input.logbook,
         at,
         worst_deviation_deg: worst.deviation_deg,
-        own_limit_deg: basis.own_limit_deg,
+        own_limit_deg: input.own_limit_deg,
     });
     Ok(Card {
-        status: verified_by.map_or(Status::Predicted, |_| Status::Verified),
+        status: verified_by.map_or(CardStatus::Predicted, |_| CardStatus::Verified),
         statement: match (&verified_by, unverified, model.foretold_by) {
             (Some(by), _, _) => verified(by),
             (None, Some(order), Some(_)) => predicted_at_berth(order.at, order.order),
@@ -96,59 +97,59 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
         },
         verified: verified_by,
         unverified_order: unverified.map(|order| order.order),
-        rows: lines.iter().zip(basis.observed).map(line).collect(),
+        rows: lines.iter().zip(input.observed).map(line).collect(),
         worst,
         widest_band95_deg,
         coefficients,
         replaces: model.replaces(),
-        notes: notes(model, &basis.alerts, &cargo),
+        notes: notes(model, &input.alerts, &cargo),
         cargo,
         not_recorded: missing([
-            (NotRecorded::Correctors, basis.binnacle.is_none()),
+            (CardNotRecorded::Correctors, input.binnacle.is_none()),
             (
-                NotRecorded::DegaussingCoils,
-                basis.vessel.degaussing.is_none(),
+                CardNotRecorded::DegaussingCoils,
+                input.vessel.degaussing.is_none(),
             ),
-            (NotRecorded::Adjuster, adjusted_by.is_none()),
-            (NotRecorded::Signature, true),
+            (CardNotRecorded::Adjuster, adjusted_by.is_none()),
+            (CardNotRecorded::Signature, true),
             (
-                NotRecorded::NextDue,
+                CardNotRecorded::NextDue,
                 next_due.is_none() && unverified.is_none(),
             ),
         ]),
-        correctors: basis.binnacle.as_ref().map(correctors),
-        degaussed_at: last(&basis.logbook, LogbookKind::Degaussing, at),
-        degaussing: basis.vessel.degaussing.clone(),
+        correctors: input.binnacle.as_ref().map(correctors),
+        degaussed_at: last(&input.logbook, LogbookKind::Degaussing, at),
+        degaussing: input.vessel.degaussing.clone(),
         adjusted_at,
         adjusted_by,
         next_due,
-        model: Source {
+        model: CardModel {
             id: model.id,
             version: model.version,
             fitted_at: model.created_at,
             foretold_by: model.foretold_by,
-            data_from: basis.data.0,
-            data_until: basis.data.1,
+            data_from: input.data.0,
+            data_until: input.data.1,
             samples_used: ship.samples_used,
             rms_deg: ship.rms_deg,
             estimator: model.estimator.clone(),
             input_hash: model.input_hash.clone(),
         },
         curve,
-        vessel: basis.vessel,
-        compass: basis.compass,
-        place: basis.place,
+        vessel: input.vessel,
+        compass: input.compass,
+        place: input.place,
     })
 }
 
 /// Returns the verification of the adjustment that the model comes from.
-fn verified_by(model: &StoredModel, completed: &[CompletedOrder]) -> Option<VerifiedAtSea> {
+fn verified_by(model: &StoredModel, completed: &[CompletedOrder]) -> Option<CardVerification> {
     let by = completed
         .iter()
         .rev()
         .find(|order| order.is_source_of(model))?;
     let at_sea = by.at_sea?;
-    Some(VerifiedAtSea {
+    Some(CardVerification {
         order: by.order,
         adjusted_at: by.at,
         verified_at: at_sea.verified_at,
@@ -191,7 +192,7 @@ fn not_too_old(data_until: Time, at: Time) -> Result<(), Refusal> {
     Ok(())
 }
 
-fn widest(curve: &[Row], limit_deg: f64) -> Result<f64, Refusal> {
+fn widest(curve: &[DeviationRow], limit_deg: f64) -> Result<f64, Refusal> {
     let (mut widest_deg, mut compass_deg) = (0.0, 0.0);
     for row in curve {
         // A model without a covariance knows nothing of the band.
@@ -210,7 +211,7 @@ fn widest(curve: &[Row], limit_deg: f64) -> Result<f64, Refusal> {
     Ok(widest_deg)
 }
 
-fn line((row, observed): (&Row, Observed)) -> CardRow {
+fn line((row, observed): (&DeviationRow, Observed)) -> CardRow {
     CardRow {
         compass_deg: row.compass_deg,
         magnetic_deg: row.magnetic_deg,
@@ -222,12 +223,12 @@ fn line((row, observed): (&Row, Observed)) -> CardRow {
 }
 
 /// Returns the adjuster of the last adjustment, where it was by a work order.
-fn adjusted_by(completed: &[CompletedOrder], adjusted_at: Option<Time>) -> Option<AdjustedBy> {
+fn adjusted_by(completed: &[CompletedOrder], adjusted_at: Option<Time>) -> Option<CardAdjuster> {
     let by = completed
         .iter()
         .rev()
         .find(|order| Some(order.at) == adjusted_at)?;
-    Some(AdjustedBy {
+    Some(CardAdjuster {
         order: by.order,
         adjuster: by.adjuster_name.clone(),
         licence: by.adjuster_licence.clone(),
@@ -235,15 +236,15 @@ fn adjusted_by(completed: &[CompletedOrder], adjusted_at: Option<Time>) -> Optio
     })
 }
 
-fn missing<const N: usize>(known: [(NotRecorded, bool); N]) -> Vec<NotRecorded> {
+fn missing<const N: usize>(known: [(CardNotRecorded, bool); N]) -> Vec<CardNotRecorded> {
     let wanted = known.into_iter().filter(|(_, is_missing)| *is_missing);
     wanted.map(|(what, _)| what).collect()
 }
 
-fn correctors(found: &Revised) -> Correctors {
+fn correctors(found: &Revised) -> CardCorrectors {
     let binnacle = &found.binnacle.0;
     let design = &binnacle.design;
-    Correctors {
+    CardCorrectors {
         revision: found.revision,
         at: found.at,
         binnacle: format!("{} {}, no. {}", design.maker, design.model, binnacle.serial),

@@ -16,7 +16,7 @@ mod make;
 mod observed;
 mod refusal;
 
-pub use contents::{Card, Status};
+pub use contents::{Card, CardStatus};
 pub use refusal::Refusal;
 
 use crate::adjustments;
@@ -39,9 +39,9 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Params, file, file_name, time};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
-use contents::{Place, Ship};
-use make::{Basis, make};
-use observed::{Seen, observed};
+use contents::{CardPlace, CardVessel};
+use make::{CardInput, make};
+use observed::{SampleRole, observed};
 use serde::Deserialize;
 use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
@@ -191,13 +191,13 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     let logbook = logbook::of_compass(db, id, compass.id).await?;
     let alerts = alerts::list_in_force(db, id, compass.id).await?;
     let made = tokio::task::spawn_blocking(move || {
-        let seen = match model.foretold_by {
-            Some(_) => Seen::Predicted(&model.model.0),
-            None => Seen::Fitted,
+        let role = match model.foretold_by {
+            Some(_) => SampleRole::Predicted(&model.model.0),
+            None => SampleRole::Fitted,
         };
-        let basis = Basis {
-            observed: observed(&samples, from, seen)?,
-            vessel: Ship {
+        let input = CardInput {
+            observed: observed(&samples, from, role)?,
+            vessel: CardVessel {
                 id,
                 name: vessel.name,
                 imo_number: vessel.imo_number,
@@ -217,7 +217,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
             own_limit_deg: settings.alerts.deviation_deg,
             now,
         };
-        make(basis).map_err(Error::from)
+        make(input).map_err(Error::from)
     });
     made.await?
 }
@@ -254,13 +254,13 @@ impl Query {
     }
 }
 
-fn place(position: Position, at: Time, settings: &VesselSettings) -> Result<Place> {
+fn place(position: Position, at: Time, settings: &VesselSettings) -> Result<CardPlace> {
     let source = settings.analysis.field_model;
     let earth = field(source, position, 0.0, at.0).map_err(|error| Error::Invalid {
         field: "at",
         detail: error.to_string(),
     })?;
-    Ok(Place {
+    Ok(CardPlace {
         lat: position.lat_deg(),
         lon: position.lon_deg(),
         at,

@@ -6,7 +6,7 @@
 use super::schema::{CauseProbabilitySchema, CauseSchema, StepSchema};
 use super::store::{Analysed, StoredEpoch, Version};
 use crate::analysis::ChangeFinding;
-use crate::deviation::{self, Row};
+use crate::deviation::{self, DeviationRow};
 use crate::logbook::LogbookKindSchema;
 use crate::models::RefusalSchema;
 use binnacle_compass::logbook::LogbookKind;
@@ -103,7 +103,7 @@ pub(super) struct Epoch {
     /// Its deviation at `place`, by compass heading from 0 in steps of 10°; none without a
     /// model, or where headings are ambiguous.
     #[schema(required)]
-    curve: Option<Vec<Row>>,
+    curve: Option<Vec<DeviationRow>>,
     /// Reason for which it has no model.
     #[schema(required, value_type = Option<RefusalSchema>)]
     refusal: Option<FitError>,

@@ -10,8 +10,7 @@ use utoipa::ToSchema;
 
 /// Deviation on one compass heading.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
-#[schema(as = DeviationRow)]
-pub struct Row {
+pub struct DeviationRow {
     /// Compass heading.
     pub compass_deg: f64,
     /// The magnetic heading then.
@@ -25,8 +24,7 @@ pub struct Row {
 
 /// The heading with the greatest deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[schema(as = WorstHeading)]
-pub struct Worst {
+pub struct WorstHeading {
     /// Compass heading.
     pub compass_deg: f64,
     /// Deviation, degrees, east positive.
@@ -62,7 +60,11 @@ pub struct HandbookSchema {
 ///
 /// # Errors
 /// Fails when the field is too weak for a compass, or headings are ambiguous.
-pub fn table(model: &Model, earth: EarthField, step_deg: f64) -> Result<Vec<Row>, DeviationError> {
+pub fn table(
+    model: &Model,
+    earth: EarthField,
+    step_deg: f64,
+) -> Result<Vec<DeviationRow>, DeviationError> {
     if earth.h_nt < WEAKEST_H_NT {
         return Err(DeviationError::FieldTooWeak {
             h_nt: earth.h_nt,
@@ -76,10 +78,10 @@ pub fn table(model: &Model, earth: EarthField, step_deg: f64) -> Result<Vec<Row>
         .collect()
 }
 
-fn row(model: &Model, earth: EarthField, compass_deg: f64) -> Result<Row, DeviationError> {
+fn row(model: &Model, earth: EarthField, compass_deg: f64) -> Result<DeviationRow, DeviationError> {
     let compass = CompassHeading::new(compass_deg).ok_or(DeviationError::NotFinite)?;
     let predicted = model.deviation(compass, earth)?;
-    Ok(Row {
+    Ok(DeviationRow {
         compass_deg,
         magnetic_deg: (compass + predicted.deviation).degrees(),
         deviation_deg: predicted.deviation.degrees_east(),
@@ -88,16 +90,16 @@ fn row(model: &Model, earth: EarthField, compass_deg: f64) -> Result<Row, Deviat
 }
 
 /// Finds the heading with the greatest deviation, to 5°; `None` where headings are ambiguous.
-pub fn worst(model: &Model, earth: EarthField) -> Option<Worst> {
+pub fn worst(model: &Model, earth: EarthField) -> Option<WorstHeading> {
     worst_of(&table(model, earth, 5.0).ok()?)
 }
 
 /// Finds the row with the greatest deviation.
-pub fn worst_of(rows: &[Row]) -> Option<Worst> {
+pub fn worst_of(rows: &[DeviationRow]) -> Option<WorstHeading> {
     let worst = rows
         .iter()
         .max_by(|x, y| x.deviation_deg.abs().total_cmp(&y.deviation_deg.abs()))?;
-    Some(Worst {
+    Some(WorstHeading {
         compass_deg: worst.compass_deg,
         deviation_deg: worst.deviation_deg,
         band95_deg: worst.band95_deg,

@@ -53,7 +53,7 @@ pub(super) struct Entry {
     pub(super) model_version: Option<i64>,
     /// Status of its card then; none where there was none.
     #[schema(required)]
-    pub(super) card_status: Option<card::Status>,
+    pub(super) card_status: Option<card::CardStatus>,
     /// Deviation by the card of that model, degrees, east positive.
     #[schema(required, example = 2.1)]
     pub(super) card_deviation_deg: Option<f64>,
@@ -184,14 +184,14 @@ fn entry(
 }
 
 /// Returns the status of a model's card at a time.
-fn status(model: &StoredModel, completed: &[CompletedOrder], at: Time) -> card::Status {
+fn status(model: &StoredModel, completed: &[CompletedOrder], at: Time) -> card::CardStatus {
     let mut bearing = completed.iter().filter(|order| order.is_source_of(model));
     let was_verified =
         bearing.any(|order| order.at_sea.is_some_and(|at_sea| at_sea.verified_at <= at));
     if was_verified {
-        card::Status::Verified
+        card::CardStatus::Verified
     } else {
-        card::Status::Predicted
+        card::CardStatus::Predicted
     }
 }
 

@@ -158,8 +158,8 @@ fn remarks(entry: &Entry) -> String {
         Occasion::Alteration => "course altered",
     };
     let card = match entry.card_status {
-        Some(card::Status::Verified) => "card verified",
-        Some(card::Status::Predicted) | None => "",
+        Some(card::CardStatus::Verified) => "card verified",
+        Some(card::CardStatus::Predicted) | None => "",
     };
     let reason = entry.reason.map_or("", reason_in_words);
     let all = [occasion, reason, card].into_iter();

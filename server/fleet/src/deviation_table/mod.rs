@@ -1,7 +1,7 @@
 //! Deviation table of a compass by its current model, at any place and time.
 
 use crate::compasses;
-use crate::deviation::{Row, table};
+use crate::deviation::{DeviationRow, table};
 use crate::models;
 use crate::vessels;
 use axum::extract::{FromRef, State};
@@ -65,7 +65,7 @@ pub struct DeviationTable {
     /// Its version.
     pub model_version: i64,
     /// By compass heading from 0, each `step_deg`.
-    pub rows: Vec<Row>,
+    pub rows: Vec<DeviationRow>,
 }
 
 /// Deviation by compass heading, at a place and time

@@ -22,7 +22,7 @@ pub use store::{
 };
 
 use crate::compasses::{self, WhichCompass};
-use crate::deviation::{HandbookSchema, Worst};
+use crate::deviation::{HandbookSchema, WorstHeading};
 use crate::vessels;
 use axum::extract::{FromRef, State};
 use binnacle_compass::deviation::CoefficientsInDegrees;
@@ -196,7 +196,7 @@ impl StoredModel {
     }
 
     /// Finds the heading with the greatest deviation, at the last sample's place.
-    pub fn worst(&self) -> Option<Worst> {
+    pub fn worst(&self) -> Option<WorstHeading> {
         crate::deviation::worst(&self.model.0, self.earth())
     }
 

@@ -7,7 +7,7 @@ mod store;
 
 use crate::alerts::{Cause, State};
 use crate::analysis::Track;
-use crate::deviation::{self, Worst};
+use crate::deviation::{self, WorstHeading};
 use crate::models::StoredModel;
 use crate::vessels::LastPosition;
 use axum::extract;
@@ -84,7 +84,7 @@ pub struct FleetVessel {
     pub model: Option<FleetModel>,
     /// The heading with the greatest deviation by that model, where it was made.
     #[schema(required)]
-    pub worst: Option<Worst>,
+    pub worst: Option<WorstHeading>,
     /// Alerts that nobody has acknowledged.
     pub open_alerts: u32,
     /// Its first port call that is not over.
@@ -123,7 +123,7 @@ pub struct NextCall {
     pub etd: Time,
     /// The heading with the greatest deviation there and then, by its model.
     #[schema(required)]
-    pub worst: Option<Worst>,
+    pub worst: Option<WorstHeading>,
 }
 
 /// An alert, in short.
@@ -236,8 +236,8 @@ impl NextCall {
 }
 
 /// Rounds figures to a thousandth, to save a slow link bytes.
-fn in_short(worst: Worst) -> Worst {
-    Worst {
+fn in_short(worst: WorstHeading) -> WorstHeading {
+    WorstHeading {
         compass_deg: worst.compass_deg,
         deviation_deg: thousandth(worst.deviation_deg),
         band95_deg: worst.band95_deg.map(thousandth),

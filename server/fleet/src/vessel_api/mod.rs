@@ -7,7 +7,7 @@ pub use service::ServiceChanged;
 
 use crate::alerts::{self, OpenCount};
 use crate::compasses::{self, Compass};
-use crate::deviation::Worst;
+use crate::deviation::WorstHeading;
 use crate::models::{self, ModelSummary, StoredModel};
 use crate::vessels::{self, LastPosition, NewVessel, VesselRow};
 use amendment::{Amendment, AmendmentSchema};
@@ -75,7 +75,7 @@ pub struct Vessel {
     pub model: Option<ModelSummary>,
     /// The heading with the greatest deviation by that model, at the last position.
     #[schema(required)]
-    pub worst: Option<Worst>,
+    pub worst: Option<WorstHeading>,
     /// Alerts that nobody has acknowledged.
     pub open_alerts: u32,
     /// Its worst alert that is not cleared.

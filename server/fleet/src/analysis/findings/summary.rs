@@ -1,7 +1,7 @@
 //! Summary of one compass's analysis.
 
 use super::change_findings::{ChangeFinding, found_changes};
-use crate::deviation::{self, Worst};
+use crate::deviation::{self, WorstHeading};
 use crate::models::LeftOut;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::logbook::LogbookEntry;
@@ -21,7 +21,7 @@ pub struct Findings {
     /// The current epoch's first sample.
     pub epoch_data_from: Option<Timestamp>,
     /// The greatest deviation by the current epoch's model, at the last place.
-    pub worst: Option<Worst>,
+    pub worst: Option<WorstHeading>,
     /// The widest half of the 95 % band there, over all headings, degrees.
     pub widest_band95_deg: Option<f64>,
     /// Reason for which the current epoch has no model.

@@ -3,7 +3,7 @@
 use crate::alerts::cause::Cause;
 use crate::alerts::causes::{Facts, Silence, evaluate, evaluate_analysis};
 use crate::analysis::{FailedLately, Findings};
-use crate::deviation::Worst;
+use crate::deviation::WorstHeading;
 use crate::settings::AlertLimits;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::severity::Severity;
@@ -23,7 +23,7 @@ fn found() -> Findings {
 
 fn with_worst(deviation_deg: f64, band95_deg: f64) -> Findings {
     Findings {
-        worst: Some(Worst {
+        worst: Some(WorstHeading {
             compass_deg: 95.0,
             deviation_deg,
             band95_deg: Some(band95_deg),
