@@ -172,9 +172,9 @@ fn number_of(time: Time) -> i64 {
 /// Returns an event if the model, or the withdrawal of the card, changed.
 pub async fn save(tx: &mut Tx, found: &AnalysisResult, now: Time) -> Result<Option<Event>> {
     let analysis = &found.analysis;
-    let withdrawn_before = models::withdrawn(tx, found.vessel_id, found.compass_id).await?;
+    let withdrawn_before = models::card_withdrawn_in(tx, found.vessel_id, found.compass_id).await?;
     // The prediction of an adjustment holds from its moment on, and through its epoch.
-    let predicted = models::predicted(tx, found.vessel_id, found.compass_id).await?;
+    let predicted = models::find_prediction(tx, found.vessel_id, found.compass_id).await?;
     let predicted = predicted.filter(|model| {
         let from = analysis.current_epoch().and_then(|epoch| epoch.from);
         from.map(Time) <= model.epoch_from

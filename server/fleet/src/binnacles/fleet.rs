@@ -100,7 +100,7 @@ async fn list_binnacles(
 }
 
 impl FleetBinnacle {
-    fn of(row: store::Standing) -> Result<FleetBinnacle> {
+    fn of(row: store::CompassRow) -> Result<FleetBinnacle> {
         let binnacle = row.revised()?.map(BinnacleInShort::of);
         Ok(FleetBinnacle {
             vessel_id: row.vessel_id,
@@ -114,7 +114,7 @@ impl FleetBinnacle {
 }
 
 impl BinnacleInShort {
-    fn of(written: store::Revised) -> BinnacleInShort {
+    fn of(written: store::StoredRevision) -> BinnacleInShort {
         let binnacle: &Binnacle = &written.binnacle.0;
         BinnacleInShort {
             maker: binnacle.design.maker.clone(),

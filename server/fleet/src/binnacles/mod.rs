@@ -7,16 +7,16 @@
 //! - Requests and responses have the same form (docs/binnacle.md), which `plan --binnacle` reads
 //!   too.
 
+mod built_in;
 mod design_schema;
 mod fleet;
 mod schema;
-mod shipped;
+mod setting_text;
 mod store;
-mod words;
 
 pub use schema::{BarSchema, BinnacleSchema, BucketSchema, PairSchema, SettingSchema, TraySchema};
-pub use store::{Author, Revised, current, insert};
-pub use words::in_words;
+pub use setting_text::describe_setting;
+pub use store::{Author, StoredRevision, current, insert};
 
 use crate::compasses;
 use crate::vessels;
@@ -55,7 +55,7 @@ where
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new()
-        .merge(shipped::router())
+        .merge(built_in::router())
         .merge(fleet::router())
         .routes(routes!(find_binnacle, put_binnacle))
         .routes(routes!(list_revisions))
@@ -92,7 +92,7 @@ struct BinnacleRevisionList {
 /// Reason for a new revision.
 #[derive(Deserialize, Serialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-struct Why {
+struct RevisionReason {
     /// In a few words, such as what was bought or measured.
     #[param(max_length = 200)]
     reason: Option<String>,
@@ -110,7 +110,9 @@ async fn find_binnacle(
 ) -> Result<Json<BinnacleRevision>> {
     must_be_of_fleet(&app, reader.operator, vessel, compass).await?;
     let found = store::current(&app.db, vessel, compass).await?;
-    Ok(Json(found.ok_or(Error::NotFound("binnacle"))?.shown()))
+    Ok(Json(
+        found.ok_or(Error::NotFound("binnacle"))?.into_revision(),
+    ))
 }
 
 /// Write the binnacle that a compass stands in
@@ -118,7 +120,7 @@ async fn find_binnacle(
 /// The whole of it: its type, the correctors on board and how they stand. What was
 /// written before stays among its revisions; the same again makes no new one.
 #[utoipa::path(put, path = "/vessels/{id}/compasses/{compass}/binnacle", tag = "adjusting",
-    params(("id" = VesselId, Path), ("compass" = CompassId, Path), Why, Key),
+    params(("id" = VesselId, Path), ("compass" = CompassId, Path), RevisionReason, Key),
     request_body = BinnacleSchema,
     responses((status = 200, body = BinnacleRevision), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
@@ -128,7 +130,7 @@ async fn put_binnacle(
     request: RequestContext,
     writer: Writer,
     Id((vessel, compass)): Id<(VesselId, CompassId)>,
-    Params(why): Params<Why>,
+    Params(why): Params<RevisionReason>,
     key: Key,
     Valid(form): Valid<BinnacleForm>,
 ) -> Result<Json<BinnacleRevision>> {
@@ -155,7 +157,9 @@ async fn put_binnacle(
         tx.commit().await?;
     }
     let found = store::current(&app.db, vessel, compass).await?;
-    Ok(Json(found.ok_or(Error::NotFound("binnacle"))?.shown()))
+    Ok(Json(
+        found.ok_or(Error::NotFound("binnacle"))?.into_revision(),
+    ))
 }
 
 /// List what was written of a compass's binnacle
@@ -175,7 +179,11 @@ async fn list_revisions(
     let found = store::list(&app.db, vessel, compass, before, page.fetch()).await?;
     let listed = page.cut(found, |revised| revised.revision.to_string());
     Ok(Json(BinnacleRevisionList {
-        items: listed.items.into_iter().map(Revised::shown).collect(),
+        items: listed
+            .items
+            .into_iter()
+            .map(StoredRevision::into_revision)
+            .collect(),
         next: listed.next,
     }))
 }

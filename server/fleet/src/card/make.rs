@@ -13,7 +13,7 @@ use super::observed::{Observed, STEP_DEG};
 use super::refusal::{OLDEST_DAYS, Refusal};
 use crate::adjustments::CompletedOrder;
 use crate::alerts::{Effect, OpenAlert};
-use crate::binnacles::Revised;
+use crate::binnacles::StoredRevision;
 use crate::compasses::Compass;
 use crate::deviation::{self, DeviationRow};
 use crate::models::StoredModel;
@@ -37,7 +37,7 @@ pub(super) struct CardInput {
     /// The first and the last sample that it rests on.
     pub(super) data: (Time, Time),
     /// The binnacle as it is recorded.
-    pub(super) binnacle: Option<Revised>,
+    pub(super) binnacle: Option<StoredRevision>,
     /// Entries of the logbook, without withdrawn ones.
     pub(super) logbook: Vec<LogbookEntry>,
     /// Open alerts of this compass.
@@ -241,7 +241,7 @@ fn missing<const N: usize>(known: [(CardNotRecorded, bool); N]) -> Vec<CardNotRe
     wanted.map(|(what, _)| what).collect()
 }
 
-fn correctors(found: &Revised) -> CardCorrectors {
+fn correctors(found: &StoredRevision) -> CardCorrectors {
     let binnacle = &found.binnacle.0;
     let design = &binnacle.design;
     CardCorrectors {

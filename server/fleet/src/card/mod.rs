@@ -231,7 +231,7 @@ async fn data_of(app: &App, model: &StoredModel) -> Result<(Time, Time)> {
     };
     let behind = match from {
         Some(version) => {
-            models::of_version(&app.db, model.vessel_id, model.compass_id, version).await?
+            models::find_version(&app.db, model.vessel_id, model.compass_id, version).await?
         }
         None => None,
     };

@@ -1,6 +1,6 @@
 //! Entry of a deviation book: an observed deviation, beside the card's.
 
-use super::select::{Occasion, choose};
+use super::select::{Occasion, select_entries};
 use crate::adjustments::CompletedOrder;
 use crate::card;
 use crate::models::StoredModel;
@@ -100,7 +100,7 @@ pub(super) enum Observer {
 
 /// Times at which cards ended before another model replaced them.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Ends {
+pub(super) struct CardEnds {
     /// Work on compass or ship that the logbook tells of.
     pub(super) work: Vec<Time>,
     /// Time from which there is no card at all.
@@ -112,10 +112,10 @@ pub(super) struct Ends {
 pub(super) fn entries(
     samples: Vec<SampleDiagnostic>,
     models: &[StoredModel],
-    ends: &Ends,
+    ends: &CardEnds,
     completed: &[CompletedOrder],
 ) -> Vec<Entry> {
-    let chosen = choose(samples).into_iter();
+    let chosen = select_entries(samples).into_iter();
     chosen
         .filter_map(|(occasion, sample)| {
             let at = Time(sample.sample.time);
@@ -130,7 +130,7 @@ pub(super) fn entries(
         .collect()
 }
 
-impl Ends {
+impl CardEnds {
     /// Tells whether a model's card was still valid at a time.
     fn leave(&self, model: &StoredModel, at: Time) -> bool {
         let mut work = self.work.iter();

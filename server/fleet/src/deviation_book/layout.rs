@@ -187,7 +187,7 @@ const MASTER: f32 = RIGHT - 150.0;
 const FOOT: f32 = 7.0;
 
 /// Returns the text at the foot, beside the master's line.
-fn said_at_the_foot() -> Vec<String> {
+fn foot_text() -> Vec<String> {
     let says = "Observed by the agent on board by itself, in settled stretches of heading: one in \
                 each watch that has one, and after alterations of course of 20° or more. A card is \
                 predicted where the remarks do not say that it was verified.";
@@ -197,7 +197,7 @@ fn said_at_the_foot() -> Vec<String> {
 fn foot(sheet: &mut Sheet) {
     let y = HEIGHT - MARGIN;
     let small = Style::plain(FOOT).grey(GREY);
-    for (above, line) in said_at_the_foot().into_iter().rev().enumerate() {
+    for (above, line) in foot_text().into_iter().rev().enumerate() {
         sheet.text((LEFT, y - 8.5 * above as f32), small, line);
     }
     sheet.rule((MASTER, y - 9.0), (RIGHT, y - 9.0), 0.5);
@@ -211,7 +211,7 @@ mod tests {
 
     #[test]
     fn the_foot_leaves_the_masters_line_free() {
-        let lines = said_at_the_foot();
+        let lines = foot_text();
         for line in &lines {
             let end = LEFT + width(line, Face::Regular, FOOT);
             assert!(end < MASTER, "{line} ends at {end}");

@@ -9,8 +9,8 @@
 mod csv;
 mod entry;
 mod layout;
+mod reader;
 mod select;
-mod source;
 
 use crate::compasses;
 use crate::vessels;
@@ -28,8 +28,8 @@ use binnacle_platform::time::Time;
 use entry::Entry;
 use futures_util::{StreamExt, stream};
 use layout::Book;
+use reader::BookReader;
 use serde::{Deserialize, Serialize};
-use source::Source;
 use tracing::error;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
@@ -93,12 +93,12 @@ async fn list_book(
     Params(range): Params<Range>,
     page: Page,
 ) -> Result<Json<BookPage>> {
-    let (mut wanted, _) = range.find(&app, reader, id).await?;
+    let (mut selection, _) = range.find(&app, reader, id).await?;
     // No two entries have one time: it is the cursor.
     if let Some(after) = page.after_number()? {
-        wanted.begin_after(after)?;
+        selection.begin_after(after)?;
     }
-    let mut source = wanted.open(&app, id).await?;
+    let mut source = selection.open(&app, id).await?;
     let (found, _) = source.at_most(page.limit() + 1).await?;
     let listed = page.cut(found, |entry| entry.time.0.micros().to_string());
     Ok(Json(BookPage {
@@ -118,8 +118,8 @@ async fn book_csv(
     Id(id): Id<VesselId>,
     Params(range): Params<Range>,
 ) -> Result<Response> {
-    let (wanted, book) = range.find(&app, reader, id).await?;
-    let source = wanted.open(&app, id).await?;
+    let (selection, book) = range.find(&app, reader, id).await?;
+    let source = selection.open(&app, id).await?;
     let head = stream::iter([Ok(Bytes::from(csv::head()))]);
     let rest = stream::try_unfold(source, next_lines);
     let body = Body::from_stream(head.chain(rest));
@@ -140,8 +140,12 @@ async fn book_pdf(
     Id(id): Id<VesselId>,
     Params(range): Params<Range>,
 ) -> Result<Response> {
-    let (wanted, book) = range.find(&app, reader, id).await?;
-    let (entries, all) = wanted.open(&app, id).await?.at_most(MOST_PRINTED).await?;
+    let (selection, book) = range.find(&app, reader, id).await?;
+    let (entries, all) = selection
+        .open(&app, id)
+        .await?
+        .at_most(MOST_PRINTED)
+        .await?;
     if !all {
         return Err(Error::Invalid {
             field: "from, to",
@@ -150,7 +154,7 @@ async fn book_pdf(
     }
     let about = About {
         title: format!("Compass deviation book: {}, {}", book.vessel, book.compass),
-        created: entries.last().map_or(wanted.entered, |last| last.time).0,
+        created: entries.last().map_or(selection.entered, |last| last.time).0,
     };
     let name = book.name("pdf");
     let drawn = move || binnacle_drawing::pdf(&layout::sheets(&book, &entries), &about);
@@ -159,7 +163,7 @@ async fn book_pdf(
 }
 
 /// Selection of entries, parsed and checked.
-struct Wanted {
+struct Selection {
     compass: CompassId,
     from: Option<Time>,
     to: Option<Time>,
@@ -168,7 +172,7 @@ struct Wanted {
 }
 
 impl Range {
-    async fn find(&self, app: &App, reader: Reader, id: VesselId) -> Result<(Wanted, Book)> {
+    async fn find(&self, app: &App, reader: Reader, id: VesselId) -> Result<(Selection, Book)> {
         let vessel = vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
         let compass = compasses::find(&app.db, id, self.compass).await?;
         let from = time("from", self.from.as_deref())?.map(Time);
@@ -179,7 +183,7 @@ impl Range {
                 detail: "is earlier than from".to_owned(),
             });
         }
-        let wanted = Wanted {
+        let selection = Selection {
             compass: compass.id,
             from,
             to,
@@ -192,13 +196,13 @@ impl Range {
             from,
             to,
         };
-        Ok((wanted, book))
+        Ok((selection, book))
     }
 }
 
-impl Wanted {
-    async fn open(&self, app: &App, vessel: VesselId) -> Result<Source> {
-        Source::open(&app.db, vessel, self.compass, self.from, self.to).await
+impl Selection {
+    async fn open(&self, app: &App, vessel: VesselId) -> Result<BookReader> {
+        BookReader::open(&app.db, vessel, self.compass, self.from, self.to).await
     }
 
     /// Leaves out what the pages up to an entry's time had.
@@ -217,7 +221,7 @@ impl Book {
 }
 
 /// Returns the next month's lines. A failure ends the file, and is logged.
-async fn next_lines(mut source: Source) -> Result<Option<(Bytes, Source)>> {
+async fn next_lines(mut source: BookReader) -> Result<Option<(Bytes, BookReader)>> {
     let lines = async {
         let entries = source.next().await?;
         entries.map(|entries| csv::lines(&entries)).transpose()

@@ -159,7 +159,7 @@ async fn should_send(app: &App, model: &StoredModel, card: Option<&str>) -> Resu
     if card == card_tag(model.id.0) {
         return Ok(false);
     }
-    let known = models::lately(&app.db, model.vessel_id, model.compass_id).await?;
+    let known = models::list_recent(&app.db, model.vessel_id, model.compass_id).await?;
     let known = known.iter().find(|known| card == card_tag(known.id.0));
     Ok(known.is_none_or(|known| model.is_update_of(known)))
 }

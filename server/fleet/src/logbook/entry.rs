@@ -13,7 +13,7 @@ use utoipa::{IntoParams, ToSchema};
 
 /// An entry to be written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(from = "Written")]
+#[serde(from = "NewEntryForm")]
 pub(super) struct NewEntry {
     /// The event.
     #[serde(flatten)]
@@ -29,7 +29,7 @@ pub(super) struct NewEntry {
 /// read by this.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a logbook entry")]
-struct Written {
+struct NewEntryForm {
     kind: LogbookKind,
     from: Timestamp,
     to: Option<Timestamp>,
@@ -41,8 +41,8 @@ struct Written {
     compass_id: Option<CompassId>,
 }
 
-impl From<Written> for NewEntry {
-    fn from(written: Written) -> NewEntry {
+impl From<NewEntryForm> for NewEntry {
+    fn from(written: NewEntryForm) -> NewEntry {
         NewEntry {
             report: Report {
                 kind: written.kind,

@@ -17,7 +17,7 @@ mod store;
 
 pub use agent_reports::router as agent_router;
 pub use schema::KindSchema as LogbookKindSchema;
-pub use store::{Adjusted, of_compass, write_adjustment};
+pub use store::{AdjustmentEntry, of_compass, write_adjustment};
 
 use crate::vessels;
 use amendment::{Amendment, AmendmentSchema};

@@ -43,7 +43,7 @@ struct Row {
 }
 
 /// The entry that a transaction holds.
-pub(super) struct Locked {
+pub(super) struct LockedEntry {
     vessel_id: VesselId,
     id: EntryId,
     revision: i64,
@@ -128,7 +128,7 @@ impl Author {
 
 /// An adjustment as a work order writes it.
 #[allow(missing_docs, reason = "they are an entry's parts")]
-pub struct Adjusted<'a> {
+pub struct AdjustmentEntry<'a> {
     pub id: EntryId,
     pub vessel: VesselId,
     pub compass: CompassId,
@@ -141,7 +141,7 @@ pub struct Adjusted<'a> {
 }
 
 /// Writes an adjustment at its moment, and has the vessel analysed anew.
-pub async fn write_adjustment(tx: &mut Tx, adjusted: &Adjusted<'_>) -> Result<()> {
+pub async fn write_adjustment(tx: &mut Tx, adjusted: &AdjustmentEntry<'_>) -> Result<()> {
     let entry = NewEntry {
         report: Report {
             kind: binnacle_compass::logbook::LogbookKind::Adjustment,
@@ -227,7 +227,7 @@ pub(super) async fn must_find(db: &Db, vessel: VesselId, id: EntryId) -> Result<
 }
 
 /// Locks an entry for an update; concurrent updates wait.
-pub(super) async fn lock(tx: &mut Tx, vessel_id: VesselId, id: EntryId) -> Result<Locked> {
+pub(super) async fn lock(tx: &mut Tx, vessel_id: VesselId, id: EntryId) -> Result<LockedEntry> {
     let found = row!(
         in tx,
         Row,
@@ -242,7 +242,7 @@ pub(super) async fn lock(tx: &mut Tx, vessel_id: VesselId, id: EntryId) -> Resul
     .ok_or(Error::NotFound("logbook entry"))?;
     let board_revision = found.board_revision.map(u32::try_from).transpose();
     let (revision, withdrawn_at) = (found.revision, found.withdrawn_at);
-    Ok(Locked {
+    Ok(LockedEntry {
         vessel_id,
         id,
         revision,
@@ -287,14 +287,14 @@ pub(super) async fn insert(
     if inserted == 0 {
         return Ok(false);
     }
-    keep(tx, vessel, id, 1, new, author).await?;
+    insert_revision(tx, vessel, id, 1, new, author).await?;
     Ok(true)
 }
 
 /// Writes an entry anew.
 pub(super) async fn revise(
     tx: &mut Tx,
-    locked: &Locked,
+    locked: &LockedEntry,
     amended: &NewEntry,
     author: &Author,
 ) -> Result<()> {
@@ -323,13 +323,13 @@ pub(super) async fn revise(
         author.name.as_str(),
         author.board_revision.map(i64::from)
     )?;
-    keep(tx, vessel, locked.id, locked.revision + 1, amended, author).await
+    insert_revision(tx, vessel, locked.id, locked.revision + 1, amended, author).await
 }
 
 /// Marks an entry as withdrawn.
 pub(super) async fn withdraw(
     tx: &mut Tx,
-    locked: &Locked,
+    locked: &LockedEntry,
     reason: Option<&str>,
     author: &Author,
 ) -> Result<()> {
@@ -397,7 +397,7 @@ pub async fn of_compass(
 }
 
 /// Keeps what an entry says for good.
-async fn keep(
+async fn insert_revision(
     tx: &mut Tx,
     vessel: VesselId,
     id: EntryId,

@@ -17,8 +17,8 @@ pub use schema::{
     CardWithdrawnSchema, IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema,
 };
 pub use store::{
-    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, in_force, insert,
-    lately, of_version, predicted, withdrawn,
+    StoredModel, card_withdrawn, card_withdrawn_in, current, current_of_fleet, current_of_vessel,
+    find_prediction, find_version, insert, list_in_force, list_recent,
 };
 
 use crate::compasses::{self, WhichCompass};
@@ -138,7 +138,7 @@ async fn current_model(
     vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
     let compass = compasses::find(&app.db, id, which.compass).await?;
     let model = must_have(&app, id, compass.id).await?;
-    Ok(Json(model.version()))
+    Ok(Json(model.into_version()))
 }
 
 /// List a compass's model versions
@@ -159,7 +159,11 @@ async fn list_models(
     let found = store::list(&app.db, id, compass.id, before, page.fetch()).await?;
     let listed = page.cut(found, |model| model.version.to_string());
     Ok(Json(ModelVersionList {
-        items: listed.items.into_iter().map(StoredModel::version).collect(),
+        items: listed
+            .items
+            .into_iter()
+            .map(StoredModel::into_version)
+            .collect(),
         next: listed.next,
     }))
 }
@@ -216,7 +220,7 @@ impl StoredModel {
     }
 
     /// Returns the whole version, as the API shows it.
-    pub fn version(self) -> ModelVersion {
+    pub fn into_version(self) -> ModelVersion {
         ModelVersion {
             handbook: crate::deviation::handbook(&self.model.0, self.earth()),
             id: self.id,

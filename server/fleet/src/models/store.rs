@@ -115,14 +115,18 @@ pub(super) async fn list(
 }
 
 /// Lists a compass's last models, as many as an agent that rarely calls may be behind.
-pub async fn lately(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Vec<StoredModel>> {
-    const LATELY: i64 = 32;
-    list(db, vessel, compass, None, LATELY).await
+pub async fn list_recent(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Vec<StoredModel>> {
+    const RECENT: i64 = 32;
+    list(db, vessel, compass, None, RECENT).await
 }
 
 /// Lists the models of a compass that were current at some time between two instants, the oldest
 /// first: those made between them, and the last one made before.
-pub async fn in_force(
+pub async fn list_in_force(
     db: &Db,
     vessel: VesselId,
     compass: CompassId,
@@ -146,7 +150,7 @@ pub async fn in_force(
 }
 
 /// Finds a model of a compass by its version.
-pub async fn of_version(
+pub async fn find_version(
     db: &Db,
     vessel: VesselId,
     compass: CompassId,
@@ -183,7 +187,7 @@ pub async fn card_withdrawn(
 }
 
 /// Does what [`card_withdrawn`] does, within a transaction.
-pub async fn withdrawn(
+pub async fn card_withdrawn_in(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
@@ -209,7 +213,7 @@ fn read_withdrawn((since, reason): (Option<Time>, Option<String>)) -> Option<Car
 
 /// Returns the compass's highest model if an adjustment predicted it and no heading at sea
 /// contradicts it.
-pub async fn predicted(
+pub async fn find_prediction(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,

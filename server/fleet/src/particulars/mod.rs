@@ -177,7 +177,7 @@ async fn find(db: &Db, vessel: VesselId) -> Result<Particulars> {
 ///
 /// # Errors
 /// When the database fails.
-pub async fn asked_of_adjusters(
+pub async fn adjuster_requirements(
     tx: &mut Tx,
     vessel: VesselId,
 ) -> Result<(Option<Flag>, Option<String>)> {

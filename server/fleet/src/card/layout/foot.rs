@@ -1,7 +1,7 @@
 //! Lower part of the sheet: coefficients, the ship's state, notes, signatures and the source.
 
 use super::{GREY, LEFT, RIGHT, UNKNOWN, draw_labelled, known};
-use crate::binnacles::in_words;
+use crate::binnacles::describe_setting;
 use crate::card::contents::{Card, MagneticCargo};
 use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_drawing::words::signed;
@@ -135,7 +135,7 @@ fn correctors(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
         return top;
     };
     sheet.text((LEFT, top), Style::bold(8.0), "Correctors");
-    let all = in_words(&found.setting, found.shape);
+    let all = describe_setting(&found.setting, found.shape);
     all.chunks(2).fold(top + 11.0, |y, pair| {
         let columns = [(LEFT + 6.0, SECOND - 14.0), (SECOND, RIGHT)];
         let ends = pair

@@ -81,5 +81,5 @@ async fn find_type(_: Caller, Id(name): Id<String>) -> Result<Json<Design>> {
 }
 
 fn design(text: &str) -> Result<Design> {
-    Ok(serde_json::from_str(text).context("a design that is shipped")?)
+    Ok(serde_json::from_str(text).context("a design that is built_in")?)
 }
