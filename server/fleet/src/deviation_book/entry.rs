@@ -123,7 +123,7 @@ pub(super) fn entries(
             entry(
                 occasion,
                 &sample,
-                last.filter(|model| ends.leave(model, at)),
+                last.filter(|model| ends.leaves_valid(model, at)),
                 completed,
             )
         })
@@ -132,7 +132,7 @@ pub(super) fn entries(
 
 impl CardEnds {
     /// Tells whether a model's card was still valid at a time.
-    fn leave(&self, model: &StoredModel, at: Time) -> bool {
+    fn leaves_valid(&self, model: &StoredModel, at: Time) -> bool {
         let mut work = self.work.iter();
         let worked = work.any(|begun| {
             // The adjustment that a model was predicted for does not end its card.

@@ -20,7 +20,7 @@ use uuid::Uuid;
 /// State of the agent, as the request names it.
 #[derive(Clone, Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-pub(super) struct Has {
+pub(super) struct AgentState {
     /// The model version it uses; what follows it comes at once.
     model: Option<Uuid>,
     /// The last eight digits of that model's id; a later model is sent when it matters.
@@ -40,12 +40,12 @@ pub(super) struct Has {
 }
 
 /// An answer in the form that the agent asked for.
-pub(super) struct Answer {
+pub(super) struct DownlinkResponse {
     downlink: Downlink,
     form: Option<u8>,
 }
 
-impl IntoResponse for Answer {
+impl IntoResponse for DownlinkResponse {
     fn into_response(self) -> Response {
         let reads_compact = self.form.is_some_and(|form| form >= FORM);
         let compact = reads_compact.then(|| downlink::encode(&self.downlink));
@@ -104,7 +104,12 @@ pub(super) struct OpenStreamSchema {
     stream: Uuid,
 }
 
-pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> Result<Answer> {
+pub(super) async fn answer(
+    app: &App,
+    agent: Agent,
+    stream: Uuid,
+    state: AgentState,
+) -> Result<DownlinkResponse> {
     let (contiguous_seq,) = row!(
         &app.db,
         (i64,),
@@ -117,15 +122,15 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
     )?
     .ok_or(Error::NotFound("stream"))?;
     let current = models::current(&app.db, agent.vessel_id, agent.compass_id).await?;
-    let has_card = has.model.is_some() || has.card.is_some();
+    let has_card = state.model.is_some() || state.card.is_some();
     let card_withdrawn = if has_card {
         models::card_withdrawn(&app.db, agent.vessel_id, agent.compass_id).await?
     } else {
         None
     };
     let newer = match current {
-        Some(model) if Some(model.id.0) == has.model => None,
-        Some(model) if !should_send(app, &model, has.card.as_deref()).await? => None,
+        Some(model) if Some(model.id.0) == state.model => None,
+        Some(model) if !should_send(app, &model, state.card.as_deref()).await? => None,
         current => current,
     };
     let settings = settings::find(&app.db, agent.vessel_id).await?.agent;
@@ -144,11 +149,11 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
         }),
         unread: None,
         card_withdrawn,
-        settings: Some(settings).filter(|current| current.version != has.settings.unwrap_or(0)),
+        settings: Some(settings).filter(|current| current.version != state.settings.unwrap_or(0)),
         server_time: app.clock.now(),
     };
-    let form = has.form;
-    Ok(Answer { downlink, form })
+    let form = state.form;
+    Ok(DownlinkResponse { downlink, form })
 }
 
 /// Tells whether an agent should get this model in place of the one that it names.

@@ -10,11 +10,11 @@
 //! - `contiguous_seq` covers only batches that are stored, all from 1 on.
 //! - An agent reaches its own streams and nothing else.
 
-mod bursts;
 mod downlink;
+mod short_burst;
 mod store;
 
-pub use bursts::{Imported, Incomplete, Refused, import};
+pub use short_burst::{ImportResult, IncompleteBatch, RefusedMessage, import_messages};
 
 use crate::agent_auth::Agent;
 use crate::enrolment;
@@ -33,7 +33,7 @@ use binnacle_platform::time::Time;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::codec::MAX_BYTES;
 use binnacle_wire::messages::OpenStreamAnswer;
-use downlink::{Answer, DownlinkSchema, Has, OpenStreamSchema};
+use downlink::{AgentState, DownlinkResponse, DownlinkSchema, OpenStreamSchema};
 use metrics::counter;
 use std::time::Duration;
 use utoipa_axum::router::OpenApiRouter;
@@ -79,7 +79,7 @@ async fn open_stream(
 /// Answers when the batch is durable. The same batch again is answered alike.
 #[utoipa::path(put, path = "/streams/{stream}/batches/{seq}", tag = "agents",
     security(("token" = [])),
-    params(("stream" = Uuid, Path), ("seq" = u64, Path, minimum = 1), Has),
+    params(("stream" = Uuid, Path), ("seq" = u64, Path, minimum = 1), AgentState),
     request_body(content = Vec<u8>, content_type = "application/octet-stream",
                  description = "The frame, as crates/wire/FORMAT.md has it"),
     responses((status = 200, description = "As JSON, or in the compact form asked for",
@@ -93,52 +93,56 @@ async fn put_batch(
     request: RequestContext,
     agent: Agent,
     Id((stream, seq)): Id<(Uuid, u64)>,
-    Params(has): Params<Has>,
+    Params(state): Params<AgentState>,
     body: std::result::Result<Bytes, BytesRejection>,
-) -> Result<Answer> {
+) -> Result<DownlinkResponse> {
     let bytes = body.map_err(|rejection| too_large(&rejection))?;
-    let batch = read(&bytes, StreamId(stream), seq)?;
+    let batch = decode_batch(&bytes, StreamId(stream), seq)?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
-    let delay_s = match has.wait {
+    let delay_s = match state.wait {
         None => analysis_delay_s(&app, &batch),
         // No other follows.
         Some(_) => 0.0,
     };
-    let taken = take(&mut tx, agent, &batch, &bytes, now, delay_s).await?;
-    if let Some(waits) = has.waits.or(has.wait.map(|_| 0)) {
-        store::record_board_status(&mut tx, agent.vessel_id, stream, waits, has.budget, now)
+    let received = store_batch(&mut tx, agent, &batch, &bytes, now, delay_s).await?;
+    if let Some(waits) = state.waits.or(state.wait.map(|_| 0)) {
+        store::record_board_status(&mut tx, agent.vessel_id, stream, waits, state.budget, now)
             .await?;
     }
     tx.commit().await?;
-    for event in taken.events_out {
+    for event in received.events_out {
         app.publish(event);
     }
-    let result = if taken.is_new { "stored" } else { "repeated" };
+    let result = if received.is_new {
+        "stored"
+    } else {
+        "repeated"
+    };
     counter!("binnacle_batches_total", "result" => result).increment(1);
-    if let Some(wait_s) = has.wait.filter(|_| !batch.samples.is_empty()) {
+    if let Some(wait_s) = state.wait.filter(|_| !batch.samples.is_empty()) {
         let at_most = Duration::from_secs(wait_s.into()).min(LONGEST_WAIT);
         analysis_queue::wait_until_done(&app, agent.vessel_id, at_most).await?;
     }
-    downlink::answer(&app, agent, stream, has).await
+    downlink::answer(&app, agent, stream, state).await
 }
 
 /// Result of a received batch.
-struct Taken {
+struct Received {
     /// True if it was not stored before.
     is_new: bool,
     events_out: Vec<events::Event>,
 }
 
 /// Stores a batch with all its consequences, on whichever link it arrived.
-async fn take(
+async fn store_batch(
     tx: &mut Tx,
     agent: Agent,
     batch: &Batch,
     bytes: &[u8],
     now: Time,
     delay_s: f64,
-) -> Result<Taken> {
+) -> Result<Received> {
     let is_new = store::insert(tx, agent, batch, bytes, now).await?;
     let mut events_out = Vec::new();
     if is_new {
@@ -153,12 +157,12 @@ async fn take(
         }
         events_out.push(events::insert(tx, vessel, events::Kind::Batch, now).await?);
     }
-    Ok(Taken { is_new, events_out })
+    Ok(Received { is_new, events_out })
 }
 
 /// Fetch what the agent lacks
 #[utoipa::path(get, path = "/streams/{stream}/downlink", tag = "agents", security(("token" = [])),
-    params(("stream" = Uuid, Path), Has),
+    params(("stream" = Uuid, Path), AgentState),
     responses((status = 200, description = "As JSON, or in the compact form asked for",
                content((DownlinkSchema = "application/json"),
                        (Vec<u8> = "application/octet-stream"))),
@@ -167,9 +171,9 @@ async fn downlink(
     State(app): State<App>,
     agent: Agent,
     Id(stream): Id<Uuid>,
-    Params(has): Params<Has>,
-) -> Result<Answer> {
-    downlink::answer(&app, agent, stream, has).await
+    Params(state): Params<AgentState>,
+) -> Result<DownlinkResponse> {
+    downlink::answer(&app, agent, stream, state).await
 }
 
 /// Returns the delay in which further batches may arrive; none for a batch with an alert.
@@ -181,7 +185,7 @@ fn analysis_delay_s(app: &App, batch: &Batch) -> f64 {
 }
 
 /// Decodes a frame, and checks that it is the one that the path names.
-fn read(bytes: &[u8], stream: StreamId, seq: u64) -> Result<Batch> {
+fn decode_batch(bytes: &[u8], stream: StreamId, seq: u64) -> Result<Batch> {
     let batch =
         binnacle_wire::decode(bytes).map_err(|error| Error::BadRequest(error.to_string()))?;
     if batch.stream != stream {

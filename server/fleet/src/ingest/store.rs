@@ -82,8 +82,8 @@ pub(super) async fn insert(
         last,
         now
     )?;
-    advance(tx, agent.vessel_id, batch, progress).await?;
-    note_on_vessel(tx, agent.vessel_id, batch, now).await?;
+    update_stream(tx, agent.vessel_id, batch, progress).await?;
+    update_vessel(tx, agent.vessel_id, batch, now).await?;
     Ok(true)
 }
 
@@ -111,7 +111,12 @@ pub(super) async fn record_board_status(
 }
 
 /// Brings the stream's sums up to date with a batch just stored.
-async fn advance(tx: &mut Tx, vessel: VesselId, batch: &Batch, progress: Progress) -> Result<()> {
+async fn update_stream(
+    tx: &mut Tx,
+    vessel: VesselId,
+    batch: &Batch,
+    progress: Progress,
+) -> Result<()> {
     let mut tally: BTreeMap<String, u64> = serde_json::from_str(&progress.tally)?;
     for (outcome, windows) in &batch.tally {
         let sum = tally.entry(outcome.clone()).or_default();
@@ -166,7 +171,7 @@ async fn contiguous_seq(tx: &mut Tx, vessel: VesselId, stream: Uuid, known: i64)
     Ok(last.map_or(known, |(seq,)| seq))
 }
 
-async fn note_on_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time) -> DbResult<()> {
+async fn update_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time) -> DbResult<()> {
     execute!(
         &mut *tx,
         "UPDATE vessels SET last_upload_at = $2 WHERE id = $1",
@@ -192,7 +197,7 @@ async fn note_on_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time)
     Ok(())
 }
 
-/// Returns the refusal of a batch whose number is taken by other bytes.
+/// Returns the refusal of a batch whose number is received by other bytes.
 fn forked(seq: u64) -> Error {
     let problem = DomainProblem {
         status: StatusCode::CONFLICT,
