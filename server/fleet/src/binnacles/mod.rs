@@ -140,12 +140,12 @@ async fn put_binnacle(
     let binnacle = Binnacle::try_from(form).map_err(invalid_binnacle)?;
     binnacle.check_tested_moments().map_err(invalid_binnacle)?;
     let now = app.clock.now().into();
-    let wanted = BinnacleId::new();
+    let new_id = BinnacleId::new();
     let mut tx = request.begin().await?;
     let made = key
-        .once(&mut tx, writer.operator, &request_hash, wanted.0, now)
+        .once(&mut tx, writer.operator, &request_hash, new_id.0, now)
         .await?;
-    if made == wanted.0 {
+    if made == new_id.0 {
         tx.publish(&BinnacleAmended { vessel, compass }).await?;
         let author = Author {
             id: writer.user.0,
@@ -153,7 +153,7 @@ async fn put_binnacle(
             at: now,
         };
         let why = reason.as_deref();
-        store::insert(&mut tx, vessel, compass, wanted, &binnacle, why, &author).await?;
+        store::insert(&mut tx, vessel, compass, new_id, &binnacle, why, &author).await?;
         tx.commit().await?;
     }
     let found = store::current(&app.db, vessel, compass).await?;

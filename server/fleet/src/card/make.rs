@@ -28,7 +28,7 @@ const CURVE_STEP_DEG: f64 = 5.0;
 /// A band that excludes no heading.
 const NO_BAND_DEG: f64 = 180.0;
 
-/// Everything that a card is made from.
+/// Records that a card is made from.
 pub(super) struct CardInput {
     pub(super) vessel: CardVessel,
     pub(super) compass: Compass,
@@ -237,8 +237,8 @@ fn adjusted_by(completed: &[CompletedOrder], adjusted_at: Option<Time>) -> Optio
 }
 
 fn missing<const N: usize>(known: [(CardNotRecorded, bool); N]) -> Vec<CardNotRecorded> {
-    let wanted = known.into_iter().filter(|(_, is_missing)| *is_missing);
-    wanted.map(|(what, _)| what).collect()
+    let missing = known.into_iter().filter(|(_, is_missing)| *is_missing);
+    missing.map(|(item, _)| item).collect()
 }
 
 fn correctors(found: &StoredRevision) -> CardCorrectors {

@@ -121,7 +121,7 @@ pub async fn find(db: &Db, vessel: VesselId, compass: Option<CompassId>) -> Resu
     of_vessel(db, vessel)
         .await?
         .into_iter()
-        .find(|found| compass.is_none_or(|wanted| found.id == wanted))
+        .find(|found| compass.is_none_or(|id| found.id == id))
         .ok_or(Error::NotFound("compass"))
 }
 

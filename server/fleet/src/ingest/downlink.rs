@@ -39,7 +39,7 @@ pub(super) struct AgentState {
     pub(super) wait: Option<u16>,
 }
 
-/// An answer in the form that the agent asked for.
+/// Downlink in the form that the agent requested.
 pub(super) struct DownlinkResponse {
     downlink: Downlink,
     form: Option<u8>,

@@ -90,15 +90,15 @@ async fn report_entry(
     let request_hash = idempotency::request_hash(&format!("logbook entry of {vessel}"), &new)?;
     let now = app.clock.now();
     let new = new.checked(now)?;
-    let wanted = EntryId::new();
+    let new_id = EntryId::new();
     let mut change = Change::begin(&app, &request, vessel, now.into()).await?;
     let tx = change.tx();
     let made = key
-        .once(tx, writer.operator, &request_hash, wanted.0, now.into())
+        .once(tx, writer.operator, &request_hash, new_id.0, now.into())
         .await?;
-    if made == wanted.0 {
+    if made == new_id.0 {
         let author = Author::user(tx, writer.user, now.into()).await?;
-        store::insert(tx, vessel, wanted, &new, &author).await?;
+        store::insert(tx, vessel, new_id, &new, &author).await?;
         change.commit().await?;
     }
     let entry = store::must_find(&app.db, vessel, EntryId(made)).await?;

@@ -23,12 +23,12 @@ use binnacle_platform::time::Time;
 use binnacle_schedule::ports::{self, PortCode};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use store::{Call, Row, WorstAlert};
+use store::{NextPortCall, VesselRow, WorstAlert};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// Of more vessels than this an answer has no tracks.
+/// Number of vessels above which a response has no tracks.
 const MOST_WITH_TRACKS: usize = 200;
 
 /// Returns the routes.
@@ -44,7 +44,7 @@ where
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Which {
-    /// The only one, for a page that has the others already.
+    /// Only this vessel, for a page that has the others already.
     vessel: Option<VesselId>,
 }
 
@@ -106,11 +106,11 @@ pub struct FleetModel {
     pub rms_deg: Option<f64>,
     /// The time of the last sample in it.
     pub data_until: Time,
-    /// For how many reasons it should not be trusted everywhere.
+    /// Number of reasons for which it should not be trusted everywhere.
     pub cautions: usize,
 }
 
-/// A port call, in short, and what awaits the compass there.
+/// A port call in short, with the worst heading there.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct NextCall {
     /// Its UN/LOCODE.
@@ -156,7 +156,7 @@ async fn find_fleet(
     Ok(Json(fleet.await.map_err(anyhow::Error::from)?))
 }
 
-fn assemble(found: store::Found) -> Fleet {
+fn assemble(found: store::FleetRecords) -> Fleet {
     let mut alerts: HashMap<VesselId, Vec<WorstAlert>> = HashMap::new();
     for alert in found.alerts {
         alerts.entry(alert.vessel_id).or_default().push(alert);
@@ -171,10 +171,10 @@ fn assemble(found: store::Found) -> Fleet {
     let vessels = found.vessels.into_iter().map(|row| {
         let model = models.remove(&row.id);
         let track = tracks.remove(&row.id).map(|stored| stored.track);
-        let hers = alerts.remove(&row.id).unwrap_or_default();
+        let alerts = alerts.remove(&row.id).unwrap_or_default();
         let call = calls.remove(&row.id);
         let call = call.map(|call| NextCall::of(call, model.as_ref()));
-        row.with(model.as_ref(), track.unwrap_or_default(), call, hers)
+        row.with(model.as_ref(), track.unwrap_or_default(), call, alerts)
     });
     Fleet {
         vessels: vessels.collect(),
@@ -190,7 +190,7 @@ fn by_vessel<T>(items: Vec<T>, vessel: impl Fn(&T) -> VesselId) -> HashMap<Vesse
     found
 }
 
-impl Row {
+impl VesselRow {
     fn with(
         self,
         model: Option<&StoredModel>,
@@ -207,7 +207,7 @@ impl Row {
             last_upload_at: self.last_upload_at,
             track,
             next_call,
-            worst: model.and_then(StoredModel::worst).map(in_short),
+            worst: model.and_then(StoredModel::worst).map(rounded),
             model: model.map(FleetModel::of),
             open_alerts: alerts.iter().filter(|alert| alert.is_raised()).count() as u32,
             alert: alerts
@@ -219,7 +219,7 @@ impl Row {
 }
 
 impl NextCall {
-    fn of(call: Call, model: Option<&StoredModel>) -> NextCall {
+    fn of(call: NextPortCall, model: Option<&StoredModel>) -> NextCall {
         let port = PortCode::parse(&call.port).ok().and_then(ports::find);
         let worst = port.zip(model).and_then(|(port, model)| {
             let earth = field(FieldModel::Igrf14, port.position, 0.0, call.eta.0).ok()?;
@@ -230,13 +230,13 @@ impl NextCall {
             port_name: port.map_or("", |port| port.name),
             eta: call.eta,
             etd: call.etd,
-            worst: worst.map(in_short),
+            worst: worst.map(rounded),
         }
     }
 }
 
 /// Rounds figures to a thousandth, to save a slow link bytes.
-fn in_short(worst: WorstHeading) -> WorstHeading {
+fn rounded(worst: WorstHeading) -> WorstHeading {
     WorstHeading {
         compass_deg: worst.compass_deg,
         deviation_deg: thousandth(worst.deviation_deg),

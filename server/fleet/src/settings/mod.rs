@@ -138,22 +138,22 @@ async fn change_settings(
     request: RequestContext,
     writer: Writer,
     Id(id): Id<VesselId>,
-    Valid(wanted): Valid<VesselSettings>,
+    Valid(new): Valid<VesselSettings>,
 ) -> Result<Json<VesselSettings>> {
     vessels::must_be_in_fleet(&app.db, writer.operator, id).await?;
-    if !(0.0..=10.0).contains(&wanted.analysis.reference_constant_sd_deg) {
+    if !(0.0..=10.0).contains(&new.analysis.reference_constant_sd_deg) {
         return Err(Error::Invalid {
             field: "analysis.reference_constant_sd_deg",
             detail: format!(
                 "{} is outside 0 to 10",
-                wanted.analysis.reference_constant_sd_deg
+                new.analysis.reference_constant_sd_deg
             ),
         });
     }
-    wanted.alerts.checked()?;
+    new.alerts.checked()?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
-    store::change(&mut tx, id, &wanted, now).await?;
+    store::change(&mut tx, id, &new, now).await?;
     analysis_queue::enqueue(&mut tx, id, now, 0.0).await?;
     tx.commit().await?;
     app.work.notify_one();

@@ -38,7 +38,7 @@ where
         .routes(routes!(find_vessel, amend_vessel))
 }
 
-/// A vessel, and how its compass stands.
+/// A vessel, with the state of its compass.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Vessel {
     /// The vessel's id.
@@ -122,11 +122,11 @@ async fn list_vessels(
     let (operator, first, last) = (reader.operator, first.id, last.id);
     let compasses = compasses::of_fleet(&app.db, operator, first, last).await?;
     let models = models::current_of_fleet(&app.db, operator, first, last).await?;
-    let standing = alerts::count_open(&app.db, operator, first, last).await?;
+    let open = alerts::count_open(&app.db, operator, first, last).await?;
     let items = listed
         .items
         .into_iter()
-        .map(|row| row.with(&compasses, &models, &standing))
+        .map(|row| row.with(&compasses, &models, &open))
         .collect();
     Ok(Json(VesselList {
         items,
@@ -151,14 +151,14 @@ async fn create_vessel(
     let new = new.checked()?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
-    let wanted = VesselId::new();
+    let new_id = VesselId::new();
     let id = key
-        .once(&mut tx, writer.operator, &request_hash, wanted.0, now)
+        .once(&mut tx, writer.operator, &request_hash, new_id.0, now)
         .await?;
-    if id == wanted.0 {
-        request.concerns_vessel(wanted, None);
-        vessels::insert(&mut tx, writer.operator, wanted, &new, now).await?;
-        compasses::insert_standard(&mut tx, wanted, now).await?;
+    if id == new_id.0 {
+        request.concerns_vessel(new_id, None);
+        vessels::insert(&mut tx, writer.operator, new_id, &new, now).await?;
+        compasses::insert_standard(&mut tx, new_id, now).await?;
     }
     tx.commit().await?;
     let vessel = assemble(&app, writer.operator, VesselId(id)).await?;
@@ -185,7 +185,7 @@ async fn find_vessel(
     request_body = AmendmentSchema,
     responses((status = 200, body = Vessel), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "A work order of hers is under way", body = Problem),
+              (status = 409, description = "A work order of the vessel is under way", body = Problem),
               (status = 422, body = Problem)))]
 async fn amend_vessel(
     State(app): State<App>,
@@ -216,16 +216,15 @@ async fn assemble(app: &App, operator: OperatorId, id: VesselId) -> Result<Vesse
     let row = vessels::must_be_in_fleet(&app.db, operator, id).await?;
     let compasses = compasses::of_vessel(&app.db, id).await?;
     let models = models::current_of_vessel(&app.db, id).await?;
-    let standing = alerts::count_open(&app.db, operator, id, id).await?;
-    Ok(row.with(&compasses, &models, &standing))
+    let open = alerts::count_open(&app.db, operator, id, id).await?;
+    Ok(row.with(&compasses, &models, &open))
 }
 
 impl VesselRow {
-    /// Puts a vessel together from all compasses, current models and counts of
-    /// alerts at hand.
-    fn with(self, compasses: &[Compass], models: &[StoredModel], standing: &[OpenCount]) -> Vessel {
-        let hers = standing.iter().filter(|alerts| alerts.vessel_id == self.id);
-        let (open_alerts, worst_alert) = alerts::summarize(hers);
+    /// Assembles a vessel from its share of compasses, current models and alert counts.
+    fn with(self, compasses: &[Compass], models: &[StoredModel], open: &[OpenCount]) -> Vessel {
+        let own = open.iter().filter(|alerts| alerts.vessel_id == self.id);
+        let (open_alerts, worst_alert) = alerts::summarize(own);
         let compasses: Vec<Compass> = compasses
             .iter()
             .filter(|compass| compass.vessel_id == self.id)
