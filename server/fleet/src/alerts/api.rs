@@ -84,7 +84,7 @@ async fn acknowledge_alert(
 
 /// Clear an alert
 ///
-/// It comes back only when its cause does, or gets worse. Clearing it again changes
+/// It is raised again only when its cause recurs or gets worse. Clearing it again changes
 /// nothing.
 #[utoipa::path(post, path = "/alerts/{id}/clear", tag = "alerts",
     params(("id" = AlertId, Path)), request_body = Clearing,

@@ -26,7 +26,7 @@ pub(super) struct DesiredAlert {
 
 /// The dates that an event may have been given before, when less was known of it.
 ///
-/// The default is any date: of a state that goes on, rather than an event at a time.
+/// The default is any date, for a lasting state rather than an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct EventWindow {
     /// Not before this.
@@ -36,7 +36,7 @@ pub(super) struct EventWindow {
 }
 
 impl DesiredAlert {
-    /// Tells whether a stored alert already says the same.
+    /// Tells whether a stored alert has the same contents.
     pub(super) fn is_stored_as(&self, known: &KnownAlert) -> bool {
         self.severity == known.severity
             && self.summary == known.summary

@@ -163,7 +163,7 @@ pub(super) async fn insert(
     Ok(id)
 }
 
-/// Updates an alert; one that is worse than what was acknowledged is raised again.
+/// Updates an alert. One that got worse after its acknowledgement is raised again.
 pub(super) async fn update(
     tx: &mut Tx,
     vessel: VesselId,

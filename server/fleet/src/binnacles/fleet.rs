@@ -24,7 +24,7 @@ where
     OpenApiRouter::new().routes(routes!(list_binnacles))
 }
 
-/// A compass of the fleet's, and what it stands in.
+/// A compass of the fleet, with its binnacle.
 #[derive(Debug, Serialize, ToSchema)]
 struct FleetBinnacle {
     /// The vessel's id.
@@ -42,7 +42,7 @@ struct FleetBinnacle {
     binnacle: Option<BinnacleInShort>,
 }
 
-/// The latest revision of a binnacle, in a line.
+/// Summary of a binnacle's latest revision.
 #[derive(Debug, Serialize, ToSchema)]
 struct BinnacleInShort {
     /// Its maker.
@@ -78,9 +78,9 @@ struct FleetBinnacleList {
     next: Option<String>,
 }
 
-/// List what the fleet's compasses stand in
+/// List the fleet's binnacles
 ///
-/// Every compass of the vessels in service, with its binnacle in short where one is entered.
+/// Every compass of the vessels in service, with a summary of its binnacle where one is entered.
 #[utoipa::path(get, path = "/binnacles", tag = "adjusting", params(Page),
     responses((status = 200, body = FleetBinnacleList), (status = 401, body = Problem)))]
 async fn list_binnacles(

@@ -38,7 +38,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// A compass's binnacle is about to be written anew.
+/// Announces that a compass's binnacle is about to change.
 pub struct BinnacleAmended {
     /// The vessel.
     pub vessel: VesselId,
@@ -62,7 +62,7 @@ where
         .routes(routes!(export_binnacle))
 }
 
-/// A revision of the binnacle that a compass stands in.
+/// A revision of a compass's binnacle.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct BinnacleRevision {
     /// Counts from 1.
@@ -74,7 +74,7 @@ pub struct BinnacleRevision {
     /// Reason, in a few words.
     #[schema(required)]
     pub reason: Option<String>,
-    /// The binnacle, with the correctors on board and how they stand.
+    /// The binnacle, with the correctors on board and their setting.
     #[schema(value_type = BinnacleSchema)]
     pub binnacle: Binnacle,
 }
@@ -93,12 +93,12 @@ struct BinnacleRevisionList {
 #[derive(Deserialize, Serialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct RevisionReason {
-    /// In a few words, such as what was bought or measured.
+    /// The reason in a few words, such as a purchase or a measurement.
     #[param(max_length = 200)]
     reason: Option<String>,
 }
 
-/// See the binnacle that a compass stands in
+/// See a compass's binnacle
 #[utoipa::path(get, path = "/vessels/{id}/compasses/{compass}/binnacle", tag = "adjusting",
     params(("id" = VesselId, Path), ("compass" = CompassId, Path)),
     responses((status = 200, body = BinnacleRevision), (status = 401, body = Problem),
@@ -115,7 +115,7 @@ async fn find_binnacle(
     ))
 }
 
-/// Write the binnacle that a compass stands in
+/// Write a compass's binnacle
 ///
 /// The whole of it: its type, the correctors on board and how they stand. What was
 /// written before stays among its revisions; the same again makes no new one.
@@ -162,7 +162,7 @@ async fn put_binnacle(
     ))
 }
 
-/// List what was written of a compass's binnacle
+/// List the revisions of a compass's binnacle
 #[utoipa::path(get, path = "/vessels/{id}/compasses/{compass}/binnacle/revisions",
     tag = "adjusting",
     params(("id" = VesselId, Path), ("compass" = CompassId, Path), Page),

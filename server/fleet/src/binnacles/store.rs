@@ -92,7 +92,7 @@ pub(super) async fn list(
     )
 }
 
-/// A compass of a fleet's, and the latest of what was written of its binnacle.
+/// A compass of a fleet, with the latest revision of its binnacle.
 #[derive(Debug, sqlx::FromRow)]
 pub(super) struct CompassRow {
     pub(super) vessel_id: VesselId,
@@ -108,7 +108,7 @@ pub(super) struct CompassRow {
 }
 
 impl CompassRow {
-    /// Returns the last revision; none where there is none.
+    /// Returns the last revision, if there is one.
     pub(super) fn revised(&self) -> Result<Option<StoredRevision>> {
         let (Some(revision), Some(at), Some(author_name), Some(text)) =
             (self.revision, self.at, &self.author_name, &self.binnacle)
@@ -153,7 +153,7 @@ pub(super) async fn of_fleet(
     )
 }
 
-/// Writes the next revision, unless it says what the last one says.
+/// Writes the next revision, unless it equals the last one.
 pub async fn insert(
     tx: &mut Tx,
     vessel: VesselId,

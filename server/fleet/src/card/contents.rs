@@ -50,7 +50,7 @@ pub struct Card {
     pub status: CardStatus,
     /// The status in words, to accompany figures of the card wherever they are shown.
     pub statement: String,
-    /// Its verification; none of a card that is predicted.
+    /// Its verification; none for a predicted card.
     #[schema(required)]
     pub verified: Option<CardVerification>,
     /// The work order whose adjustment at the berth the model comes from, while headings at
@@ -99,7 +99,7 @@ pub struct Card {
     pub next_due: Option<CardNextDue>,
     /// Items that belong on a card and are not recorded here: a person must write them.
     pub not_recorded: Vec<CardNotRecorded>,
-    /// The model that says so.
+    /// The model behind it.
     pub model: CardModel,
     /// Notes for the reader, a sentence each; the most pressing first.
     pub notes: Vec<String>,
@@ -135,7 +135,7 @@ pub struct CardVerification {
     pub samples: usize,
     /// The time of the last of these.
     pub until: Time,
-    /// Root mean square of what the headings were off, degrees.
+    /// Root mean square of the headings' differences from the prediction, degrees.
     #[schema(example = 0.4)]
     pub rms_deg: f64,
 }
@@ -186,7 +186,7 @@ pub struct CardPlace {
     /// Variation, degrees, east positive.
     #[schema(example = 0.4)]
     pub variation_deg: f64,
-    /// The model of the earth's field that says so.
+    /// The model of the earth's field behind it.
     #[schema(example = "igrf14")]
     pub variation_source: String,
     /// Horizontal field, nT.
@@ -238,7 +238,7 @@ pub struct CardCoefficients {
 /// Setting of a binnacle's correctors.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct CardCorrectors {
-    /// The revision of the binnacle that says so.
+    /// The revision of the binnacle behind it.
     #[schema(example = 3)]
     pub revision: i64,
     /// Time of the revision.

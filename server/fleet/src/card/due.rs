@@ -26,7 +26,7 @@ pub(super) struct Facts<'a> {
     pub(super) at: Time,
     /// The greatest deviation on it, degrees, east positive.
     pub(super) worst_deviation_deg: f64,
-    /// The greatest that the vessel's own limits let stand, degrees.
+    /// The greatest within the vessel's own limits, degrees.
     pub(super) own_limit_deg: f64,
 }
 

@@ -48,7 +48,7 @@ pub(super) struct CardInput {
     pub(super) observed: [Observed; 24],
     /// The widest half of a band that makes a card, degrees.
     pub(super) limit_deg: f64,
-    /// The greatest deviation that the vessel's own limits let stand, degrees.
+    /// The greatest deviation within the vessel's own limits, degrees.
     pub(super) own_limit_deg: f64,
     /// Time of the request.
     pub(super) now: Time,

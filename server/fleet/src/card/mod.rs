@@ -60,37 +60,38 @@ where
         .routes(routes!(card_csv))
 }
 
-/// Of which compass, where and when.
+/// Compass, place and time of a card.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// A compass of the vessel's; its first one if not said.
+    /// A compass of the vessel; its first one by default.
     compass: Option<CompassId>,
-    /// Degrees north; where the vessel was last if not said.
+    /// Degrees north; the vessel's last position by default.
     #[param(example = 43.4)]
     lat: Option<f64>,
-    /// Degrees east; where the vessel was last if not said.
+    /// Degrees east; the vessel's last position by default.
     #[param(example = -3.1)]
     lon: Option<f64>,
-    /// RFC 3339; the time of the last sample, or of the model, if not said.
+    /// RFC 3339; by default the time of the last sample, or of the model.
     #[param(value_type = Option<String>, format = DateTime)]
     at: Option<String>,
 }
 
 /// See a compass's deviation card
 ///
-/// By the compass's model, at a place and a date. `predicted` until headings at sea have
-/// verified the adjustment that the model comes from: then `verified`, and `verified` says
-/// by which order, when, and by how many headings. A change that ends the adjustment's epoch
-/// ends that too. In no case a certificate. Besides the usual problems: `no-model-yet` (404) where there is no model, also because the
-/// last one holds no more; and 409 where there is one that makes no card:
-/// `model-too-old`, `band-too-wide`, `field-too-weak`, `headings-ambiguous` or
-/// `compass-suspected`.
+/// By the compass's model, at a place and a date. It is `predicted` until headings at sea have
+/// verified the adjustment that the model comes from. Then it is `verified`, and `verified` names
+/// the order, the time and the number of headings. A change that ends the adjustment's epoch ends
+/// that too. It is never a certificate.
+///
+/// Besides the usual problems: `no-model-yet` (404) without a model, also because the last one is
+/// withdrawn. `model-too-old`, `band-too-wide`, `field-too-weak`, `headings-ambiguous` or
+/// `compass-suspected` (409) where the model makes no card.
 #[utoipa::path(get, path = "/vessels/{id}/card.json", tag = "fleet",
     params(("id" = VesselId, Path), Query),
     responses((status = 200, body = Card), (status = 401, body = Problem),
-              (status = 404, description = "Also when there is no model, or it holds no more", body = Problem),
-              (status = 409, description = "The model makes no card: the detail says why", body = Problem),
+              (status = 404, description = "Also when there is no model, or it is withdrawn", body = Problem),
+              (status = 409, description = "The model makes no card, for the reason in the detail", body = Problem),
               (status = 422, body = Problem)))]
 async fn card_json(
     State(app): State<App>,
@@ -103,13 +104,13 @@ async fn card_json(
 
 /// Print a compass's deviation card
 ///
-/// One sheet of A4, upright; refused as `card.json` is.
+/// One sheet of A4 in portrait, refused as `card.json` is.
 #[utoipa::path(get, path = "/vessels/{id}/card.pdf", tag = "fleet",
     params(("id" = VesselId, Path), Query),
     responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
               (status = 401, body = Problem),
-              (status = 404, description = "Also when there is no model, or it holds no more", body = Problem),
-              (status = 409, description = "The model makes no card: the detail says why", body = Problem),
+              (status = 404, description = "Also when there is no model, or it is withdrawn", body = Problem),
+              (status = 409, description = "The model makes no card, for the reason in the detail", body = Problem),
               (status = 422, body = Problem)))]
 async fn card_pdf(
     State(app): State<App>,
@@ -131,8 +132,8 @@ async fn card_pdf(
     params(("id" = VesselId, Path), Query),
     responses((status = 200, content_type = "image/svg+xml", body = String),
               (status = 401, body = Problem),
-              (status = 404, description = "Also when there is no model, or it holds no more", body = Problem),
-              (status = 409, description = "The model makes no card: the detail says why", body = Problem),
+              (status = 404, description = "Also when there is no model, or it is withdrawn", body = Problem),
+              (status = 409, description = "The model makes no card, for the reason in the detail", body = Problem),
               (status = 422, body = Problem)))]
 async fn card_svg(
     State(app): State<App>,
@@ -147,14 +148,13 @@ async fn card_svg(
 
 /// A compass's deviation card as CSV
 ///
-/// A line for each 15° of compass heading; each says whether it is predicted or verified, by
-/// which model, and by which work order. Refused as `card.json` is.
+/// A line for each 15° of compass heading, with its status, model and work order. Refused as `card.json` is.
 #[utoipa::path(get, path = "/vessels/{id}/card.csv", tag = "fleet",
     params(("id" = VesselId, Path), Query),
     responses((status = 200, content_type = "text/csv", body = String),
               (status = 401, body = Problem),
-              (status = 404, description = "Also when there is no model, or it holds no more", body = Problem),
-              (status = 409, description = "The model makes no card: the detail says why", body = Problem),
+              (status = 404, description = "Also when there is no model, or it is withdrawn", body = Problem),
+              (status = 409, description = "The model makes no card, for the reason in the detail", body = Problem),
               (status = 422, body = Problem)))]
 async fn card_csv(
     State(app): State<App>,
@@ -240,7 +240,7 @@ async fn data_of(app: &App, model: &StoredModel) -> Result<(Time, Time)> {
 }
 
 impl Query {
-    /// Returns the time that the card is for: a model does not hold before its epoch.
+    /// Returns the time that the card is for. A model is not valid before its epoch.
     fn at(&self, model: &StoredModel, last_at: Time) -> Result<Time> {
         let at = time("at", self.at.as_deref())?.map(Time);
         let at = at.unwrap_or(model.place_at.max(last_at));

@@ -32,7 +32,7 @@ pub(super) struct Timeline {
     /// Place of the last sample, to which all curves belong; none before the first analysis.
     #[schema(required)]
     place: Option<Place>,
-    /// In order of time, without gaps; the last one goes on.
+    /// In order of time, without gaps; the last one has no end.
     epochs: Vec<Epoch>,
     /// In order of time.
     changes: Vec<ChangeFound>,
@@ -71,7 +71,7 @@ pub(super) struct Epoch {
     /// Its beginning; none for the first epoch.
     #[schema(required)]
     from: Option<Time>,
-    /// Its end; none for the last epoch, which goes on.
+    /// Its end; none for the last epoch.
     #[schema(required)]
     to: Option<Time>,
     /// Kind of the logbook entry that began it; none where none did.
@@ -109,7 +109,7 @@ pub(super) struct Epoch {
     refusal: Option<FitError>,
 }
 
-/// Change of what the compass shows, real or apparent.
+/// Change of the deviation, real or apparent.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Change)]
 pub(super) struct ChangeFound {
@@ -157,7 +157,7 @@ pub(super) struct ChangeFound {
     epoch_ended: Option<usize>,
 }
 
-/// Makes the timeline from what is stored.
+/// Makes the timeline from stored records.
 pub(super) fn timeline(
     compass_id: CompassId,
     analysed: Option<Analysed>,

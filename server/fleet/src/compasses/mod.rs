@@ -52,7 +52,7 @@ pub struct Compass {
     /// Its serial number.
     #[schema(required, example = "34871")]
     pub serial_number: Option<String>,
-    /// The binnacle that it stands in: maker, type and number.
+    /// Its binnacle: maker, type and number.
     #[schema(required)]
     pub binnacle: Option<String>,
     /// Time at which it was entered.
@@ -89,7 +89,7 @@ pub struct NewCompass {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(max_length = 200)]
     pub serial_number: Option<String>,
-    /// The binnacle that it stands in: maker, type and number.
+    /// Its binnacle: maker, type and number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(max_length = 200)]
     pub binnacle: Option<String>,
@@ -109,7 +109,7 @@ pub struct CompassList {
 #[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct WhichCompass {
-    /// A compass of the vessel's; its first one if not said.
+    /// A compass of the vessel; its first one by default.
     pub compass: Option<CompassId>,
 }
 
@@ -191,9 +191,9 @@ async fn create_compass(
     Ok((StatusCode::CREATED, Json(compass)))
 }
 
-/// Amend what is written of a compass
+/// Amend a compass
 ///
-/// What is left out stays as it is; null takes a value away.
+/// Absent fields stay as they are; null removes a value.
 #[utoipa::path(patch, path = "/vessels/{id}/compasses/{compass}", tag = "fleet",
     params(("id" = VesselId, Path), ("compass" = CompassId, Path)), request_body = AmendmentSchema,
     responses((status = 200, body = Compass), (status = 401, body = Problem),

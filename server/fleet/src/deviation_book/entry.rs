@@ -32,7 +32,7 @@ pub(super) struct Entry {
     pub(super) compass_deg: f64,
     /// Reference of the true heading.
     pub(super) reference: Reference,
-    /// The true heading, with what the vessel's settings have corrected.
+    /// The true heading, with the corrections of the vessel's settings.
     #[schema(example = 95.1)]
     pub(super) true_deg: f64,
     /// The gyro's heading, as it gave it.
@@ -44,7 +44,7 @@ pub(super) struct Entry {
     /// Variation there, degrees, east positive.
     #[schema(example = 0.4)]
     pub(super) variation_deg: f64,
-    /// Deviation as it was observed, degrees, east positive.
+    /// Observed deviation, degrees, east positive.
     #[schema(example = 2.3)]
     pub(super) deviation_deg: f64,
     /// The version of the model that was in force then; none where there was no model yet,
@@ -101,7 +101,7 @@ pub(super) enum Observer {
 /// Times at which cards ended before another model replaced them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CardEnds {
-    /// Work on compass or ship that the logbook tells of.
+    /// Work on compass or ship that the logbook reports.
     pub(super) work: Vec<Time>,
     /// Time from which there is no card at all.
     pub(super) withdrawn: Option<Time>,

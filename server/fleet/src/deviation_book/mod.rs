@@ -50,7 +50,7 @@ where
         .routes(routes!(book_pdf))
 }
 
-/// Of which compass, and of when.
+/// Compass and period of a book.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Range {
@@ -60,7 +60,7 @@ struct Range {
     /// The instant after the last, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime, example = "2026-12-01T00:00:00Z")]
     to: Option<String>,
-    /// A compass of the vessel's; its first one if not said.
+    /// A compass of the vessel; its first one by default.
     compass: Option<CompassId>,
 }
 
@@ -128,7 +128,7 @@ async fn book_csv(
 
 /// Print a compass's deviation book
 ///
-/// Sheets of A4, lying; at most 5000 entries.
+/// Sheets of A4 in landscape; at most 5000 entries.
 #[utoipa::path(get, path = "/vessels/{id}/deviation-book.pdf", tag = "fleet",
     params(("id" = VesselId, Path), Range),
     responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
@@ -205,7 +205,7 @@ impl Selection {
         BookReader::open(&app.db, vessel, self.compass, self.from, self.to).await
     }
 
-    /// Leaves out what the pages up to an entry's time had.
+    /// Leaves out the entries up to the last one of the page before.
     fn begin_after(&mut self, micros: i64) -> Result<()> {
         let after = Timestamp::from_micros(micros.saturating_add(1))
             .map_err(|_| Error::BadRequest(format!("after: {micros} is no time of an entry")))?;

@@ -32,16 +32,16 @@ where
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// Degrees north; the last position's if not said.
+    /// Degrees north; the last position's by default.
     lat: Option<f64>,
-    /// Degrees east; the last position's if not said.
+    /// Degrees east; the last position's by default.
     lon: Option<f64>,
-    /// RFC 3339; the last position's time if not said.
+    /// RFC 3339; the last position's time by default.
     #[param(value_type = Option<String>, format = DateTime)]
     at: Option<String>,
-    /// A compass of the vessel's; its first one if not said.
+    /// A compass of the vessel; its first one by default.
     compass: Option<CompassId>,
-    /// Degrees of compass heading between rows, 1 to 90; 15 if not said.
+    /// Degrees of compass heading between rows, 1 to 90; 15 by default.
     step_deg: Option<f64>,
 }
 
@@ -60,7 +60,7 @@ pub struct DeviationTable {
     pub h_nt: f64,
     /// Vertical field there, nT, down positive.
     pub z_nt: f64,
-    /// The model that says so.
+    /// The model behind it.
     pub model_id: ModelId,
     /// Its version.
     pub model_version: i64,

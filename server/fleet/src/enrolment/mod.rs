@@ -30,7 +30,7 @@ use uuid::Uuid;
 
 /// Period of the link statistics, seconds.
 const WEEK_S: f64 = 7.0 * 86_400.0;
-/// Made on a Friday ashore, it can be typed on board after the weekend.
+/// Default validity of a code: from a Friday on shore until after the weekend on board.
 const DEFAULT_VALID_FOR_S: u32 = 3 * 86_400;
 const LONGEST_VALID_FOR_S: u32 = 14 * 86_400;
 
@@ -77,14 +77,14 @@ pub struct AgentStream {
     /// Time of its last batch.
     #[schema(required)]
     pub last_upload_at: Option<Time>,
-    /// Every batch up to this one is here.
+    /// Every batch up to this one is stored.
     pub contiguous_seq: i64,
     /// Batches here.
     pub batches: i64,
     /// Samples in them.
     pub samples: i64,
     /// Ten-second windows by outcome: `accepted`, or why they were refused; `thinned` are
-    /// those that were accepted and left out for want of room or budget.
+    /// those that were accepted and then left out by thinning.
     pub tally: BTreeMap<String, u64>,
     /// Link statistics of the last week.
     pub last_week: LinkWeek,
@@ -111,7 +111,7 @@ pub struct BoardStatus {
 /// Statistics of a stream's link in the last seven days.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct LinkWeek {
-    /// Batches that came.
+    /// Batches received.
     pub batches: i64,
     /// Bytes in them, without the overhead of the protocols below.
     #[serde(rename = "octets")]
@@ -136,7 +136,7 @@ pub struct AgentStreamList {
 #[derive(Default, Deserialize, ToSchema)]
 #[serde(default)]
 pub struct NewCode {
-    /// The compass that the agent will report; the vessel's first if not said.
+    /// The compass that the agent will report; the vessel's first one by default.
     pub compass_id: Option<CompassId>,
     /// Validity of the code, seconds; three days by default.
     #[schema(minimum = 1, maximum = 1_209_600)]
@@ -248,8 +248,8 @@ async fn create_code(
 
 /// Revoke an agent's token
 ///
-/// What it has sent stays. It goes on sampling, and goes on sending when it is enrolled
-/// again. Revoking it again changes nothing.
+/// Its batches are kept. It continues to sample, and sends again once it is enrolled again.
+/// Revoking it again changes nothing.
 #[utoipa::path(delete, path = "/vessels/{id}/agents/{agent}", tag = "fleet",
     params(("id" = VesselId, Path), ("agent" = AgentId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
@@ -289,9 +289,9 @@ async fn enrol(
     }))
 }
 
-/// Make a token that is to take the place of the agent's
+/// Propose a new token for the agent
 ///
-/// It is not valid before it is put in place; nothing is stored of it here.
+/// It is not stored, and not valid until the agent puts it in place.
 #[utoipa::path(post, path = "/agents/token", tag = "agents", security(("token" = [])),
     responses((status = 200, body = NewTokenSchema), (status = 401, body = Problem)))]
 async fn propose_token(agent: Agent) -> Json<NewToken> {
@@ -300,7 +300,7 @@ async fn propose_token(agent: Agent) -> Json<NewToken> {
     })
 }
 
-/// Put another token in place of the one that this request comes with
+/// Replace the token of this request
 #[utoipa::path(put, path = "/agents/token", tag = "agents", security(("token" = [])),
     request_body = NewTokenSchema,
     responses((status = 204), (status = 401, body = Problem), (status = 422, body = Problem)))]

@@ -21,18 +21,18 @@ use uuid::Uuid;
 #[derive(Clone, Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct AgentState {
-    /// The model version it uses; what follows it comes at once.
+    /// The model version it uses. Any later one is sent at once.
     model: Option<Uuid>,
-    /// The last eight digits of that model's id; a later model is sent when it matters.
+    /// The last eight digits of that model's id. A later model is sent when the difference matters.
     card: Option<String>,
     /// The settings it uses.
     settings: Option<u32>,
     /// The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent.
     form: Option<u8>,
-    /// With a batch: how many others wait on board; none when `wait` says that it is the last.
+    /// With a batch: number of others that wait on board; absent with `wait`, in the last one.
     pub(super) waits: Option<u32>,
-    /// With a batch: what is left of the link's budget where that is less than a day's, in
-    /// hundredths of it; less than none when overdrawn.
+    /// With a batch: rest of the link's budget where that is less than a day's, in hundredths of
+    /// it; negative when overdrawn.
     pub(super) budget: Option<i32>,
     /// Seconds, at most 55, for which the response to a batch may wait for the analysis of its
     /// samples. The response then includes its results. Sent with the last batch for now.

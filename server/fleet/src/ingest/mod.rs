@@ -40,10 +40,10 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-/// No batch has this number or a higher one: up to here JSON's numbers are exact,
-/// and one more fits into the database.
+/// Upper bound of batch numbers: JSON's numbers are exact up to here, and the database can hold
+/// one more.
 const SEQ_END: u64 = 1 << 53;
-/// No answer waits longer for an analysis: proxies give up after a minute.
+/// Longest wait of a response for an analysis: proxies give up after a minute.
 const LONGEST_WAIT: Duration = Duration::from_secs(55);
 
 /// Returns the routes.
@@ -76,7 +76,7 @@ async fn open_stream(
 
 /// Send a batch
 ///
-/// Answers when the batch is durable. The same batch again is answered alike.
+/// Responds when the batch is durable. The same batch again gets the same response.
 #[utoipa::path(put, path = "/streams/{stream}/batches/{seq}", tag = "agents",
     security(("token" = [])),
     params(("stream" = Uuid, Path), ("seq" = u64, Path, minimum = 1), AgentState),
@@ -160,7 +160,7 @@ async fn store_batch(
     Ok(Received { is_new, events_out })
 }
 
-/// Fetch what the agent lacks
+/// Fetch the updates that the agent lacks
 #[utoipa::path(get, path = "/streams/{stream}/downlink", tag = "agents", security(("token" = [])),
     params(("stream" = Uuid, Path), AgentState),
     responses((status = 200, description = "As JSON, or in the compact form asked for",

@@ -56,7 +56,7 @@ pub struct RefusedMessage {
 /// Joins a vessel's messages, by name, and stores the batches.
 ///
 /// # Errors
-/// When the database cannot be used; what was stored by then stays.
+/// Fails when the database does; batches stored by then stay.
 pub async fn import_messages(
     db: &Db,
     vessel: VesselId,

@@ -13,11 +13,11 @@ use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use uuid::Uuid;
 
-/// A sample further ahead of the server's clock has a wrong date, and does not say
-/// where the ship was last.
+/// Lead over the server's clock beyond which a sample's date is wrong, seconds. Such a sample
+/// does not give the last position.
 const AHEAD_S: f64 = 86_400.0;
 
-/// Windows that were accepted and whose samples were left out again on board.
+/// Tally of accepted windows whose samples were thinned out on board.
 const THINNED: &str = "thinned";
 
 #[derive(sqlx::FromRow)]
@@ -26,7 +26,7 @@ struct Progress {
     tally: String,
 }
 
-/// Stores a batch; `false` when the same bytes are there already.
+/// Stores a batch. Returns `false` when the same bytes are stored already.
 pub(super) async fn insert(
     tx: &mut Tx,
     agent: Agent,
@@ -110,7 +110,7 @@ pub(super) async fn record_board_status(
     Ok(())
 }
 
-/// Brings the stream's sums up to date with a batch just stored.
+/// Adds a stored batch to the stream's totals.
 async fn update_stream(
     tx: &mut Tx,
     vessel: VesselId,
@@ -197,7 +197,7 @@ async fn update_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time) 
     Ok(())
 }
 
-/// Returns the refusal of a batch whose number is received by other bytes.
+/// Returns the refusal of a batch whose number other bytes have.
 fn forked(seq: u64) -> Error {
     let problem = DomainProblem {
         status: StatusCode::CONFLICT,

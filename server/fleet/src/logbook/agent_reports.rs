@@ -26,8 +26,8 @@ where
 
 /// Send a report from on board
 ///
-/// Answers when it is durable. The same again, or an older revision, changes
-/// nothing and is answered alike; so does a revision of what was withdrawn ashore.
+/// Responds when it is durable. The same report again, an older revision, or a revision of an
+/// entry withdrawn on shore changes nothing and gets the same response.
 #[utoipa::path(put, path = "/agents/logbook/{id}", tag = "agents", security(("token" = [])),
     params(("id" = EntryId, Path, description = "Made on board")),
     request_body = BoardReportSchema,

@@ -101,7 +101,7 @@ pub(super) struct LogbookEntry {
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = LogbookAuthor)]
 pub(super) enum AuthorKind {
-    /// Ashore, by one of the operator's people or a program of theirs.
+    /// On shore, by one of the operator's people or programs.
     User,
     /// On board, on the agent's page.
     Agent,
@@ -119,17 +119,17 @@ pub(super) struct LogbookList {
     pub(super) next: Option<String>,
 }
 
-/// An entry as it is, and as it was.
+/// An entry with all its revisions.
 #[derive(Serialize, ToSchema)]
 pub(super) struct RevisedEntry {
-    /// As it is.
+    /// The latest revision.
     #[serde(flatten)]
     pub(super) entry: LogbookEntry,
-    /// As it was written each time, the first time first.
+    /// All revisions, the first one first.
     pub(super) revisions: Vec<Revision>,
 }
 
-/// An entry as it was written once.
+/// A revision of an entry.
 #[derive(Serialize, ToSchema)]
 pub(super) struct Revision {
     /// Counts from 1.
@@ -140,7 +140,7 @@ pub(super) struct Revision {
     pub(super) author: AuthorKind,
     /// Name of its author; empty when a report from on board does not say.
     pub(super) author_name: String,
-    /// The entry as it was then.
+    /// The entry in this revision.
     pub(super) entry: NewEntry,
 }
 

@@ -72,7 +72,7 @@ async fn list_logbook(
     }))
 }
 
-/// Report what bears on a vessel's magnetism
+/// Report an event that affects a vessel's magnetism
 #[utoipa::path(post, path = "/vessels/{id}/logbook", tag = "fleet",
     params(("id" = VesselId, Path), Key), request_body = NewEntry,
     responses((status = 201, body = LogbookEntry), (status = 401, body = Problem),
@@ -124,8 +124,7 @@ async fn find_entry(
 
 /// Amend an entry
 ///
-/// What is left out stays as it is; null takes a value away. The entry as it was
-/// is kept among its revisions.
+/// Absent fields stay as they are; null removes a value. The earlier revision is kept.
 #[utoipa::path(patch, path = "/vessels/{id}/logbook/{entry}", tag = "fleet",
     params(("id" = VesselId, Path), ("entry" = EntryId, Path)), request_body = AmendmentSchema,
     responses((status = 200, body = LogbookEntry), (status = 401, body = Problem),
@@ -157,8 +156,7 @@ async fn amend_entry(
 
 /// Withdraw an entry
 ///
-/// It stays in the logbook, marked, and counts no more. Withdrawing it again
-/// changes nothing.
+/// It stays in the logbook, marked, and no longer counts. Withdrawing it again changes nothing.
 #[utoipa::path(post, path = "/vessels/{id}/logbook/{entry}/withdraw", tag = "fleet",
     params(("id" = VesselId, Path), ("entry" = EntryId, Path)), request_body = Option<Withdrawal>,
     responses((status = 200, body = LogbookEntry), (status = 401, body = Problem),

@@ -18,7 +18,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use uuid::Uuid;
 
-/// An entry's columns. Its words are read as JSON reads them.
+/// An entry's columns. Its enumerations are read as JSON reads them.
 #[derive(sqlx::FromRow)]
 struct Row {
     id: EntryId,
@@ -42,14 +42,14 @@ struct Row {
     withdrawal_reason: Option<String>,
 }
 
-/// The entry that a transaction holds.
+/// The entry that a transaction has locked.
 pub(super) struct LockedEntry {
     vessel_id: VesselId,
     id: EntryId,
     revision: i64,
     /// Its content.
     pub(super) content: NewEntry,
-    /// The latest revision that came from on board; none when it was reported ashore.
+    /// The latest revision from on board; none for an entry reported on shore.
     pub(super) board_revision: Option<u32>,
     /// Time of withdrawal.
     pub(super) withdrawn_at: Option<Time>,
@@ -61,11 +61,11 @@ pub(super) struct Author {
     id: Uuid,
     name: String,
     at: Time,
-    /// The revision that it is on board, for what comes from there.
+    /// The revision's number on board, if it comes from there.
     board_revision: Option<u32>,
 }
 
-/// A change of a vessel's logbook on its way into the database.
+/// A transaction that changes a vessel's logbook.
 pub(super) struct Change<'a> {
     app: &'a App,
     vessel: VesselId,
@@ -140,7 +140,7 @@ pub struct AdjustmentEntry<'a> {
     pub now: Time,
 }
 
-/// Writes an adjustment at its moment, and has the vessel analysed anew.
+/// Writes an adjustment at its time, and enqueues an analysis of the vessel.
 pub async fn write_adjustment(tx: &mut Tx, adjusted: &AdjustmentEntry<'_>) -> Result<()> {
     let entry = NewEntry {
         report: Report {
@@ -252,7 +252,7 @@ pub(super) async fn lock(tx: &mut Tx, vessel_id: VesselId, id: EntryId) -> Resul
     })
 }
 
-/// Writes an entry; `false` when one of this id is there.
+/// Writes an entry. Returns `false` when one with this id exists.
 pub(super) async fn insert(
     tx: &mut Tx,
     vessel: VesselId,
@@ -291,7 +291,7 @@ pub(super) async fn insert(
     Ok(true)
 }
 
-/// Writes an entry anew.
+/// Writes a revision of an entry.
 pub(super) async fn revise(
     tx: &mut Tx,
     locked: &LockedEntry,
@@ -396,7 +396,7 @@ pub async fn of_compass(
     found.into_iter().map(entry).collect()
 }
 
-/// Keeps what an entry says for good.
+/// Inserts a revision, which is kept for good.
 async fn insert_revision(
     tx: &mut Tx,
     vessel: VesselId,

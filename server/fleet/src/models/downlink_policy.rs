@@ -8,16 +8,16 @@ use super::StoredModel;
 use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::model::Model;
 
-/// A card is read to half a degree, a heading to a tenth.
+/// Difference that shows on board, degrees: a card is read to half a degree, a heading to a tenth.
 const LEAST_DEG: f64 = 0.1;
-/// Part of the known band within which a difference does not matter.
+/// Fraction of the known band within which a difference does not matter.
 const OF_BAND: f64 = 0.25;
-/// The bridge says how old its model is.
+/// Age beyond an agent's model at which a newer one is sent, seconds: the bridge shows the age.
 const OLDER_S: f64 = 3.0 * 86_400.0;
 const STEP_DEG: u32 = 10;
 /// Age beyond which a predicted model is replaced, whatever its certainty, seconds.
 const PREDICTION_VALID_S: f64 = 60.0 * 86_400.0;
-/// Of bx and by, in [`DRIFT_S`].
+/// Usual drift of bx and by in [`DRIFT_S`], nT.
 const USUAL_DRIFT_NT: f64 = 60.0;
 const DRIFT_S: f64 = 30.0 * 86_400.0;
 /// Indices of bx and by among the parameters.

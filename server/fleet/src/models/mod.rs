@@ -50,7 +50,7 @@ where
         .routes(routes!(list_models))
 }
 
-/// A model in a line.
+/// Summary of a model.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct ModelSummary {
     /// The model version's id.
@@ -70,7 +70,7 @@ pub struct ModelSummary {
     pub samples_used: u64,
 }
 
-/// A model version, whole.
+/// A whole model version.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct ModelVersion {
     /// The model version's id.
@@ -82,7 +82,7 @@ pub struct ModelVersion {
     /// Time from which it holds; none means without limit.
     #[schema(required)]
     pub epoch_from: Option<Time>,
-    /// Until when it holds; none goes on.
+    /// Time until which it holds; none means without limit.
     #[schema(required)]
     pub epoch_to: Option<Time>,
     /// The time of the first sample in it.

@@ -233,7 +233,7 @@ pub async fn find_prediction(
     )
 }
 
-/// Stores a model as the compass's next version, whatever its `version` says.
+/// Stores a model as the compass's next version. Ignores its `version`.
 pub async fn insert(tx: &mut Tx, model: &StoredModel) -> Result<()> {
     let text = serde_json::to_string(&model.model)
         .map_err(|error| sqlx::Error::Encode(Box::new(error)))?;

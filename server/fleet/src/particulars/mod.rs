@@ -22,7 +22,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// Nobody plans more of them.
+/// Largest number of planned transits.
 const MOST_TRANSITS: usize = 50;
 const MOST_TONNAGE: u32 = 1_000_000;
 
@@ -115,7 +115,7 @@ struct TransitSchema {
     on: NaiveDate,
 }
 
-/// See what rules on adjusting ask about a vessel
+/// See a vessel's particulars for the rules on adjusting
 #[utoipa::path(get, path = "/vessels/{id}/particulars", tag = "adjusting",
     params(("id" = VesselId, Path)),
     responses((status = 200, body = Particulars), (status = 401, body = Problem),
@@ -129,7 +129,7 @@ async fn find_particulars(
     Ok(Json(find(&app.db, vessel).await?))
 }
 
-/// Set the facts that rules on adjusting use
+/// Set a vessel's particulars for the rules on adjusting
 ///
 /// A fact that is left out or null is unknown, and binds the vessel: to adjust too early costs a
 /// fee, to adjust too late a detention.
@@ -173,7 +173,7 @@ async fn find(db: &Db, vessel: VesselId) -> Result<Particulars> {
     )?)
 }
 
-/// Returns a vessel's flag, and the licence that its operator asks an adjuster to hold.
+/// Returns a vessel's flag, and the adjuster's licence that its operator requires.
 ///
 /// # Errors
 /// When the database fails.

@@ -97,7 +97,7 @@ pub struct VesselList {
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Which {
-    /// Those in service, or those out of it; those in service if not said.
+    /// Those in service, which is the default, or those out of it.
     in_service: Option<bool>,
 }
 
@@ -177,10 +177,10 @@ async fn find_vessel(
     Ok(Json(assemble(&app, reader.operator, id).await?))
 }
 
-/// Amend what is written of a vessel
+/// Amend a vessel
 ///
-/// What is left out stays as it is; null takes a value away. Out of service goes only a vessel
-/// none of whose work orders is under way.
+/// Absent fields stay as they are; null removes a value. A vessel with a work order under way
+/// cannot go out of service.
 #[utoipa::path(patch, path = "/vessels/{id}", tag = "fleet", params(("id" = VesselId, Path)),
     request_body = AmendmentSchema,
     responses((status = 200, body = Vessel), (status = 401, body = Problem),

@@ -224,7 +224,7 @@ fn name(cause: result::Cause) -> &'static str {
     }
 }
 
-/// Returns the size on the waters ahead, where it is worth a mention beside that here.
+/// Returns the size on the waters ahead, where it exceeds that here enough to mention.
 fn ahead_deg(found: &ChangeFinding) -> Option<f64> {
     let (here, ahead) = found.size_deg.zip(found.size_ahead_deg)?;
     (ahead > here + MENTION_DEG).then_some(ahead)
@@ -259,7 +259,7 @@ fn summary(found: &ChangeFinding, stage: Stage) -> String {
     }
 }
 
-/// Advises by what the model knows of a change.
+/// Returns advice according to the state of the model after a change.
 pub(super) fn advice(case: Case) -> &'static str {
     match case {
         Case::Change(Stage::Unconfirmed) => {

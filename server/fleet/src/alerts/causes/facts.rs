@@ -67,9 +67,9 @@ pub(in crate::alerts) enum Stage {
     Unconfirmed,
     /// No card holds.
     NoModel,
-    /// The model since is of less than a day, or less certain than the limit asks.
+    /// The model since covers less than a day, or is less certain than the limit requires.
     Interim,
-    /// The model since is as certain as the limit asks.
+    /// The model since is as certain as the limit requires.
     Learned,
     /// The change is not of the ship's magnetism.
     NotTheShips,

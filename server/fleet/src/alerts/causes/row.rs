@@ -85,7 +85,7 @@ pub enum Effect {
 pub(in crate::alerts) enum Ending {
     /// Its source no longer finds it.
     NotFound,
-    /// Its source no longer finds it. Without the figure nobody knows whether it is over.
+    /// Its source no longer finds it. Without the figure, its end is unknown.
     NotMeasured(fn(&Findings) -> bool),
     /// The change that it is about is over, withdrawn, learned by the model, or renamed.
     WithChange,
@@ -132,7 +132,7 @@ pub(in crate::alerts) struct Size {
 pub(in crate::alerts) enum Case {
     /// The only one.
     Only,
-    /// A change, by what the model knows of it.
+    /// A change, by the state of the model after it.
     Change(Stage),
     /// A reference's fault that may as well be the compass's.
     CompassOrReference,

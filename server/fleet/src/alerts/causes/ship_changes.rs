@@ -54,7 +54,7 @@ pub(super) const ALIGNMENT: CauseRow = CauseRow {
     ..SHIP_CHANGE
 };
 
-/// A change without a likely cause. Work that nobody reported is not known to be work.
+/// A change without a likely cause. Unreported work is one too.
 pub(super) const UNKNOWN_CHANGE: CauseRow = CauseRow {
     cause: Cause::UnknownChange,
     title: "a change of unknown cause",

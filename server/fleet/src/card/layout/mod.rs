@@ -13,9 +13,9 @@ use binnacle_drawing::{A4, About, MARGIN, Point, Sheet, Style};
 
 const LEFT: f32 = MARGIN;
 const RIGHT: f32 = A4.0 - MARGIN;
-/// From one line of the table to the next.
+/// Distance from one line of the table to the next.
 const LINE: f32 = 13.0;
-/// Grey of what is not the first thing to be read.
+/// Grey of secondary text.
 const GREY: u8 = 90;
 
 /// Draws the card's sheet.
@@ -44,7 +44,7 @@ pub(super) fn about(card: &Card) -> About {
     }
 }
 
-/// Smaller than this nobody reads.
+/// Smallest legible size of type.
 const SMALLEST: f32 = 6.0;
 
 /// Draws a label in grey and its value within a width.

@@ -34,7 +34,7 @@ impl Lines {
     }
 }
 
-/// Draws it.
+/// Draws the table.
 pub(super) fn draw(sheet: &mut Sheet, card: &Card, lines: &Lines) {
     let small = Style::plain(7.0).grey(GREY).end();
     for (end, [first, second]) in ENDS.into_iter().zip(TITLES) {
