@@ -148,7 +148,8 @@ async fn card_svg(
 
 /// A compass's deviation card as CSV
 ///
-/// A line for each 15° of compass heading, with its status, model and work order. Refused as `card.json` is.
+/// A line for each 15° of compass heading, with its status, model and work order. Refused as
+/// `card.json` is.
 #[utoipa::path(get, path = "/vessels/{id}/card.csv", tag = "fleet",
     params(("id" = VesselId, Path), Query),
     responses((status = 200, content_type = "text/csv", body = String),

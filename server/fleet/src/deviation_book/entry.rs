@@ -47,8 +47,8 @@ pub(super) struct Entry {
     /// Observed deviation, degrees, east positive.
     #[schema(example = 2.3)]
     pub(super) deviation_deg: f64,
-    /// The version of the model that was in force then; none where there was no model yet,
-    /// or it held no more.
+    /// The version of the model that was in force then; none without a model, or after its
+    /// withdrawal.
     #[schema(required, example = 12)]
     pub(super) model_version: Option<i64>,
     /// Status of its card then; none where there was none.
