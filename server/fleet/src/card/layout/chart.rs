@@ -1,7 +1,7 @@
 //! Curve beside the table, with headings downwards and west to the left.
 
+use super::style::{GREY, LINE, RIGHT};
 use super::table::{Lines, line_name};
-use super::{GREY, LINE, RIGHT};
 use crate::card::contents::{Card, CardRow};
 use crate::deviation::DeviationRow;
 use binnacle_drawing::words::east_west;

@@ -1,6 +1,6 @@
 //! Lower part of the sheet: coefficients, the ship's state, notes, signatures and the source.
 
-use super::{GREY, LEFT, RIGHT, UNKNOWN, draw_labelled, known};
+use super::style::{GREY, LEFT, RIGHT, UNKNOWN, draw_labelled, known};
 use crate::binnacles::describe_setting;
 use crate::card::contents::{Card, MagneticCargo};
 use binnacle_compass::deviation::CoefficientsInDegrees;

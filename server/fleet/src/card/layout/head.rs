@@ -1,6 +1,6 @@
 //! Upper part of the sheet: status, ship, compass, place and time.
 
-use super::{LEFT, RIGHT, fact, known};
+use super::style::{LEFT, RIGHT, draw_fact, known};
 use crate::card::contents::Card;
 use crate::compasses::Role;
 use binnacle_drawing::words::{east_west, latitude, longitude};
@@ -20,7 +20,7 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card) -> f32 {
     let column = |sheet: &mut Sheet, x: f32, room: f32, facts: &[(&str, String)]| {
         for (index, (label, value)) in facts.iter().enumerate() {
             let y = rule + 14.0 + FACT_LINE * index as f32;
-            fact(sheet, (x, y), label, value, room);
+            draw_fact(sheet, (x, y), label, value, room);
         }
     };
     column(sheet, LEFT, SECOND - LEFT - 12.0, &first);

@@ -6,17 +6,11 @@
 mod chart;
 mod foot;
 mod head;
+mod style;
 mod table;
 
 use super::contents::Card;
-use binnacle_drawing::{A4, About, MARGIN, Point, Sheet, Style};
-
-const LEFT: f32 = MARGIN;
-const RIGHT: f32 = A4.0 - MARGIN;
-/// Distance from one line of the table to the next.
-const LINE: f32 = 13.0;
-/// Grey of secondary text.
-const GREY: u8 = 90;
+use binnacle_drawing::{About, Sheet};
 
 /// Draws the card's sheet.
 pub(super) fn sheet(card: &Card) -> Sheet {
@@ -42,44 +36,4 @@ pub(super) fn about(card: &Card) -> About {
         ),
         created: card.model.fitted_at.0,
     }
-}
-
-/// Smallest legible size of type.
-const SMALLEST: f32 = 6.0;
-
-/// Draws a label in grey and its value within a width.
-fn fact(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) {
-    const LABEL: f32 = 74.0;
-    let style = Style::plain(8.0);
-    sheet.text(at, style.grey(GREY), label);
-    let room = room - LABEL;
-    // What is long is set smaller before anything of it is left out.
-    let long = binnacle_drawing::width(value, style.face, style.size);
-    let size = (style.size * room / long).clamp(SMALLEST, style.size);
-    let value = binnacle_drawing::cut(value, style.face, size, room);
-    sheet.text((at.0 + LABEL, at.1), Style::plain(size), value);
-}
-
-/// Distance between two lines of labelled text.
-const LABELLED_STEP: f32 = 9.6;
-
-/// Draws labelled text on as many lines as it needs. Returns the position of the next line.
-fn draw_labelled(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) -> f32 {
-    const LABEL: f32 = 68.0;
-    let style = Style::plain(8.0);
-    sheet.text(at, style.grey(GREY), label);
-    let lines = binnacle_drawing::wrap(value, style.face, style.size, room - LABEL);
-    for (index, line) in lines.iter().enumerate() {
-        let y = at.1 + LABELLED_STEP * index as f32;
-        sheet.text((at.0 + LABEL, y), style, line.as_str());
-    }
-    at.1 + LABELLED_STEP * lines.len().max(1) as f32
-}
-
-/// Text for an unknown value.
-const UNKNOWN: &str = "not recorded";
-
-/// Returns the value, or a mark for a missing one.
-fn known(value: Option<&str>) -> &str {
-    value.unwrap_or(UNKNOWN)
 }

@@ -1,6 +1,6 @@
 //! Table of deviations by compass heading.
 
-use super::{GREY, LEFT, LINE};
+use super::style::{GREY, LEFT, LINE};
 use crate::card::contents::{Card, CardRow};
 use binnacle_drawing::words::{east_west, heading, heading_to_a_tenth, signed};
 use binnacle_drawing::{Face, Pen, Sheet, Style};
