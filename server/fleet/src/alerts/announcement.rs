@@ -66,12 +66,12 @@ pub(super) fn notices(
 fn notice(change: &AlertChange) -> Option<Notice> {
     let alert = &change.alert;
     let critical = alert.severity == Severity::Critical;
-    let presses = alert.severity >= Severity::Warning;
-    let pressed = change.was.is_some_and(|was| was >= Severity::Warning);
+    let is_urgent = alert.severity >= Severity::Warning;
+    let was_urgent = change.was.is_some_and(|was| was >= Severity::Warning);
     let is_announced = match change.kind {
-        Kind::AlertRaised | Kind::AlertCleared => presses,
-        // Who was notified hears once that it presses no more, now or when it is over.
-        Kind::AlertUpdated => critical || presses != pressed,
+        Kind::AlertRaised | Kind::AlertCleared => is_urgent,
+        // People who were notified hear once that it is less urgent, now or when it is over.
+        Kind::AlertUpdated => critical || is_urgent != was_urgent,
         _ => false,
     };
     let (subject, text) = words_of(change);

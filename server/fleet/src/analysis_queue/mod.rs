@@ -200,7 +200,7 @@ pub async fn finish(tx: &mut Tx, job: Job) -> Result<bool> {
 /// Puts a failed job back for later, or gives it up. Returns `true` when it was given up.
 pub async fn fail(db: &Db, job: Job, error: &str, now: Time) -> Result<bool> {
     let mut tx = db.begin().await?;
-    // A job that came meanwhile does the same work.
+    // A job queued meanwhile does the same work.
     execute!(
         &mut tx,
         "DELETE FROM jobs

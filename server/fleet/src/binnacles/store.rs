@@ -163,7 +163,7 @@ pub async fn insert(
     reason: Option<&str>,
     author: &Author,
 ) -> Result<()> {
-    // Whoever writes another revision meanwhile waits.
+    // Concurrent writers of a revision wait.
     execute!(
         &mut *tx,
         "UPDATE compasses SET name = name WHERE vessel_id = $1 AND id = $2",

@@ -81,7 +81,7 @@ pub(super) fn make(input: CardInput) -> Result<Card, Refusal> {
     let unverified = unverified(model, &input.completed);
     let next_due = next_due(&due::Facts {
         flag: input.vessel.flag.as_deref(),
-        // What nothing at sea supports starts no term.
+        // An adjustment without support at sea starts no period.
         adjusted_at: adjusted_at.filter(|_| unverified.is_none()),
         logbook: &input.logbook,
         at,
@@ -195,7 +195,7 @@ fn not_too_old(data_until: Time, at: Time) -> Result<(), Refusal> {
 fn widest(curve: &[DeviationRow], limit_deg: f64) -> Result<f64, Refusal> {
     let (mut widest_deg, mut compass_deg) = (0.0, 0.0);
     for row in curve {
-        // A model without a covariance knows nothing of the band.
+        // Without a covariance the band is unknown.
         let band95_deg = row.band95_deg.unwrap_or(NO_BAND_DEG);
         if band95_deg > widest_deg {
             (widest_deg, compass_deg) = (band95_deg, row.compass_deg);

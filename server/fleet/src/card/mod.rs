@@ -181,7 +181,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     let place = place(position, query.at(&model, last_at)?, &settings)?;
     let now = app.clock.now().into();
     let (from, until) = match (model.foretold_by, model.epoch_from) {
-        // Nothing is in it of what was observed since.
+        // A predicted model includes no observation since.
         (Some(_), Some(from)) => (from, now),
         _ => (model.data_from, model.data_until.0.plus_seconds(1.0).into()),
     };

@@ -79,7 +79,7 @@ pub(super) async fn enrol(
             "this enrolment code has expired: ask the operator for a new one",
         ));
     }
-    // Of two that come at once, the database lets one through.
+    // Of two concurrent requests, the database accepts one.
     let used = execute!(
         &mut tx,
         "UPDATE enrolment_codes SET used_at = $2 WHERE code_hash = $1 AND used_at IS NULL",

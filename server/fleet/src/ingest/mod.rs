@@ -102,7 +102,7 @@ async fn put_batch(
     let mut tx = request.begin().await?;
     let delay_s = match state.wait {
         None => analysis_delay_s(&app, &batch),
-        // No other follows.
+        // It is the last batch for now.
         Some(_) => 0.0,
     };
     let received = store_batch(&mut tx, agent, &batch, &bytes, now, delay_s).await?;

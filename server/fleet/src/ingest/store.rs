@@ -34,7 +34,7 @@ pub(super) async fn insert(
     bytes: &[u8],
     now: Time,
 ) -> Result<bool> {
-    // Taking the stream's row first puts batches of one stream in line.
+    // Locking the stream's row first serializes the batches of a stream.
     let progress = row!(
         in &mut *tx,
         Progress,
@@ -183,7 +183,7 @@ async fn update_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time) 
     let Some(last) = batch.samples.iter().rev().find(believable) else {
         return Ok(());
     };
-    // A late batch does not move the ship back, unless from a day yet to come.
+    // A late batch does not move the position back, unless the stored one is of the future.
     execute!(
         &mut *tx,
         "UPDATE vessels SET last_sample_at = $2, last_lat = $3, last_lon = $4

@@ -151,7 +151,7 @@ async fn find_fleet(
 ) -> Result<Json<Fleet>> {
     let now = app.clock.now().into();
     let found = store::find(&app.db, reader.operator, which.vessel, now).await?;
-    // A thousand models on every heading: not for a thread that others wait for.
+    // A thousand models on every heading take too long for an async thread.
     let fleet = tokio::task::spawn_blocking(move || assemble(found));
     Ok(Json(fleet.await.map_err(anyhow::Error::from)?))
 }

@@ -49,7 +49,7 @@ pub(super) async fn set(
     let mut events_out = vec![events::insert(tx, vessel.id, events::Kind::Need, now).await?];
     if in_service {
         set_out_of_service(tx, vessel.id, None).await?;
-        // It raises what alerts there were again, if they still are called for.
+        // It raises again the alerts whose causes still hold.
         analysis_queue::enqueue(tx, vessel.id, now, 0.0).await?;
         return Ok(events_out);
     }

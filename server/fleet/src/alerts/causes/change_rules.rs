@@ -78,7 +78,7 @@ pub(super) fn alert_cause(cause: result::Cause) -> Cause {
         result::Cause::LocalAnomaly => Cause::LocalAnomaly,
         result::Cause::MagneticStorm => Cause::MagneticStorm,
         result::Cause::BerthSteel => Cause::BerthSteel,
-        // Work that nobody reported is not known to be work.
+        // Unreported work cannot be distinguished from other changes.
         result::Cause::AdjustmentOrRepair | result::Cause::Unknown => Cause::UnknownChange,
     }
 }
@@ -193,8 +193,8 @@ fn size(detected: &DetectedChange<'_>, stage: Stage) -> Size {
         limit_deg: detected.limits.deviation_deg,
         was: detected.was,
         ceiling: match stage {
-            // An unconfirmed change may be none. With a new model the compass can be relied on
-            // again, and a disturbance spoils no model.
+            // An unconfirmed change may be no change. With a new model the compass is reliable
+            // again, and a disturbance affects no model.
             Stage::Unconfirmed | Stage::Learned | Stage::NotTheShips => Severity::Warning,
             Stage::NoModel | Stage::Interim => Severity::Critical,
         },

@@ -62,7 +62,7 @@ pub(super) async fn reconcile_reports(
     };
     let adjusted = adjustments::last_adjusted_at(tx, vessel, compass).await?;
     let is_before = adjusted.is_some_and(|adjusted| Time(last.at) < adjusted);
-    // No card from before an adjustment judges the compass after it; the gyro it does.
+    // A card from before an adjustment cannot judge the compass after it, but it can the gyro.
     let is_void = is_before && last.suspect() != Suspect::Gyro;
     let desired = if is_void {
         Vec::new()

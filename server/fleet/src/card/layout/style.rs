@@ -21,7 +21,7 @@ pub(super) fn draw_fact(sheet: &mut Sheet, at: Point, label: &str, value: &str, 
     let style = Style::plain(8.0);
     sheet.text(at, style.grey(GREY), label);
     let room = room - LABEL;
-    // What is long is set smaller before anything of it is left out.
+    // A long value is set smaller before it is cut.
     let long = binnacle_drawing::width(value, style.face, style.size);
     let size = (style.size * room / long).clamp(SMALLEST, style.size);
     let value = binnacle_drawing::cut(value, style.face, size, room);
