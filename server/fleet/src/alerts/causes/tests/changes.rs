@@ -277,7 +277,7 @@ fn a_moved_zero_comes_with_advice() {
 }
 
 #[test]
-fn while_a_references_fault_is_open_the_compass_is_cleared_only_where_she_did_not_change() {
+fn while_a_references_fault_is_open_the_compass_is_cleared_only_where_the_ship_did_not_change() {
     let advice = |ship: f64| {
         let mut open = found(Found::ReferenceFault, 2.0);
         open.change.confirmed = false;
