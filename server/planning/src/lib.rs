@@ -12,6 +12,7 @@
 pub mod needs;
 pub mod port_calls;
 pub mod schedule;
+mod schedule_settings;
 
 pub mod calendar;
 pub mod notifications;

@@ -5,6 +5,7 @@
 //! shows what its operator or firm sees now, and nothing once it, or who made it, is
 //! removed. Port calls and due dates are the operator's own: no firm's calendar has them.
 
+mod feed;
 mod ics;
 mod store;
 mod subscriber;
@@ -26,7 +27,7 @@ use binnacle_platform::ids::{FeedId, VesselId};
 use binnacle_platform::secret;
 use binnacle_platform::session;
 use binnacle_platform::tenants::Tenant;
-use binnacle_platform::time::Time;
+use feed::{Feed, Scope};
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
@@ -45,24 +46,6 @@ where
         .routes(routes!(list_feeds, create_feed))
         .routes(routes!(delete_feed))
         .routes(routes!(calendar))
-}
-
-/// A calendar that programs subscribe to.
-#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
-#[schema(as = CalendarFeed)]
-struct Feed {
-    /// Its id.
-    id: FeedId,
-    /// Name of the feed.
-    #[schema(example = "Nao Victoria")]
-    name: String,
-    /// The vessel, if it is one's only.
-    #[schema(required)]
-    vessel_id: Option<VesselId>,
-    /// Time of creation.
-    created_at: Time,
-    /// Name of its creator.
-    created_by: String,
 }
 
 /// A calendar to be made.
@@ -182,21 +165,14 @@ struct Address {
     token: Option<String>,
 }
 
-/// Owner of a calendar, whose orders it shows.
-struct Subscriber {
-    name: String,
-    tenant: Tenant,
-    vessel: Option<VesselId>,
-}
-
-impl<S> FromRequestParts<S> for Subscriber
+impl<S> FromRequestParts<S> for Scope
 where
     App: FromRef<S>,
     S: Send + Sync,
 {
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Subscriber> {
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Scope> {
         let Params(address) = Params::<Address>::from_request_parts(parts, state).await?;
         if let Some(token) = address.token {
             let app = App::from_ref(state);
@@ -204,7 +180,7 @@ where
             return found.ok_or(Error::Unauthenticated);
         }
         let reader = PartyReader::from_request_parts(parts, state).await?;
-        Ok(Subscriber {
+        Ok(Scope {
             name: "Binnacle".to_owned(),
             tenant: reader.tenant,
             vessel: None,
@@ -222,21 +198,21 @@ where
 #[utoipa::path(get, path = "/calendar.ics", tag = "adjusting", params(Address),
     responses((status = 200, content_type = "text/calendar", body = String),
               (status = 401, body = Problem)))]
-async fn calendar(State(app): State<App>, subscriber: Subscriber) -> Result<Response> {
+async fn calendar(State(app): State<App>, scope: Scope) -> Result<Response> {
     let now = app.clock.now().into();
-    let found = store::appointments(&app.db, subscriber.tenant, subscriber.vessel, now).await?;
-    let (calls, due) = match subscriber.tenant {
+    let found = store::appointments(&app.db, scope.tenant, scope.vessel, now).await?;
+    let (calls, due) = match scope.tenant {
         Tenant::Firm(_) => (Vec::new(), Vec::new()),
         Tenant::Operator(operator) => (
-            store::calls(&app.db, operator, subscriber.vessel, now).await?,
-            store::due_dates(&app.db, operator, subscriber.vessel).await?,
+            store::calls(&app.db, operator, scope.vessel, now).await?,
+            store::due_dates(&app.db, operator, scope.vessel).await?,
         ),
     };
     let public_url = app.config.mail.public_url.as_deref();
     let events = ics::orders(&found, public_url)?
         .chain(ics::calls(&calls)?)
         .chain(ics::due_dates(&due, public_url)?);
-    let text = ics::write(&subscriber.name, events);
+    let text = ics::write(&scope.name, events);
     let headers = [
         (CONTENT_TYPE, "text/calendar; charset=utf-8"),
         (CACHE_CONTROL, "private, max-age=300"),

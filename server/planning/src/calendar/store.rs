@@ -1,6 +1,6 @@
 //! Calendars in the database, and the orders that they show.
 
-use super::{Feed, Subscriber};
+use super::feed::{Feed, Scope};
 use binnacle_orders::dispatch::CallFit;
 use binnacle_orders::work_orders::State;
 use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
@@ -138,7 +138,7 @@ pub(super) async fn delete_all_of(tx: &mut Tx, user: UserId) -> Result<u64> {
 }
 
 /// Returns the owner of the calendar with this token, unless its creator is disabled.
-pub(super) async fn find(db: &Db, token_hash: &[u8]) -> Result<Option<Subscriber>> {
+pub(super) async fn find(db: &Db, token_hash: &[u8]) -> Result<Option<Scope>> {
     let found = row!(
         db,
         (String, Option<OperatorId>, Option<FirmId>, Option<VesselId>),
@@ -150,7 +150,7 @@ pub(super) async fn find(db: &Db, token_hash: &[u8]) -> Result<Option<Subscriber
     )?;
     let whose = |(name, operator, firm, vessel): (_, Option<OperatorId>, Option<FirmId>, _)| {
         let tenant = operator.map(Tenant::Operator).or(firm.map(Tenant::Firm))?;
-        Some(Subscriber {
+        Some(Scope {
             name,
             tenant,
             vessel,

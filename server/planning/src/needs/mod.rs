@@ -12,10 +12,10 @@ mod schema;
 
 pub use facts::Facts;
 pub use load::of_fleet;
-pub use need::Need;
+pub use need::{Need, find_need};
 pub use schema::UrgencySchema;
 
-use crate::schedule;
+use crate::schedule_settings;
 use axum::extract::{FromRef, State};
 use binnacle_fleet::vessels;
 use binnacle_platform::access::Reader;
@@ -23,10 +23,7 @@ use binnacle_platform::app::App;
 use binnacle_platform::error::{Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Params};
 use binnacle_platform::ids::{CompassId, OperatorId, VesselId};
-use binnacle_schedule::needs::{Terms, due};
-use binnacle_schedule::rules::built_in_rules;
-use chrono::{Datelike, NaiveDate};
-use need::{Filter, NeedList};
+use need::{Filter, NeedList, day_number};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -82,11 +79,11 @@ async fn listed(
 ) -> Result<Json<NeedList>> {
     let after = page.after_time()?.map(|(day, id)| (day, CompassId(id)));
     let facts = of_fleet(app, operator, vessel).await?;
-    let terms = schedule::terms(&app.db, operator).await?;
+    let terms = schedule_settings::terms(&app.db, operator).await?;
     let today = app.clock.now().to_chrono().date_naive();
     let mut needs: Vec<Need> = facts
         .iter()
-        .filter_map(|facts| need(facts, &terms, today))
+        .filter_map(|facts| find_need(facts, &terms, today))
         .filter(|need| filter.urgency.is_none_or(|only| need.urgency == only))
         .filter(|need| filter.due_by.is_none_or(|last| need.due_on <= last))
         .filter(|need| after.is_none_or(|after| (day_number(need.due_on), need.compass_id) > after))
@@ -99,24 +96,14 @@ async fn listed(
     }))
 }
 
-/// The need of a compass; none when no rule binds its ship and nothing is wrong.
-pub fn need(facts: &Facts, terms: &Terms, today: NaiveDate) -> Option<Need> {
-    let due = due(&facts.ship, &facts.compass, built_in_rules(), terms, today)?;
-    Some(Need::new(facts, due))
-}
-
-/// Notes since when deviations have been as great as they are, where that is news.
-pub async fn note_since(app: &App, facts: &[Facts]) -> Result<()> {
+/// Stores the histories that the facts have changed.
+pub async fn store_deviation_histories(app: &App, facts: &[Facts]) -> Result<()> {
     for facts in facts {
-        if let Some(news) = &facts.since {
+        if let Some(since) = &facts.since {
             let mut tx = app.db.begin().await?;
-            over_limit_since::note(&mut tx, (facts.vessel_id, facts.compass_id), news).await?;
+            over_limit_since::store(&mut tx, facts.vessel_id, facts.compass_id, since).await?;
             tx.commit().await?;
         }
     }
     Ok(())
-}
-
-fn day_number(day: NaiveDate) -> i64 {
-    i64::from(day.num_days_from_ce())
 }

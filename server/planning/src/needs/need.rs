@@ -1,11 +1,12 @@
 //! A need, as it is shown.
 
+use super::facts::Facts;
 use super::prediction::Ahead;
 use super::schema::{CauseKindSchema, UrgencySchema};
 use binnacle_platform::ids::{CompassId, VesselId};
-use binnacle_schedule::needs::{CauseKind, Due, Urgency};
+use binnacle_schedule::needs::{CauseKind, Due, Terms, Urgency, due};
 use binnacle_schedule::rules::{Rule, built_in_rules};
-use chrono::NaiveDate;
+use chrono::{Datelike, NaiveDate};
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
@@ -98,9 +99,15 @@ pub(super) struct Filter {
     pub(super) due_by: Option<NaiveDate>,
 }
 
+/// Returns the need of a compass; `None` when no rule binds its ship and nothing is wrong.
+pub fn find_need(facts: &Facts, terms: &Terms, today: NaiveDate) -> Option<Need> {
+    let due = due(&facts.ship, &facts.compass, built_in_rules(), terms, today)?;
+    Some(Need::new(facts, due))
+}
+
 impl Need {
     /// Puts a need together.
-    pub(super) fn new(facts: &super::facts::Facts, due: Due) -> Need {
+    fn new(facts: &Facts, due: Due) -> Need {
         let causes = due.causes.into_iter().map(|cause| Cause {
             kind: cause.kind,
             due_on: cause.due,
@@ -124,7 +131,7 @@ impl Need {
 
     /// `after` of a page that begins behind it.
     pub(super) fn cursor(&self) -> String {
-        format!("{}.{}", super::day_number(self.due_on), self.compass_id)
+        format!("{}.{}", day_number(self.due_on), self.compass_id)
     }
 }
 
@@ -136,4 +143,9 @@ fn cited(id: &str) -> Option<RuleCited> {
         section: rule.citation.section.clone(),
         second_hand: rule.citation.read == binnacle_schedule::rules::Read::SecondHand,
     })
+}
+
+/// Number of a day, for a cursor.
+pub(super) fn day_number(day: NaiveDate) -> i64 {
+    i64::from(day.num_days_from_ce())
 }

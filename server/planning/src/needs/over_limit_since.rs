@@ -64,10 +64,11 @@ pub(super) async fn noted(
     Ok(noted)
 }
 
-/// Notes it of a compass, in the place of what was.
-pub(super) async fn note(
+/// Stores the history of a compass, in place of the earlier one.
+pub(super) async fn store(
     tx: &mut Tx,
-    (vessel, compass): (VesselId, CompassId),
+    vessel: VesselId,
+    compass: CompassId,
     since: &Since,
 ) -> Result<()> {
     execute!(

@@ -1,6 +1,6 @@
 //! The letter of one notification, or of several together.
 
-use super::Notification;
+use super::notification::Notification;
 use binnacle_platform::error::Result;
 use binnacle_platform::mail::{Letter, Told, header, one_line, wrapped};
 

@@ -11,6 +11,7 @@
 mod create;
 mod digest;
 mod needs;
+mod notification;
 mod send;
 mod settings;
 mod store;
@@ -27,14 +28,15 @@ use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Params, Valid, ValidOrNone};
-use binnacle_platform::ids::{AlertId, NotificationId, OrderId, VesselId};
+use binnacle_platform::ids::NotificationId;
 use binnacle_platform::notices::Kind;
 use binnacle_platform::session::Role;
 use binnacle_platform::time::Time;
+use notification::{Filter, Notification};
 use serde::{Deserialize, Serialize};
 use settings::Settings;
 use std::collections::BTreeMap;
-use utoipa::{IntoParams, ToSchema};
+use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use way::Way;
@@ -55,39 +57,6 @@ where
         ))
 }
 
-/// Something that you ought to know.
-#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
-pub struct Notification {
-    /// The notification's id.
-    pub id: NotificationId,
-    /// Kind of event.
-    pub kind: Kind,
-    /// Whether its mail skips quiet hours and digests.
-    pub urgent: bool,
-    /// In a line.
-    #[schema(example = "Nao Victoria: Nervión Compass accepts the adjustment at Bilbao")]
-    pub subject: String,
-    /// Full text, as in the letter.
-    pub text: String,
-    /// The dashboard's page to look at.
-    #[schema(example = "/work-orders/0199aa00-0000-7000-8000-000000000001")]
-    pub path: String,
-    /// The vessel.
-    #[schema(required)]
-    pub vessel_id: Option<VesselId>,
-    /// The work order, if it is of one.
-    #[schema(required)]
-    pub order_id: Option<OrderId>,
-    /// The alert, if it is of one.
-    #[schema(required)]
-    pub alert_id: Option<AlertId>,
-    /// Time of the event.
-    pub created_at: Time,
-    /// Time at which you marked it as read.
-    #[schema(required)]
-    pub read_at: Option<Time>,
-}
-
 /// A page of notifications.
 #[derive(Serialize, ToSchema)]
 struct NotificationList {
@@ -98,16 +67,6 @@ struct NotificationList {
     next: Option<String>,
     /// Number of unread notifications on all pages.
     unread: i64,
-}
-
-/// Filter of a list of notifications.
-#[derive(Debug, Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
-struct Filter {
-    /// Only unread ones (`true`) or only read ones (`false`).
-    unread: Option<bool>,
-    /// Only of this kind.
-    kind: Option<Kind>,
 }
 
 /// Notifications to mark as read.

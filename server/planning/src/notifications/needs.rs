@@ -6,8 +6,8 @@
 
 use super::create::tell;
 use super::store::{self, Noted};
-use crate::needs::{Need, need, note_since, of_fleet};
-use crate::schedule;
+use crate::needs::{Need, find_need, of_fleet, store_deviation_histories};
+use crate::schedule_settings;
 use binnacle_fleet::operators;
 use binnacle_platform::app::App;
 use binnacle_platform::error::Result;
@@ -48,9 +48,11 @@ async fn look_at(app: &App, operator: OperatorId) -> Result<usize> {
         .collect();
     // What was noted is read first: what another process notes meanwhile is not forgotten.
     let facts = of_fleet(app, operator, None).await?;
-    note_since(app, &facts).await?;
-    let terms = schedule::terms(&app.db, operator).await?;
-    let needs = facts.iter().filter_map(|facts| need(facts, &terms, today));
+    store_deviation_histories(app, &facts).await?;
+    let terms = schedule_settings::terms(&app.db, operator).await?;
+    let needs = facts
+        .iter()
+        .filter_map(|facts| find_need(facts, &terms, today));
     let mut told = 0;
     for need in needs {
         let known = before.remove(&need.compass_id);

@@ -3,8 +3,8 @@
 //! What always holds: what is taken for a letter and the letter are one transaction, so
 //! that nothing is told twice or never; what was read meanwhile is not told any more.
 
-use super::store;
-use super::{Notification, digest, needs};
+use super::notification::Notification;
+use super::{digest, needs, store};
 use binnacle_platform::app::App;
 use binnacle_platform::db::{Tx, row};
 use binnacle_platform::error::Result;

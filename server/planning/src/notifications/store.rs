@@ -1,7 +1,7 @@
 //! Notifications and people's settings in the database.
 
+use super::notification::{Filter, Notification};
 use super::settings::Settings;
-use super::{Filter, Notification};
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, NotificationId, OperatorId, UserId, VesselId};

@@ -11,6 +11,7 @@
 //! - A file is taken whole or not at all, and the same file again changes nothing.
 
 mod call;
+mod commit;
 mod file;
 mod heading;
 mod moving;
@@ -31,15 +32,13 @@ use binnacle_orders::dispatch::{calls_come, calls_move};
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
-use binnacle_platform::db::Tx;
 use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::events::{self, Event};
 use binnacle_platform::http::{Id, Json, Page, Params, Valid, ValidOrNone, optional_text};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{CallId, OperatorId, VesselId};
-use binnacle_platform::time::Time;
 use binnacle_schedule::calls::overlap;
 use call::{Amendment, AmendmentSchema, CallList, Filter, NewCall, RevisedCall, Withdrawal};
+use commit::commit;
 use store::Author;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -246,25 +245,6 @@ async fn shown(app: &App, operator: OperatorId, vessel: VesselId, id: CallId) ->
     let row = store::must_find(&app.db, vessel, id).await?;
     let earlier = Earlier::of_fleet(&app.db, operator, app.clock.now().into()).await?;
     row.shown(&earlier)
-}
-
-/// Makes changes of some vessels' calls durable, and tells the dashboards, also of what they
-/// brought to work orders.
-async fn commit(
-    app: &App,
-    mut tx: Tx,
-    vessels: &[VesselId],
-    mut told: Vec<Event>,
-    now: Time,
-) -> Result<()> {
-    for vessel in vessels {
-        told.push(events::insert(&mut tx, *vessel, events::Kind::PortCall, now).await?);
-    }
-    tx.commit().await?;
-    for event in told {
-        app.publish(event);
-    }
-    Ok(())
 }
 
 /// A name that no withdrawn call has: she may well come to that port then after all.

@@ -1,7 +1,7 @@
 //! Files of port calls: CSV in and out, calendars in.
 
 use super::call::Source;
-use super::commit;
+use super::commit::commit;
 use super::file::{OfVessel, Taken, by_vessel, invalid_file, unreadable_file, whole};
 use super::moving;
 use super::store::{self, Author};

@@ -1,12 +1,38 @@
 //! A report's tables as CSV: named as in JSON, a line for each compass or job.
 
-use super::Table;
 use super::report::{DueCompass, Job, Report, WorstDeviation};
 use binnacle_platform::error::{Error, Result};
+use serde::Deserialize;
 use serde_json::Value;
+use utoipa::ToSchema;
 
 /// First characters by which a spreadsheet recognises a formula.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+
+/// Table of a report.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = ReportTable)]
+pub(super) enum Table {
+    /// Due dates of the compasses, the first due first.
+    #[default]
+    Due,
+    /// The greatest deviation of each compass, the greatest first.
+    Deviation,
+    /// The jobs that were completed.
+    Jobs,
+}
+
+impl Table {
+    /// Returns the name of the table, for a file.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Table::Due => "due",
+            Table::Deviation => "deviation",
+            Table::Jobs => "jobs",
+        }
+    }
+}
 
 /// One of a report's tables.
 pub(super) fn table(report: &Report, table: Table) -> Result<String> {

@@ -2,8 +2,8 @@
 
 use super::report::{DueCompass, FeeFrom, Job, Report, Saving, UnderWay, WorstDeviation};
 use super::settings::{self, Settings};
-use crate::needs::{Facts, need, of_fleet};
-use crate::schedule;
+use crate::needs::{Facts, find_need, of_fleet};
+use crate::schedule_settings;
 use binnacle_compass::time::Timestamp;
 use binnacle_fleet::models::{self, StoredModel};
 use binnacle_orders::completion::{self, Done, Span};
@@ -33,7 +33,7 @@ pub(super) async fn gather(
     let facts = of_fleet(app, operator, None).await?;
     let all = (VesselId(Uuid::nil()), VesselId(Uuid::max()));
     let models = models::current_of_fleet(&app.db, operator, all.0, all.1).await?;
-    let terms = schedule::terms(&app.db, operator).await?;
+    let terms = schedule_settings::terms(&app.db, operator).await?;
     let under_way = under_way(&app.db, operator).await?;
     let span = Span {
         from: midnight("from", from)?,
@@ -46,7 +46,7 @@ pub(super) async fn gather(
     let today = made_at.0.to_chrono().date_naive();
     let mut due: Vec<DueCompass> = facts
         .iter()
-        .filter_map(|facts| need(facts, &terms, today))
+        .filter_map(|facts| find_need(facts, &terms, today))
         .map(|need| DueCompass {
             order: under_way.get(&need.compass_id).cloned(),
             vessel_id: need.vessel_id,

@@ -3,7 +3,8 @@
 use super::report::{DueCompass, FeeFrom, Job, Report};
 use binnacle_drawing::paper::{LEFT, LINE, Paper, RIGHT, SIZE};
 use binnacle_drawing::words::{east_west, heading};
-use binnacle_drawing::{Face, Sheet, Style, cut, wrap};
+use binnacle_drawing::{About, Face, Sheet, Style, cut, wrap};
+use binnacle_platform::error::Result;
 use binnacle_schedule::needs::Urgency;
 
 /// More compasses than these are in the CSV.
@@ -40,7 +41,22 @@ const JOBS: [Column; 6] = [
     ("Fee, euros", 492.0),
 ];
 
-pub(super) fn sheets(report: &Report) -> Vec<Sheet> {
+impl Report {
+    /// The report on paper.
+    pub(super) async fn printed(self) -> Result<Vec<u8>> {
+        let about = About {
+            title: format!(
+                "Compass report: {}, {} to {}",
+                self.operator_name, self.from, self.to
+            ),
+            created: self.made_at.0,
+        };
+        let drawn = move || binnacle_drawing::pdf(&sheets(&self), &about);
+        Ok(tokio::task::spawn_blocking(drawn).await??)
+    }
+}
+
+fn sheets(report: &Report) -> Vec<Sheet> {
     let mut paper = Paper::new();
     head(&mut paper, report);
     due(&mut paper, report);

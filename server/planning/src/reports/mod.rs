@@ -14,15 +14,15 @@ pub use monthly::{look, watch};
 
 use axum::extract::{FromRef, State};
 use axum::response::Response;
-use binnacle_drawing::{self, About};
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Json, Params, file, file_name};
 use chrono::{Datelike, NaiveDate};
+use csv::Table;
 use report::Report;
 use serde::Deserialize;
-use utoipa::{IntoParams, ToSchema};
+use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -52,20 +52,6 @@ struct Range {
     /// The last day, UTC; today if not said.
     #[param(example = "2026-11-30")]
     to: Option<NaiveDate>,
-}
-
-/// Table of a report.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-#[schema(as = ReportTable)]
-enum Table {
-    /// Due dates of the compasses, the first due first.
-    #[default]
-    Due,
-    /// The greatest deviation of each compass, the greatest first.
-    Deviation,
-    /// The jobs that were completed.
-    Jobs,
 }
 
 /// Choice of a table.
@@ -146,30 +132,7 @@ impl Range {
     }
 }
 
-impl Table {
-    fn name(self) -> &'static str {
-        match self {
-            Table::Due => "due",
-            Table::Deviation => "deviation",
-            Table::Jobs => "jobs",
-        }
-    }
-}
-
 impl Report {
-    /// The report on paper.
-    async fn printed(self) -> Result<Vec<u8>> {
-        let about = About {
-            title: format!(
-                "Compass report: {}, {} to {}",
-                self.operator_name, self.from, self.to
-            ),
-            created: self.made_at.0,
-        };
-        let drawn = move || binnacle_drawing::pdf(&layout::sheets(&self), &about);
-        Ok(tokio::task::spawn_blocking(drawn).await??)
-    }
-
     fn file_name(&self, what: &str, ending: &str) -> String {
         let (from, to) = (self.from.to_string(), self.to.to_string());
         file_name(&["compass", what, &self.operator_name, &from, &to], ending)

@@ -4,9 +4,9 @@
 //! to those who were on the list before the month ended; a server that was away sends the
 //! last month's when it is back.
 
+use super::csv::{self, Table};
 use super::gather::gather;
 use super::report::Report;
-use super::{Table, csv};
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::app::App;
 use binnacle_platform::db::{Tx, execute, row, rows};

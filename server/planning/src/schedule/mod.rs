@@ -24,7 +24,6 @@ mod worker;
 
 pub use concurrency::PlanSlots;
 pub use plan::Plan;
-pub use settings::terms;
 pub use subscriber::{on_particulars_change, on_service_change, on_terms_change, on_vessel_event};
 pub use worker::{run, step};
 

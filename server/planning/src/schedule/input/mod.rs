@@ -9,9 +9,10 @@ mod names;
 mod orders;
 
 use super::plan::{LeftOut, Plan, UnderWay};
-use super::{pins, settings, store};
+use super::{pins, store};
 use crate::needs::{self, Facts, Need};
 use crate::port_calls::{self, Earlier, heading};
+use crate::schedule_settings;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
@@ -61,7 +62,7 @@ pub(super) async fn load_input(
     let former = store::current(&app.db, operator).await?;
     let now: Time = app.clock.now().into();
     let as_of = begun_hour(now)?;
-    let settings = settings::find(&app.db, operator).await?;
+    let settings = schedule_settings::find(&app.db, operator).await?;
     let facts = needs::of_fleet(app, operator, None).await?;
     let mut names = Names::of(&facts);
 
@@ -78,7 +79,7 @@ pub(super) async fn load_input(
     let found: Vec<Need> = facts
         .iter()
         .filter(|facts| !busy.contains(&facts.compass_id))
-        .filter_map(|facts| needs::need(facts, &settings.terms, today))
+        .filter_map(|facts| needs::find_need(facts, &settings.terms, today))
         .collect();
 
     let nos = orders::declined(&app.db, operator).await?;

@@ -13,26 +13,26 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Everybody's names.
 #[derive(Default)]
-pub(in crate::schedule) struct Names {
-    pub(in crate::schedule) compasses: BTreeMap<CompassId, (VesselId, String, String)>,
-    pub(in crate::schedule) firms: BTreeMap<FirmId, String>,
-    pub(in crate::schedule) calls: BTreeMap<CallId, Row>,
-    pub(in crate::schedule) pinned: BTreeSet<CompassId>,
+pub(crate) struct Names {
+    pub(crate) compasses: BTreeMap<CompassId, (VesselId, String, String)>,
+    pub(crate) firms: BTreeMap<FirmId, String>,
+    pub(crate) calls: BTreeMap<CallId, Row>,
+    pub(crate) pinned: BTreeSet<CompassId>,
     /// Orders that are jobs of the plan.
-    pub(in crate::schedule) agreed: BTreeMap<CompassId, Agreed>,
+    pub(crate) agreed: BTreeMap<CompassId, Agreed>,
     /// Orders that every firm has declined.
-    pub(in crate::schedule) declined: BTreeMap<CompassId, OrderId>,
+    pub(crate) declined: BTreeMap<CompassId, OrderId>,
 }
 
 /// Job that an order has agreed for a compass: firm, port call and day.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::schedule) struct Agreed {
-    pub(in crate::schedule) vessel_id: VesselId,
-    pub(in crate::schedule) order_id: OrderId,
-    pub(in crate::schedule) state: JobState,
-    pub(in crate::schedule) call_id: CallId,
-    pub(in crate::schedule) firm_id: FirmId,
-    pub(in crate::schedule) day: NaiveDate,
+pub(crate) struct Agreed {
+    pub(crate) vessel_id: VesselId,
+    pub(crate) order_id: OrderId,
+    pub(crate) state: JobState,
+    pub(crate) call_id: CallId,
+    pub(crate) firm_id: FirmId,
+    pub(crate) day: NaiveDate,
 }
 
 impl Names {
@@ -122,7 +122,7 @@ impl Names {
             .collect()
     }
 
-    pub(in crate::schedule) fn compass(&self, id: CompassId) -> Compass {
+    pub(crate) fn compass(&self, id: CompassId) -> Compass {
         let known = self.compasses.get(&id);
         Compass {
             compass_id: id,
@@ -130,7 +130,7 @@ impl Names {
         }
     }
 
-    pub(in crate::schedule) fn firm(&self, id: FirmId) -> String {
+    pub(crate) fn firm(&self, id: FirmId) -> String {
         self.firms.get(&id).cloned().unwrap_or_default()
     }
 }

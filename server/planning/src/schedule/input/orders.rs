@@ -21,30 +21,30 @@ use chrono::NaiveDate;
 
 /// An order that is under way.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub(in crate::schedule) struct Order {
-    pub(in crate::schedule) vessel_id: VesselId,
-    pub(in crate::schedule) id: OrderId,
-    pub(in crate::schedule) compass_id: CompassId,
-    pub(in crate::schedule) state: State,
+pub(crate) struct Order {
+    pub(crate) vessel_id: VesselId,
+    pub(crate) id: OrderId,
+    pub(crate) compass_id: CompassId,
+    pub(crate) state: State,
     /// In the operator's words, or as the schedule has it.
     port: String,
-    pub(in crate::schedule) planned_at: Time,
+    pub(crate) planned_at: Time,
     /// Firm that has been asked or has accepted.
-    pub(in crate::schedule) firm_id: Option<FirmId>,
+    pub(crate) firm_id: Option<FirmId>,
     /// At which call it is to be done, where that is known.
-    pub(in crate::schedule) call_id: Option<CallId>,
+    pub(crate) call_id: Option<CallId>,
 }
 
 /// An order that a firm has accepted, of which the plan cannot tell whether it is to be done.
 #[derive(Clone, Debug)]
-pub(in crate::schedule) struct Aside {
-    pub(in crate::schedule) vessel_id: VesselId,
-    pub(in crate::schedule) compass_id: CompassId,
-    pub(in crate::schedule) order_id: OrderId,
-    pub(in crate::schedule) firm_id: FirmId,
-    pub(in crate::schedule) day: NaiveDate,
+pub(crate) struct Aside {
+    pub(crate) vessel_id: VesselId,
+    pub(crate) compass_id: CompassId,
+    pub(crate) order_id: OrderId,
+    pub(crate) firm_id: FirmId,
+    pub(crate) day: NaiveDate,
     /// Reason why it no longer fits, where that is known.
-    pub(in crate::schedule) unfit: Option<String>,
+    pub(crate) unfit: Option<String>,
 }
 
 /// Returns the reason why a firm's terms rule out any work, if they do.
@@ -58,7 +58,7 @@ fn useless(firm: FirmId, left_out: &[LeftOut]) -> Option<String> {
 }
 
 /// A fleet's orders that are under way; each once.
-pub(in crate::schedule) async fn under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
+pub(crate) async fn under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
     let mut found = rows!(
         db,
         Order,
@@ -81,7 +81,7 @@ pub(in crate::schedule) async fn under_way(db: &Db, operator: OperatorId) -> Res
 
 /// Orders, each with a firm that has said no to it, or nothing in time; also of those that
 /// were cancelled since, for what they were is offered again. Who was asked anew says anew.
-pub(in crate::schedule) async fn declined(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
+pub(crate) async fn declined(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
     Ok(rows!(
         db,
         Order,
@@ -106,7 +106,7 @@ pub(in crate::schedule) async fn declined(db: &Db, operator: OperatorId) -> Resu
 
 impl Order {
     /// Returns its state as a job of the plan; `None` where it is beside the plan.
-    pub(in crate::schedule) fn job_state(&self) -> Option<JobState> {
+    pub(crate) fn job_state(&self) -> Option<JobState> {
         match self.state {
             State::Offered | State::Proposed => Some(JobState::Offered),
             State::Accepted => Some(JobState::Confirmed),
@@ -116,7 +116,7 @@ impl Order {
 
     /// The call that it is to be done at: as was noted, or the one at its port that its time
     /// lies in; at any port where its words mean none.
-    pub(in crate::schedule) fn call(&self, calls: &[Call]) -> Option<CallId> {
+    pub(crate) fn call(&self, calls: &[Call]) -> Option<CallId> {
         let hers = calls.iter().filter(|call| call.vessel_id == self.vessel_id);
         let meant = port_meant(&self.port).map(|port| port.code.to_string());
         let there = hers.filter(|call| meant.as_ref().is_none_or(|code| *code == call.port));
@@ -126,11 +126,7 @@ impl Order {
     }
 
     /// As an order beside the plan; none where no firm has it, or its work has begun.
-    pub(in crate::schedule) fn aside(
-        &self,
-        ahead: &[Call],
-        left_out: &[LeftOut],
-    ) -> Result<Option<Aside>> {
+    pub(crate) fn aside(&self, ahead: &[Call], left_out: &[LeftOut]) -> Result<Option<Aside>> {
         let (Some(JobState::Confirmed), Some(firm_id)) = (self.job_state(), self.firm_id) else {
             return Ok(None);
         };
@@ -170,12 +166,12 @@ impl Order {
     }
 
     /// Returns whether the order was cancelled.
-    pub(in crate::schedule) fn is_cancelled(&self) -> bool {
+    pub(crate) fn is_cancelled(&self) -> bool {
         self.state == State::Cancelled
     }
 
     /// The day that it is to be done on, in a port's time.
-    pub(in crate::schedule) fn day(&self, port: Option<&str>) -> NaiveDate {
+    pub(crate) fn day(&self, port: Option<&str>) -> NaiveDate {
         let port = port.and_then(|port| PortCode::parse(port).ok());
         let zone = port.map_or_else(Zone::utc, ports::zone);
         Instant(self.planned_at.0).date(zone)
