@@ -11,7 +11,7 @@ mod prediction;
 mod schema;
 
 pub use facts::Facts;
-pub use load::of_fleet;
+pub use load::load_facts;
 pub use need::{Need, find_need};
 pub use schema::UrgencySchema;
 
@@ -27,7 +27,7 @@ use need::{Filter, NeedList, day_number};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes of this part.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -51,7 +51,7 @@ async fn list_needs(
     Params(filter): Params<Filter>,
     page: Page,
 ) -> Result<Json<NeedList>> {
-    listed(&app, reader.operator, None, &filter, &page).await
+    list_page(&app, reader.operator, None, &filter, &page).await
 }
 
 /// List a vessel's needs
@@ -67,10 +67,10 @@ async fn list_vessel_needs(
     page: Page,
 ) -> Result<Json<NeedList>> {
     vessels::must_be_in_fleet(&app.db, reader.operator, vessel).await?;
-    listed(&app, reader.operator, Some(vessel), &filter, &page).await
+    list_page(&app, reader.operator, Some(vessel), &filter, &page).await
 }
 
-async fn listed(
+async fn list_page(
     app: &App,
     operator: OperatorId,
     vessel: Option<VesselId>,
@@ -78,7 +78,7 @@ async fn listed(
     page: &Page,
 ) -> Result<Json<NeedList>> {
     let after = page.after_time()?.map(|(day, id)| (day, CompassId(id)));
-    let facts = of_fleet(app, operator, vessel).await?;
+    let facts = load_facts(app, operator, vessel).await?;
     let terms = schedule_settings::terms(&app.db, operator).await?;
     let today = app.clock.now().to_chrono().date_naive();
     let mut needs: Vec<Need> = facts
@@ -96,12 +96,12 @@ async fn listed(
     }))
 }
 
-/// Stores the histories that the facts have changed.
+/// Stores the deviation histories that have changed.
 pub async fn store_deviation_histories(app: &App, facts: &[Facts]) -> Result<()> {
     for facts in facts {
-        if let Some(since) = &facts.since {
+        if let Some(history) = &facts.changed_history {
             let mut tx = app.db.begin().await?;
-            over_limit_since::store(&mut tx, facts.vessel_id, facts.compass_id, since).await?;
+            over_limit_since::store(&mut tx, facts.vessel_id, facts.compass_id, history).await?;
             tx.commit().await?;
         }
     }

@@ -6,7 +6,7 @@
 
 use super::create::tell;
 use super::store::{self, Noted};
-use crate::needs::{Need, find_need, of_fleet, store_deviation_histories};
+use crate::needs::{Need, find_need, load_facts, store_deviation_histories};
 use crate::schedule_settings;
 use binnacle_fleet::operators;
 use binnacle_platform::app::App;
@@ -47,7 +47,7 @@ async fn look_at(app: &App, operator: OperatorId) -> Result<usize> {
         .map(|noted| (noted.compass_id, noted))
         .collect();
     // What was noted is read first: what another process notes meanwhile is not forgotten.
-    let facts = of_fleet(app, operator, None).await?;
+    let facts = load_facts(app, operator, None).await?;
     store_deviation_histories(app, &facts).await?;
     let terms = schedule_settings::terms(&app.db, operator).await?;
     let needs = facts

@@ -2,7 +2,7 @@
 
 use super::report::{DueCompass, FeeFrom, Job, Report, Saving, UnderWay, WorstDeviation};
 use super::settings::{self, Settings};
-use crate::needs::{Facts, find_need, of_fleet};
+use crate::needs::{Facts, find_need, load_facts};
 use crate::schedule_settings;
 use binnacle_compass::time::Timestamp;
 use binnacle_fleet::models::{self, StoredModel};
@@ -30,7 +30,7 @@ pub(super) async fn gather(
     late_since: Option<Time>,
 ) -> Result<Report> {
     let made_at: Time = app.clock.now().into();
-    let facts = of_fleet(app, operator, None).await?;
+    let facts = load_facts(app, operator, None).await?;
     let all = (VesselId(Uuid::nil()), VesselId(Uuid::max()));
     let models = models::current_of_fleet(&app.db, operator, all.0, all.1).await?;
     let terms = schedule_settings::terms(&app.db, operator).await?;

@@ -63,7 +63,7 @@ pub(super) async fn load_input(
     let now: Time = app.clock.now().into();
     let as_of = begun_hour(now)?;
     let settings = schedule_settings::find(&app.db, operator).await?;
-    let facts = needs::of_fleet(app, operator, None).await?;
+    let facts = needs::load_facts(app, operator, None).await?;
     let mut names = Names::of(&facts);
 
     let ahead = port_calls::ahead(&app.db, operator, now).await?;
