@@ -223,7 +223,7 @@ async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey,
         };
         ((vessel, compass), completed)
     };
-    // CompassKey one compass the last stays.
+    // Rows are in order of time: the last of a compass stays.
     Ok(found.into_iter().map(keyed).collect())
 }
 

@@ -1,12 +1,11 @@
-//! Notifications: telling each person of what concerns them, as they want to be told.
+//! Notifications for each person: list, mail and digest.
 //!
 //! What always holds:
 //!
-//! - What a person ought to know is written for that person in the transaction that makes
-//!   it true; who made it so is not told.
-//! - Mail waits for the end of a person's quiet hours, or for their digest; what is urgent
-//!   waits for neither. Letters go through [`binnacle_platform::outbox`].
-//! - A notification is its person's own: nobody else finds it.
+//! - A notification is stored in the transaction of its event. The author of the event gets none.
+//! - Mail waits for the end of a person's quiet hours, or for their digest. Urgent mail waits for
+//!   neither. Letters go through [`binnacle_platform::outbox`].
+//! - A person sees their own notifications only.
 
 mod create;
 mod digest;
@@ -18,8 +17,8 @@ mod store;
 mod way;
 
 pub use create::create;
-pub use needs::look;
-pub use send::{post, watch};
+pub use needs::notify_of_needs;
+pub use send::{send_due, watch};
 
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
@@ -41,7 +40,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use way::Way;
 
-/// The routes of this part.
+/// Returns the routes of this part.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -74,7 +73,7 @@ struct NotificationList {
 #[serde(deny_unknown_fields)]
 #[schema(as = NotificationsRead)]
 struct Read {
-    /// This one and all before it; all there are if not said.
+    /// The last notification to mark; all by default.
     until: Option<NotificationId>,
 }
 
@@ -83,7 +82,7 @@ struct Read {
 #[serde(deny_unknown_fields)]
 #[schema(as = ChangedNotification)]
 struct Changed {
-    /// Whether you have read it.
+    /// `true` when you have read it.
     read: bool,
 }
 
@@ -93,18 +92,18 @@ struct Changed {
 struct InForce {
     /// Your settings.
     settings: Settings,
-    /// Every kind that you are told of, with the way in force.
+    /// Every kind that concerns you, with its way of delivery.
     ways: BTreeMap<Kind, Way>,
-    /// Address for mail: the one you sign in with.
+    /// Address for mail, with which you sign in.
     #[schema(example = "ada@example.com")]
     address: String,
-    /// Whether this server is set up to send mail.
+    /// `true` when this server is set up to send mail.
     sending: bool,
-    /// Time of the next digest, if there is anything in it.
+    /// Time of the next digest; an empty one is not sent.
     next_digest_at: Time,
 }
 
-/// List what you ought to know
+/// List your notifications
 ///
 /// Notifications are kept for 90 days.
 #[utoipa::path(get, path = "/notifications", tag = "notifications", params(Filter, Page),
@@ -115,7 +114,7 @@ async fn list_notifications(
     Params(filter): Params<Filter>,
     page: Page,
 ) -> Result<Json<NotificationList>> {
-    let user = told(&caller)?.user.user_id;
+    let user = recipient(&caller)?.user.user_id;
     let before = page.after_id()?;
     let found = store::list(&app.db, user, &filter, before, page.fetch()).await?;
     let listed = page.cut(found, |notification| notification.id.to_string());
@@ -128,7 +127,7 @@ async fn list_notifications(
 
 /// Mark notifications as read
 ///
-/// What is read is not told by mail any more.
+/// Notifications that have been read are not mailed any more.
 #[utoipa::path(post, path = "/notifications/read", tag = "notifications",
     request_body = Option<Read>,
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem)))]
@@ -139,7 +138,7 @@ async fn mark_notifications_read(
     ValidOrNone(read): ValidOrNone<Read>,
 ) -> Result<StatusCode> {
     caller.must_not_only_read()?;
-    let user = told(&caller)?.user.user_id;
+    let user = recipient(&caller)?.user.user_id;
     let mut tx = request.begin().await?;
     store::mark_read(&mut tx, user, read.until, app.clock.now().into()).await?;
     tx.commit().await?;
@@ -159,7 +158,7 @@ async fn change_notification(
     Valid(changed): Valid<Changed>,
 ) -> Result<StatusCode> {
     caller.must_not_only_read()?;
-    let user = told(&caller)?.user.user_id;
+    let user = recipient(&caller)?.user.user_id;
     let read_at = changed.read.then(|| app.clock.now().into());
     let mut tx = request.begin().await?;
     if !store::mark(&mut tx, user, id, read_at).await? {
@@ -169,20 +168,20 @@ async fn change_notification(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// See how you are told
+/// See your notification settings
 #[utoipa::path(get, path = "/me/notifications", tag = "notifications",
     responses((status = 200, body = InForce), (status = 401, body = Problem)))]
 async fn find_notification_settings(
     State(app): State<App>,
     caller: Caller,
 ) -> Result<Json<InForce>> {
-    let settings = store::settings(&app.db, told(&caller)?.user.user_id).await?;
+    let settings = store::settings(&app.db, recipient(&caller)?.user.user_id).await?;
     Ok(Json(InForce::new(&app, &caller, settings)))
 }
 
-/// Say how you want to be told
+/// Change your notification settings
 ///
-/// What waits to be mailed follows the new settings.
+/// Notifications that wait for mail follow the new settings.
 #[utoipa::path(put, path = "/me/notifications", tag = "notifications", request_body = Settings,
     responses((status = 200, body = InForce), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem)))]
@@ -193,21 +192,24 @@ async fn change_notification_settings(
     Valid(settings): Valid<Settings>,
 ) -> Result<Json<InForce>> {
     caller.must_not_only_read()?;
-    let (user, role) = (told(&caller)?.user.user_id, caller.user.role);
+    let (user, role) = (recipient(&caller)?.user.user_id, caller.user.role);
     let settings = settings.checked(role)?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
     store::put_settings(&mut tx, user, &settings, now).await?;
     for (id, kind, urgent) in store::waiting(&mut tx, user).await? {
         let mail_at = settings.mail_at(settings.way(kind, role), urgent, now);
-        store::put_off(&mut tx, user, id, mail_at).await?;
+        store::reschedule_mail(&mut tx, user, id, mail_at).await?;
     }
     tx.commit().await?;
     Ok(Json(InForce::new(&app, &caller, settings)))
 }
 
-/// Refuses who is told of nothing: a platform admin has neither a fleet nor orders.
-fn told(caller: &Caller) -> Result<&Caller> {
+/// Returns the caller if they get notifications at all.
+///
+/// # Errors
+/// Fails for a platform admin, who has neither a fleet nor orders.
+fn recipient(caller: &Caller) -> Result<&Caller> {
     caller.party()?;
     Ok(caller)
 }
@@ -215,9 +217,9 @@ fn told(caller: &Caller) -> Result<&Caller> {
 impl InForce {
     fn new(app: &App, caller: &Caller, settings: Settings) -> InForce {
         let role: Role = caller.user.role;
-        let told = Kind::ALL.into_iter().filter(|kind| kind.concerns(role));
+        let kinds = Kind::ALL.into_iter().filter(|kind| kind.concerns(role));
         InForce {
-            ways: told.map(|kind| (kind, settings.way(kind, role))).collect(),
+            ways: kinds.map(|kind| (kind, settings.way(kind, role))).collect(),
             address: caller.user.email.clone(),
             sending: app.config.mail.is_set_up(),
             next_digest_at: settings.next_digest(app.clock.now().into()),

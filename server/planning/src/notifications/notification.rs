@@ -1,4 +1,4 @@
-//! A notification as its person sees it.
+//! A notification and the filter of a list.
 
 use binnacle_platform::ids::{AlertId, NotificationId, OrderId, VesselId};
 use binnacle_platform::notices::Kind;
@@ -6,30 +6,30 @@ use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
-/// Something that you ought to know.
+/// Notification of an event that concerns you.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 pub(super) struct Notification {
     /// The notification's id.
     pub(super) id: NotificationId,
     /// Kind of event.
     pub(super) kind: Kind,
-    /// Whether its mail skips quiet hours and digests.
+    /// `true` when its mail skips quiet hours and digests.
     pub(super) urgent: bool,
-    /// In a line.
+    /// Subject line.
     #[schema(example = "Nao Victoria: Nervión Compass accepts the adjustment at Bilbao")]
     pub(super) subject: String,
-    /// Full text, as in the letter.
+    /// Full text, as in mail.
     pub(super) text: String,
-    /// The dashboard's page to look at.
+    /// Page of the dashboard that shows it.
     #[schema(example = "/work-orders/0199aa00-0000-7000-8000-000000000001")]
     pub(super) path: String,
     /// The vessel.
     #[schema(required)]
     pub(super) vessel_id: Option<VesselId>,
-    /// The work order, if it is of one.
+    /// The work order, if it concerns one.
     #[schema(required)]
     pub(super) order_id: Option<OrderId>,
-    /// The alert, if it is of one.
+    /// The alert, if it concerns one.
     #[schema(required)]
     pub(super) alert_id: Option<AlertId>,
     /// Time of the event.
