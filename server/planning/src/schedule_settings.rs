@@ -18,14 +18,13 @@ use utoipa::ToSchema;
     "terms": { "after_event_days": 30, "over_limit_days": 14, "urgent_days": 14 }
 }))]
 pub(crate) struct ScheduleSettings {
-    /// Days ahead to plan for; a compass that is due later is left out.
+    /// Planning horizon, days; a compass that is due later is left out.
     #[schema(minimum = 1, maximum = 730)]
     pub horizon_days: u32,
-    /// Cost weights in euros; a weight that is left out has its default. docs/schedule.md
-    /// explains each.
+    /// Cost weights in euros, each with a default. docs/schedule.md explains them.
     #[schema(value_type = Object)]
     pub weights: Weights,
-    /// The terms by which compasses are due where a rule gives no date.
+    /// Terms of due dates for which a rule gives no date.
     #[schema(value_type = Object)]
     pub terms: Terms,
 }
@@ -40,7 +39,7 @@ impl Default for ScheduleSettings {
     }
 }
 
-/// An operator's settings, or the defaults.
+/// Returns an operator's settings, or the defaults.
 pub(crate) async fn find(db: &Db, operator: OperatorId) -> Result<ScheduleSettings> {
     let found = row!(
         db,
@@ -54,7 +53,7 @@ pub(crate) async fn find(db: &Db, operator: OperatorId) -> Result<ScheduleSettin
     )?)
 }
 
-/// The terms by which an operator's compasses are due where a rule gives no date.
+/// Returns an operator's terms of due dates for which a rule gives no date.
 pub(crate) async fn terms(db: &Db, operator: OperatorId) -> Result<Terms> {
     Ok(find(db, operator).await?.terms)
 }

@@ -60,7 +60,7 @@ impl FleetRecords {
             (one, one)
         });
         let mut calls: BTreeMap<VesselId, Vec<UpcomingCall>> = BTreeMap::new();
-        for call in port_calls::ahead(db, operator, now).await? {
+        for call in port_calls::upcoming_of_fleet(db, operator, now).await? {
             let (port, at) = (call.content()?.port, call.eta);
             let at = at.max(now);
             let of_vessel = calls.entry(call.vessel_id).or_default();

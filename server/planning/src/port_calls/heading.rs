@@ -15,11 +15,11 @@ use binnacle_schedule::ports::PortCode;
 const MOST: i64 = 2000;
 
 /// The headings of the fleet's earlier calls.
-pub struct Earlier(Vec<Observed>);
+pub struct EarlierHeadings(Vec<Observed>);
 
-impl Earlier {
+impl EarlierHeadings {
     /// Of calls that have begun and whose heading is known.
-    pub async fn of_fleet(db: &Db, operator: OperatorId, now: Time) -> Result<Earlier> {
+    pub async fn of_fleet(db: &Db, operator: OperatorId, now: Time) -> Result<EarlierHeadings> {
         let found = rows!(
             db,
             (String, Option<String>, f64),
@@ -41,12 +41,16 @@ impl Earlier {
             })
         };
         let observed: Result<Vec<Observed>> = found.into_iter().map(read).collect();
-        Ok(Earlier(observed?))
+        Ok(EarlierHeadings(observed?))
     }
 }
 
 /// Returns the heading of the vessel alongside; one read there takes precedence over a given one.
-pub fn heading(call: &Content, lay_deg: Option<f64>, earlier: &Earlier) -> Option<LearntHeading> {
+pub fn heading_alongside(
+    call: &Content,
+    lay_deg: Option<f64>,
+    earlier: &EarlierHeadings,
+) -> Option<LearntHeading> {
     if let Some(heading_deg) = lay_deg {
         let source = LearntFrom::Read;
         return Some(LearntHeading {

@@ -21,8 +21,8 @@ mod subscriber;
 mod upload;
 
 pub use call::{Content, LearntFrom, LearntHeading, PortCall, Source};
-pub use heading::{Earlier, heading};
-pub use store::{Row, ahead};
+pub use heading::{EarlierHeadings, heading_alongside};
+pub use store::{Row, upcoming_of_fleet};
 pub use subscriber::note_berth_heading;
 
 use axum::extract::{FromRef, State};
@@ -96,7 +96,7 @@ async fn listed(
 ) -> Result<Json<CallList>> {
     let (filter, after) = (filter.checked()?, page.after_time()?);
     let found = store::list(&app.db, operator, vessel, &filter, after, page.fetch()).await?;
-    let earlier = Earlier::of_fleet(&app.db, operator, app.clock.now().into()).await?;
+    let earlier = EarlierHeadings::of_fleet(&app.db, operator, app.clock.now().into()).await?;
     let shown: Result<Vec<PortCall>> = found.into_iter().map(|row| row.shown(&earlier)).collect();
     let listed = page.cut(shown?, PortCall::cursor);
     Ok(Json(CallList {
@@ -243,7 +243,7 @@ async fn withdraw_port_call(
 
 async fn shown(app: &App, operator: OperatorId, vessel: VesselId, id: CallId) -> Result<PortCall> {
     let row = store::must_find(&app.db, vessel, id).await?;
-    let earlier = Earlier::of_fleet(&app.db, operator, app.clock.now().into()).await?;
+    let earlier = EarlierHeadings::of_fleet(&app.db, operator, app.clock.now().into()).await?;
     row.shown(&earlier)
 }
 

@@ -1,7 +1,7 @@
 //! Port calls in the database.
 
 use super::call::{CheckedFilter, Content, PortCall, Revision, Source};
-use super::heading::{Earlier, heading};
+use super::heading::{EarlierHeadings, heading_alongside};
 use anyhow::Context;
 use binnacle_orders::dispatch::Alongside;
 use binnacle_platform::db::{Db, Tx, execute, row, rows};
@@ -80,10 +80,10 @@ impl Row {
         Ok(Alongside::new(port, self.eta, self.etd))
     }
 
-    pub(super) fn shown(self, earlier: &Earlier) -> Result<PortCall> {
+    pub(super) fn shown(self, earlier: &EarlierHeadings) -> Result<PortCall> {
         let content = self.content()?;
         Ok(PortCall {
-            berth_heading: heading(&content, self.lay_heading_deg, earlier),
+            berth_heading: heading_alongside(&content, self.lay_heading_deg, earlier),
             port_name: ports::find(content.port).map_or("", |port| port.name),
             content,
             id: self.id,
@@ -138,7 +138,7 @@ pub(super) async fn list(
 }
 
 /// The calls of the fleet in service that are not over and not withdrawn, by vessel and time.
-pub async fn ahead(db: &Db, operator: OperatorId, now: Time) -> Result<Vec<Row>> {
+pub async fn upcoming_of_fleet(db: &Db, operator: OperatorId, now: Time) -> Result<Vec<Row>> {
     Ok(rows!(
         db,
         Row,
@@ -153,7 +153,7 @@ pub async fn ahead(db: &Db, operator: OperatorId, now: Time) -> Result<Vec<Row>>
 }
 
 /// Returns the current and future calls of one vessel.
-pub(super) async fn ahead_of(db: &Db, vessel: VesselId, now: Time) -> Result<Vec<Row>> {
+pub(super) async fn upcoming_of_vessel(db: &Db, vessel: VesselId, now: Time) -> Result<Vec<Row>> {
     Ok(rows!(
         db,
         Row,

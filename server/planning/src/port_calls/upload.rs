@@ -292,8 +292,8 @@ async fn export_csv(
     Id(vessel): Id<VesselId>,
 ) -> Result<Response> {
     let row = vessels::must_be_in_fleet(&app.db, reader.operator, vessel).await?;
-    let ahead = store::ahead_of(&app.db, vessel, app.clock.now().into()).await?;
-    let calls: Result<Vec<_>> = ahead
+    let upcoming = store::upcoming_of_vessel(&app.db, vessel, app.clock.now().into()).await?;
+    let calls: Result<Vec<_>> = upcoming
         .iter()
         .map(|call| Ok(call.content()?.of(&call.reference, &vessel.to_string())))
         .collect();

@@ -262,7 +262,19 @@ pub struct LeftOut {
 }
 
 impl Plan {
-    /// The job that adjusts a compass.
+    /// Returns the vessels whose jobs differ from the previous plan, each once.
+    pub(super) fn changed_vessels(&self) -> Vec<VesselId> {
+        let changes = self.changes.iter();
+        let mut vessels: Vec<VesselId> = changes
+            .filter(|change| change.what != ChangeKind::Kept)
+            .map(|change| change.vessel_id)
+            .collect();
+        vessels.sort_unstable();
+        vessels.dedup();
+        vessels
+    }
+
+    /// Returns the job that adjusts a compass.
     pub fn job_of(&self, compass: CompassId) -> Option<&Job> {
         self.jobs.iter().find(|job| job.is_for(compass))
     }

@@ -1,4 +1,4 @@
-//! `/schedule/settings`: what counts how much, and how far ahead.
+//! `/schedule/settings`: cost weights, terms and horizon of the schedule.
 
 use crate::schedule_settings::{self, ScheduleSettings};
 use axum::extract::{FromRef, State};
@@ -19,7 +19,7 @@ where
     OpenApiRouter::new().routes(routes!(find_schedule_settings, set_settings))
 }
 
-/// See what counts how much in the schedule
+/// See the schedule's settings
 #[utoipa::path(get, path = "/schedule/settings", tag = "adjusting",
     responses((status = 200, body = ScheduleSettings), (status = 401, body = Problem)))]
 async fn find_schedule_settings(
@@ -31,7 +31,7 @@ async fn find_schedule_settings(
     ))
 }
 
-/// Say what counts how much in the schedule
+/// Change the schedule's settings
 #[utoipa::path(put, path = "/schedule/settings", tag = "adjusting", request_body = ScheduleSettings,
     responses((status = 200, body = ScheduleSettings), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem)))]
@@ -46,7 +46,7 @@ async fn set_settings(
     let mut tx = request.begin().await?;
     let by = session::name_of(&mut tx, writer.user).await?;
     schedule_settings::put(&mut tx, writer.operator, &settings, &by, now).await?;
-    super::store::ask(&mut tx, writer.operator, now).await?;
+    super::store::request_schedule(&mut tx, writer.operator, now).await?;
     tx.commit().await?;
     Ok(Json(settings))
 }

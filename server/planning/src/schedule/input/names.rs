@@ -1,6 +1,6 @@
-//! Everybody's names, and which orders are jobs of the plan.
+//! Names for the plan, and the orders that are its jobs.
 
-use super::former::Former;
+use super::former::FormerJobs;
 use super::orders::Order;
 use crate::needs::Facts;
 use crate::port_calls::Row;
@@ -11,7 +11,7 @@ use binnacle_schedule::input::{Firm, JobState};
 use chrono::NaiveDate;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Everybody's names.
+/// Names for the plan, and the orders that are its jobs.
 #[derive(Default)]
 pub(crate) struct Names {
     pub(crate) compasses: BTreeMap<CompassId, (VesselId, String, String)>,
@@ -51,11 +51,11 @@ impl Names {
         }
     }
 
-    /// Takes the orders that are jobs of the plan; those beside it come back, and why.
-    pub(super) fn take_orders<'a>(
+    /// Records the orders that are jobs of the plan. Returns those beside it, with the reason.
+    pub(super) fn add_orders<'a>(
         &mut self,
         orders: &'a [Order],
-        ahead: &[Row],
+        upcoming: &[Row],
         planned_with: &[Firm],
     ) -> Vec<(&'a Order, String)> {
         let mut beside = Vec::new();
@@ -77,14 +77,14 @@ impl Names {
                 beside.push((order, format!("{firm}, which has its order, is left out")));
                 continue;
             }
-            let Some(call_id) = order.call(ahead) else {
+            let Some(call_id) = order.call(upcoming) else {
                 beside.push((
                     order,
                     "no port call is known at its order's port and time".to_owned(),
                 ));
                 continue;
             };
-            let port = ahead.iter().find(|call| call.id == call_id);
+            let port = upcoming.iter().find(|call| call.id == call_id);
             let agreed = Agreed {
                 vessel_id: order.vessel_id,
                 order_id: order.id,
@@ -98,7 +98,7 @@ impl Names {
         beside
     }
 
-    /// Orders beside the plan, and why, with everybody's names.
+    /// Returns the orders beside the plan, with names and reasons.
     pub(super) fn under_way(&self, beside: Vec<(&Order, String)>) -> Vec<UnderWay> {
         let named = beside.into_iter().filter_map(|(order, why)| {
             let (vessel_id, vessel_name, _) = self.compasses.get(&order.compass_id)?;
@@ -113,11 +113,11 @@ impl Names {
         named.collect()
     }
 
-    /// The orders that are jobs of the plan before, each with its firm.
-    pub(super) fn planned(&self, former: &Former) -> BTreeMap<OrderId, FirmId> {
+    /// Returns the orders that are jobs to start from, each with its firm.
+    pub(super) fn planned(&self, former: &FormerJobs) -> BTreeMap<OrderId, FirmId> {
         let agreed = self.agreed.iter();
         agreed
-            .filter(|(compass, _)| former.taken.contains(compass))
+            .filter(|(compass, _)| former.with_job.contains(compass))
             .map(|(_, agreed)| (agreed.order_id, agreed.firm_id))
             .collect()
     }
