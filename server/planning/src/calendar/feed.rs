@@ -6,16 +6,16 @@ use binnacle_platform::time::Time;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// A calendar that programs subscribe to.
+/// Calendar feed that programs subscribe to.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 #[schema(as = CalendarFeed)]
 pub(super) struct Feed {
-    /// Its id.
+    /// Id of the feed.
     pub(super) id: FeedId,
     /// Name of the feed.
     #[schema(example = "Nao Victoria")]
     pub(super) name: String,
-    /// The vessel, if it is one's only.
+    /// The vessel, if the feed is limited to one.
     #[schema(required)]
     pub(super) vessel_id: Option<VesselId>,
     /// Time of creation.

@@ -1,8 +1,8 @@
 //! Orders, port calls and due dates as iCalendar events (RFC 5545).
 //!
-//! What always holds: each keeps its UID, and its SEQUENCE grows with an order's log, a
-//! call's revisions or the versions of a due date; times are UTC, due dates days; the same
-//! make the same bytes.
+//! What always holds: an event keeps its UID, and its SEQUENCE grows with the order's log, the
+//! call's revisions or the versions of the due date. Times are UTC and due dates are days. Equal
+//! records give equal bytes.
 
 use super::store::{Appointment, Call, Due};
 use anyhow::Context;
@@ -15,7 +15,7 @@ use chrono::{DateTime, NaiveDate, TimeDelta, Utc};
 use icalendar::{Calendar, Component, Event, EventLike, EventStatus, Property};
 use serde::Deserialize;
 
-/// The calendar of these events.
+/// Returns the calendar of some events.
 pub(super) fn write(name: &str, events: impl Iterator<Item = Event>) -> String {
     let mut calendar = Calendar {
         properties: Vec::new(),
@@ -37,34 +37,38 @@ pub(super) fn write(name: &str, events: impl Iterator<Item = Event>) -> String {
     calendar.to_string()
 }
 
-/// Work orders as events.
+/// Returns work orders as events.
 ///
 /// # Errors
-/// When a time is beyond the calendar's, here and below.
+/// Fails when a time is outside the range of calendars, as do the next two.
 pub(super) fn orders(
     orders: &[Appointment],
     public_url: Option<&str>,
 ) -> anyhow::Result<impl Iterator<Item = Event>> {
-    let all: anyhow::Result<Vec<Event>> = orders.iter().map(|one| event(one, public_url)).collect();
+    let all: anyhow::Result<Vec<Event>> = orders
+        .iter()
+        .map(|one| order_event(one, public_url))
+        .collect();
     Ok(all?.into_iter())
 }
 
-/// Port calls as events.
+/// Returns port calls as events.
 pub(super) fn calls(calls: &[Call]) -> anyhow::Result<impl Iterator<Item = Event>> {
-    let all: anyhow::Result<Vec<Event>> = calls.iter().map(call).collect();
+    let all: anyhow::Result<Vec<Event>> = calls.iter().map(call_event).collect();
     Ok(all?.into_iter())
 }
 
-/// Due dates as days.
+/// Returns due dates as events of a day.
 pub(super) fn due_dates(
     due: &[Due],
     public_url: Option<&str>,
 ) -> anyhow::Result<impl Iterator<Item = Event>> {
-    let all: anyhow::Result<Vec<Event>> = due.iter().map(|one| day(one, public_url)).collect();
+    let all: anyhow::Result<Vec<Event>> =
+        due.iter().map(|one| due_event(one, public_url)).collect();
     Ok(all?.into_iter())
 }
 
-fn call(call: &Call) -> anyhow::Result<Event> {
+fn call_event(call: &Call) -> anyhow::Result<Event> {
     let port = PortCode::parse(&call.port).ok().and_then(ports::find);
     let port = port.map_or_else(
         || call.port.clone(),
@@ -78,11 +82,11 @@ fn call(call: &Call) -> anyhow::Result<Event> {
         .withdrawn_at
         .or(call.revised_at)
         .unwrap_or(call.created_at))?;
-    // Withdrawing is no revision, and comes after the revision that it withdraws.
+    // A withdrawal is no revision of its own and comes after the last one.
     let sequence = 2 * call.revision + i64::from(call.withdrawn_at.is_some());
     let mut lines = vec![
-        expected("ETA", call.eta, call.eta_uncertainty_h),
-        expected("ETD", call.etd, call.etd_uncertainty_h),
+        expected_time("ETA", call.eta, call.eta_uncertainty_h),
+        expected_time("ETD", call.etd, call.etd_uncertainty_h),
     ];
     if call.withdrawn_at.is_some() {
         let why = call.withdrawal_reason.as_deref();
@@ -108,16 +112,16 @@ fn call(call: &Call) -> anyhow::Result<Event> {
     Ok(event.done())
 }
 
-fn expected(what: &str, at: Time, uncertainty_h: f64) -> String {
+fn expected_time(label: &str, at: Time, uncertainty_h: f64) -> String {
     let at = at.to_the_minute();
     if uncertainty_h > 0.0 {
-        format!("{what}: {at}, within {uncertainty_h} h nineteen times in twenty")
+        format!("{label}: {at}, within {uncertainty_h} h nineteen times in twenty")
     } else {
-        format!("{what}: {at}")
+        format!("{label}: {at}")
     }
 }
 
-fn day(due: &Due, public_url: Option<&str>) -> anyhow::Result<Event> {
+fn due_event(due: &Due, public_url: Option<&str>) -> anyhow::Result<Event> {
     let on: NaiveDate = due.day.parse().context("a stored due date")?;
     let at = utc(due.changed_at)?;
     let mut event = Event::new();
@@ -143,26 +147,26 @@ fn day(due: &Due, public_url: Option<&str>) -> anyhow::Result<Event> {
 
 /// Fields of a log entry that a calendar shows.
 #[derive(Deserialize)]
-struct Written {
+struct LogEntry {
     at: Time,
 }
 
-fn event(order: &Appointment, public_url: Option<&str>) -> anyhow::Result<Event> {
+fn order_event(order: &Appointment, public_url: Option<&str>) -> anyhow::Result<Event> {
     let starts = utc(order.planned_at)?;
-    let written: Written = serde_json::from_str(&order.line)?;
+    let entry: LogEntry = serde_json::from_str(&order.line)?;
     let place = match &order.berth {
         Some(berth) => format!("{}, {berth}", order.port),
         None => order.port.clone(),
     };
-    let state = in_words(order.state);
+    let state = state_name(order.state);
     let mut event = Event::new();
     event
         .uid(&format!("{}@binnacle", order.id))
         .add_property("SEQUENCE", order.last_seq.to_string())
-        .timestamp(utc(written.at)?)
-        .last_modified(utc(written.at)?)
+        .timestamp(utc(entry.at)?)
+        .last_modified(utc(entry.at)?)
         .starts(starts)
-        .ends(starts + takes())
+        .ends(starts + usual_duration())
         .summary(&format!(
             "Adjust {}, {} ({state})",
             order.compass_name, order.vessel_name
@@ -185,19 +189,19 @@ fn description(order: &Appointment) -> String {
     if let Some(adjuster) = &order.adjuster_name {
         lines.push(format!("Adjuster: {adjuster}"));
     }
-    lines.extend(unfit(order).map(str::to_owned));
+    lines.extend(warning(order).map(str::to_owned));
     lines.join("\n")
 }
 
-/// An adjustment at the berth takes about so long.
-fn takes() -> TimeDelta {
+/// Returns the usual duration of an adjustment at the berth.
+fn usual_duration() -> TimeDelta {
     #[allow(clippy::cast_possible_truncation, reason = "a few hours")]
     TimeDelta::seconds((JOB_H * 3600.0) as i64)
 }
 
 /// Returns the warning for an order still to be done whose port call has moved.
-fn unfit(order: &Appointment) -> Option<&'static str> {
-    let is_ahead = matches!(
+fn warning(order: &Appointment) -> Option<&'static str> {
+    let is_open = matches!(
         order.state,
         State::Offered
             | State::Proposed
@@ -206,7 +210,7 @@ fn unfit(order: &Appointment) -> Option<&'static str> {
             | State::Measured
             | State::Adjusting
     );
-    match order.call_fit.filter(|_| is_ahead)? {
+    match order.call_fit.filter(|_| is_open)? {
         CallFit::Fits => None,
         CallFit::OtherHour => Some(
             "The port call has moved since this time was agreed: another hour of that day is \
@@ -228,12 +232,12 @@ fn status(order: &Appointment) -> EventStatus {
             EventStatus::Tentative
         }
         State::Cancelled => EventStatus::Cancelled,
-        _ if unfit(order).is_some() => EventStatus::Tentative,
+        _ if warning(order).is_some() => EventStatus::Tentative,
         _ => EventStatus::Confirmed,
     }
 }
 
-fn in_words(state: State) -> &'static str {
+fn state_name(state: State) -> &'static str {
     match state {
         State::Planned => "planned",
         State::Offered => "offered",
