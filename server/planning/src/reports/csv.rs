@@ -1,6 +1,6 @@
-//! A report's tables as CSV: named as in JSON, a line for each compass or job.
+//! Tables of a report as CSV: columns named as in JSON, a line for each compass or job.
 
-use super::report::{DueCompass, Job, Report, WorstDeviation};
+use super::report::{DueCompass, Job, Report, Saving, WorstDeviation};
 use binnacle_platform::error::{Error, Result};
 use serde::Deserialize;
 use serde_json::Value;
@@ -14,12 +14,12 @@ const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 #[serde(rename_all = "snake_case")]
 #[schema(as = ReportTable)]
 pub(super) enum Table {
-    /// Due dates of the compasses, the first due first.
+    /// Due dates of the compasses, the earliest first.
     #[default]
     Due,
-    /// The greatest deviation of each compass, the greatest first.
+    /// Largest deviation of each compass, the largest first.
     Deviation,
-    /// The jobs that were completed.
+    /// Completed jobs.
     Jobs,
 }
 
@@ -34,7 +34,7 @@ impl Table {
     }
 }
 
-/// One of a report's tables.
+/// Returns a table of a report as CSV.
 pub(super) fn table(report: &Report, table: Table) -> Result<String> {
     match table {
         Table::Due => {
@@ -52,7 +52,7 @@ pub(super) fn table(report: &Report, table: Table) -> Result<String> {
                 "vessel_id",
                 "compass_id",
             ];
-            written(&columns, report.due.iter().map(due))
+            write_table(&columns, report.due.iter().map(due))
         }
         Table::Deviation => {
             let columns = [
@@ -65,7 +65,7 @@ pub(super) fn table(report: &Report, table: Table) -> Result<String> {
                 "vessel_id",
                 "compass_id",
             ];
-            written(&columns, report.deviation.iter().map(deviation))
+            write_table(&columns, report.deviation.iter().map(deviation))
         }
         Table::Jobs => {
             let columns = [
@@ -84,8 +84,8 @@ pub(super) fn table(report: &Report, table: Table) -> Result<String> {
                 "compass_id",
                 "spared_swing",
             ];
-            let saved = (report.saved.swing_eur, report.saved.swing_h);
-            written(&columns, report.jobs.iter().map(|one| job(one, saved)))
+            let rows = report.jobs.iter().map(|one| job(one, &report.saved));
+            write_table(&columns, rows)
         }
     }
 }
@@ -103,14 +103,14 @@ fn deviation(deviation: &WorstDeviation) -> Result<Value> {
     Ok(serde_json::to_value(deviation)?)
 }
 
-fn job(job: &Job, (swing_eur, swing_h): (f64, f64)) -> Result<Value> {
+fn job(job: &Job, saving: &Saving) -> Result<Value> {
     let mut fields = serde_json::to_value(job)?;
-    fields["swing_eur"] = swing_eur.into();
-    fields["swing_h"] = swing_h.into();
+    fields["swing_eur"] = saving.swing_eur.into();
+    fields["swing_h"] = saving.swing_h.into();
     Ok(fields)
 }
 
-fn written(columns: &[&str], rows: impl Iterator<Item = Result<Value>>) -> Result<String> {
+fn write_table(columns: &[&str], rows: impl Iterator<Item = Result<Value>>) -> Result<String> {
     let internal = |error: csv::Error| Error::Internal(error.into());
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(columns).map_err(internal)?;
@@ -127,7 +127,7 @@ fn written(columns: &[&str], rows: impl Iterator<Item = Result<Value>>) -> Resul
 fn cell(column: &str, value: &Value) -> String {
     match value {
         Value::Null => String::new(),
-        // A name is never a formula to whoever opens the file.
+        // A quote keeps spreadsheets from reading a name as a formula.
         Value::String(text) if text.starts_with(FORMULA) => format!("'{text}"),
         Value::String(text) => text.clone(),
         number if column.ends_with("_deg") => number

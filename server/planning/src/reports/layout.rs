@@ -1,4 +1,4 @@
-//! A report on sheets of A4.
+//! A report laid out on sheets of A4.
 
 use super::report::{DueCompass, FeeFrom, Job, Report};
 use binnacle_drawing::paper::{LEFT, LINE, Paper, RIGHT, SIZE};
@@ -7,14 +7,14 @@ use binnacle_drawing::{About, Face, Sheet, Style, cut, wrap};
 use binnacle_platform::error::Result;
 use binnacle_schedule::needs::Urgency;
 
-/// More compasses than these are in the CSV.
-const MOST_DEVIATIONS: usize = 25;
-/// The least room that a title wants below it.
-const SOME_LINES: usize = 5;
-/// Space between two columns.
+/// Maximum number of deviations on paper; the CSV has all.
+const MAX_DEVIATIONS: usize = 25;
+/// Minimum number of lines below a title on its sheet.
+const MIN_LINES: usize = 5;
+/// Space between two columns, points.
 const GAP: f32 = 6.0;
 
-/// A column: its title and where it begins.
+/// Title and left edge of a column.
 type Column = (&'static str, f32);
 
 const DUE: [Column; 5] = [
@@ -42,7 +42,7 @@ const JOBS: [Column; 6] = [
 ];
 
 impl Report {
-    /// The report on paper.
+    /// Returns the report as PDF.
     pub(super) async fn printed(self) -> Result<Vec<u8>> {
         let about = About {
             title: format!(
@@ -123,12 +123,12 @@ fn head(paper: &mut Paper, report: &Report) {
         &format!(
             "{} compasses, {}",
             report.jobs.len(),
-            saved_in_short(report)
+            saved_in_brief(report)
         ),
     );
 }
 
-fn saved_in_short(report: &Report) -> String {
+fn saved_in_brief(report: &Report) -> String {
     let saved = &report.saved;
     format!(
         "{} euros and {} hours saved against swinging",
@@ -138,10 +138,10 @@ fn saved_in_short(report: &Report) -> String {
 }
 
 fn due(paper: &mut Paper, report: &Report) {
-    paper.room_for(SOME_LINES);
+    paper.room_for(MIN_LINES);
     paper.title("Due within the terms for \"soon\", and overdue");
     let (now, later): (Vec<&DueCompass>, Vec<&DueCompass>) =
-        report.due.iter().partition(|due| due.presses());
+        report.due.iter().partition(|due| due.is_pressing());
     if now.is_empty() {
         paper.lines(LEFT, Style::plain(SIZE), "No compass.");
     } else {
@@ -170,19 +170,19 @@ fn due(paper: &mut Paper, report: &Report) {
         row(paper, &DUE, &cells);
     }
     if !later.is_empty() {
-        let words = format!("{} more are due later.", later.len());
-        paper.lines(LEFT, Style::plain(SIZE).grey(90), &words);
+        let note = format!("{} more are due later.", later.len());
+        paper.lines(LEFT, Style::plain(SIZE).grey(90), &note);
     }
 }
 
 fn deviation(paper: &mut Paper, report: &Report) {
-    paper.room_for(SOME_LINES);
+    paper.room_for(MIN_LINES);
     paper.title("Greatest deviation");
     let known = report
         .deviation
         .iter()
         .filter(|one| one.deviation_deg.is_some());
-    let (all, shown) = (known.clone().count(), known.take(MOST_DEVIATIONS));
+    let (all, shown) = (known.clone().count(), known.take(MAX_DEVIATIONS));
     if all == 0 {
         paper.lines(LEFT, Style::plain(SIZE), "No compass has a model.");
     } else {
@@ -205,14 +205,14 @@ fn deviation(paper: &mut Paper, report: &Report) {
             &cells.map(|cell| (cell, Style::plain(SIZE))),
         );
     }
-    if all > MOST_DEVIATIONS {
-        let words = format!("{} more have less.", all - MOST_DEVIATIONS);
-        paper.lines(LEFT, Style::plain(SIZE).grey(90), &words);
+    if all > MAX_DEVIATIONS {
+        let note = format!("{} more have less.", all - MAX_DEVIATIONS);
+        paper.lines(LEFT, Style::plain(SIZE).grey(90), &note);
     }
 }
 
 fn jobs(paper: &mut Paper, report: &Report) {
-    paper.room_for(SOME_LINES);
+    paper.room_for(MIN_LINES);
     paper.title("Adjusted in this time");
     if report.jobs.is_empty() {
         paper.lines(LEFT, Style::plain(SIZE), "No compass.");
@@ -242,7 +242,7 @@ fn fee(job: &Job) -> String {
 
 fn saved(paper: &mut Paper, report: &Report) {
     let saved = &report.saved;
-    paper.room_for(SOME_LINES);
+    paper.room_for(MIN_LINES);
     paper.title("Saved against swinging");
     let failed = report.jobs.len() - saved.jobs;
     let mut sentences = vec![format!(
@@ -302,7 +302,7 @@ fn row(paper: &mut Paper, columns: &[Column], cells: &[(String, Style)]) {
     }
 }
 
-/// Whole euros, in groups of three.
+/// Formats whole euros with digits in groups of three.
 fn euros(eur: f64) -> String {
     let digits = format!("{:.0}", eur.abs());
     let groups = digits.as_bytes().rchunks(3).rev();

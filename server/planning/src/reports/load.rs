@@ -1,4 +1,4 @@
-//! Loading of a report from the database.
+//! Loading of a report's figures from the database.
 
 use super::report::{DueCompass, FeeFrom, Job, Report, Saving, UnderWay, WorstDeviation};
 use super::settings::{self, Settings};
@@ -18,15 +18,16 @@ use chrono::{Days, NaiveDate, NaiveTime};
 use std::collections::{BTreeMap, BTreeSet};
 use uuid::Uuid;
 
-/// Longest gap between jobs on a vessel in one port that belong to one visit.
-const A_VISIT_S: f64 = 86_400.0;
+/// Maximum gap between two jobs of one visit, seconds.
+const MAX_GAP_S: f64 = 86_400.0;
 
-/// The report of a fleet, with the jobs from one day to another; also those of before that
-/// the server heard of after `late_since`.
-pub(super) async fn gather(
+/// Returns the report of a fleet, with the jobs from one day to another. Earlier jobs that the server
+/// received after `late_since` are included.
+pub(super) async fn load_report(
     app: &App,
     operator: OperatorId,
-    (from, to): (NaiveDate, NaiveDate),
+    from: NaiveDate,
+    to: NaiveDate,
     late_since: Option<Time>,
 ) -> Result<Report> {
     let made_at: Time = app.clock.now().into();
@@ -69,7 +70,7 @@ pub(super) async fn gather(
         vessels: vessels.len(),
         compasses: facts.len(),
         due,
-        // A thousand models on every heading: not for a thread that others wait for.
+        // A thousand models on every heading take time: not on an async thread.
         deviation: tokio::task::spawn_blocking(move || deviations(&facts, &models)).await?,
         saved: saved(&jobs, &settings),
         jobs,
@@ -87,7 +88,7 @@ async fn name(db: &Db, operator: OperatorId) -> Result<String> {
     Ok(name)
 }
 
-/// The order under way of each compass that has one: there is one at most.
+/// Returns the order under way of each compass, of which there is one at most.
 async fn under_way(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassId, UnderWay>> {
     let found = rows!(
         db,
@@ -119,7 +120,7 @@ fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
         .iter()
         .map(|model| (model.compass_id, model))
         .collect();
-    let of = |facts: &Facts| {
+    let worst = |facts: &Facts| {
         let model = models.get(&facts.compass_id);
         let worst = model.and_then(|model| model.worst());
         WorstDeviation {
@@ -133,7 +134,7 @@ fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
             data_until: model.map(|model| model.data_until),
         }
     };
-    let mut all: Vec<WorstDeviation> = facts.iter().map(of).collect();
+    let mut all: Vec<WorstDeviation> = facts.iter().map(worst).collect();
     let size = |one: &WorstDeviation| one.deviation_deg.map_or(-1.0, f64::abs);
     all.sort_by(|one, other| size(other).total_cmp(&size(one)));
     all
@@ -179,8 +180,8 @@ async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
     Ok(done.into_iter().zip(visits).zip(fees).map(job).collect())
 }
 
-/// Returns the visit of each job, in the jobs' order. A visit is a vessel's jobs in one port,
-/// each within a day of the one before.
+/// Returns the number of each job's visit, in the jobs' order. A visit is a vessel's jobs in one
+/// port, each within a day of the previous one.
 fn visits(done: &[Done]) -> Vec<usize> {
     let mut last: BTreeMap<VesselId, usize> = BTreeMap::new();
     let mut visits: Vec<usize> = Vec::with_capacity(done.len());
@@ -188,7 +189,7 @@ fn visits(done: &[Done]) -> Vec<usize> {
         let before = last.insert(job.vessel_id, nth).filter(|before| {
             let before = &done[*before];
             let since_s = job.completed_at.0.seconds_since(before.completed_at.0);
-            before.port == job.port && since_s < A_VISIT_S
+            before.port == job.port && since_s < MAX_GAP_S
         });
         visits.push(before.map_or(nth, |before| visits[before]));
     }
@@ -205,14 +206,14 @@ fn midnight(field: &'static str, day: NaiveDate) -> Result<Time> {
 }
 
 fn saved(jobs: &[Job], settings: &Settings) -> Saving {
-    let spared = || jobs.iter().filter(|job| job.spared_swing);
-    let swings: BTreeSet<usize> = spared().map(|job| job.visit).collect();
+    let without_swing = || jobs.iter().filter(|job| job.spared_swing);
+    let swings: BTreeSet<usize> = without_swing().map(|job| job.visit).collect();
     let swings = swings.len();
-    // A sum of none would be less than nothing by its sign.
+    // The sum of an empty iterator is -0.0.
     let fees = jobs.iter().filter_map(|job| job.fee_eur);
     let fees_eur = fees.fold(0.0, |sum: f64, fee| sum + fee);
     Saving {
-        jobs: spared().count(),
+        jobs: without_swing().count(),
         swings,
         swing_eur: settings.swing_eur,
         swing_h: settings.swing_h,

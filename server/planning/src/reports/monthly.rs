@@ -1,11 +1,10 @@
-//! The report of each month by mail, after its end.
+//! Monthly report by mail, after the end of each month.
 //!
-//! What always holds: the report of a month is made once, kept as it was mailed, and sent
-//! to those who were on the list before the month ended; a server that was away sends the
-//! last month's when it is back.
+//! What always holds: the report of a month is made once, stored as mailed, and sent to those who
+//! were recipients before the month ended. A server that was down sends the last month's on return.
 
 use super::csv::{self, Table};
-use super::gather::gather;
+use super::load::load_report;
 use super::report::Report;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::app::App;
@@ -20,26 +19,26 @@ use std::time::Duration;
 use tracing::error;
 
 /// Interval between checks for the end of a month.
-const LOOK_EVERY: Duration = Duration::from_mins(10);
-/// On the first day of a month not before this hour, UTC: late batches of the night before
-/// have come, and nobody is woken in Europe.
+const POLL_INTERVAL: Duration = Duration::from_mins(10);
+/// Hour of the first day of a month, UTC, from which reports are made: late batches of the night
+/// have arrived.
 const FIRST_HOUR: u32 = 6;
 
 /// Makes monthly reports until the server stops.
 pub async fn watch(app: App) {
     while !app.stopping.is_cancelled() {
-        if let Err(error) = look(&app).await {
+        if let Err(error) = make_due_reports(&app).await {
             error!(?error, "monthly reports cannot be made");
         }
         tokio::select! {
             () = app.stopping.cancelled() => {}
-            () = tokio::time::sleep(LOOK_EVERY) => {}
+            () = tokio::time::sleep(POLL_INTERVAL) => {}
         }
     }
 }
 
-/// Makes and queues the reports of the month that is over, where that is not done; how many.
-pub async fn look(app: &App) -> Result<usize> {
+/// Makes and queues the missing reports of the last month and returns their number.
+pub async fn make_due_reports(app: &App) -> Result<usize> {
     let now: Time = app.clock.now().into();
     let Some((month, ended)) = last_month(now.0.to_chrono()) else {
         return Ok(0);
@@ -62,25 +61,25 @@ pub async fn look(app: &App) -> Result<usize> {
     for (operator,) in due {
         match make(app, operator, month, ended).await {
             Ok(is_new) => made += usize::from(is_new),
-            // It is tried again at the next look, and holds up no other operator's.
+            // The next check tries again; other operators' reports go on.
             Err(error) => error!(?error, %operator, "a monthly report cannot be made"),
         }
     }
     Ok(made)
 }
 
-/// False when another process was faster.
+/// Makes and queues a report; false when another process was faster.
 async fn make(app: &App, operator: OperatorId, month: NaiveDate, ended: Time) -> Result<bool> {
     let last = month_after(month) - Days::new(1);
     let before = last_made(app, operator, month).await?;
-    let report = gather(app, operator, (month, last), before).await?;
-    let letter = mail::monthly_letter(&report.words(), operator, &name(month));
+    let report = load_report(app, operator, month, last, before).await?;
+    let letter = mail::monthly_letter(&report.letter_text(), operator, &name(month));
     let tables = [Table::Due, Table::Deviation, Table::Jobs];
     let [due, deviation, jobs] = tables.map(|table| csv::table(&report, table));
     let (due, deviation, jobs) = (due?, deviation?, jobs?);
     let (made_at, pdf) = (report.made_at, report.printed().await?);
     let mut tx = app.db.begin().await?;
-    let kept = execute!(
+    let inserted = execute!(
         &mut tx,
         "INSERT INTO monthly_reports (operator_id, month, made_at, pdf, due_csv, deviation_csv,
                                       jobs_csv)
@@ -94,7 +93,7 @@ async fn make(app: &App, operator: OperatorId, month: NaiveDate, ended: Time) ->
         deviation,
         jobs
     )?;
-    if kept == 0 {
+    if inserted == 0 {
         return Ok(false);
     }
     let body = serde_json::to_string(&letter)?;
@@ -112,7 +111,7 @@ async fn make(app: &App, operator: OperatorId, month: NaiveDate, ended: Time) ->
 }
 
 /// Returns the time of the last report before a month's. Jobs entered after it belong to the next
-/// report, even when they were done earlier.
+/// report, whenever they were completed.
 async fn last_made(app: &App, operator: OperatorId, month: NaiveDate) -> Result<Option<Time>> {
     let found = row!(
         &app.db,
@@ -127,7 +126,7 @@ async fn last_made(app: &App, operator: OperatorId, month: NaiveDate) -> Result<
     Ok(found.map(|(made_at,)| made_at))
 }
 
-/// Those who were on the list before the month ended, in the order of their ids.
+/// Returns those who were recipients before the month ended.
 async fn recipients(tx: &mut Tx, operator: OperatorId, ended: Time) -> Result<Vec<(RecipientId,)>> {
     Ok(rows!(
         in tx,
@@ -140,8 +139,8 @@ async fn recipients(tx: &mut Tx, operator: OperatorId, ended: Time) -> Result<Ve
     )?)
 }
 
-/// The first day of the last month that is over, and when it ended; none on the first hours
-/// of the next one, when its last samples may be on their way.
+/// Returns the first day of the last complete month, and its end. `None` in the first hours of the
+/// next month, when late samples may be in transit.
 fn last_month(now: DateTime<Utc>) -> Option<(NaiveDate, Time)> {
     let today = now.date_naive();
     if today.day() == 1 && now.hour() < FIRST_HOUR {
@@ -158,15 +157,15 @@ fn month_after(month: NaiveDate) -> NaiveDate {
     next.with_day(1).unwrap_or(next)
 }
 
-/// As people and the database name a month: `2026-11`.
+/// Returns the name of a month, such as `2026-11`.
 fn name(month: NaiveDate) -> String {
     month.format("%Y-%m").to_string()
 }
 
 impl Report {
-    /// Returns the text of the letter, a fact on each line.
-    fn words(&self) -> String {
-        let pressing = self.due.iter().filter(|due| due.presses()).count();
+    /// Returns the text of the letter, one figure a line.
+    fn letter_text(&self) -> String {
+        let pressing = self.due.iter().filter(|due| due.is_pressing()).count();
         let largest = self.deviation.first().and_then(|one| {
             let size = binnacle_drawing::words::east_west(one.deviation_deg?);
             Some(format!("{size} on {}", one.vessel_name))
@@ -196,7 +195,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_month_is_over_on_the_first_of_the_next_from_six_on() {
+    fn a_month_is_over_from_six_on_the_first_of_the_next() {
         let of = |text: &str| {
             let now = Timestamp::parse(text).unwrap().to_chrono();
             last_month(now).map(|(month, ended)| (name(month), ended.0.to_string()))
