@@ -57,7 +57,7 @@ impl Row {
     /// Returns the content of the call.
     ///
     /// # Errors
-    /// Fails when the port is no code, which was checked before it was stored.
+    /// Fails when the stored port is not a UN/LOCODE.
     pub fn content(&self) -> Result<Content> {
         Ok(Content {
             reference: self.reference.clone(),
@@ -80,7 +80,7 @@ impl Row {
         Ok(Alongside::new(port, self.eta, self.etd))
     }
 
-    pub(super) fn shown(self, earlier: &EarlierHeadings) -> Result<PortCall> {
+    pub(super) fn into_call(self, earlier: &EarlierHeadings) -> Result<PortCall> {
         let content = self.content()?;
         Ok(PortCall {
             berth_heading: heading_alongside(&content, self.lay_heading_deg, earlier),
@@ -102,7 +102,7 @@ impl Row {
     }
 }
 
-/// Calls of the fleet in service, or of one vessel, in order of time.
+/// Returns a page of the calls of the fleet in service or of one vessel, in order of time.
 pub(super) async fn list(
     db: &Db,
     operator: OperatorId,
@@ -137,7 +137,7 @@ pub(super) async fn list(
     )?)
 }
 
-/// The calls of the fleet in service that are not over and not withdrawn, by vessel and time.
+/// Returns the current and future calls of the fleet in service, in order of vessel and time.
 pub async fn upcoming_of_fleet(db: &Db, operator: OperatorId, now: Time) -> Result<Vec<Row>> {
     Ok(rows!(
         db,
@@ -166,10 +166,10 @@ pub(super) async fn upcoming_of_vessel(db: &Db, vessel: VesselId, now: Time) -> 
     )?)
 }
 
-/// A call of the vessel's.
+/// Returns a call of the vessel.
 ///
 /// # Errors
-/// [`Error::NotFound`] when it has no such call.
+/// Fails with [`Error::NotFound`] when the vessel has no such call.
 pub(super) async fn must_find(db: &Db, vessel: VesselId, id: CallId) -> Result<Row> {
     row!(
         db,
@@ -184,18 +184,18 @@ pub(super) async fn must_find(db: &Db, vessel: VesselId, id: CallId) -> Result<R
     .ok_or(Error::NotFound("port call"))
 }
 
-/// All that was ever entered of a vessel, to be changed: others who would change it wait.
+/// Locks a vessel's calls and returns them all, withdrawn ones included.
 ///
 /// # Errors
-/// [`Error::NotFound`] when she does not exist or is another operator's.
+/// Fails with [`Error::NotFound`] when the vessel is not in the operator's fleet.
 pub(super) async fn lock(tx: &mut Tx, operator: OperatorId, vessel: VesselId) -> Result<Vec<Row>> {
-    let held = execute!(
+    let locked = execute!(
         &mut *tx,
         "UPDATE vessels SET name = name WHERE id = $2 AND operator_id = $1",
         operator,
         vessel
     )?;
-    if held == 0 {
+    if locked == 0 {
         return Err(Error::NotFound("vessel"));
     }
     Ok(rows!(
@@ -237,18 +237,18 @@ pub(super) async fn insert(
         author.at,
         author.name.as_str()
     )?;
-    keep(tx, vessel, id, 1, call, source, author).await
+    insert_revision(tx, vessel, id, 1, call, source, author).await
 }
 
-/// Writes a call anew; one that was withdrawn counts again.
+/// Stores a new revision of a call; a withdrawn call counts again.
 pub(super) async fn revise(
     tx: &mut Tx,
-    was: &Row,
+    before: &Row,
     call: &Content,
     source: Source,
     author: &Author,
 ) -> Result<()> {
-    let revision = was.revision + 1;
+    let revision = before.revision + 1;
     execute!(
         &mut *tx,
         "UPDATE port_calls
@@ -257,8 +257,8 @@ pub(super) async fn revise(
              revised_at = $12, revised_by = $13, withdrawn_at = NULL, withdrawn_by = NULL,
              withdrawal_reason = NULL
          WHERE vessel_id = $1 AND id = $2",
-        was.vessel_id,
-        was.id,
+        before.vessel_id,
+        before.id,
         call.port.to_string(),
         call.berth.as_deref(),
         call.eta,
@@ -271,10 +271,19 @@ pub(super) async fn revise(
         author.at,
         author.name.as_str()
     )?;
-    keep(tx, was.vessel_id, was.id, revision, call, source, author).await
+    insert_revision(
+        tx,
+        before.vessel_id,
+        before.id,
+        revision,
+        call,
+        source,
+        author,
+    )
+    .await
 }
 
-async fn keep(
+async fn insert_revision(
     tx: &mut Tx,
     vessel: VesselId,
     id: CallId,
@@ -320,7 +329,7 @@ pub(super) async fn withdraw(
     Ok(())
 }
 
-/// As a call was written each time.
+/// Returns the revisions of a call.
 pub(super) async fn revisions(db: &Db, vessel: VesselId, id: CallId) -> Result<Vec<Revision>> {
     let found = rows!(
         db,
@@ -343,7 +352,7 @@ pub(super) async fn revisions(db: &Db, vessel: VesselId, id: CallId) -> Result<V
     found.into_iter().map(read).collect()
 }
 
-/// Notes how she lies in the call that she is in, as it was read alongside.
+/// Stores the heading alongside that was read during the vessel's current call.
 pub(super) async fn set_lay_heading(
     tx: &mut Tx,
     vessel: VesselId,

@@ -91,7 +91,7 @@ pub(super) async fn load_input(
     let mut calls = Vec::new();
     for row in upcoming {
         let content = row.content()?;
-        let mut call = content.of(&row.id.to_string(), &row.vessel_id.to_string());
+        let mut call = content.to_schedule_call(&row.id.to_string(), &row.vessel_id.to_string());
         let day = row.eta.0.to_chrono().date_naive();
         call.name = Some(format!("{} {day}", content.port));
         let learnt = heading_alongside(&content, row.lay_heading_deg, &earlier);
