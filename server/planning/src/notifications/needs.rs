@@ -32,7 +32,7 @@ pub async fn notify_of_needs(app: &App) -> Result<usize> {
     for operator in operators::all(&app.db).await? {
         match notify_operator(app, operator).await {
             Ok(more) => notified += more,
-            Err(error) => error!(?error, %operator, "a fleet's needs cannot be looked for"),
+            Err(error) => error!(?error, %operator, "cannot check a fleet's needs"),
         }
     }
     Ok(notified)
@@ -112,9 +112,9 @@ fn kind(need: &Need, known: Option<&RecordedNeed>) -> Result<Option<Kind>> {
 
 fn need_notice(need: &Need, kind: Kind) -> Notice {
     let status = match (kind, need.urgency) {
-        (Kind::NeedRaised, _) => "to be adjusted sooner",
-        (_, Urgency::Overdue) => "overdue for adjusting",
-        _ => "to be adjusted soon",
+        (Kind::NeedRaised, _) => "due for adjustment sooner",
+        (_, Urgency::Overdue) => "overdue for adjustment",
+        _ => "due for adjustment soon",
     };
     let adjusted = need.adjusted_on.map(|day| day.to_string());
     let adjusted = adjusted.unwrap_or_else(|| "not on record".to_owned());

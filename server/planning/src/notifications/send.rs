@@ -27,11 +27,11 @@ pub async fn watch(app: App) {
         if polls.is_multiple_of(POLLS_PER_MAINTENANCE)
             && let Err(error) = maintain(&app).await
         {
-            error!(?error, "needs cannot be looked for");
+            error!(?error, "cannot check needs");
         }
         polls = polls.wrapping_add(1);
         if let Err(error) = send_due(&app).await {
-            error!(?error, "letters cannot be made");
+            error!(?error, "cannot queue mail");
         }
         tokio::select! {
             () = app.stopping.cancelled() => {}

@@ -117,7 +117,7 @@ impl TryFrom<String> for TimeOfDay {
     fn try_from(text: String) -> std::result::Result<TimeOfDay, String> {
         let read = NaiveTime::parse_from_str(&text, "%H:%M").ok();
         let whole = read.filter(|_| text.len() == 5).map(TimeOfDay);
-        whole.ok_or_else(|| format!("{text:?} is no time of day like 07:30"))
+        whole.ok_or_else(|| format!("{text:?} is not a time of day such as 07:30"))
     }
 }
 
@@ -140,14 +140,14 @@ impl Settings {
             })
         };
         if !self.ways.keys().all(|kind| kind.concerns(role)) {
-            return invalid("ways", "has a kind that you are never told of");
+            return invalid("ways", "has a kind that does not concern you");
         }
         if let Some(quiet) = self.quiet_hours {
             if quiet.from == quiet.to {
-                return invalid("quiet_hours", "begin and end at the same time");
+                return invalid("quiet_hours", "start and end at the same time");
             }
             if quiet.contains(self.digest.at()) {
-                return invalid("digest", "comes in the quiet hours");
+                return invalid("digest", "is during the quiet hours");
             }
         }
         Ok(self)

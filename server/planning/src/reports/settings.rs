@@ -77,7 +77,7 @@ async fn find_report_settings(State(app): State<App>, reader: Reader) -> Result<
 #[utoipa::path(put, path = "/reports/settings", tag = "fleet", request_body = Settings,
     responses((status = 200, body = Settings), (status = 401, body = Problem),
               (status = 403, body = Problem),
-              (status = 409, description = "The server was not told how to send mail", body = Problem),
+              (status = 409, description = "This server is not set up to send mail", body = Problem),
               (status = 422, body = Problem)))]
 async fn set_report_settings(
     State(app): State<App>,

@@ -22,7 +22,7 @@ async fn each_step_towards_the_due_date_is_told_once(shore: Shore) {
     due_vessel(&ada, "Nao").await;
     assert_eq!(notify_of_needs(&shore.app).await.unwrap(), 1);
     assert_eq!(notify_of_needs(&shore.app).await.unwrap(), 0);
-    let soon = "Nao: Standard compass to be adjusted soon, by 2026-12-20";
+    let soon = "Nao: Standard compass due for adjustment soon, by 2026-12-20";
     assert_eq!(told(&ada).await, [soon]);
     assert_eq!(told(&eve).await, [""; 0]);
     assert!(shore.events().await.contains(&"need".to_owned()));
@@ -32,7 +32,7 @@ async fn each_step_towards_the_due_date_is_told_once(shore: Shore) {
     }
     let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
     let all = told(&ada).await;
-    let overdue = "Nao: Standard compass overdue for adjusting, by 2026-12-20";
+    let overdue = "Nao: Standard compass overdue for adjustment, by 2026-12-20";
     assert_eq!(all, [soon, soon, overdue]);
     shore.finish().await;
 }
@@ -55,7 +55,7 @@ async fn a_due_date_that_is_brought_forward_is_told(shore: Shore) {
     let listed = ada.get("/notifications").await.good();
     let raised = &listed["items"][0];
     assert_eq!(raised["kind"], "need_raised");
-    let subject = "Nao: Standard compass to be adjusted sooner, by 2026-12-10";
+    let subject = "Nao: Standard compass due for adjustment sooner, by 2026-12-10";
     assert_eq!(raised["subject"], subject);
     assert!(
         raised["text"].as_str().unwrap().contains("dry-docking"),
@@ -89,7 +89,7 @@ async fn a_fleet_that_cannot_be_read_holds_up_no_other_fleets_needs(shore: Shore
     let eve = shore.admin("eve").await;
     due_vessel(&eve, "Pinta").await;
     assert_eq!(notify_of_needs(&shore.app).await.unwrap(), 1);
-    let soon = "Pinta: Standard compass to be adjusted soon, by 2026-12-20";
+    let soon = "Pinta: Standard compass due for adjustment soon, by 2026-12-20";
     assert_eq!(told(&eve).await, [soon]);
     shore.finish().await;
 }
