@@ -171,7 +171,7 @@ pub(super) fn assess_compass(
 
 fn for_rules(predicted: &PredictedDeviation) -> Predicted {
     let place = match predicted.place.as_str() {
-        HERE => "her position",
+        HERE => "the vessel's position",
         PANAMA_CANAL => "the Panama Canal",
         port => port,
     };

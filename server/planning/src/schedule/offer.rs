@@ -82,7 +82,7 @@ struct OfferedOrder {
     responses((status = 201, body = Offered), (status = 401, body = Problem),
               (status = 403, body = Problem),
               (status = 404, description = "No job of the plan is for that compass", body = Problem),
-              (status = 409, description = "There is a newer plan, the job is offered already, an \
+              (status = 409, description = "There is a newer plan, the job has already been offered, an \
                              order under way differs, or the firm has no team left \
                              that day", body = Problem),
               (status = 422, body = Problem)))]
@@ -167,11 +167,11 @@ fn job_of<'a>(plan: Option<&'a Plan>, new: &NewScheduleOffer) -> Result<&'a Job>
     let refused = |why: String| Err(Error::WrongState(why));
     let plan = plan.ok_or(Error::NotFound("plan"))?;
     if plan.version != new.version {
-        return refused(format!("the plan is of version {} now", plan.version));
+        return refused(format!("the current plan has version {}", plan.version));
     }
     let job = plan.job_of(new.compass_id).ok_or(Error::NotFound("job"))?;
     if job.state != JobState::Proposed {
-        return refused("the job is offered already".to_owned());
+        return refused("the job has already been offered".to_owned());
     }
     Ok(job)
 }

@@ -139,7 +139,7 @@ async fn pin(
     if let Some(problem) = terms.problems().first() {
         return Err(Error::Invalid {
             field: "firm_id",
-            detail: format!("the schedule leaves {name} out: {problem}"),
+            detail: format!("the schedule cannot plan with {name}: {problem}"),
         });
     }
     let note = optional_text("note", new.note.as_deref())?;

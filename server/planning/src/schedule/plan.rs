@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// Reason for leaving out a firm without terms, which may hold orders all the same.
-pub(super) const NO_TERMS: &str = "nobody has said on what terms it works";
+pub(super) const NO_TERMS: &str = "its terms are not set";
 
 /// Plan of a fleet: jobs, their quality, and the needs that could not be met.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]

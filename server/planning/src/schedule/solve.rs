@@ -82,12 +82,12 @@ async fn solve_locked(
         let tx = begin(app, request).await?;
         if store_plan(app, tx, operator, &plan, &loaded).await? {
             info!(%operator, version = plan.version, took_s, gap_percent = plan.gap_percent,
-                  "a schedule was made");
+                  "schedule made");
             return Ok(plan);
         }
     }
     Err(Error::WrongState(
-        "others make the schedule at the same time; try again".to_owned(),
+        "the schedule is being made by others; try again".to_owned(),
     ))
 }
 
@@ -163,7 +163,7 @@ async fn run_solver(slots: &PlanSlots, text: String, lock: &Arc<PlanLock>) -> Re
     // The solver of an abandoned request keeps the lock until it ends.
     let lock = Arc::clone(lock);
     let done = tokio::task::spawn_blocking(move || {
-        let checked = read(&text).context("what was loaded does not hang together")?;
+        let checked = read(&text).context("the loaded input is invalid")?;
         let schedule = plan(&checked);
         drop((slot, lock));
         anyhow::Ok(schedule)
@@ -414,7 +414,7 @@ fn vessel(compasses: &[Compass], names: &Names) -> (VesselId, String) {
 }
 
 fn id(text: &str) -> Result<Uuid> {
-    Ok(Uuid::from_str(text).context("an id of the schedule's")?)
+    Ok(Uuid::from_str(text).context("an id in the schedule")?)
 }
 
 fn rounded(value: f64) -> f64 {

@@ -33,7 +33,7 @@ pub async fn run(app: App, slots: PlanSlots) {
             Ok(None) => {}
             Err(error) => error!(
                 error = format!("{error:#}"),
-                "schedules cannot be looked for"
+                "cannot check for schedules to make"
             ),
         }
         tokio::select! {
@@ -69,7 +69,7 @@ pub async fn step(app: &App, slots: &PlanSlots) -> anyhow::Result<Option<Operato
         retry_at: Time(app.clock.now().plus_seconds(retry_s)),
     });
     if let Some(store::Failure { error, .. }) = &failure {
-        warn!(%operator, error, "a schedule was not made and will be tried again");
+        warn!(%operator, error, "schedule failed, will try again");
     }
     cause_of(store::release(&app.db, operator, failure.as_ref()).await)?;
     Ok(Some(operator))

@@ -258,8 +258,8 @@ async fn deviation_over_the_vessels_own_limit_brings_a_need_forward(shore: Shore
     assert_eq!(
         over["reason"],
         format!(
-            "{here:.1}° {letter} of deviation at her position on 2026-11-21, over the vessel's own \
-             limit of 5°"
+            "{here:.1}° {letter} of deviation at the vessel's position on 2026-11-21, over the \
+             vessel's own limit of 5°"
         )
     );
     let alerts = |figure: &str, deg: f64| {

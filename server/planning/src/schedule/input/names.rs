@@ -67,14 +67,14 @@ impl Names {
             let (Some(state), Some(firm_id)) = (order.job_state(), order.firm_id) else {
                 beside.push((
                     order,
-                    "its order is being done, or offered to nobody".to_owned(),
+                    "its order is in progress, or not offered to any firm".to_owned(),
                 ));
                 continue;
             };
             let id = firm_id.to_string();
             if planned_with.iter().all(|firm| firm.id != id) {
                 let firm = self.firm(firm_id);
-                beside.push((order, format!("{firm}, which has its order, is left out")));
+                beside.push((order, format!("{firm} has its order and cannot be planned with")));
                 continue;
             }
             let Some(call_id) = order.call(upcoming) else {

@@ -51,7 +51,7 @@ fn problem_of_terms(firm: FirmId, left_out: &[LeftOut]) -> Option<String> {
     let mut with_terms = left_out.iter().filter(|one| one.why != NO_TERMS);
     let one = with_terms.find(|one| one.firm_id == firm)?;
     Some(format!(
-        "by its terms the firm is of no use now ({})",
+        "the firm's terms now allow no job ({})",
         one.why
     ))
 }
@@ -159,9 +159,9 @@ impl Order {
         let port = meant.unwrap_or_else(|| there.port.clone());
         match there.fit(&port, self.planned_at) {
             CallFit::Fits => None,
-            CallFit::NoCall => Some(format!("its port call is at {} now", there.port)),
+            CallFit::NoCall => Some(format!("its port call is now at {}", there.port)),
             CallFit::OtherHour | CallFit::NeedsNewDay => Some(format!(
-                "the ship is now alongside from {} to {}",
+                "the vessel is now alongside from {} to {}",
                 there.eta.to_the_minute(),
                 there.etd.to_the_minute()
             )),
