@@ -254,7 +254,7 @@ async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(shore: 
     assert_eq!(instant(is.get_start()), "2026-12-08T12:00:00+00:00");
     let said = is.get_description().unwrap();
     assert!(
-        said.contains("ETA: 2026-12-08 12:00 UTC, within 12 h"),
+        said.contains("ETA: 2026-12-08 12:00 UTC, ±12 h"),
         "{said}"
     );
     assert_eq!(instant(due_now.get_start()), "2028-11-20");

@@ -115,14 +115,14 @@ fn call_event(call: &Call) -> anyhow::Result<Event> {
 fn expected_time(label: &str, at: Time, uncertainty_h: f64) -> String {
     let at = at.to_the_minute();
     if uncertainty_h > 0.0 {
-        format!("{label}: {at}, within {uncertainty_h} h nineteen times in twenty")
+        format!("{label}: {at}, ±{uncertainty_h} h (95 %)")
     } else {
         format!("{label}: {at}")
     }
 }
 
 fn due_event(due: &Due, public_url: Option<&str>) -> anyhow::Result<Event> {
-    let on: NaiveDate = due.day.parse().context("a stored due date")?;
+    let on: NaiveDate = due.day.parse().context("stored due date")?;
     let at = utc(due.changed_at)?;
     let mut event = Event::new();
     event
@@ -220,8 +220,8 @@ fn warning(order: &Appointment) -> Option<&'static str> {
             Some("The port call has moved since this time was agreed: a new day is needed.")
         }
         CallFit::NoCall => Some(
-            "The port call that this time was agreed for is withdrawn, or is at another port: \
-             another time is needed.",
+            "The port call of this appointment is withdrawn or at another port: another time is \
+             needed.",
         ),
     }
 }
@@ -257,5 +257,5 @@ fn state_name(state: State) -> &'static str {
 }
 
 fn utc(time: Time) -> anyhow::Result<DateTime<Utc>> {
-    DateTime::from_timestamp_micros(time.0.micros()).context("a time beyond the calendar's")
+    DateTime::from_timestamp_micros(time.0.micros()).context("time outside the calendar's range")
 }
