@@ -35,7 +35,7 @@ impl EarlierHeadings {
         )?;
         let read = |(port, berth, heading_deg): (String, Option<String>, f64)| {
             Ok(Observed {
-                port: PortCode::parse(&port).context("a stored port")?,
+                port: PortCode::parse(&port).context("stored port")?,
                 berth,
                 heading_deg,
             })

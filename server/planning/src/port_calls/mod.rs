@@ -269,11 +269,11 @@ fn check_reference(known: &[Row], call: &Content) -> Result<()> {
     match known.iter().find(|row| row.reference == call.reference) {
         None => Ok(()),
         Some(there) if there.withdrawn_at.is_some() => Err(Error::WrongState(format!(
-            "there was a call of reference {:?}, which is withdrawn: give this one another",
+            "reference {:?} belongs to a withdrawn call: use another reference",
             call.reference
         ))),
         Some(there) => Err(Error::WrongState(format!(
-            "there is a call of reference {:?} already, {}: amend that",
+            "reference {:?} belongs to call {}: amend that call",
             call.reference, there.id
         ))),
     }

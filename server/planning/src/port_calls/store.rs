@@ -61,7 +61,7 @@ impl Row {
     pub fn content(&self) -> Result<Content> {
         Ok(Content {
             reference: self.reference.clone(),
-            port: PortCode::parse(&self.port).context("a stored port")?,
+            port: PortCode::parse(&self.port).context("stored port")?,
             berth: self.berth.clone(),
             eta: self.eta,
             eta_uncertainty_h: self.eta_uncertainty_h,
@@ -76,7 +76,7 @@ impl Row {
     /// # Errors
     /// As [`Row::content`].
     pub fn alongside(&self) -> Result<Alongside> {
-        let port = PortCode::parse(&self.port).context("a stored port")?;
+        let port = PortCode::parse(&self.port).context("stored port")?;
         Ok(Alongside::new(port, self.eta, self.etd))
     }
 
@@ -90,7 +90,7 @@ impl Row {
             vessel_id: self.vessel_id,
             vessel_name: self.vessel_name,
             source: self.source,
-            revision: u32::try_from(self.revision).context("a revision")?,
+            revision: u32::try_from(self.revision).context("revision number")?,
             created_at: self.created_at,
             created_by: self.created_by,
             revised_at: self.revised_at,
@@ -342,7 +342,7 @@ pub(super) async fn revisions(db: &Db, vessel: VesselId, id: CallId) -> Result<V
     )?;
     let read = |(number, at, source, author_name, call): (i64, Time, Source, String, String)| {
         Ok(Revision {
-            number: u32::try_from(number).context("a revision")?,
+            number: u32::try_from(number).context("revision number")?,
             at,
             source,
             author_name,

@@ -94,7 +94,7 @@ impl VesselCalls {
                 return Some("cancelled in the file");
             }
             let is_left_out = replaces && row.source == source && row.etd > now;
-            is_left_out.then_some("not in the file any more")
+            is_left_out.then_some("no longer in the file")
         };
         let by_reference: BTreeMap<&str, &Row> = known
             .iter()
@@ -165,7 +165,7 @@ pub(super) fn group_by_vessel(
             Some([vessel]) => *vessel,
             Some(_) => {
                 let detail =
-                    format!("{name:?} are several vessels; write the IMO number or the id");
+                    format!("several vessels match {name:?}; use the IMO number or the id");
                 errors.push(FileError::new(line, "vessel", detail));
                 continue;
             }
@@ -177,7 +177,7 @@ pub(super) fn group_by_vessel(
         };
         // One vessel may be named in two ways.
         if let Some(first) = seen.insert((vessel, located.call.id.clone()), line) {
-            let detail = format!("{:?} stands on line {first} already", located.call.id);
+            let detail = format!("{:?} is already on line {first}", located.call.id);
             errors.push(FileError::new(line, "id", detail));
             continue;
         }
