@@ -21,7 +21,7 @@ use binnacle_schedule::rules::{EventKind, Limit};
 use binnacle_schedule::time::Instant;
 use chrono::NaiveDate;
 
-/// Step of the headings at which the largest deviation is searched, degrees.
+/// Step of the headings at which the greatest deviation is searched, degrees.
 const STEP_DEG: f64 = 10.0;
 
 /// Facts about a compass that decide its need.
@@ -41,7 +41,7 @@ pub struct Facts {
     pub licence: Option<String>,
     /// The compass as rules see it.
     pub compass: Compass,
-    /// Largest deviation at each place and day to come.
+    /// Greatest deviation at each place and day to come.
     pub predicted: Vec<PredictedDeviation>,
     /// History of the deviation at the vessel's position, where it differs from the stored one.
     pub(super) changed_history: Option<DeviationHistory>,
@@ -215,7 +215,7 @@ fn largest_lasting_change(findings: &Findings, adjusted: Option<Time>) -> Option
     sized.max_by(|one, other| one.size_deg.abs().total_cmp(&other.size_deg.abs()))
 }
 
-/// Predicts the largest deviation at the vessel's position, port calls and transits. Places where
+/// Predicts the greatest deviation at the vessel's position, port calls and transits. Places where
 /// the model's band is too wide are left out; without a model there is none.
 fn predict_deviations(
     stored: &Stored<'_>,

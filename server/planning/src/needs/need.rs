@@ -38,7 +38,7 @@ pub struct Need {
     /// Day of the last adjustment on record.
     #[schema(required)]
     pub adjusted_on: Option<NaiveDate>,
-    /// Largest deviation predicted for each place and day to come, where the model's band is
+    /// Greatest deviation predicted for each place and day to come, where the model's band is
     /// narrow enough.
     pub predicted: Vec<PredictedDeviation>,
     /// Particulars of the vessel that are unknown; a rule that depends on one binds the vessel.

@@ -6,7 +6,7 @@ use chrono::NaiveDate;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// Largest deviation predicted at a place for a day.
+/// Greatest deviation predicted at a place for a day.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[schema(as = DeviationAhead)]
 pub struct PredictedDeviation {

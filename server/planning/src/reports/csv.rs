@@ -17,7 +17,7 @@ pub(super) enum Table {
     /// Due dates of the compasses, the earliest first.
     #[default]
     Due,
-    /// Largest deviation of each compass, the largest first.
+    /// Greatest deviation of each compass, the largest first.
     Deviation,
     /// Completed jobs.
     Jobs,

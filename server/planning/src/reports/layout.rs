@@ -64,7 +64,7 @@ fn sheets(report: &Report) -> Vec<Sheet> {
     jobs(&mut paper, report);
     saved(&mut paper, report);
     let made = format!("Made by Binnacle on {}.", report.made_at.to_the_minute());
-    let predicted = "Deviations are predicted by each compass's model, and are no certificate.";
+    let predicted = "Deviations are predicted by each compass's model and are not a certificate.";
     paper.finish(&[format!("{made} {predicted}")])
 }
 
@@ -91,7 +91,7 @@ fn head(paper: &mut Paper, report: &Report) {
         ),
     );
     paper.fact(
-        "To be adjusted",
+        "Due for adjustment",
         &format!(
             "{} overdue, {} urgent, {} soon",
             count(Urgency::Overdue),
@@ -112,7 +112,7 @@ fn head(paper: &mut Paper, report: &Report) {
     });
     paper.fact(
         "Greatest deviation",
-        &largest.unwrap_or_else(|| "not known".to_owned()),
+        &largest.unwrap_or_else(|| "unknown".to_owned()),
     );
     let unknown = unknown.count();
     if unknown > 0 {
@@ -139,7 +139,7 @@ fn saved_in_brief(report: &Report) -> String {
 
 fn due(paper: &mut Paper, report: &Report) {
     paper.room_for(MIN_LINES);
-    paper.title("Due within the terms for \"soon\", and overdue");
+    paper.title("Overdue or due soon");
     let (now, later): (Vec<&DueCompass>, Vec<&DueCompass>) =
         report.due.iter().partition(|due| due.is_pressing());
     if now.is_empty() {
@@ -170,7 +170,7 @@ fn due(paper: &mut Paper, report: &Report) {
         row(paper, &DUE, &cells);
     }
     if !later.is_empty() {
-        let note = format!("{} more are due later.", later.len());
+        let note = format!("{} more compasses are due later.", later.len());
         paper.lines(LEFT, Style::plain(SIZE).grey(90), &note);
     }
 }
@@ -195,7 +195,7 @@ fn deviation(paper: &mut Paper, report: &Report) {
             one.compass_name.clone(),
             one.compass_deg.map_or_else(String::new, heading),
             one.deviation_deg.map_or_else(String::new, east_west),
-            band.map_or_else(|| "not known".to_owned(), |band| format!("±{band:.1}°")),
+            band.map_or_else(|| "unknown".to_owned(), |band| format!("±{band:.1}°")),
             one.data_until
                 .map_or_else(String::new, binnacle_platform::time::Time::day),
         ];
@@ -206,14 +206,17 @@ fn deviation(paper: &mut Paper, report: &Report) {
         );
     }
     if all > MAX_DEVIATIONS {
-        let note = format!("{} more have less.", all - MAX_DEVIATIONS);
+        let note = format!(
+            "{} more compasses have smaller deviations.",
+            all - MAX_DEVIATIONS
+        );
         paper.lines(LEFT, Style::plain(SIZE).grey(90), &note);
     }
 }
 
 fn jobs(paper: &mut Paper, report: &Report) {
     paper.room_for(MIN_LINES);
-    paper.title("Adjusted in this time");
+    paper.title("Adjusted in this period");
     if report.jobs.is_empty() {
         paper.lines(LEFT, Style::plain(SIZE), "No compass.");
         return;
@@ -236,7 +239,7 @@ fn fee(job: &Job) -> String {
     match (job.fee_eur, job.fee_from) {
         (Some(eur), Some(FeeFrom::Terms)) => format!("{} (usual)", euros(eur)),
         (Some(eur), _) => euros(eur),
-        (None, _) => "not known".to_owned(),
+        (None, _) => "unknown".to_owned(),
     }
 }
 
@@ -246,9 +249,9 @@ fn saved(paper: &mut Paper, report: &Report) {
     paper.title("Saved against swinging");
     let failed = report.jobs.len() - saved.jobs;
     let mut sentences = vec![format!(
-        "Adjustments at the berth: {}. Swings that they spared, one for all compasses of a ship \
-         at a visit: {}, of {} euros and {} hours each: {} euros, less {} euros of all fees \
-         leaves {} euros, and {} hours of ships' time.",
+        "Adjustments at the berth: {}. Swings avoided, one for all compasses of a vessel at a \
+         visit: {}, at {} euros and {} hours each: {} euros. Less {} euros of fees: {} euros \
+         saved, and {} hours of vessels' time.",
         saved.jobs,
         saved.swings,
         euros(saved.swing_eur),
@@ -260,14 +263,11 @@ fn saved(paper: &mut Paper, report: &Report) {
     )];
     if failed > 0 {
         sentences.push(format!(
-            "Not counted, but for their fees, as the sea does not confirm them: {failed}."
+            "Not confirmed at sea, counted with their fees only: {failed}."
         ));
     }
     if saved.without_fee > 0 {
-        sentences.push(format!(
-            "Jobs whose fees are not known: {}.",
-            saved.without_fee
-        ));
+        sentences.push(format!("Jobs with unknown fees: {}.", saved.without_fee));
     }
     paper.lines(LEFT, Style::plain(SIZE), &sentences.join(" "));
 }

@@ -66,7 +66,7 @@ struct TableChoice {
 
 /// Report on the fleet
 ///
-/// Due dates and largest deviations are as of now. Jobs, and their savings against swinging, are
+/// Due dates and greatest deviations are as of now. Jobs, and their savings against swinging, are
 /// those of the period.
 #[utoipa::path(get, path = "/reports/fleet", tag = "fleet", params(Range),
     responses((status = 200, body = Report), (status = 401, body = Problem),
@@ -97,7 +97,7 @@ async fn report_csv(
 
 /// Print the fleet's report
 ///
-/// Sheets of A4 with due dates, largest deviations, jobs and savings.
+/// Sheets of A4 with due dates, greatest deviations, jobs and savings.
 #[utoipa::path(get, path = "/reports/fleet.pdf", tag = "fleet", params(Range),
     responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
               (status = 401, body = Problem), (status = 422, body = Problem)))]

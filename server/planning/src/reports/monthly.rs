@@ -28,7 +28,7 @@ const FIRST_HOUR: u32 = 6;
 pub async fn watch(app: App) {
     while !app.stopping.is_cancelled() {
         if let Err(error) = make_due_reports(&app).await {
-            error!(?error, "monthly reports cannot be made");
+            error!(?error, "cannot make monthly reports");
         }
         tokio::select! {
             () = app.stopping.cancelled() => {}
@@ -62,7 +62,7 @@ pub async fn make_due_reports(app: &App) -> Result<usize> {
         match make(app, operator, month, ended).await {
             Ok(is_new) => made += usize::from(is_new),
             // The next check tries again; other operators' reports go on.
-            Err(error) => error!(?error, %operator, "a monthly report cannot be made"),
+            Err(error) => error!(?error, %operator, "cannot make a monthly report"),
         }
     }
     Ok(made)
@@ -175,10 +175,10 @@ impl Report {
                 "Fleet:              {} vessels, {} compasses",
                 self.vessels, self.compasses
             ),
-            format!("To be adjusted:     {pressing} soon, or overdue"),
+            format!("Due for adjustment: {pressing} soon or overdue"),
             format!(
                 "Greatest deviation: {}",
-                largest.as_deref().unwrap_or("not known")
+                largest.as_deref().unwrap_or("unknown")
             ),
             format!("Adjusted:           {}", self.jobs.len()),
             format!(

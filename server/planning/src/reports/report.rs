@@ -28,7 +28,7 @@ pub(super) struct Report {
     pub(super) compasses: usize,
     /// Every compass with a due date, the earliest first.
     pub(super) due: Vec<DueCompass>,
-    /// Largest deviation of each compass, the largest first and unknown ones last.
+    /// Greatest deviation of each compass, the largest first and unknown ones last.
     pub(super) deviation: Vec<WorstDeviation>,
     /// Adjustments completed in the period, in order.
     pub(super) jobs: Vec<Job>,
@@ -87,7 +87,7 @@ pub(super) struct UnderWay {
     pub(super) firm: Option<String>,
 }
 
-/// Largest deviation of a compass, at the place of its model.
+/// Greatest deviation of a compass, at the place of its model.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = ReportDeviation)]
 pub(super) struct WorstDeviation {
@@ -99,7 +99,7 @@ pub(super) struct WorstDeviation {
     pub(super) compass_id: CompassId,
     /// Name of the compass.
     pub(super) compass_name: String,
-    /// Compass heading of the largest deviation; `null` without a model.
+    /// Compass heading of the greatest deviation; `null` without a model.
     #[schema(required)]
     pub(super) compass_deg: Option<f64>,
     /// Deviation there, degrees, east positive.

@@ -74,7 +74,10 @@ impl Names {
             let id = firm_id.to_string();
             if planned_with.iter().all(|firm| firm.id != id) {
                 let firm = self.firm(firm_id);
-                beside.push((order, format!("{firm} has its order and cannot be planned with")));
+                beside.push((
+                    order,
+                    format!("{firm} has its order and cannot be planned with"),
+                ));
                 continue;
             }
             let Some(call_id) = order.call(upcoming) else {

@@ -50,10 +50,7 @@ pub(crate) struct OrderBesidePlan {
 fn problem_of_terms(firm: FirmId, left_out: &[LeftOut]) -> Option<String> {
     let mut with_terms = left_out.iter().filter(|one| one.why != NO_TERMS);
     let one = with_terms.find(|one| one.firm_id == firm)?;
-    Some(format!(
-        "the firm's terms now allow no job ({})",
-        one.why
-    ))
+    Some(format!("the firm's terms now allow no job ({})", one.why))
 }
 
 /// Returns a fleet's orders under way, each once.
