@@ -4,7 +4,7 @@
 //! call's revisions or the versions of the due date. Times are UTC and due dates are days. Equal
 //! records give equal bytes.
 
-use super::store::{Appointment, Call, Due};
+use super::store::{CalendarCall, CalendarDueDate, CalendarOrder};
 use anyhow::Context;
 use binnacle_orders::dispatch::CallFit;
 use binnacle_orders::work_orders::State;
@@ -16,7 +16,7 @@ use icalendar::{Calendar, Component, Event, EventLike, EventStatus, Property};
 use serde::Deserialize;
 
 /// Returns the calendar of some events.
-pub(super) fn write(name: &str, events: impl Iterator<Item = Event>) -> String {
+pub(super) fn render_calendar(name: &str, events: impl Iterator<Item = Event>) -> String {
     let mut calendar = Calendar {
         properties: Vec::new(),
         components: Vec::new(),
@@ -41,34 +41,36 @@ pub(super) fn write(name: &str, events: impl Iterator<Item = Event>) -> String {
 ///
 /// # Errors
 /// Fails when a time is outside the range of calendars, as do the next two.
-pub(super) fn orders(
-    orders: &[Appointment],
+pub(super) fn render_orders(
+    orders: &[CalendarOrder],
     public_url: Option<&str>,
 ) -> anyhow::Result<impl Iterator<Item = Event>> {
     let all: anyhow::Result<Vec<Event>> = orders
         .iter()
-        .map(|one| order_event(one, public_url))
+        .map(|one| render_order(one, public_url))
         .collect();
     Ok(all?.into_iter())
 }
 
 /// Returns port calls as events.
-pub(super) fn calls(calls: &[Call]) -> anyhow::Result<impl Iterator<Item = Event>> {
-    let all: anyhow::Result<Vec<Event>> = calls.iter().map(call_event).collect();
+pub(super) fn render_calls(calls: &[CalendarCall]) -> anyhow::Result<impl Iterator<Item = Event>> {
+    let all: anyhow::Result<Vec<Event>> = calls.iter().map(render_call).collect();
     Ok(all?.into_iter())
 }
 
 /// Returns due dates as events of a day.
-pub(super) fn due_dates(
-    due: &[Due],
+pub(super) fn render_due_dates(
+    due: &[CalendarDueDate],
     public_url: Option<&str>,
 ) -> anyhow::Result<impl Iterator<Item = Event>> {
-    let all: anyhow::Result<Vec<Event>> =
-        due.iter().map(|one| due_event(one, public_url)).collect();
+    let all: anyhow::Result<Vec<Event>> = due
+        .iter()
+        .map(|one| render_due_date(one, public_url))
+        .collect();
     Ok(all?.into_iter())
 }
 
-fn call_event(call: &Call) -> anyhow::Result<Event> {
+fn render_call(call: &CalendarCall) -> anyhow::Result<Event> {
     let port = PortCode::parse(&call.port).ok().and_then(ports::find);
     let port = port.map_or_else(
         || call.port.clone(),
@@ -78,15 +80,16 @@ fn call_event(call: &Call) -> anyhow::Result<Event> {
         Some(berth) => format!("{port}, {berth}"),
         None => port.clone(),
     };
-    let at = utc(call
-        .withdrawn_at
-        .or(call.revised_at)
-        .unwrap_or(call.created_at))?;
+    let at = to_utc(
+        call.withdrawn_at
+            .or(call.revised_at)
+            .unwrap_or(call.created_at),
+    )?;
     // A withdrawal is no revision of its own and comes after the last one.
     let sequence = 2 * call.revision + i64::from(call.withdrawn_at.is_some());
     let mut lines = vec![
-        expected_time("ETA", call.eta, call.eta_uncertainty_h),
-        expected_time("ETD", call.etd, call.etd_uncertainty_h),
+        format_time("ETA", call.eta, call.eta_uncertainty_h),
+        format_time("ETD", call.etd, call.etd_uncertainty_h),
     ];
     if call.withdrawn_at.is_some() {
         let why = call.withdrawal_reason.as_deref();
@@ -98,8 +101,8 @@ fn call_event(call: &Call) -> anyhow::Result<Event> {
         .add_property("SEQUENCE", sequence.to_string())
         .timestamp(at)
         .last_modified(at)
-        .starts(utc(call.eta)?)
-        .ends(utc(call.etd)?)
+        .starts(to_utc(call.eta)?)
+        .ends(to_utc(call.etd)?)
         .summary(&format!("{} at {port}", call.vessel_name))
         .location(&place)
         .description(&lines.join("\n"))
@@ -112,7 +115,7 @@ fn call_event(call: &Call) -> anyhow::Result<Event> {
     Ok(event.done())
 }
 
-fn expected_time(label: &str, at: Time, uncertainty_h: f64) -> String {
+fn format_time(label: &str, at: Time, uncertainty_h: f64) -> String {
     let at = at.to_the_minute();
     if uncertainty_h > 0.0 {
         format!("{label}: {at}, ±{uncertainty_h} h (95 %)")
@@ -121,9 +124,9 @@ fn expected_time(label: &str, at: Time, uncertainty_h: f64) -> String {
     }
 }
 
-fn due_event(due: &Due, public_url: Option<&str>) -> anyhow::Result<Event> {
+fn render_due_date(due: &CalendarDueDate, public_url: Option<&str>) -> anyhow::Result<Event> {
     let on: NaiveDate = due.day.parse().context("stored due date")?;
-    let at = utc(due.changed_at)?;
+    let at = to_utc(due.changed_at)?;
     let mut event = Event::new();
     event
         .uid(&format!("due-{}@binnacle", due.compass_id))
@@ -151,8 +154,8 @@ struct LogEntry {
     at: Time,
 }
 
-fn order_event(order: &Appointment, public_url: Option<&str>) -> anyhow::Result<Event> {
-    let starts = utc(order.planned_at)?;
+fn render_order(order: &CalendarOrder, public_url: Option<&str>) -> anyhow::Result<Event> {
+    let starts = to_utc(order.planned_at)?;
     let entry: LogEntry = serde_json::from_str(&order.line)?;
     let place = match &order.berth {
         Some(berth) => format!("{}, {berth}", order.port),
@@ -163,8 +166,8 @@ fn order_event(order: &Appointment, public_url: Option<&str>) -> anyhow::Result<
     event
         .uid(&format!("{}@binnacle", order.id))
         .add_property("SEQUENCE", order.last_seq.to_string())
-        .timestamp(utc(entry.at)?)
-        .last_modified(utc(entry.at)?)
+        .timestamp(to_utc(entry.at)?)
+        .last_modified(to_utc(entry.at)?)
         .starts(starts)
         .ends(starts + usual_duration())
         .summary(&format!(
@@ -172,8 +175,8 @@ fn order_event(order: &Appointment, public_url: Option<&str>) -> anyhow::Result<
             order.compass_name, order.vessel_name
         ))
         .location(&place)
-        .description(&description(order))
-        .status(status(order));
+        .description(&describe_order(order))
+        .status(event_status(order));
     if let Some(url) = public_url {
         let url = url.trim_end_matches('/');
         event.url(&format!("{url}/work-orders/{}", order.id));
@@ -181,7 +184,7 @@ fn order_event(order: &Appointment, public_url: Option<&str>) -> anyhow::Result<
     Ok(event.done())
 }
 
-fn description(order: &Appointment) -> String {
+fn describe_order(order: &CalendarOrder) -> String {
     let mut lines = vec![format!("Operator: {}", order.operator_name)];
     if let Some(firm) = &order.firm {
         lines.push(format!("Firm: {firm}"));
@@ -189,7 +192,7 @@ fn description(order: &Appointment) -> String {
     if let Some(adjuster) = &order.adjuster_name {
         lines.push(format!("Adjuster: {adjuster}"));
     }
-    lines.extend(warning(order).map(str::to_owned));
+    lines.extend(find_warning(order).map(str::to_owned));
     lines.join("\n")
 }
 
@@ -200,7 +203,7 @@ fn usual_duration() -> TimeDelta {
 }
 
 /// Returns the warning for an order still to be done whose port call has moved.
-fn warning(order: &Appointment) -> Option<&'static str> {
+fn find_warning(order: &CalendarOrder) -> Option<&'static str> {
     let is_open = matches!(
         order.state,
         State::Offered
@@ -226,13 +229,13 @@ fn warning(order: &Appointment) -> Option<&'static str> {
     }
 }
 
-fn status(order: &Appointment) -> EventStatus {
+fn event_status(order: &CalendarOrder) -> EventStatus {
     match order.state {
         State::Planned | State::Offered | State::Proposed | State::Declined => {
             EventStatus::Tentative
         }
         State::Cancelled => EventStatus::Cancelled,
-        _ if warning(order).is_some() => EventStatus::Tentative,
+        _ if find_warning(order).is_some() => EventStatus::Tentative,
         _ => EventStatus::Confirmed,
     }
 }
@@ -256,6 +259,6 @@ fn state_name(state: State) -> &'static str {
     }
 }
 
-fn utc(time: Time) -> anyhow::Result<DateTime<Utc>> {
+fn to_utc(time: Time) -> anyhow::Result<DateTime<Utc>> {
     DateTime::from_timestamp_micros(time.0.micros()).context("time outside the calendar's range")
 }

@@ -199,19 +199,19 @@ where
               (status = 401, body = Problem)))]
 async fn calendar(State(app): State<App>, scope: Scope) -> Result<Response> {
     let now = app.clock.now().into();
-    let found = store::appointments(&app.db, scope.tenant, scope.vessel, now).await?;
+    let found = store::list_orders(&app.db, scope.tenant, scope.vessel, now).await?;
     let (calls, due) = match scope.tenant {
         Tenant::Firm(_) => (Vec::new(), Vec::new()),
         Tenant::Operator(operator) => (
-            store::calls(&app.db, operator, scope.vessel, now).await?,
-            store::due_dates(&app.db, operator, scope.vessel).await?,
+            store::list_calls(&app.db, operator, scope.vessel, now).await?,
+            store::list_due_dates(&app.db, operator, scope.vessel).await?,
         ),
     };
     let public_url = app.config.mail.public_url.as_deref();
-    let events = ics::orders(&found, public_url)?
-        .chain(ics::calls(&calls)?)
-        .chain(ics::due_dates(&due, public_url)?);
-    let text = ics::write(&scope.name, events);
+    let events = ics::render_orders(&found, public_url)?
+        .chain(ics::render_calls(&calls)?)
+        .chain(ics::render_due_dates(&due, public_url)?);
+    let text = ics::render_calendar(&scope.name, events);
     let headers = [
         (CONTENT_TYPE, "text/calendar; charset=utf-8"),
         (CACHE_CONTROL, "private, max-age=300"),

@@ -22,7 +22,7 @@ const MAX_CALLS: i64 = 10_000;
 
 /// Port call as a calendar shows it.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub(super) struct Call {
+pub(super) struct CalendarCall {
     pub id: CallId,
     pub vessel_name: String,
     pub port: String,
@@ -40,7 +40,7 @@ pub(super) struct Call {
 
 /// Due date as a calendar shows it.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub(super) struct Due {
+pub(super) struct CalendarDueDate {
     pub vessel_id: VesselId,
     pub vessel_name: String,
     pub compass_id: CompassId,
@@ -55,7 +55,7 @@ pub(super) struct Due {
 
 /// Work order as a calendar shows it.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub(super) struct Appointment {
+pub(super) struct CalendarOrder {
     pub id: OrderId,
     pub state: State,
     pub port: String,
@@ -158,15 +158,15 @@ pub(super) async fn find(db: &Db, token_hash: &[u8]) -> Result<Option<Scope>> {
 }
 
 /// Returns the orders that a tenant sees, of one vessel or of all.
-pub(super) async fn appointments(
+pub(super) async fn list_orders(
     db: &Db,
     tenant: Tenant,
     vessel: Option<VesselId>,
     now: Time,
-) -> Result<Vec<Appointment>> {
+) -> Result<Vec<CalendarOrder>> {
     rows!(
         db,
-        Appointment,
+        CalendarOrder,
         "SELECT o.id, o.port, o.berth, o.planned_at, v.name AS vessel_name,
                 c.name AS compass_name, p.name AS operator_name, o.firm, o.adjuster_name,
                 o.last_seq, e.line, o.call_fit,
@@ -194,15 +194,15 @@ pub(super) async fn appointments(
 }
 
 /// Returns the port calls of a fleet or of one vessel, withdrawn ones included.
-pub(super) async fn calls(
+pub(super) async fn list_calls(
     db: &Db,
     operator: OperatorId,
     vessel: Option<VesselId>,
     now: Time,
-) -> Result<Vec<Call>> {
+) -> Result<Vec<CalendarCall>> {
     rows!(
         db,
-        Call,
+        CalendarCall,
         "SELECT c.id, v.name AS vessel_name, c.port, c.berth, c.eta, c.eta_uncertainty_h, c.etd,
                 c.etd_uncertainty_h, c.revision, c.created_at, c.revised_at, c.withdrawn_at,
                 c.withdrawal_reason
@@ -220,14 +220,14 @@ pub(super) async fn calls(
 }
 
 /// Returns the recorded due dates of a fleet or of one vessel.
-pub(super) async fn due_dates(
+pub(super) async fn list_due_dates(
     db: &Db,
     operator: OperatorId,
     vessel: Option<VesselId>,
-) -> Result<Vec<Due>> {
+) -> Result<Vec<CalendarDueDate>> {
     rows!(
         db,
-        Due,
+        CalendarDueDate,
         "SELECT n.vessel_id, v.name AS vessel_name, n.compass_id, c.name AS compass_name,
                 n.due_on, n.urgency, n.reason, n.version, n.changed_at
          FROM needs_told n

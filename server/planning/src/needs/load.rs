@@ -79,15 +79,15 @@ impl FleetRecords {
                 last
             )?,
             compasses: compasses::of_fleet(db, operator, first, last).await?,
-            particulars: particulars(db, operator).await?,
-            work: work(db, operator).await?,
-            completed: completed(db, operator).await?,
-            failed: failed(db, operator).await?,
+            particulars: load_particulars(db, operator).await?,
+            work: load_work(db, operator).await?,
+            completed: load_completed(db, operator).await?,
+            failed: load_failed(db, operator).await?,
             models: models::current_of_fleet(db, operator, first, last).await?,
-            findings: findings(db, operator).await?,
-            limits: limits(db, operator).await?,
+            findings: load_findings(db, operator).await?,
+            limits: load_limits(db, operator).await?,
             calls,
-            histories: over_limit_since::of_fleet(db, operator).await?,
+            histories: over_limit_since::list_histories(db, operator).await?,
         })
     }
 
@@ -143,7 +143,10 @@ impl FleetRecords {
     }
 }
 
-async fn particulars(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Particulars>> {
+async fn load_particulars(
+    db: &Db,
+    operator: OperatorId,
+) -> Result<BTreeMap<VesselId, Particulars>> {
     let found = rows!(
         db,
         (VesselId, String),
@@ -158,7 +161,7 @@ async fn particulars(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId,
 }
 
 /// Returns the work in the logbooks, without adjustments of cancelled orders.
-async fn work(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Vec<Work>>> {
+async fn load_work(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Vec<Work>>> {
     let cancelled: BTreeSet<String> = rows!(
         db,
         (OrderId,),
@@ -204,7 +207,7 @@ async fn work(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Vec<Wo
 }
 
 /// Returns the last completed adjustment of each compass.
-async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, Completed>> {
+async fn load_completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, Completed>> {
     let found = rows!(
         db,
         (VesselId, CompassId, Time, State),
@@ -229,7 +232,7 @@ async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey,
 
 /// Returns the last failed verification of each compass without a later completed order: time of
 /// the last heading at sea, and the largest error in degrees.
-async fn failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, (Time, f64)>> {
+async fn load_failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, (Time, f64)>> {
     let found = rows!(
         db,
         (VesselId, CompassId, Time, String),
@@ -259,7 +262,7 @@ async fn failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, (T
     Ok(failed)
 }
 
-async fn findings(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, Findings>> {
+async fn load_findings(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, Findings>> {
     let found = rows!(
         db,
         (VesselId, CompassId, Option<String>),
@@ -278,7 +281,7 @@ async fn findings(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassKey, 
     Ok(findings)
 }
 
-async fn limits(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, AlertLimits>> {
+async fn load_limits(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, AlertLimits>> {
     let found = rows!(
         db,
         (VesselId, String),

@@ -101,7 +101,8 @@ pub async fn store_deviation_histories(app: &App, facts: &[Facts]) -> Result<()>
     for facts in facts {
         if let Some(history) = &facts.changed_history {
             let mut tx = app.db.begin().await?;
-            over_limit_since::store(&mut tx, facts.vessel_id, facts.compass_id, history).await?;
+            over_limit_since::store_history(&mut tx, facts.vessel_id, facts.compass_id, history)
+                .await?;
             tx.commit().await?;
         }
     }

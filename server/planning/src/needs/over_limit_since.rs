@@ -37,7 +37,7 @@ impl DeviationHistory {
 }
 
 /// Returns the stored history of each of an operator's compasses.
-pub(super) async fn of_fleet(
+pub(super) async fn list_histories(
     db: &Db,
     operator: OperatorId,
 ) -> Result<BTreeMap<(VesselId, CompassId), DeviationHistory>> {
@@ -65,7 +65,7 @@ pub(super) async fn of_fleet(
 }
 
 /// Stores the history of a compass, in place of the earlier one.
-pub(super) async fn store(
+pub(super) async fn store_history(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,

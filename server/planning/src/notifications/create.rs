@@ -33,7 +33,7 @@ pub(super) async fn notify(
     if notices.is_empty() {
         return Ok(());
     }
-    for person in people(tx, tenant.into()).await? {
+    for person in list_people(tx, tenant.into()).await? {
         let concerns =
             |notice: &&Notice| notice.kind.concerns(person.role) && author != Some(person.id);
         for notice in notices.iter().filter(concerns) {
@@ -51,7 +51,7 @@ pub(super) async fn notify(
     Ok(())
 }
 
-async fn people(tx: &mut Tx, tenant: Tenant) -> Result<Vec<Person>> {
+async fn list_people(tx: &mut Tx, tenant: Tenant) -> Result<Vec<Person>> {
     let found = rows!(
         in tx,
         (UserId, Role, Option<String>),
@@ -89,7 +89,10 @@ async fn is_on_the_mailing_list(tx: &mut Tx, user: UserId) -> Result<bool> {
 }
 
 /// Creates the notifications of published notices.
-pub fn create<'a>(tx: &'a mut Tx, published: &'a NoticesPublished) -> BoxFuture<'a, Result<()>> {
+pub fn create_notifications<'a>(
+    tx: &'a mut Tx,
+    published: &'a NoticesPublished,
+) -> BoxFuture<'a, Result<()>> {
     Box::pin(async move {
         let NoticesPublished {
             tenant,

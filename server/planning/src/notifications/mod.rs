@@ -16,7 +16,7 @@ mod settings;
 mod store;
 mod way;
 
-pub use create::create;
+pub use create::create_notifications;
 pub use needs::notify_of_needs;
 pub use send::{send_due, watch};
 
@@ -72,7 +72,7 @@ struct NotificationList {
 #[derive(Debug, Default, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NotificationsRead)]
-struct Read {
+struct NotificationsRead {
     /// The last notification to mark; all by default.
     until: Option<NotificationId>,
 }
@@ -81,7 +81,7 @@ struct Read {
 #[derive(Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = ChangedNotification)]
-struct Changed {
+struct ChangedNotification {
     /// `true` when you have read it.
     read: bool,
 }
@@ -89,7 +89,7 @@ struct Changed {
 /// Notification settings in force.
 #[derive(Serialize, ToSchema)]
 #[schema(as = NotificationSettingsInForce)]
-struct InForce {
+struct SettingsInForce {
     /// Your settings.
     settings: Settings,
     /// Every kind that concerns you, with its way of delivery.
@@ -114,14 +114,14 @@ async fn list_notifications(
     Params(filter): Params<Filter>,
     page: Page,
 ) -> Result<Json<NotificationList>> {
-    let user = recipient(&caller)?.user.user_id;
+    let user = require_recipient(&caller)?.user.user_id;
     let before = page.after_id()?;
     let found = store::list(&app.db, user, &filter, before, page.fetch()).await?;
     let listed = page.cut(found, |notification| notification.id.to_string());
     Ok(Json(NotificationList {
         items: listed.items,
         next: listed.next,
-        unread: store::unread(&app.db, user).await?,
+        unread: store::count_unread(&app.db, user).await?,
     }))
 }
 
@@ -129,16 +129,16 @@ async fn list_notifications(
 ///
 /// Notifications that have been read are not mailed any more.
 #[utoipa::path(post, path = "/notifications/read", tag = "notifications",
-    request_body = Option<Read>,
+    request_body = Option<NotificationsRead>,
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem)))]
 async fn mark_notifications_read(
     State(app): State<App>,
     request: RequestContext,
     caller: Caller,
-    ValidOrNone(read): ValidOrNone<Read>,
+    ValidOrNone(read): ValidOrNone<NotificationsRead>,
 ) -> Result<StatusCode> {
     caller.must_not_only_read()?;
-    let user = recipient(&caller)?.user.user_id;
+    let user = require_recipient(&caller)?.user.user_id;
     let mut tx = request.begin().await?;
     store::mark_read(&mut tx, user, read.until, app.clock.now().into()).await?;
     tx.commit().await?;
@@ -147,7 +147,7 @@ async fn mark_notifications_read(
 
 /// Mark a notification as read or unread
 #[utoipa::path(patch, path = "/notifications/{id}", tag = "notifications",
-    params(("id" = NotificationId, Path)), request_body = Changed,
+    params(("id" = NotificationId, Path)), request_body = ChangedNotification,
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 404, body = Problem)))]
 async fn change_notification(
@@ -155,10 +155,10 @@ async fn change_notification(
     request: RequestContext,
     caller: Caller,
     Id(id): Id<NotificationId>,
-    Valid(changed): Valid<Changed>,
+    Valid(changed): Valid<ChangedNotification>,
 ) -> Result<StatusCode> {
     caller.must_not_only_read()?;
-    let user = recipient(&caller)?.user.user_id;
+    let user = require_recipient(&caller)?.user.user_id;
     let read_at = changed.read.then(|| app.clock.now().into());
     let mut tx = request.begin().await?;
     if !store::mark(&mut tx, user, id, read_at).await? {
@@ -170,55 +170,55 @@ async fn change_notification(
 
 /// See your notification settings
 #[utoipa::path(get, path = "/me/notifications", tag = "notifications",
-    responses((status = 200, body = InForce), (status = 401, body = Problem)))]
+    responses((status = 200, body = SettingsInForce), (status = 401, body = Problem)))]
 async fn find_notification_settings(
     State(app): State<App>,
     caller: Caller,
-) -> Result<Json<InForce>> {
-    let settings = store::settings(&app.db, recipient(&caller)?.user.user_id).await?;
-    Ok(Json(InForce::new(&app, &caller, settings)))
+) -> Result<Json<SettingsInForce>> {
+    let settings = store::find_settings(&app.db, require_recipient(&caller)?.user.user_id).await?;
+    Ok(Json(SettingsInForce::new(&app, &caller, settings)))
 }
 
 /// Change your notification settings
 ///
 /// Notifications that wait for mail follow the new settings.
 #[utoipa::path(put, path = "/me/notifications", tag = "notifications", request_body = Settings,
-    responses((status = 200, body = InForce), (status = 401, body = Problem),
+    responses((status = 200, body = SettingsInForce), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn change_notification_settings(
     State(app): State<App>,
     request: RequestContext,
     caller: Caller,
     Valid(settings): Valid<Settings>,
-) -> Result<Json<InForce>> {
+) -> Result<Json<SettingsInForce>> {
     caller.must_not_only_read()?;
-    let (user, role) = (recipient(&caller)?.user.user_id, caller.user.role);
+    let (user, role) = (require_recipient(&caller)?.user.user_id, caller.user.role);
     let settings = settings.checked(role)?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
     store::put_settings(&mut tx, user, &settings, now).await?;
-    for (id, kind, urgent) in store::waiting(&mut tx, user).await? {
+    for (id, kind, urgent) in store::list_waiting_for_mail(&mut tx, user).await? {
         let mail_at = settings.mail_at(settings.way(kind, role), urgent, now);
         store::reschedule_mail(&mut tx, user, id, mail_at).await?;
     }
     tx.commit().await?;
-    Ok(Json(InForce::new(&app, &caller, settings)))
+    Ok(Json(SettingsInForce::new(&app, &caller, settings)))
 }
 
 /// Returns the caller if they get notifications at all.
 ///
 /// # Errors
 /// Fails for a platform admin, who has neither a fleet nor orders.
-fn recipient(caller: &Caller) -> Result<&Caller> {
+fn require_recipient(caller: &Caller) -> Result<&Caller> {
     caller.party()?;
     Ok(caller)
 }
 
-impl InForce {
-    fn new(app: &App, caller: &Caller, settings: Settings) -> InForce {
+impl SettingsInForce {
+    fn new(app: &App, caller: &Caller, settings: Settings) -> SettingsInForce {
         let role: Role = caller.user.role;
         let kinds = Kind::ALL.into_iter().filter(|kind| kind.concerns(role));
-        InForce {
+        SettingsInForce {
             ways: kinds.map(|kind| (kind, settings.way(kind, role))).collect(),
             address: caller.user.email.clone(),
             sending: app.config.mail.is_set_up(),

@@ -41,11 +41,12 @@ pub async fn notify_of_needs(app: &App) -> Result<usize> {
 async fn notify_operator(app: &App, operator: OperatorId) -> Result<usize> {
     let now: Time = app.clock.now().into();
     let today = now.0.to_chrono().date_naive();
-    let mut before: BTreeMap<CompassId, RecordedNeed> = store::recorded_needs(&app.db, operator)
-        .await?
-        .into_iter()
-        .map(|recorded| (recorded.compass_id, recorded))
-        .collect();
+    let mut before: BTreeMap<CompassId, RecordedNeed> =
+        store::list_recorded_needs(&app.db, operator)
+            .await?
+            .into_iter()
+            .map(|recorded| (recorded.compass_id, recorded))
+            .collect();
     // The records are read first, so that those of another process since then are not deleted.
     let facts = load_facts(app, operator, None).await?;
     store_deviation_histories(app, &facts).await?;
@@ -65,8 +66,8 @@ async fn notify_operator(app: &App, operator: OperatorId) -> Result<usize> {
             continue;
         }
         let mut event = None;
-        if let Some(kind) = kind(&need, known.as_ref())? {
-            notify(&mut tx, operator, &[need_notice(&need, kind)], None, now).await?;
+        if let Some(kind) = choose_kind(&need, known.as_ref())? {
+            notify(&mut tx, operator, &[write_notice(&need, kind)], None, now).await?;
             event = Some(events::insert(&mut tx, need.vessel_id, events::Kind::Need, now).await?);
             notified += 1;
         }
@@ -95,7 +96,7 @@ fn to_record(need: &Need) -> Result<RecordedNeed> {
 }
 
 /// Returns the kind of notification that a need calls for, if any, given its last record.
-fn kind(need: &Need, known: Option<&RecordedNeed>) -> Result<Option<Kind>> {
+fn choose_kind(need: &Need, known: Option<&RecordedNeed>) -> Result<Option<Kind>> {
     let is_pressing = need.urgency > Urgency::Routine;
     let Some(known) = known else {
         return Ok(is_pressing.then_some(Kind::DueSoon));
@@ -110,7 +111,7 @@ fn kind(need: &Need, known: Option<&RecordedNeed>) -> Result<Option<Kind>> {
     Ok((is_pressing && need.urgency > urgency).then_some(Kind::DueSoon))
 }
 
-fn need_notice(need: &Need, kind: Kind) -> Notice {
+fn write_notice(need: &Need, kind: Kind) -> Notice {
     let status = match (kind, need.urgency) {
         (Kind::NeedRaised, _) => "due for adjustment sooner",
         (_, Urgency::Overdue) => "overdue for adjustment",

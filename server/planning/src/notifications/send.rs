@@ -49,21 +49,26 @@ async fn maintain(app: &App) -> Result<()> {
 /// Queues the mail that is due and returns the number of people it is for.
 pub async fn send_due(app: &App) -> Result<usize> {
     let now = app.clock.now().into();
-    let due = store::due(&app.db, now).await?;
+    let due = store::list_due_people(&app.db, now).await?;
     for (user,) in &due {
         let mut tx = app.db.begin().await?;
         let taken = store::take_due(&mut tx, *user, now).await?;
         if app.config.mail.is_set_up() {
-            queue(&mut tx, *user, taken, now).await?;
+            queue_mail(&mut tx, *user, taken, now).await?;
         }
         tx.commit().await?;
     }
     Ok(due.len())
 }
 
-async fn queue(tx: &mut Tx, user: UserId, mut taken: Vec<Notification>, now: Time) -> Result<()> {
+async fn queue_mail(
+    tx: &mut Tx,
+    user: UserId,
+    mut taken: Vec<Notification>,
+    now: Time,
+) -> Result<()> {
     taken.retain(|notification| notification.read_at.is_none());
-    let Some(tenant) = tenant(tx, user).await? else {
+    let Some(tenant) = find_tenant(tx, user).await? else {
         return Ok(());
     };
     let (urgent, others): (Vec<_>, Vec<_>) = taken
@@ -85,7 +90,7 @@ async fn queue(tx: &mut Tx, user: UserId, mut taken: Vec<Notification>, now: Tim
     Ok(())
 }
 
-async fn tenant(tx: &mut Tx, user: UserId) -> Result<Option<Tenant>> {
+async fn find_tenant(tx: &mut Tx, user: UserId) -> Result<Option<Tenant>> {
     let found = row!(
         in tx,
         (Option<OperatorId>, Option<FirmId>),

@@ -14,7 +14,7 @@ use uuid::Uuid;
 const RETENTION_S: f64 = 90.0 * 86_400.0;
 
 /// Returns a person's settings, or the defaults.
-pub(super) async fn settings(db: &Db, user: UserId) -> Result<Settings> {
+pub(super) async fn find_settings(db: &Db, user: UserId) -> Result<Settings> {
     let found = row!(
         db,
         (String,),
@@ -102,7 +102,7 @@ pub(super) async fn list(
 }
 
 /// Returns the number of a person's unread notifications.
-pub(super) async fn unread(db: &Db, user: UserId) -> DbResult<i64> {
+pub(super) async fn count_unread(db: &Db, user: UserId) -> DbResult<i64> {
     let found = row!(
         db,
         (i64,),
@@ -148,7 +148,7 @@ pub(super) async fn mark_read(
 }
 
 /// Returns the notifications that wait for mail: id, kind and urgency.
-pub(super) async fn waiting(
+pub(super) async fn list_waiting_for_mail(
     tx: &mut Tx,
     user: UserId,
 ) -> DbResult<Vec<(NotificationId, Kind, bool)>> {
@@ -180,7 +180,7 @@ pub(super) async fn reschedule_mail(
 }
 
 /// Returns the people to whom mail is due.
-pub(super) async fn due(db: &Db, now: Time) -> DbResult<Vec<(UserId,)>> {
+pub(super) async fn list_due_people(db: &Db, now: Time) -> DbResult<Vec<(UserId,)>> {
     rows!(
         db,
         (UserId,),
@@ -228,7 +228,10 @@ pub(super) struct RecordedNeed {
 }
 
 /// Returns the last recorded needs of an operator's compasses.
-pub(super) async fn recorded_needs(db: &Db, operator: OperatorId) -> DbResult<Vec<RecordedNeed>> {
+pub(super) async fn list_recorded_needs(
+    db: &Db,
+    operator: OperatorId,
+) -> DbResult<Vec<RecordedNeed>> {
     rows!(
         db,
         RecordedNeed,

@@ -1,4 +1,4 @@
-//! End of a transaction that changes port calls: events are stored, then pending.
+//! End of a transaction that changes port calls: events are stored, then published.
 
 use binnacle_platform::app::App;
 use binnacle_platform::db::Tx;

@@ -21,7 +21,7 @@ mod uploaded_file;
 
 pub use call::{CallBerthHeading, CallBerthHeadingSource, Content, PortCall, Source};
 pub use heading::{EarlierHeadings, heading_alongside};
-pub use store::{Row, upcoming_of_fleet};
+pub use store::{StoredCall, upcoming_of_fleet};
 pub use subscriber::note_berth_heading;
 
 use axum::extract::{FromRef, State};
@@ -254,7 +254,7 @@ async fn find_call(
 }
 
 /// Returns a reference that no withdrawn call has: the vessel may call at that port then after all.
-fn free_reference(known: &[Row], reference: String) -> String {
+fn free_reference(known: &[StoredCall], reference: String) -> String {
     let is_used = |reference: &str| {
         let mut withdrawn = known.iter().filter(|row| row.withdrawn_at.is_some());
         withdrawn.any(|row| row.reference == reference)
@@ -265,7 +265,7 @@ fn free_reference(known: &[Row], reference: String) -> String {
 }
 
 /// Checks that no other call of the vessel has the reference.
-fn check_reference(known: &[Row], call: &Content) -> Result<()> {
+fn check_reference(known: &[StoredCall], call: &Content) -> Result<()> {
     match known.iter().find(|row| row.reference == call.reference) {
         None => Ok(()),
         Some(there) if there.withdrawn_at.is_some() => Err(Error::WrongState(format!(
@@ -280,7 +280,7 @@ fn check_reference(known: &[Row], call: &Content) -> Result<()> {
 }
 
 /// Checks that a call, new or in place of `replaced`, overlaps no other.
-fn check_overlap(known: &[Row], replaced: Option<CallId>, call: &Content) -> Result<()> {
+fn check_overlap(known: &[StoredCall], replaced: Option<CallId>, call: &Content) -> Result<()> {
     let others = known
         .iter()
         .filter(|row| row.withdrawn_at.is_none() && Some(row.id) != replaced);

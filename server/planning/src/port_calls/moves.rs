@@ -1,7 +1,7 @@
 //! Moves of port calls, for the work orders planned at them.
 
 use super::call::Content;
-use super::store::Row;
+use super::store::StoredCall;
 use super::uploaded_file::FileChanges;
 use binnacle_orders::dispatch::{Alongside, Moving};
 use binnacle_platform::error::Result;
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 const MAX_SHIFT_H: f64 = 21.0 * 24.0;
 
 /// Returns the move of an amended call; `None` when port and times stay.
-pub(super) fn amended(row: &Row, call: &Content) -> Result<Option<Moving>> {
+pub(super) fn amended(row: &StoredCall, call: &Content) -> Result<Option<Moving>> {
     let (before, after) = (row.alongside()?, alongside(call));
     if before == after && row.withdrawn_at.is_none() {
         return Ok(None);
@@ -26,7 +26,7 @@ pub(super) fn amended(row: &Row, call: &Content) -> Result<Option<Moving>> {
 }
 
 /// Returns the move of a withdrawn call.
-pub(super) fn withdrawn(row: &Row) -> Result<Moving> {
+pub(super) fn withdrawn(row: &StoredCall) -> Result<Moving> {
     Ok(Moving {
         call_id: row.id,
         then_id: row.id,
@@ -83,7 +83,7 @@ struct AtPort<'a> {
 impl<'a> AtPort<'a> {
     /// Returns the new call that replaces a withdrawn one, each used once: the next one when there
     /// are as many new as withdrawn calls, else the nearest.
-    fn successor(&mut self, row: &Row) -> Option<&'a (CallId, &'a Content)> {
+    fn successor(&mut self, row: &StoredCall) -> Option<&'a (CallId, &'a Content)> {
         let after_h = |one: &(CallId, &Content)| one.1.eta.0.seconds_since(row.eta.0) / 3600.0;
         let new = &self.new;
         let first = new.partition_point(|(one, _)| after_h(one) < -MAX_SHIFT_H);

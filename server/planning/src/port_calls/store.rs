@@ -15,7 +15,7 @@ use uuid::Uuid;
 /// A call's columns, with its vessel's name.
 #[derive(Clone, Debug, sqlx::FromRow)]
 #[allow(missing_docs, reason = "they are the columns")]
-pub struct Row {
+pub struct StoredCall {
     pub vessel_id: VesselId,
     pub vessel_name: String,
     pub id: CallId,
@@ -53,7 +53,7 @@ impl Author {
     }
 }
 
-impl Row {
+impl StoredCall {
     /// Returns the content of the call.
     ///
     /// # Errors
@@ -74,7 +74,7 @@ impl Row {
     /// Returns the port and times of the call, as a work order uses them.
     ///
     /// # Errors
-    /// As [`Row::content`].
+    /// As [`StoredCall::content`].
     pub fn alongside(&self) -> Result<Alongside> {
         let port = PortCode::parse(&self.port).context("stored port")?;
         Ok(Alongside::new(port, self.eta, self.etd))
@@ -110,11 +110,11 @@ pub(super) async fn list(
     filter: &CheckedFilter,
     after: Option<(i64, Uuid)>,
     limit: i64,
-) -> Result<Vec<Row>> {
+) -> Result<Vec<StoredCall>> {
     let (after, after_id) = after.unwrap_or((i64::MIN, Uuid::nil()));
     Ok(rows!(
         db,
-        Row,
+        StoredCall,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
          WHERE v.operator_id = $1
@@ -138,10 +138,14 @@ pub(super) async fn list(
 }
 
 /// Returns the current and future calls of the fleet in service, in order of vessel and time.
-pub async fn upcoming_of_fleet(db: &Db, operator: OperatorId, now: Time) -> Result<Vec<Row>> {
+pub async fn upcoming_of_fleet(
+    db: &Db,
+    operator: OperatorId,
+    now: Time,
+) -> Result<Vec<StoredCall>> {
     Ok(rows!(
         db,
-        Row,
+        StoredCall,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
          WHERE v.operator_id = $1 AND v.out_of_service_at IS NULL
@@ -153,10 +157,14 @@ pub async fn upcoming_of_fleet(db: &Db, operator: OperatorId, now: Time) -> Resu
 }
 
 /// Returns the current and future calls of one vessel.
-pub(super) async fn upcoming_of_vessel(db: &Db, vessel: VesselId, now: Time) -> Result<Vec<Row>> {
+pub(super) async fn upcoming_of_vessel(
+    db: &Db,
+    vessel: VesselId,
+    now: Time,
+) -> Result<Vec<StoredCall>> {
     Ok(rows!(
         db,
-        Row,
+        StoredCall,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
          WHERE c.vessel_id = $1 AND c.etd > $2 AND c.withdrawn_at IS NULL
@@ -170,10 +178,10 @@ pub(super) async fn upcoming_of_vessel(db: &Db, vessel: VesselId, now: Time) -> 
 ///
 /// # Errors
 /// Fails with [`Error::NotFound`] when the vessel has no such call.
-pub(super) async fn must_find(db: &Db, vessel: VesselId, id: CallId) -> Result<Row> {
+pub(super) async fn must_find(db: &Db, vessel: VesselId, id: CallId) -> Result<StoredCall> {
     row!(
         db,
-        Row,
+        StoredCall,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
          WHERE c.vessel_id = $1 AND c.id = $2
@@ -188,7 +196,11 @@ pub(super) async fn must_find(db: &Db, vessel: VesselId, id: CallId) -> Result<R
 ///
 /// # Errors
 /// Fails with [`Error::NotFound`] when the vessel is not in the operator's fleet.
-pub(super) async fn lock(tx: &mut Tx, operator: OperatorId, vessel: VesselId) -> Result<Vec<Row>> {
+pub(super) async fn lock(
+    tx: &mut Tx,
+    operator: OperatorId,
+    vessel: VesselId,
+) -> Result<Vec<StoredCall>> {
     let locked = execute!(
         &mut *tx,
         "UPDATE vessels SET name = name WHERE id = $2 AND operator_id = $1",
@@ -200,7 +212,7 @@ pub(super) async fn lock(tx: &mut Tx, operator: OperatorId, vessel: VesselId) ->
     }
     Ok(rows!(
         in tx,
-        Row,
+        StoredCall,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
          WHERE c.vessel_id = $1
@@ -243,7 +255,7 @@ pub(super) async fn insert(
 /// Stores a new revision of a call; a withdrawn call counts again.
 pub(super) async fn revise(
     tx: &mut Tx,
-    before: &Row,
+    before: &StoredCall,
     call: &Content,
     source: Source,
     author: &Author,
@@ -312,7 +324,7 @@ async fn insert_revision(
 /// Marks a call as withdrawn.
 pub(super) async fn withdraw(
     tx: &mut Tx,
-    call: &Row,
+    call: &StoredCall,
     reason: Option<&str>,
     author: &Author,
 ) -> Result<()> {

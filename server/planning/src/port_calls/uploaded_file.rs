@@ -1,7 +1,7 @@
 //! Uploaded files of port calls: read within limits, and compared with the stored calls.
 
 use super::call::{Content, Source};
-use super::store::Row;
+use super::store::StoredCall;
 use axum::body::Body;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::VesselId;
@@ -42,10 +42,10 @@ pub(super) async fn read_body(body: Body) -> Result<Vec<u8>> {
 #[derive(Default)]
 pub(super) struct FileChanges<'a> {
     pub(super) new: Vec<Content>,
-    pub(super) amended: Vec<(&'a Row, Content)>,
+    pub(super) amended: Vec<(&'a StoredCall, Content)>,
     pub(super) unchanged: usize,
     /// Withdrawn calls, each with the reason.
-    pub(super) withdrawn: Vec<(&'a Row, &'static str)>,
+    pub(super) withdrawn: Vec<(&'a StoredCall, &'static str)>,
 }
 
 /// Calls of one vessel in a file.
@@ -78,7 +78,7 @@ impl VesselCalls {
     /// calls that are not over and missing in it. Calls that overlap go into `errors`.
     pub(super) fn compare<'a>(
         self,
-        known: &'a [Row],
+        known: &'a [StoredCall],
         source: Source,
         replaces: bool,
         now: Time,
@@ -89,14 +89,14 @@ impl VesselCalls {
             .iter()
             .map(|(line, call)| (call.reference.clone(), *line))
             .collect();
-        let withdrawal_reason = |row: &Row| {
+        let withdrawal_reason = |row: &StoredCall| {
             if self.cancelled.contains(&row.reference) {
                 return Some("cancelled in the file");
             }
             let is_left_out = replaces && row.source == source && row.etd > now;
             is_left_out.then_some("no longer in the file")
         };
-        let by_reference: BTreeMap<&str, &Row> = known
+        let by_reference: BTreeMap<&str, &StoredCall> = known
             .iter()
             .map(|row| (row.reference.as_str(), row))
             .collect();

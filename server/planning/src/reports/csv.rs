@@ -35,7 +35,7 @@ impl Table {
 }
 
 /// Returns a table of a report as CSV.
-pub(super) fn table(report: &Report, table: Table) -> Result<String> {
+pub(super) fn render_table(report: &Report, table: Table) -> Result<String> {
     match table {
         Table::Due => {
             let columns = [
@@ -52,7 +52,7 @@ pub(super) fn table(report: &Report, table: Table) -> Result<String> {
                 "vessel_id",
                 "compass_id",
             ];
-            write_table(&columns, report.due.iter().map(due))
+            write_rows(&columns, report.due.iter().map(due_row))
         }
         Table::Deviation => {
             let columns = [
@@ -65,7 +65,7 @@ pub(super) fn table(report: &Report, table: Table) -> Result<String> {
                 "vessel_id",
                 "compass_id",
             ];
-            write_table(&columns, report.deviation.iter().map(deviation))
+            write_rows(&columns, report.deviation.iter().map(deviation_row))
         }
         Table::Jobs => {
             let columns = [
@@ -84,13 +84,13 @@ pub(super) fn table(report: &Report, table: Table) -> Result<String> {
                 "compass_id",
                 "spared_swing",
             ];
-            let rows = report.jobs.iter().map(|one| job(one, &report.saved));
-            write_table(&columns, rows)
+            let rows = report.jobs.iter().map(|one| job_row(one, &report.saved));
+            write_rows(&columns, rows)
         }
     }
 }
 
-fn due(due: &DueCompass) -> Result<Value> {
+fn due_row(due: &DueCompass) -> Result<Value> {
     let mut fields = serde_json::to_value(due)?;
     let order = fields["order"].take();
     for field in ["state", "port", "planned_at", "firm"] {
@@ -99,18 +99,18 @@ fn due(due: &DueCompass) -> Result<Value> {
     Ok(fields)
 }
 
-fn deviation(deviation: &WorstDeviation) -> Result<Value> {
+fn deviation_row(deviation: &WorstDeviation) -> Result<Value> {
     Ok(serde_json::to_value(deviation)?)
 }
 
-fn job(job: &Job, saving: &Saving) -> Result<Value> {
+fn job_row(job: &Job, saving: &Saving) -> Result<Value> {
     let mut fields = serde_json::to_value(job)?;
     fields["swing_eur"] = saving.swing_eur.into();
     fields["swing_h"] = saving.swing_h.into();
     Ok(fields)
 }
 
-fn write_table(columns: &[&str], rows: impl Iterator<Item = Result<Value>>) -> Result<String> {
+fn write_rows(columns: &[&str], rows: impl Iterator<Item = Result<Value>>) -> Result<String> {
     let internal = |error: csv::Error| Error::Internal(error.into());
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(columns).map_err(internal)?;

@@ -43,7 +43,7 @@ const JOBS: [Column; 6] = [
 
 impl Report {
     /// Returns the report as PDF.
-    pub(super) async fn printed(self) -> Result<Vec<u8>> {
+    pub(super) async fn to_pdf(self) -> Result<Vec<u8>> {
         let about = About {
             title: format!(
                 "Compass report: {}, {} to {}",
@@ -51,24 +51,24 @@ impl Report {
             ),
             created: self.made_at.0,
         };
-        let drawn = move || binnacle_drawing::pdf(&sheets(&self), &about);
+        let drawn = move || binnacle_drawing::pdf(&lay_out(&self), &about);
         Ok(tokio::task::spawn_blocking(drawn).await??)
     }
 }
 
-fn sheets(report: &Report) -> Vec<Sheet> {
+fn lay_out(report: &Report) -> Vec<Sheet> {
     let mut paper = Paper::new();
-    head(&mut paper, report);
-    due(&mut paper, report);
-    deviation(&mut paper, report);
-    jobs(&mut paper, report);
-    saved(&mut paper, report);
+    put_head(&mut paper, report);
+    put_due(&mut paper, report);
+    put_deviations(&mut paper, report);
+    put_jobs(&mut paper, report);
+    put_saving(&mut paper, report);
     let made = format!("Made by Binnacle on {}.", report.made_at.to_the_minute());
     let predicted = "Deviations are predicted by each compass's model and are not a certificate.";
     paper.finish(&[format!("{made} {predicted}")])
 }
 
-fn head(paper: &mut Paper, report: &Report) {
+fn put_head(paper: &mut Paper, report: &Report) {
     paper.put(LEFT, Style::bold(15.0), "Compass report");
     let time = format!("{} to {}", report.from, report.to);
     paper.put(RIGHT, Style::plain(9.0).end(), &time);
@@ -123,21 +123,21 @@ fn head(paper: &mut Paper, report: &Report) {
         &format!(
             "{} compasses, {}",
             report.jobs.len(),
-            saved_in_brief(report)
+            summarise_saving(report)
         ),
     );
 }
 
-fn saved_in_brief(report: &Report) -> String {
+fn summarise_saving(report: &Report) -> String {
     let saved = &report.saved;
     format!(
         "{} euros and {} hours saved against swinging",
-        euros(saved.saved_eur),
-        hours(saved.saved_h)
+        format_euros(saved.saved_eur),
+        format_hours(saved.saved_h)
     )
 }
 
-fn due(paper: &mut Paper, report: &Report) {
+fn put_due(paper: &mut Paper, report: &Report) {
     paper.room_for(MIN_LINES);
     paper.title("Overdue or due soon");
     let (now, later): (Vec<&DueCompass>, Vec<&DueCompass>) =
@@ -145,7 +145,7 @@ fn due(paper: &mut Paper, report: &Report) {
     if now.is_empty() {
         paper.lines(LEFT, Style::plain(SIZE), "No compass.");
     } else {
-        titles(paper, &DUE);
+        put_titles(paper, &DUE);
     }
     for due in now {
         let on = match due.urgency {
@@ -167,7 +167,7 @@ fn due(paper: &mut Paper, report: &Report) {
             (due.reason.clone(), Style::plain(SIZE)),
             (order, Style::plain(SIZE)),
         ];
-        row(paper, &DUE, &cells);
+        put_row(paper, &DUE, &cells);
     }
     if !later.is_empty() {
         let note = format!("{} more compasses are due later.", later.len());
@@ -175,7 +175,7 @@ fn due(paper: &mut Paper, report: &Report) {
     }
 }
 
-fn deviation(paper: &mut Paper, report: &Report) {
+fn put_deviations(paper: &mut Paper, report: &Report) {
     paper.room_for(MIN_LINES);
     paper.title("Greatest deviation");
     let known = report
@@ -186,7 +186,7 @@ fn deviation(paper: &mut Paper, report: &Report) {
     if all == 0 {
         paper.lines(LEFT, Style::plain(SIZE), "No compass has a model.");
     } else {
-        titles(paper, &DEVIATION);
+        put_titles(paper, &DEVIATION);
     }
     for one in shown {
         let band = one.band95_deg;
@@ -199,7 +199,7 @@ fn deviation(paper: &mut Paper, report: &Report) {
             one.data_until
                 .map_or_else(String::new, binnacle_platform::time::Time::day),
         ];
-        row(
+        put_row(
             paper,
             &DEVIATION,
             &cells.map(|cell| (cell, Style::plain(SIZE))),
@@ -214,14 +214,14 @@ fn deviation(paper: &mut Paper, report: &Report) {
     }
 }
 
-fn jobs(paper: &mut Paper, report: &Report) {
+fn put_jobs(paper: &mut Paper, report: &Report) {
     paper.room_for(MIN_LINES);
     paper.title("Adjusted in this period");
     if report.jobs.is_empty() {
         paper.lines(LEFT, Style::plain(SIZE), "No compass.");
         return;
     }
-    titles(paper, &JOBS);
+    put_titles(paper, &JOBS);
     for job in &report.jobs {
         let cells = [
             job.vessel_name.clone(),
@@ -229,21 +229,21 @@ fn jobs(paper: &mut Paper, report: &Report) {
             job.port.clone(),
             job.completed_at.day(),
             job.firm.clone().unwrap_or_default(),
-            fee(job),
+            format_fee(job),
         ];
-        row(paper, &JOBS, &cells.map(|cell| (cell, Style::plain(SIZE))));
+        put_row(paper, &JOBS, &cells.map(|cell| (cell, Style::plain(SIZE))));
     }
 }
 
-fn fee(job: &Job) -> String {
+fn format_fee(job: &Job) -> String {
     match (job.fee_eur, job.fee_from) {
-        (Some(eur), Some(FeeFrom::Terms)) => format!("{} (usual)", euros(eur)),
-        (Some(eur), _) => euros(eur),
+        (Some(eur), Some(FeeFrom::Terms)) => format!("{} (usual)", format_euros(eur)),
+        (Some(eur), _) => format_euros(eur),
         (None, _) => "unknown".to_owned(),
     }
 }
 
-fn saved(paper: &mut Paper, report: &Report) {
+fn put_saving(paper: &mut Paper, report: &Report) {
     let saved = &report.saved;
     paper.room_for(MIN_LINES);
     paper.title("Saved against swinging");
@@ -254,12 +254,12 @@ fn saved(paper: &mut Paper, report: &Report) {
          saved, and {} hours of vessels' time.",
         saved.jobs,
         saved.swings,
-        euros(saved.swing_eur),
-        hours(saved.swing_h),
-        euros(saved.swings as f64 * saved.swing_eur),
-        euros(saved.fees_eur),
-        euros(saved.saved_eur),
-        hours(saved.saved_h)
+        format_euros(saved.swing_eur),
+        format_hours(saved.swing_h),
+        format_euros(saved.swings as f64 * saved.swing_eur),
+        format_euros(saved.fees_eur),
+        format_euros(saved.saved_eur),
+        format_hours(saved.saved_h)
     )];
     if failed > 0 {
         sentences.push(format!(
@@ -272,7 +272,7 @@ fn saved(paper: &mut Paper, report: &Report) {
     paper.lines(LEFT, Style::plain(SIZE), &sentences.join(" "));
 }
 
-fn titles(paper: &mut Paper, columns: &[Column]) {
+fn put_titles(paper: &mut Paper, columns: &[Column]) {
     paper.room_for(2);
     for (title, x) in columns {
         paper.put(*x, Style::plain(7.0).grey(90), title);
@@ -280,7 +280,7 @@ fn titles(paper: &mut Paper, columns: &[Column]) {
     paper.down(LINE);
 }
 
-fn row(paper: &mut Paper, columns: &[Column], cells: &[(String, Style)]) {
+fn put_row(paper: &mut Paper, columns: &[Column], cells: &[(String, Style)]) {
     let wrapped: Vec<Vec<String>> = columns
         .iter()
         .zip(cells)
@@ -303,7 +303,7 @@ fn row(paper: &mut Paper, columns: &[Column], cells: &[(String, Style)]) {
 }
 
 /// Formats whole euros with digits in groups of three.
-fn euros(eur: f64) -> String {
+fn format_euros(eur: f64) -> String {
     let digits = format!("{:.0}", eur.abs());
     let groups = digits.as_bytes().rchunks(3).rev();
     let groups: Vec<String> = groups
@@ -313,7 +313,7 @@ fn euros(eur: f64) -> String {
     format!("{sign}{}", groups.join(","))
 }
 
-fn hours(hours: f64) -> String {
+fn format_hours(hours: f64) -> String {
     let text = format!("{hours:.1}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
@@ -329,8 +329,8 @@ mod tests {
         let plain = |text: &str| (text.to_owned(), Style::plain(SIZE));
         let cells = ["Nao", "Standard compass", "2026-12-20", reason, "none"].map(plain);
         let mut paper = Paper::new();
-        row(&mut paper, &DUE, &cells);
-        row(&mut paper, &DUE, &cells);
+        put_row(&mut paper, &DUE, &cells);
+        put_row(&mut paper, &DUE, &cells);
         let printed = binnacle_drawing::svg(&paper.finish(&[]), "");
         for word in reason.split_whitespace() {
             assert!(printed.contains(word), "{word}: {printed}");
@@ -340,8 +340,8 @@ mod tests {
 
     #[test]
     fn money_is_written_in_groups_with_its_sign() {
-        let all = [0.0, 12.4, 999.6, 6000.0, 1_234_567.0, -4200.0].map(euros);
+        let all = [0.0, 12.4, 999.6, 6000.0, 1_234_567.0, -4200.0].map(format_euros);
         assert_eq!(all, ["0", "12", "1,000", "6,000", "1,234,567", "−4,200"]);
-        assert_eq!([3.0, 7.5].map(hours), ["3", "7.5"]);
+        assert_eq!([3.0, 7.5].map(format_hours), ["3", "7.5"]);
     }
 }

@@ -35,14 +35,14 @@ pub(super) async fn load_report(
     let all = (VesselId(Uuid::nil()), VesselId(Uuid::max()));
     let models = models::current_of_fleet(&app.db, operator, all.0, all.1).await?;
     let terms = schedule_settings::terms(&app.db, operator).await?;
-    let under_way = under_way(&app.db, operator).await?;
+    let under_way = list_orders_under_way(&app.db, operator).await?;
     let span = Span {
-        from: midnight("from", from)?,
-        until: midnight("to", to + Days::new(1))?,
+        from: start_of_day("from", from)?,
+        until: start_of_day("to", to + Days::new(1))?,
         late_since,
         known_at: made_at,
     };
-    let jobs = jobs(&app.db, operator, span).await?;
+    let jobs = list_jobs(&app.db, operator, span).await?;
     let settings = settings::find(&app.db, operator).await?;
     let today = made_at.0.to_chrono().date_naive();
     let mut due: Vec<DueCompass> = facts
@@ -63,7 +63,7 @@ pub(super) async fn load_report(
     due.sort_by_key(|due| (due.due_on, due.compass_id));
     let vessels: BTreeSet<VesselId> = facts.iter().map(|facts| facts.vessel_id).collect();
     Ok(Report {
-        operator_name: name(&app.db, operator).await?,
+        operator_name: find_operator_name(&app.db, operator).await?,
         from,
         to,
         made_at,
@@ -71,13 +71,13 @@ pub(super) async fn load_report(
         compasses: facts.len(),
         due,
         // A thousand models on every heading take time: not on an async thread.
-        deviation: tokio::task::spawn_blocking(move || deviations(&facts, &models)).await?,
-        saved: saved(&jobs, &settings),
+        deviation: tokio::task::spawn_blocking(move || worst_deviations(&facts, &models)).await?,
+        saved: compute_saving(&jobs, &settings),
         jobs,
     })
 }
 
-async fn name(db: &Db, operator: OperatorId) -> Result<String> {
+async fn find_operator_name(db: &Db, operator: OperatorId) -> Result<String> {
     let found = row!(
         db,
         (String,),
@@ -89,7 +89,10 @@ async fn name(db: &Db, operator: OperatorId) -> Result<String> {
 }
 
 /// Returns the order under way of each compass, of which there is one at most.
-async fn under_way(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassId, UnderWay>> {
+async fn list_orders_under_way(
+    db: &Db,
+    operator: OperatorId,
+) -> Result<BTreeMap<CompassId, UnderWay>> {
     let found = rows!(
         db,
         (CompassId, OrderId, State, String, Time, Option<String>),
@@ -115,7 +118,7 @@ async fn under_way(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassId, 
     Ok(found.into_iter().map(read).collect())
 }
 
-fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
+fn worst_deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
     let models: BTreeMap<CompassId, &StoredModel> = models
         .iter()
         .map(|model| (model.compass_id, model))
@@ -140,10 +143,10 @@ fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
     all
 }
 
-async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
+async fn list_jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
     let done = completion::done(db, operator, span).await?;
     let terms = firms::of_operator(db, operator).await?;
-    let visits = visits(&done);
+    let visits = number_visits(&done);
     let usual = |nth: usize| {
         let firm = done[nth].firm_id?;
         let (_, _, terms) = terms.iter().find(|(of, _, _)| *of == firm)?;
@@ -182,7 +185,7 @@ async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
 
 /// Returns the number of each job's visit, in the jobs' order. A visit is a vessel's jobs in one
 /// port, each within a day of the previous one.
-fn visits(done: &[Done]) -> Vec<usize> {
+fn number_visits(done: &[Done]) -> Vec<usize> {
     let mut last: BTreeMap<VesselId, usize> = BTreeMap::new();
     let mut visits: Vec<usize> = Vec::with_capacity(done.len());
     for (nth, job) in done.iter().enumerate() {
@@ -196,7 +199,7 @@ fn visits(done: &[Done]) -> Vec<usize> {
     visits
 }
 
-fn midnight(field: &'static str, day: NaiveDate) -> Result<Time> {
+fn start_of_day(field: &'static str, day: NaiveDate) -> Result<Time> {
     let midnight = day.and_time(NaiveTime::MIN).and_utc();
     let at = Timestamp::from_micros(midnight.timestamp_micros());
     at.map(Time).map_err(|error| Error::Invalid {
@@ -205,7 +208,7 @@ fn midnight(field: &'static str, day: NaiveDate) -> Result<Time> {
     })
 }
 
-fn saved(jobs: &[Job], settings: &Settings) -> Saving {
+fn compute_saving(jobs: &[Job], settings: &Settings) -> Saving {
     let without_swing = || jobs.iter().filter(|job| job.spared_swing);
     let swings: BTreeSet<usize> = without_swing().map(|job| job.visit).collect();
     let swings = swings.len();

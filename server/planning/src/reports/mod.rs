@@ -91,7 +91,7 @@ async fn report_csv(
 ) -> Result<Response> {
     let report = range.report(&app, reader).await?;
     let name = report.file_name(choice.table.name(), "csv");
-    let text = csv::table(&report, choice.table)?;
+    let text = csv::render_table(&report, choice.table)?;
     Ok(file("text/csv; charset=utf-8", &name, text))
 }
 
@@ -108,7 +108,7 @@ async fn report_pdf(
 ) -> Result<Response> {
     let report = range.report(&app, reader).await?;
     let name = report.file_name("report", "pdf");
-    Ok(file("application/pdf", &name, report.printed().await?))
+    Ok(file("application/pdf", &name, report.to_pdf().await?))
 }
 
 impl Range {

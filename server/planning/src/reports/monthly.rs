@@ -55,11 +55,11 @@ pub async fn make_due_reports(app: &App) -> Result<usize> {
                            WHERE m.operator_id = r.operator_id AND m.month = $2)
          ORDER BY r.operator_id",
         ended,
-        name(month)
+        month_name(month)
     )?;
     let mut made = 0;
     for (operator,) in due {
-        match make(app, operator, month, ended).await {
+        match make_report(app, operator, month, ended).await {
             Ok(is_new) => made += usize::from(is_new),
             // The next check tries again; other operators' reports go on.
             Err(error) => error!(?error, %operator, "cannot make a monthly report"),
@@ -69,15 +69,20 @@ pub async fn make_due_reports(app: &App) -> Result<usize> {
 }
 
 /// Makes and queues a report; false when another process was faster.
-async fn make(app: &App, operator: OperatorId, month: NaiveDate, ended: Time) -> Result<bool> {
-    let last = month_after(month) - Days::new(1);
-    let before = last_made(app, operator, month).await?;
+async fn make_report(
+    app: &App,
+    operator: OperatorId,
+    month: NaiveDate,
+    ended: Time,
+) -> Result<bool> {
+    let last = next_month(month) - Days::new(1);
+    let before = find_last_report(app, operator, month).await?;
     let report = load_report(app, operator, month, last, before).await?;
-    let letter = mail::monthly_letter(&report.letter_text(), operator, &name(month));
+    let letter = mail::monthly_letter(&report.letter_text(), operator, &month_name(month));
     let tables = [Table::Due, Table::Deviation, Table::Jobs];
-    let [due, deviation, jobs] = tables.map(|table| csv::table(&report, table));
+    let [due, deviation, jobs] = tables.map(|table| csv::render_table(&report, table));
     let (due, deviation, jobs) = (due?, deviation?, jobs?);
-    let (made_at, pdf) = (report.made_at, report.printed().await?);
+    let (made_at, pdf) = (report.made_at, report.to_pdf().await?);
     let mut tx = app.db.begin().await?;
     let inserted = execute!(
         &mut tx,
@@ -86,7 +91,7 @@ async fn make(app: &App, operator: OperatorId, month: NaiveDate, ended: Time) ->
          VALUES ($1, $2, $3, $4, $5, $6, $7)
          ON CONFLICT (operator_id, month) DO NOTHING",
         operator,
-        name(month),
+        month_name(month),
         made_at,
         pdf,
         due,
@@ -97,7 +102,7 @@ async fn make(app: &App, operator: OperatorId, month: NaiveDate, ended: Time) ->
         return Ok(false);
     }
     let body = serde_json::to_string(&letter)?;
-    for (recipient,) in recipients(&mut tx, operator, ended).await? {
+    for (recipient,) in list_recipients(&mut tx, operator, ended).await? {
         let message = Message {
             id: DeliveryId::new(),
             kind: Kind::Report,
@@ -112,7 +117,11 @@ async fn make(app: &App, operator: OperatorId, month: NaiveDate, ended: Time) ->
 
 /// Returns the time of the last report before a month's. Jobs entered after it belong to the next
 /// report, whenever they were completed.
-async fn last_made(app: &App, operator: OperatorId, month: NaiveDate) -> Result<Option<Time>> {
+async fn find_last_report(
+    app: &App,
+    operator: OperatorId,
+    month: NaiveDate,
+) -> Result<Option<Time>> {
     let found = row!(
         &app.db,
         (Time,),
@@ -121,13 +130,17 @@ async fn last_made(app: &App, operator: OperatorId, month: NaiveDate) -> Result<
          ORDER BY month DESC
          LIMIT 1",
         operator,
-        name(month)
+        month_name(month)
     )?;
     Ok(found.map(|(made_at,)| made_at))
 }
 
 /// Returns those who were recipients before the month ended.
-async fn recipients(tx: &mut Tx, operator: OperatorId, ended: Time) -> Result<Vec<(RecipientId,)>> {
+async fn list_recipients(
+    tx: &mut Tx,
+    operator: OperatorId,
+    ended: Time,
+) -> Result<Vec<(RecipientId,)>> {
     Ok(rows!(
         in tx,
         (RecipientId,),
@@ -152,13 +165,13 @@ fn last_month(now: DateTime<Utc>) -> Option<(NaiveDate, Time)> {
     Some((month, Time(Timestamp::from_micros(ended).ok()?)))
 }
 
-fn month_after(month: NaiveDate) -> NaiveDate {
+fn next_month(month: NaiveDate) -> NaiveDate {
     let next = month + Days::new(31);
     next.with_day(1).unwrap_or(next)
 }
 
 /// Returns the name of a month, such as `2026-11`.
-fn name(month: NaiveDate) -> String {
+fn month_name(month: NaiveDate) -> String {
     month.format("%Y-%m").to_string()
 }
 
@@ -198,7 +211,7 @@ mod tests {
     fn a_month_is_over_from_six_on_the_first_of_the_next() {
         let of = |text: &str| {
             let now = Timestamp::parse(text).unwrap().to_chrono();
-            last_month(now).map(|(month, ended)| (name(month), ended.0.to_string()))
+            last_month(now).map(|(month, ended)| (month_name(month), ended.0.to_string()))
         };
         let november = Some(("2026-11".to_owned(), "2026-12-01T00:00:00Z".to_owned()));
         assert_eq!(of("2026-12-01T05:59:59Z"), None);
@@ -207,11 +220,11 @@ mod tests {
         let december = Some(("2026-12".to_owned(), "2027-01-01T00:00:00Z".to_owned()));
         assert_eq!(of("2027-01-02T00:00:00Z"), december);
         assert_eq!(
-            name(month_after(NaiveDate::from_ymd_opt(2026, 12, 1).unwrap())),
+            month_name(next_month(NaiveDate::from_ymd_opt(2026, 12, 1).unwrap())),
             "2027-01"
         );
         assert_eq!(
-            name(month_after(NaiveDate::from_ymd_opt(2027, 2, 1).unwrap())),
+            month_name(next_month(NaiveDate::from_ymd_opt(2027, 2, 1).unwrap())),
             "2027-03"
         );
     }

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const UNCHANGED: &str = "confirmed";
 
 /// Returns the jobs that the plan moves or drops, by the first compass of each.
-pub(super) fn jobs_at_risk(
+pub(super) fn find_jobs_at_risk(
     plan: &Plan,
     names: &Names,
 ) -> BTreeMap<(VesselId, CompassId), JobAtRisk> {
@@ -31,7 +31,7 @@ pub(super) fn jobs_at_risk(
             continue;
         };
         let orders: Vec<OrderId> = held.iter().map(|(_, agreed)| agreed.order_id).collect();
-        let firm = names.firm(agreed.firm_id);
+        let firm = names.firm_name(agreed.firm_id);
         let alert = job_at_risk(plan, firm, agreed.day, &change.why, orders);
         alerts.insert((agreed.vessel_id, *compass), alert);
     }
@@ -60,7 +60,7 @@ pub(super) fn add_orders_beside_plan(
             continue;
         };
         let orders: Vec<OrderId> = of_job.iter().map(|one| one.order_id).collect();
-        let firm = loaded.names.firm(firm);
+        let firm = loaded.names.firm_name(firm);
         let alert = job_at_risk(plan, firm, day, why, orders);
         unknown.remove(&(vessel, first.compass_id));
         alerts.insert((vessel, first.compass_id), alert);

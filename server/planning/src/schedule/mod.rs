@@ -62,7 +62,7 @@ where
 /// The current plan and its state.
 #[derive(Serialize, ToSchema)]
 #[schema(as = Schedule)]
-struct Current {
+struct CurrentSchedule {
     /// The plan; `null` before the first.
     #[schema(required)]
     plan: Option<Plan>,
@@ -109,18 +109,22 @@ struct PlanList {
 
 /// See the current schedule
 #[utoipa::path(get, path = "/schedule", tag = "adjusting",
-    responses((status = 200, body = Current), (status = 401, body = Problem)))]
-async fn find_schedule(State(app): State<App>, reader: Reader) -> Result<Json<Current>> {
-    let plan = store::current(&app.db, reader.operator).await?;
-    with_state(&app, reader.operator, plan).await
+    responses((status = 200, body = CurrentSchedule), (status = 401, body = Problem)))]
+async fn find_schedule(State(app): State<App>, reader: Reader) -> Result<Json<CurrentSchedule>> {
+    let plan = store::find_current(&app.db, reader.operator).await?;
+    describe_plan(&app, reader.operator, plan).await
 }
 
-async fn with_state(app: &App, operator: OperatorId, plan: Option<Plan>) -> Result<Json<Current>> {
-    let requests = store::requests(&app.db, operator).await?;
-    Ok(Json(Current {
+async fn describe_plan(
+    app: &App,
+    operator: OperatorId,
+    plan: Option<Plan>,
+) -> Result<Json<CurrentSchedule>> {
+    let requests = store::list_requests(&app.db, operator).await?;
+    Ok(Json(CurrentSchedule {
         plan,
         outdated_since: requests.first().map(|(_, at)| *at),
-        problem: store::last_error(&app.db, operator).await?,
+        problem: store::find_last_error(&app.db, operator).await?,
     }))
 }
 
@@ -129,7 +133,7 @@ async fn with_state(app: &App, operator: OperatorId, plan: Option<Plan>) -> Resu
 /// The schedule is made automatically half a minute after a change; this request makes it at once
 /// and waits for it. Without a change within the hour the plan stays.
 #[utoipa::path(post, path = "/schedule/solve", tag = "adjusting",
-    responses((status = 200, body = Current), (status = 401, body = Problem),
+    responses((status = 200, body = CurrentSchedule), (status = 401, body = Problem),
               (status = 403, body = Problem),
               (status = 409, description = "It is being made by others, or the fleet is too large", body = Problem)))]
 async fn solve_schedule(
@@ -137,9 +141,9 @@ async fn solve_schedule(
     State(slots): State<PlanSlots>,
     request: RequestContext,
     writer: Writer,
-) -> Result<Json<Current>> {
+) -> Result<Json<CurrentSchedule>> {
     let plan = solve::solve(&app, &request, &slots, writer.operator).await?;
-    with_state(&app, writer.operator, Some(plan)).await
+    describe_plan(&app, writer.operator, Some(plan)).await
 }
 
 /// List the last plans
@@ -165,7 +169,7 @@ async fn find_schedule_plan(
     reader: Reader,
     Id(version): Id<i64>,
 ) -> Result<Json<Plan>> {
-    let plan = store::find(&app.db, reader.operator, version).await?;
+    let plan = store::find_version(&app.db, reader.operator, version).await?;
     Ok(Json(plan.ok_or(Error::NotFound("plan"))?))
 }
 
@@ -177,7 +181,7 @@ async fn find_schedule_plan(
               (status = 401, body = Problem),
               (status = 404, description = "There is no plan yet", body = Problem)))]
 async fn find_input(State(app): State<App>, reader: Reader) -> Result<Response> {
-    let input = store::input(&app.db, reader.operator).await?;
+    let input = store::find_input(&app.db, reader.operator).await?;
     let input = input.ok_or(Error::NotFound("plan"))?;
     Ok(([(CONTENT_TYPE, "application/json")], input).into_response())
 }

@@ -93,8 +93,8 @@ async fn offer_job(
     Valid(new): Valid<NewScheduleOffer>,
 ) -> Result<(StatusCode, Json<Offered>)> {
     let text = optional_text("text", new.text.as_deref())?;
-    let plan = store::current(&app.db, writer.operator).await?;
-    let job = job_of(plan.as_ref(), &new)?;
+    let plan = store::find_current(&app.db, writer.operator).await?;
+    let job = find_job(plan.as_ref(), &new)?;
     let terms = firms::of_operator(&app.db, writer.operator).await?;
     let terms: BTreeMap<FirmId, Terms> = terms
         .into_iter()
@@ -111,7 +111,7 @@ async fn offer_job(
         pending.extend(events);
     }
     for (nth, compass) in job.compasses.iter().enumerate() {
-        let fees = |(firm, terms): (&FirmId, &Terms)| (*firm, fee(job, *firm, terms, nth));
+        let fees = |(firm, terms): (&FirmId, &Terms)| (*firm, split_fee(job, *firm, terms, nth));
         let offer = NewOffer {
             firms: std::iter::once(job.firm_id)
                 .chain(new.then.iter().copied().filter(|firm| *firm != job.firm_id))
@@ -123,7 +123,7 @@ async fn offer_job(
         };
         let id = OrderId::new();
         dispatch::link_once(&mut tx, job.vessel_id, id, job.call_id).await?;
-        let order = order_of(job, compass.compass_id, offer);
+        let order = new_order(job, compass.compass_id, offer);
         let (open, events) = api::write(&app, &request, tx, writer, id, order).await?;
         tx = open;
         pending.extend(events);
@@ -142,7 +142,7 @@ async fn offer_job(
 
 /// Returns a firm's fee for the nth compass of a job. The first bears the fee of the visit. The
 /// fees of the planned firm add up to the plan's.
-fn fee(job: &Job, firm: FirmId, terms: &Terms, nth: usize) -> f64 {
+fn split_fee(job: &Job, firm: FirmId, terms: &Terms, nth: usize) -> f64 {
     let extra = f64::from(terms.extra_compass_eur);
     if firm != job.firm_id {
         return if nth == 0 {
@@ -163,7 +163,7 @@ fn fee(job: &Job, firm: FirmId, terms: &Terms, nth: usize) -> f64 {
 }
 
 /// Returns the job to offer, if the plan still has it as proposed.
-fn job_of<'a>(plan: Option<&'a Plan>, new: &NewScheduleOffer) -> Result<&'a Job> {
+fn find_job<'a>(plan: Option<&'a Plan>, new: &NewScheduleOffer) -> Result<&'a Job> {
     let refused = |why: String| Err(Error::WrongState(why));
     let plan = plan.ok_or(Error::NotFound("plan"))?;
     if plan.version != new.version {
@@ -177,7 +177,7 @@ fn job_of<'a>(plan: Option<&'a Plan>, new: &NewScheduleOffer) -> Result<&'a Job>
 }
 
 /// Returns the order of one compass of a job.
-fn order_of(job: &Job, compass_id: CompassId, offer: NewOffer) -> NewOrder {
+fn new_order(job: &Job, compass_id: CompassId, offer: NewOffer) -> NewOrder {
     NewOrder {
         vessel_id: job.vessel_id,
         compass_id,

@@ -112,7 +112,7 @@ async fn pin(
     Valid(new): Valid<NewPin>,
 ) -> Result<Json<Pin>> {
     let now: Time = app.clock.now().into();
-    let vessel = vessel_of(&app.db, writer.operator, new.compass_id).await?;
+    let vessel = find_vessel(&app.db, writer.operator, new.compass_id).await?;
     let vessel = vessel.ok_or(Error::NotFound("compass"))?;
     let calls = port_calls::upcoming_of_fleet(&app.db, writer.operator, now).await?;
     let mut calls = calls.iter().filter(|call| call.vessel_id == vessel);
@@ -154,7 +154,7 @@ async fn pin(
         created_at: now,
         created_by: session::name_of(&mut tx, writer.user).await?,
     };
-    put(&mut tx, &pin).await?;
+    store_pin(&mut tx, &pin).await?;
     super::store::request_schedule(&mut tx, writer.operator, now).await?;
     tx.commit().await?;
     Ok(Json(pin))
@@ -171,7 +171,7 @@ async fn unpin(
     writer: Writer,
     Id(compass): Id<CompassId>,
 ) -> Result<StatusCode> {
-    let vessel = vessel_of(&app.db, writer.operator, compass).await?;
+    let vessel = find_vessel(&app.db, writer.operator, compass).await?;
     let vessel = vessel.ok_or(Error::NotFound("pin"))?;
     let mut tx = request.begin().await?;
     let removed = execute!(
@@ -188,7 +188,11 @@ async fn unpin(
     Ok(StatusCode::NO_CONTENT)
 }
 
-async fn vessel_of(db: &Db, operator: OperatorId, compass: CompassId) -> Result<Option<VesselId>> {
+async fn find_vessel(
+    db: &Db,
+    operator: OperatorId,
+    compass: CompassId,
+) -> Result<Option<VesselId>> {
     let found = row!(
         db,
         (VesselId,),
@@ -201,7 +205,7 @@ async fn vessel_of(db: &Db, operator: OperatorId, compass: CompassId) -> Result<
     Ok(found.map(|(vessel,)| vessel))
 }
 
-async fn put(tx: &mut Tx, pin: &Pin) -> Result<()> {
+async fn store_pin(tx: &mut Tx, pin: &Pin) -> Result<()> {
     execute!(
         tx,
         "INSERT INTO schedule_pins (vessel_id, compass_id, call_id, firm_id, day, note,

@@ -3,7 +3,7 @@
 //! What always holds: a plan is stored as the next version after the one in its input, or not at
 //! all. Of two concurrent solvers the second loads and solves again.
 
-use super::at_risk::{add_orders_beside_plan, jobs_at_risk};
+use super::at_risk::{add_orders_beside_plan, find_jobs_at_risk};
 use super::concurrency::{PlanLock, PlanSlots};
 use super::input::{Agreed, LoadedInput, Names, load_input};
 use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled};
@@ -71,7 +71,7 @@ async fn solve_locked(
             && former.input_sha256 == loaded.sha256
         {
             let former = former.clone();
-            finish_requests(begin(app, request).await?, operator, &loaded).await?;
+            finish_requests(begin_transaction(app, request).await?, operator, &loaded).await?;
             return Ok(former);
         }
         let begun = Instant::now();
@@ -79,7 +79,7 @@ async fn solve_locked(
         let took_s = begun.elapsed().as_secs_f64();
         histogram!("binnacle_schedule_seconds").record(took_s);
         let plan = build_plan(schedule, &loaded, app.clock.now().into(), took_s)?;
-        let tx = begin(app, request).await?;
+        let tx = begin_transaction(app, request).await?;
         if store_plan(app, tx, operator, &plan, &loaded).await? {
             info!(%operator, version = plan.version, took_s, gap_percent = plan.gap_percent,
                   "schedule made");
@@ -92,7 +92,7 @@ async fn solve_locked(
 }
 
 /// Begins a transaction, which carries the audit line of the request that asks for the plan.
-async fn begin(app: &App, request: Option<&RequestContext>) -> Result<Tx> {
+async fn begin_transaction(app: &App, request: Option<&RequestContext>) -> Result<Tx> {
     Ok(match request {
         Some(request) => request.begin().await?,
         None => app.db.begin().await?,
@@ -137,7 +137,10 @@ fn orders_moved_away(schedule: &Schedule, loaded: &LoadedInput) -> Result<Vec<Or
     let mut planned = BTreeMap::new();
     for job in &schedule.jobs {
         for need in &job.needs {
-            planned.insert(CompassId(id(need)?), (FirmId(id(&job.firm)?), job.day));
+            planned.insert(
+                CompassId(parse_id(need)?),
+                (FirmId(parse_id(&job.firm)?), job.day),
+            );
         }
     }
     let agreed = loaded.names.agreed.iter();
@@ -187,7 +190,7 @@ async fn store_plan(
         let (vessel, order, call) = (agreed.vessel_id, agreed.order_id, agreed.call_id);
         dispatch::link_once(&mut tx, vessel, order, call).await?;
     }
-    let mut at_risk = jobs_at_risk(plan, &loaded.names);
+    let mut at_risk = find_jobs_at_risk(plan, &loaded.names);
     let unknown = add_orders_beside_plan(plan, loaded, &mut at_risk);
     let mut pending =
         alerts::reconcile_jobs_at_risk(&mut tx, operator, &at_risk, &unknown, plan.solved_at)
@@ -210,18 +213,18 @@ fn build_plan(schedule: Schedule, loaded: &LoadedInput, now: Time, took_s: f64) 
     let jobs: Result<Vec<Job>> = schedule
         .jobs
         .into_iter()
-        .map(|one| job(one, names))
+        .map(|one| build_job(one, names))
         .collect();
     let jobs = jobs?;
     let changes: Result<Vec<Change>> = schedule
         .changes
         .into_iter()
-        .map(|one| change(one, names, &jobs, former))
+        .map(|one| build_change(one, names, &jobs, former))
         .collect();
     let changes = changes?;
     let unscheduled = schedule.unscheduled.into_iter().map(|one| {
-        let compasses = compasses(&one.needs, names)?;
-        let (vessel_id, vessel_name) = vessel(&compasses, names);
+        let compasses = name_compasses(&one.needs, names)?;
+        let (vessel_id, vessel_name) = find_vessel(&compasses, names);
         Ok(Unscheduled {
             orders: orders_of(&compasses, names, |_| !one.planned_late),
             vessel_id,
@@ -237,8 +240,8 @@ fn build_plan(schedule: Schedule, loaded: &LoadedInput, now: Time, took_s: f64) 
     });
     let unscheduled: Result<Vec<Unscheduled>> = unscheduled.collect();
     let later = schedule.later.into_iter().map(|one| {
-        let compass = names.compass(CompassId(id(&one.need)?));
-        let (vessel_id, vessel_name) = vessel(std::slice::from_ref(&compass), names);
+        let compass = names.compass(CompassId(parse_id(&one.need)?));
+        let (vessel_id, vessel_name) = find_vessel(std::slice::from_ref(&compass), names);
         Ok(Later {
             vessel_id,
             vessel_name,
@@ -253,15 +256,15 @@ fn build_plan(schedule: Schedule, loaded: &LoadedInput, now: Time, took_s: f64) 
         .filter(|change| matches!(change.what, ChangeKind::Moved | ChangeKind::Dropped));
     let against = former.map(|former| Against {
         version: former.version,
-        cost_eur: rounded(schedule.cost_eur - former.cost_eur),
-        paid_eur: rounded(schedule.paid_eur - former.paid_eur),
+        cost_eur: round_cents(schedule.cost_eur - former.cost_eur),
+        paid_eur: round_cents(schedule.paid_eur - former.paid_eur),
         moved: moved.count(),
     });
     Ok(Plan {
         version: former.map_or(0, |former| former.version) + 1,
         solved_at: now,
         as_of: loaded.as_of,
-        solved_in_s: rounded(took_s),
+        solved_in_s: round_cents(took_s),
         input_sha256: loaded.sha256.clone(),
         cost_eur: schedule.cost_eur,
         bound_eur: schedule.bound_eur,
@@ -278,10 +281,10 @@ fn build_plan(schedule: Schedule, loaded: &LoadedInput, now: Time, took_s: f64) 
     })
 }
 
-fn job(one: solved::PlannedJob, names: &Names) -> Result<Job> {
-    let compasses = compasses(&one.needs, names)?;
-    let (vessel_id, vessel_name) = vessel(&compasses, names);
-    let (call_id, firm_id) = (CallId(id(&one.call)?), FirmId(id(&one.firm)?));
+fn build_job(one: solved::PlannedJob, names: &Names) -> Result<Job> {
+    let compasses = name_compasses(&one.needs, names)?;
+    let (vessel_id, vessel_name) = find_vessel(&compasses, names);
+    let (call_id, firm_id) = (CallId(parse_id(&one.call)?), FirmId(parse_id(&one.firm)?));
     let here = |agreed: &Agreed| {
         (agreed.call_id, agreed.firm_id, agreed.day) == (call_id, firm_id, one.day)
     };
@@ -300,7 +303,7 @@ fn job(one: solved::PlannedJob, names: &Names) -> Result<Job> {
             .and_then(|call| call.berth.clone()),
         berth_heading: one.berth_heading,
         firm_id,
-        firm_name: names.firm(firm_id),
+        firm_name: names.firm_name(firm_id),
         day: one.day,
         from: Time(one.from.0),
         to: Time(one.to.0),
@@ -325,7 +328,7 @@ fn job(one: solved::PlannedJob, names: &Names) -> Result<Job> {
         late_days: one.late_days,
         chance_of_missing: one.chance_of_missing,
         fee_eur: one.fee_eur,
-        travel_eur: rounded(one.travel_eur),
+        travel_eur: round_cents(one.travel_eur),
         weighed: one.weighed,
         compasses,
     })
@@ -345,14 +348,14 @@ fn orders_of(
         .collect()
 }
 
-fn change(
+fn build_change(
     one: solved::Change,
     names: &Names,
     jobs: &[Job],
     former: Option<&Plan>,
 ) -> Result<Change> {
-    let compasses = compasses(&one.needs, names)?;
-    let (vessel_id, vessel_name) = vessel(&compasses, names);
+    let compasses = name_compasses(&one.needs, names)?;
+    let (vessel_id, vessel_name) = find_vessel(&compasses, names);
     let first = compasses.first().map(|compass| compass.compass_id);
     let before = first.and_then(|first| former?.job_of(first));
     let after = first.and_then(|first| jobs.iter().find(|job| job.is_for(first)));
@@ -363,8 +366,8 @@ fn change(
             .replace(&place.call, &format!("at {}", job.port_name)),
         _ => one.why,
     };
-    let from = one.from.map(|at| place(&at, names, before));
-    let to = one.to.map(|at| place(&at, names, after));
+    let from = one.from.map(|at| build_place(&at, names, before));
+    let to = one.to.map(|at| build_place(&at, names, after));
     Ok(Change {
         vessel_id,
         vessel_name,
@@ -376,8 +379,8 @@ fn change(
     })
 }
 
-fn place(at: &solved::Place, names: &Names, job: Option<&Job>) -> Result<Place> {
-    let (call_id, firm_id) = (CallId(id(&at.call)?), FirmId(id(&at.firm)?));
+fn build_place(at: &solved::Place, names: &Names, job: Option<&Job>) -> Result<Place> {
+    let (call_id, firm_id) = (CallId(parse_id(&at.call)?), FirmId(parse_id(&at.firm)?));
     let job = job.filter(|job| (job.call_id, job.firm_id) == (call_id, firm_id));
     let known = names.calls.get(&call_id).map(|call| call.port.as_str());
     let port = known.or(job.map(|job| job.port.as_str()));
@@ -389,22 +392,22 @@ fn place(at: &solved::Place, names: &Names, job: Option<&Job>) -> Result<Place> 
             .map_or("", |port| port.name)
             .to_owned(),
         firm_id,
-        firm_name: names.firm(firm_id),
+        firm_name: names.firm_name(firm_id),
         day: at.day,
         paid_eur: job
             .filter(|job| job.day == at.day)
-            .map(|job| rounded(job.fee_eur + job.travel_eur)),
+            .map(|job| round_cents(job.fee_eur + job.travel_eur)),
     })
 }
 
-fn compasses(needs: &[String], names: &Names) -> Result<Vec<Compass>> {
+fn name_compasses(needs: &[String], names: &Names) -> Result<Vec<Compass>> {
     let named = needs
         .iter()
-        .map(|need| Ok(names.compass(CompassId(id(need)?))));
+        .map(|need| Ok(names.compass(CompassId(parse_id(need)?))));
     named.collect()
 }
 
-fn vessel(compasses: &[Compass], names: &Names) -> (VesselId, String) {
+fn find_vessel(compasses: &[Compass], names: &Names) -> (VesselId, String) {
     let first = compasses.first();
     let known = first.and_then(|first| names.compasses.get(&first.compass_id));
     known.map_or_else(
@@ -413,10 +416,10 @@ fn vessel(compasses: &[Compass], names: &Names) -> (VesselId, String) {
     )
 }
 
-fn id(text: &str) -> Result<Uuid> {
+fn parse_id(text: &str) -> Result<Uuid> {
     Ok(Uuid::from_str(text).context("an id in the schedule")?)
 }
 
-fn rounded(value: f64) -> f64 {
+fn round_cents(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }

@@ -23,7 +23,7 @@ pub(super) async fn request_schedule(tx: &mut Tx, operator: OperatorId, now: Tim
 }
 
 /// Returns the open requests for a schedule, the oldest first.
-pub(super) async fn requests(db: &Db, operator: OperatorId) -> Result<Vec<(Uuid, Time)>> {
+pub(super) async fn list_requests(db: &Db, operator: OperatorId) -> Result<Vec<(Uuid, Time)>> {
     Ok(rows!(
         db,
         (Uuid, Time),
@@ -50,18 +50,22 @@ pub(super) async fn delete_requests(
 }
 
 /// Returns the current plan.
-pub(super) async fn current(db: &Db, operator: OperatorId) -> Result<Option<Plan>> {
+pub(super) async fn find_current(db: &Db, operator: OperatorId) -> Result<Option<Plan>> {
     let found = row!(
         db,
         (String,),
         "SELECT plan FROM schedules WHERE operator_id = $1 ORDER BY version DESC LIMIT 1",
         operator
     )?;
-    parse(found)
+    found.map(parse).transpose()
 }
 
 /// Returns the plan of a version.
-pub(super) async fn find(db: &Db, operator: OperatorId, version: i64) -> Result<Option<Plan>> {
+pub(super) async fn find_version(
+    db: &Db,
+    operator: OperatorId,
+    version: i64,
+) -> Result<Option<Plan>> {
     let found = row!(
         db,
         (String,),
@@ -69,16 +73,15 @@ pub(super) async fn find(db: &Db, operator: OperatorId, version: i64) -> Result<
         operator,
         version
     )?;
-    parse(found)
+    found.map(parse).transpose()
 }
 
-fn parse(found: Option<(String,)>) -> Result<Option<Plan>> {
-    let plan = found.map(|(text,)| serde_json::from_str(&text));
-    Ok(plan.transpose()?)
+fn parse((plan,): (String,)) -> Result<Plan> {
+    Ok(serde_json::from_str(&plan)?)
 }
 
 /// Returns the input of the current plan.
-pub(super) async fn input(db: &Db, operator: OperatorId) -> Result<Option<String>> {
+pub(super) async fn find_input(db: &Db, operator: OperatorId) -> Result<Option<String>> {
     let found = row!(
         db,
         (String,),
@@ -117,7 +120,7 @@ pub(super) async fn insert(
 }
 
 /// Returns the error of the last attempt, if it failed.
-pub(super) async fn last_error(db: &Db, operator: OperatorId) -> Result<Option<String>> {
+pub(super) async fn find_last_error(db: &Db, operator: OperatorId) -> Result<Option<String>> {
     let found = row!(
         db,
         (Option<String>,),
@@ -128,7 +131,7 @@ pub(super) async fn last_error(db: &Db, operator: OperatorId) -> Result<Option<S
 }
 
 /// Returns the operator with the oldest request made before a time.
-pub(super) async fn longest_waiting(
+pub(super) async fn find_longest_waiting(
     db: &Db,
     requested_before: Time,
     now: Time,
@@ -148,7 +151,7 @@ pub(super) async fn longest_waiting(
 }
 
 /// Returns the operators without a request whose plan was made before a time.
-pub(super) async fn outdated(db: &Db, before: Time) -> Result<Vec<OperatorId>> {
+pub(super) async fn list_outdated(db: &Db, before: Time) -> Result<Vec<OperatorId>> {
     let found = rows!(
         db,
         (OperatorId,),
@@ -251,6 +254,5 @@ pub(super) async fn list(
         before.unwrap_or(i64::MAX),
         limit
     )?;
-    let parse = |(text,): (String,)| Ok(serde_json::from_str(&text)?);
     found.into_iter().map(parse).collect()
 }

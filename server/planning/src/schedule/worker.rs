@@ -51,7 +51,7 @@ pub async fn step(app: &App, slots: &PlanSlots) -> anyhow::Result<Option<Operato
     let now: Time = app.clock.now().into();
     request_outdated(app, now).await?;
     let before = Time(now.0.plus_seconds(-DEBOUNCE_S));
-    let Some(operator) = cause_of(store::longest_waiting(&app.db, before, now).await)? else {
+    let Some(operator) = cause_of(store::find_longest_waiting(&app.db, before, now).await)? else {
         return Ok(None);
     };
     let until = Time(now.0.plus_seconds(LEASE_S));
@@ -100,7 +100,7 @@ async fn make(
 
 async fn request_outdated(app: &App, now: Time) -> anyhow::Result<()> {
     let before = Time(now.0.plus_seconds(-MAX_AGE_S));
-    for operator in cause_of(store::outdated(&app.db, before).await)? {
+    for operator in cause_of(store::list_outdated(&app.db, before).await)? {
         let mut tx = app.db.begin().await?;
         // An old request is due at once.
         store::request_schedule(&mut tx, operator, before).await?;

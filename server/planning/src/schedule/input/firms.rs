@@ -2,7 +2,7 @@
 
 use super::names::Names;
 use super::orders::Order;
-use crate::port_calls::Row;
+use crate::port_calls::StoredCall;
 use crate::schedule::plan::{LeftOut, NO_TERMS};
 use binnacle_orders::firms;
 use binnacle_platform::app::App;
@@ -65,7 +65,7 @@ pub(super) async fn book_teams(
 
 /// Returns what a firm has declined: the order's call while it is upcoming. Without a known call it
 /// is any job of the compass until the order is cancelled.
-pub(super) fn declined(order: &Order, upcoming: &[Row]) -> Option<Declined> {
+pub(super) fn find_declined(order: &Order, upcoming: &[StoredCall]) -> Option<Declined> {
     let call = order.call(upcoming);
     let is_upcoming = call.is_some_and(|call| upcoming.iter().any(|row| row.id == call));
     if !is_upcoming && (call.is_some() || order.is_cancelled()) {

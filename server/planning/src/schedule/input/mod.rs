@@ -20,7 +20,7 @@ use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_schedule::input::{self, Declined, Input, JobState, Vessel};
 use binnacle_schedule::time::Instant;
-use firms::{book_teams, declined, load_firms};
+use firms::{book_teams, find_declined, load_firms};
 use former::FormerJobs;
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
@@ -58,17 +58,17 @@ pub(super) async fn load_input(
     operator: OperatorId,
     moved: &BTreeSet<OrderId>,
 ) -> Result<LoadedInput> {
-    let requests = store::requests(&app.db, operator).await?;
-    let former = store::current(&app.db, operator).await?;
+    let requests = store::list_requests(&app.db, operator).await?;
+    let former = store::find_current(&app.db, operator).await?;
     let now: Time = app.clock.now().into();
     let as_of = start_of_hour(now)?;
     let settings = schedule_settings::find(&app.db, operator).await?;
     let facts = needs::load_facts(app, operator, None).await?;
-    let mut names = Names::of(&facts);
+    let mut names = Names::from_facts(&facts);
 
     let upcoming = port_calls::upcoming_of_fleet(&app.db, operator, now).await?;
     let (mut planned_with, left_out) = load_firms(app, operator, &mut names).await?;
-    let orders = orders::under_way(&app.db, operator).await?;
+    let orders = orders::list_under_way(&app.db, operator).await?;
     let beside = names.add_orders(&orders, &upcoming, &planned_with);
     let orders_beside_plan: Result<Vec<OrderBesidePlan>> = beside
         .iter()
@@ -82,10 +82,10 @@ pub(super) async fn load_input(
         .filter_map(|facts| needs::find_need(facts, &settings.terms, today))
         .collect();
 
-    let declinations = orders::declined(&app.db, operator).await?;
+    let declinations = orders::list_declined(&app.db, operator).await?;
     let declinations = declinations.iter();
     let declinations: Vec<Declined> = declinations
-        .filter_map(|one| declined(one, &upcoming))
+        .filter_map(|one| find_declined(one, &upcoming))
         .collect();
     let earlier = EarlierHeadings::of_fleet(&app.db, operator, now).await?;
     let mut calls = Vec::new();

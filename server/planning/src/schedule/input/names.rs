@@ -3,7 +3,7 @@
 use super::former::FormerJobs;
 use super::orders::Order;
 use crate::needs::Facts;
-use crate::port_calls::Row;
+use crate::port_calls::StoredCall;
 use crate::schedule::plan::{Compass, UnderWay};
 use binnacle_orders::work_orders::State;
 use binnacle_platform::ids::{CallId, CompassId, FirmId, OrderId, VesselId};
@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(crate) struct Names {
     pub(crate) compasses: BTreeMap<CompassId, (VesselId, String, String)>,
     pub(crate) firms: BTreeMap<FirmId, String>,
-    pub(crate) calls: BTreeMap<CallId, Row>,
+    pub(crate) calls: BTreeMap<CallId, StoredCall>,
     pub(crate) pinned: BTreeSet<CompassId>,
     /// Orders that are jobs of the plan.
     pub(crate) agreed: BTreeMap<CompassId, Agreed>,
@@ -36,7 +36,7 @@ pub(crate) struct Agreed {
 }
 
 impl Names {
-    pub(super) fn of(facts: &[Facts]) -> Names {
+    pub(super) fn from_facts(facts: &[Facts]) -> Names {
         let compasses = facts.iter().map(|one| {
             let names = (
                 one.vessel_id,
@@ -55,7 +55,7 @@ impl Names {
     pub(super) fn add_orders<'a>(
         &mut self,
         orders: &'a [Order],
-        upcoming: &[Row],
+        upcoming: &[StoredCall],
         planned_with: &[Firm],
     ) -> Vec<(&'a Order, String)> {
         let mut beside = Vec::new();
@@ -73,7 +73,7 @@ impl Names {
             };
             let id = firm_id.to_string();
             if planned_with.iter().all(|firm| firm.id != id) {
-                let firm = self.firm(firm_id);
+                let firm = self.firm_name(firm_id);
                 beside.push((
                     order,
                     format!("{firm} has its order and cannot be planned with"),
@@ -133,7 +133,7 @@ impl Names {
         }
     }
 
-    pub(crate) fn firm(&self, id: FirmId) -> String {
+    pub(crate) fn firm_name(&self, id: FirmId) -> String {
         self.firms.get(&id).cloned().unwrap_or_default()
     }
 }

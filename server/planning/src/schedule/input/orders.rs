@@ -3,7 +3,7 @@
 //! What always holds: an order that is offered to a firm or accepted by it is a job of the plan, at
 //! the call of the offer. An order in progress, or offered to no firm, is beside the plan.
 
-use crate::port_calls::Row as Call;
+use crate::port_calls::StoredCall as Call;
 use crate::schedule::plan::{LeftOut, NO_TERMS};
 use binnacle_orders::dispatch::{Alongside, CallFit};
 use binnacle_orders::firms::port_meant;
@@ -54,7 +54,7 @@ fn problem_of_terms(firm: FirmId, left_out: &[LeftOut]) -> Option<String> {
 }
 
 /// Returns a fleet's orders under way, each once.
-pub(crate) async fn under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
+pub(crate) async fn list_under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
     let mut found = rows!(
         db,
         Order,
@@ -77,7 +77,7 @@ pub(crate) async fn under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order
 
 /// Returns orders that a firm declined or let lapse, one row for each firm, unless a later order of
 /// the compass was offered to it. Orders cancelled since count too: their job is offered repeated.
-pub(crate) async fn declined(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
+pub(crate) async fn list_declined(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
     Ok(rows!(
         db,
         Order,
