@@ -41,6 +41,7 @@ use commit::commit;
 use store::Author;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
+use uuid::Uuid;
 
 /// Returns the routes of this part.
 pub fn router<S>() -> OpenApiRouter<S>
@@ -93,8 +94,18 @@ async fn list_page(
     filter: Filter,
     page: &Page,
 ) -> Result<Json<CallList>> {
-    let (filter, after) = (filter.checked()?, page.after_time()?);
-    let found = store::list(&app.db, operator, vessel, &filter, after, page.fetch()).await?;
+    let filter = filter.checked()?;
+    let (after, after_id) = page.after_time()?.unwrap_or((i64::MIN, Uuid::nil()));
+    let found = store::list(
+        &app.db,
+        operator,
+        vessel,
+        &filter,
+        after,
+        after_id,
+        page.fetch(),
+    )
+    .await?;
     let earlier = EarlierHeadings::of_fleet(&app.db, operator, app.clock.now().into()).await?;
     let calls: Result<Vec<PortCall>> = found
         .into_iter()

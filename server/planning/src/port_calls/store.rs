@@ -108,10 +108,10 @@ pub(super) async fn list(
     operator: OperatorId,
     vessel: Option<VesselId>,
     filter: &CheckedFilter,
-    after: Option<(i64, Uuid)>,
+    after: i64,
+    after_id: Uuid,
     limit: i64,
 ) -> Result<Vec<StoredCall>> {
-    let (after, after_id) = after.unwrap_or((i64::MIN, Uuid::nil()));
     Ok(rows!(
         db,
         StoredCall,

@@ -57,7 +57,7 @@ pub(super) async fn find_current(db: &Db, operator: OperatorId) -> Result<Option
         "SELECT plan FROM schedules WHERE operator_id = $1 ORDER BY version DESC LIMIT 1",
         operator
     )?;
-    found.map(parse).transpose()
+    found.map(|(plan,)| parse(&plan)).transpose()
 }
 
 /// Returns the plan of a version.
@@ -73,11 +73,11 @@ pub(super) async fn find_version(
         operator,
         version
     )?;
-    found.map(parse).transpose()
+    found.map(|(plan,)| parse(&plan)).transpose()
 }
 
-fn parse((plan,): (String,)) -> Result<Plan> {
-    Ok(serde_json::from_str(&plan)?)
+fn parse(plan: &str) -> Result<Plan> {
+    Ok(serde_json::from_str(plan)?)
 }
 
 /// Returns the input of the current plan.
@@ -254,5 +254,5 @@ pub(super) async fn list(
         before.unwrap_or(i64::MAX),
         limit
     )?;
-    found.into_iter().map(parse).collect()
+    found.iter().map(|(plan,)| parse(plan)).collect()
 }
