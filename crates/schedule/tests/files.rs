@@ -14,7 +14,7 @@ fn now() -> Instant {
 fn read_csv(text: &str) -> Result<csv::Rows, FileErrors> {
     let mut faults = FileErrors::default();
     match csv::read(text.as_bytes(), None, now(), &mut faults) {
-        Ok(rows) => faults.unless(rows),
+        Ok(rows) => faults.into_result(rows),
         Err(fault) => {
             faults.push(fault);
             Err(faults)

@@ -12,7 +12,7 @@ mod firm_check;
 mod read;
 mod weights;
 
-pub use check::must_fit;
+pub use check::check_size;
 pub use error::InputError;
 pub use firm::{Firm, ServedPort, Taken};
 pub use firm_check::{FirmError, check_firm};

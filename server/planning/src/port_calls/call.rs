@@ -285,7 +285,7 @@ impl NewCall {
         };
         content
             .to_schedule_call("", "")
-            .must_be_near(Instant(now.0))
+            .check_horizon(Instant(now.0))
             .map_err(refuse_call)?;
         content.checked(now)
     }
@@ -308,7 +308,7 @@ impl Amendment {
         if !times_stay {
             content
                 .to_schedule_call("", "")
-                .must_be_near(Instant(now.0))
+                .check_horizon(Instant(now.0))
                 .map_err(refuse_call)?;
         }
         content.checked(if times_stay { before.eta } else { now })

@@ -35,7 +35,7 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Params, Valid, ValidOrNone, optional_text};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{CallId, OperatorId, VesselId};
-use binnacle_schedule::calls::overlap;
+use binnacle_schedule::calls::find_overlap;
 use call::{Amendment, AmendmentSchema, CallList, Filter, NewCall, RevisedCall, Withdrawal};
 use commit::commit;
 use store::Author;
@@ -300,7 +300,7 @@ fn check_overlap(known: &[StoredCall], replaced: Option<CallId>, call: &Content)
         calls.push(other.content()?.to_schedule_call(&other.reference, ""));
     }
     // Stored calls do not overlap one another.
-    let Some((later, earlier)) = overlap(&calls) else {
+    let Some((later, earlier)) = find_overlap(&calls) else {
         return Ok(());
     };
     let other = &calls[later.max(earlier)];

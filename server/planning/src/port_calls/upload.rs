@@ -279,7 +279,7 @@ async fn store_file(
             .collect();
         pending.extend(calls_come(&mut tx, vessel, &current, &author.name, now).await?);
     }
-    errors.unless(()).map_err(refuse_file)?;
+    errors.into_result(()).map_err(refuse_file)?;
     commit(app, tx, &changed, pending, now).await?;
     Ok(Json(uploaded))
 }

@@ -6,7 +6,7 @@ use axum::body::Body;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::VesselId;
 use binnacle_platform::time::Time;
-use binnacle_schedule::calls::{FileError, FileErrors, Located, overlaps};
+use binnacle_schedule::calls::{FileError, FileErrors, Located, find_overlaps};
 use futures_util::StreamExt;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -121,7 +121,7 @@ impl VesselCalls {
                 Some(row) => changes.amended.push((row, call)),
             }
         }
-        for (later, earlier) in overlaps(&calls) {
+        for (later, earlier) in find_overlaps(&calls) {
             let in_file = |at: usize| lines.get(&calls[at].id).copied();
             let (own, other) = match in_file(later) {
                 Some(_) => (later, earlier),

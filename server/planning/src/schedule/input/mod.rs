@@ -102,8 +102,13 @@ pub(super) async fn load_input(
     let pins = pins::list(&app.db, operator).await?;
     let mut former_jobs = FormerJobs::new(&needs, &planned_with);
     for (compass, agreed) in &names.agreed {
-        let place = (agreed.call_id, agreed.firm_id, agreed.day);
-        former_jobs.add(&[*compass], place.0, place.1, place.2, agreed.state);
+        former_jobs.add(
+            &[*compass],
+            agreed.call_id,
+            agreed.firm_id,
+            agreed.day,
+            agreed.state,
+        );
     }
     let known = declinations.into_iter();
     let known = known.filter(|one| former_jobs.knows(&one.need, &one.firm));
@@ -136,7 +141,7 @@ pub(super) async fn load_input(
         weights: settings.weights,
         terms: settings.terms,
     };
-    input::must_fit(&input)
+    input::check_size(&input)
         .map_err(|error| Error::WrongState(format!("this fleet cannot be planned: {error}")))?;
     let sha256 = sha256_hex(&serde_json::to_string(&input)?);
     // The teams that moved orders hold follow from the plan: they are not in the hash.
