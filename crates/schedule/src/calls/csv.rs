@@ -293,7 +293,7 @@ fn parse_row(
     let port = PortCode::parse(needed("port")?)
         .map_err(|error| FileError::new(line, "port", error.to_string()))?;
     if ports::find(port).is_none() {
-        return Err(FileError::new(line, "port", ports::unknown(port)));
+        return Err(FileError::new(line, "port", ports::describe_unknown(port)));
     }
     let (eta, etd) = (instant("eta")?, instant("etd")?);
     let vessel = cell("vessel").or(vessel);

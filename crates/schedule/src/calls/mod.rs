@@ -165,7 +165,7 @@ pub fn find_overlaps(calls: &[PortCall]) -> Vec<(usize, usize)> {
     overlapping.collect()
 }
 
-/// The probability that a normal error of this size is below a margin; 1 or 0
+/// Returns the probability that a normal error of this size is below a margin; 1 or 0
 /// without an error.
 fn below(margin: f64, sigma: f64) -> f64 {
     if sigma <= 0.0 {
@@ -176,7 +176,7 @@ fn below(margin: f64, sigma: f64) -> f64 {
     if z >= 0.0 { 1.0 - tail } else { tail }
 }
 
-/// Half the complementary error function of a non-negative number (Abramowitz
+/// Returns half the complementary error function of a non-negative number (Abramowitz
 /// and Stegun 1964, 7.1.26: within 1.5e-7).
 fn half_erfc(x: f64) -> f64 {
     let t = 1.0 / (1.0 + 0.327_591_1 * x);

@@ -232,7 +232,7 @@ fn check_calls(input: &Input, vessels: &BTreeSet<&str>) -> Result<()> {
         let path = format!("port_calls[{at}]");
         check_reference(vessels, format!("{path}.vessel"), &call.vessel, "vessel")?;
         if ports::find(call.port).is_none() {
-            let detail = ports::unknown(call.port);
+            let detail = ports::describe_unknown(call.port);
             return Err(InputError::new(format!("{path}.port"), detail));
         }
         if let Err(error) = call.checked(input.now) {

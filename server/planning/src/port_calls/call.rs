@@ -323,7 +323,7 @@ impl Content {
         if ports::find(self.port).is_none() {
             return Err(Error::Invalid {
                 field: "port",
-                detail: ports::unknown(self.port),
+                detail: ports::describe_unknown(self.port),
             });
         }
         self.to_schedule_call("", "")

@@ -30,13 +30,13 @@ impl Line {
 /// Splits a text into lines. A line that begins with a blank continues the line
 /// before (RFC 5545, 3.1).
 pub(super) fn lines(text: &str) -> Result<Vec<Line>, FileError> {
-    let mut whole: Vec<(usize, String)> = Vec::new();
+    let mut unfolded: Vec<(usize, String)> = Vec::new();
     for (at, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
-        match (line.strip_prefix([' ', '\t']), whole.last_mut()) {
-            (Some(more), Some((_, begun))) => begun.push_str(more),
-            _ => whole.push((at + 1, line.to_owned())),
+        match (line.strip_prefix([' ', '\t']), unfolded.last_mut()) {
+            (Some(more), Some((_, previous))) => previous.push_str(more),
+            _ => unfolded.push((at + 1, line.to_owned())),
         }
-        if whole
+        if unfolded
             .last()
             .is_some_and(|(_, line)| line.len() > MAX_LINE_BYTES)
         {
@@ -47,8 +47,8 @@ pub(super) fn lines(text: &str) -> Result<Vec<Line>, FileError> {
             ));
         }
     }
-    whole.retain(|(_, line)| !line.trim().is_empty());
-    whole
+    unfolded.retain(|(_, line)| !line.trim().is_empty());
+    unfolded
         .into_iter()
         .map(|(number, line)| parse_line(number, &line))
         .collect()
@@ -84,11 +84,11 @@ fn parse_line(number: usize, line: &str) -> Result<Line, FileError> {
     })
 }
 
-fn positions_outside_quotes(text: &str, wanted: char) -> impl Iterator<Item = usize> {
+fn positions_outside_quotes(text: &str, separator: char) -> impl Iterator<Item = usize> {
     let mut quoted = false;
     text.char_indices().filter_map(move |(at, letter)| {
         quoted ^= letter == '"';
-        (letter == wanted && !quoted).then_some(at)
+        (letter == separator && !quoted).then_some(at)
     })
 }
 

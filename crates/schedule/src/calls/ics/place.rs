@@ -27,7 +27,7 @@ pub(super) fn find_port<'a>(
         let code = PortCode::parse(&line.value).map_err(|error| wrong(error.to_string()))?;
         return match ports::find(code) {
             Some(_) => Ok(code),
-            None => Err(wrong(ports::unknown(code))),
+            None => Err(wrong(ports::describe_unknown(code))),
         };
     }
     match property("LOCATION") {
