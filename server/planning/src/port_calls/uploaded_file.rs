@@ -165,7 +165,7 @@ pub(super) fn group_by_vessel(
             Some([vessel]) => *vessel,
             Some(_) => {
                 let detail =
-                    format!("several vessels match {name:?}; use the IMO number or the id");
+                    format!("{name:?} matches several vessels; use the IMO number or the id");
                 errors.push(FileError::new(line, "vessel", detail));
                 continue;
             }

@@ -204,7 +204,7 @@ async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(shore: Shore) {
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 08"]);
     ada.create_vessel("Nao").await;
     let which = send(&ada, "/port-calls.csv", rows(["Nao", id])).await;
-    assert!(which.text.contains("; use the IMO number"));
+    assert!(which.text.contains("several vessels; use the IMO number"));
     shore.finish().await;
 }
 
