@@ -1,0 +1,79 @@
+//! Alerts: raised by a limit, and reported by an agent.
+
+use crate::person::{Answer, Person};
+use crate::server::Shore;
+use crate::ship::{Ship, passage};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
+use binnacle_wire::alert::{ShipAlert, ShipAlertState};
+use binnacle_wire::batch::Batch;
+use reqwest::Method;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use uuid::Uuid;
+
+const DAY: &str = "2026-11-15T00:00:00Z";
+const AGENT_DAY: &str = "2026-11-20T00:00:00Z";
+const A_WHILE_S: f64 = 10.0;
+
+/// Sets the vessel's limits and has her analysed.
+pub async fn limit(shore: &Shore, person: &Person, ship: &Ship, limits: Value) {
+    let mut settings = person.get(&ship.path("/settings")).await.good();
+    settings["alerts"] = limits;
+    let request = person.request(Method::PUT, &ship.path("/settings"));
+    Answer::of(request.json(&settings)).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+}
+
+/// A ship with a model, whose greatest deviation lies between 3 and 12 degrees.
+pub async fn with_model(shore: &Shore, person: &Person) -> Ship {
+    let ship = shore.ship(person, "Nao").await;
+    limit(shore, person, &ship, json!({ "deviation_deg": 45.0 })).await;
+    ship.put(1, &passage(DAY, 300)).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    ship
+}
+
+pub fn agent_alert(id: u128, revision: u32, state: ShipAlertState) -> ShipAlert {
+    let since = Timestamp::parse("2026-11-20T04:00:00Z").unwrap();
+    ShipAlert {
+        id: Uuid::from_u128(id),
+        revision,
+        state,
+        since,
+        at: since.plus_seconds(1800.0 * f64::from(revision) + id as f64),
+        gyro_departure_deg: Some(-28.4),
+        satellite_departure_deg: None,
+        limit_deg: 3.9,
+        model_version: 2,
+    }
+}
+
+pub async fn put_agent_alerts(ship: &Ship, seq: u64, samples: Vec<Sample>, alerts: Vec<ShipAlert>) {
+    let batch = Batch {
+        stream: ship.stream,
+        seq,
+        samples,
+        tally: BTreeMap::new(),
+        alerts,
+        thinned: None,
+    };
+    let bytes = binnacle_wire::encode(&batch).unwrap();
+    ship.put_bytes(seq, bytes).await.good();
+}
+
+/// The ship's agent says that her compass parts from her gyro.
+pub async fn departs(ship: &Ship) {
+    let id = Uuid::parse_str(&ship.id).unwrap().as_u128();
+    let mut open = agent_alert(1, 1, ShipAlertState::Open);
+    open.id = Uuid::from_u128(id);
+    put_agent_alerts(ship, 1, passage(AGENT_DAY, 6), vec![open]).await;
+}
+
+/// The same with that and no sample.
+pub async fn says_that_it_departs(ship: &Ship, seq: u64) {
+    let open = agent_alert(1, 1, ShipAlertState::Open);
+    put_agent_alerts(ship, seq, Vec::new(), vec![open]).await;
+}

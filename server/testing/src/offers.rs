@@ -1,0 +1,108 @@
+//! An operator with a ship, and firms that work for it.
+
+use crate::person::{Answer, Person};
+use crate::server::Shore;
+use binnacle_platform::ids::FirmId;
+use serde_json::{Value, json};
+
+/// 2026-11-22T13:00:00Z: the day after every test begins.
+pub const NEXT_DAY: &str = "2026-11-22T13:00:00Z";
+
+/// An operator with a ship, and firms that work for it.
+pub struct Trade {
+    pub ada: Person,
+    pub vessel: String,
+    pub compass: String,
+    pub firms: Vec<(FirmId, Person)>,
+    pub order: String,
+}
+
+impl Trade {
+    /// With so many firms, the order planned but not offered.
+    pub async fn planned(shore: &Shore, firms: usize) -> Trade {
+        let ada = shore.admin("ada").await;
+        let vessel = ada.create_vessel("Nao").await;
+        let vessel = vessel["id"].as_str().unwrap().to_owned();
+        let compasses = ada
+            .get(&format!("/vessels/{vessel}/compasses"))
+            .await
+            .good();
+        let compass = compasses["items"][0]["id"].as_str().unwrap().to_owned();
+        let mut trade = Trade {
+            ada,
+            vessel,
+            compass,
+            firms: Vec::new(),
+            order: String::new(),
+        };
+        for name in ["rosa", "juan", "pepa"].into_iter().take(firms) {
+            trade.firms.push(trade.ada.adjuster(shore, name).await);
+        }
+        let made = trade
+            .ada
+            .post("/work-orders", &trade.new_order())
+            .await
+            .good();
+        assert_eq!(made["has_binnacle"], false);
+        made["id"].as_str().unwrap().clone_into(&mut trade.order);
+        trade
+    }
+
+    /// With so many firms, offered to them, each with an hour to answer.
+    pub async fn offered(shore: &Shore, firms: usize) -> Trade {
+        let trade = Trade::planned(shore, firms).await;
+        trade
+            .post(&trade.ada, "/offer", &trade.offer())
+            .await
+            .good();
+        trade
+    }
+
+    pub fn new_order(&self) -> Value {
+        json!({
+            "vessel_id": self.vessel, "compass_id": self.compass, "port": "Bilbao",
+            "berth": "A5", "planned_at": "2026-11-22T08:00:00Z",
+        })
+    }
+
+    pub fn offer(&self) -> Value {
+        let ids: Vec<String> = self.firms.iter().map(|(id, _)| id.to_string()).collect();
+        json!({ "firms": ids, "answer_within_hours": 1 })
+    }
+
+    pub fn path(&self, rest: &str) -> String {
+        format!("/work-orders/{}{rest}", self.order)
+    }
+
+    pub async fn post(&self, who: &Person, rest: &str, body: &Value) -> Answer {
+        who.post(&self.path(rest), body).await
+    }
+
+    pub async fn seen(&self) -> Value {
+        self.ada.get(&self.path("")).await.good()
+    }
+
+    /// The kinds of the entries of the log, as someone reads it; `-` where one is withheld.
+    pub async fn kinds(&self, who: &Person) -> Vec<String> {
+        let log = who.get(&self.path("/entries")).await.good();
+        let entries = log["items"].as_array().unwrap().iter();
+        let kind = |line: &Value| line["entry"]["kind"].as_str().unwrap_or("-").to_owned();
+        entries.map(kind).collect()
+    }
+
+    /// How the offers stand, in order.
+    pub async fn offers(&self) -> Vec<String> {
+        let order = self.seen().await;
+        let offers = order["offers"].as_array().unwrap().iter();
+        offers
+            .map(|offer| offer["state"].as_str().unwrap().to_owned())
+            .collect()
+    }
+}
+
+pub fn proposal() -> Value {
+    json!({
+        "terms": { "planned_at": NEXT_DAY, "berth": "A7", "fee_eur": 900.5 },
+        "text": "Our team is at Santander until noon.",
+    })
+}

@@ -1,0 +1,175 @@
+//! Someone with a browser.
+
+use crate::server::{PASSWORD, Shore};
+use binnacle_orders::firms;
+use binnacle_platform::ids::{FirmId, OperatorId};
+use binnacle_platform::secret;
+use binnacle_platform::session::{self, Role};
+use binnacle_platform::tenants::Tenant;
+use binnacle_platform::time::Time;
+use reqwest::Method;
+use serde_json::{Value, json};
+use std::sync::OnceLock;
+
+#[derive(Clone)]
+pub struct Person {
+    url: String,
+    http: reqwest::Client,
+    pub operator: OperatorId,
+    pub email: String,
+    pub cookie: String,
+}
+
+/// A status and what came with it.
+#[derive(Debug)]
+pub struct Answer {
+    pub status: u16,
+    pub headers: reqwest::header::HeaderMap,
+    pub text: String,
+}
+
+impl Answer {
+    pub async fn of(request: reqwest::RequestBuilder) -> Answer {
+        let response = request.send().await.unwrap();
+        Answer {
+            status: response.status().as_u16(),
+            headers: response.headers().clone(),
+            text: response.text().await.unwrap(),
+        }
+    }
+
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.text).unwrap_or_else(|_| panic!("not JSON: {self:?}"))
+    }
+
+    /// The JSON of a request that went well.
+    pub fn good(&self) -> Value {
+        assert!((200..300).contains(&self.status), "{self:?}");
+        self.json()
+    }
+
+    /// The last word of a problem's type, after checking that it is one.
+    pub fn problem(&self) -> String {
+        let problem = self.json();
+        assert_eq!(self.headers["content-type"], "application/problem+json");
+        assert_eq!(problem["status"], self.status);
+        assert!(problem["title"].is_string() && problem["detail"].is_string());
+        let kind = problem["type"].as_str().unwrap();
+        kind.rsplit('/').next().unwrap().to_owned()
+    }
+}
+
+/// Hashing takes long without optimisation: once is enough.
+pub fn password_hash() -> &'static str {
+    static HASH: OnceLock<String> = OnceLock::new();
+    HASH.get_or_init(|| secret::hash_password(PASSWORD).unwrap())
+}
+
+impl Person {
+    pub(crate) async fn admin(shore: &Shore, name: &str) -> Person {
+        let operator = create_operator(shore, name).await;
+        let email = format!("{name}@example.com");
+        Person::create(shore, Some(operator.into()), &email, Role::Admin).await;
+        Person::sign_in(shore, operator, &email).await
+    }
+
+    /// An adjuster of a new firm's that works for this person's operator, signed in.
+    pub async fn adjuster(&self, shore: &Shore, name: &str) -> (FirmId, Person) {
+        let now = Time(shore.app.clock.now());
+        let mut tx = shore.app.db.begin().await.unwrap();
+        let firm = firms::create(&mut tx, name, now).await.unwrap();
+        firms::engage(&mut tx, self.operator, firm, now)
+            .await
+            .unwrap();
+        tx.commit().await.unwrap();
+        let email = format!("{name}@adjusters.example");
+        Person::create(shore, Some(firm.into()), &email, Role::Adjuster).await;
+        (firm, Person::sign_in(shore, self.operator, &email).await)
+    }
+
+    /// Someone who manages operators and firms, signed in.
+    pub async fn platform_admin(&self, shore: &Shore) -> Person {
+        let email = "root@example.com";
+        Person::create(shore, None, email, Role::PlatformAdmin).await;
+        Person::sign_in(shore, self.operator, email).await
+    }
+
+    /// A colleague of this person, signed in.
+    pub async fn viewer(&self, shore: &Shore) -> Person {
+        let email = format!("viewer-{}", self.email);
+        Person::create(shore, Some(self.operator.into()), &email, Role::Viewer).await;
+        Person::sign_in(shore, self.operator, &email).await
+    }
+
+    pub async fn create(shore: &Shore, tenant: Option<Tenant>, email: &str, role: Role) {
+        let now = Time(shore.app.clock.now());
+        let mut tx = shore.app.db.begin().await.unwrap();
+        session::create_user(&mut tx, tenant, email, email, role, password_hash(), now)
+            .await
+            .unwrap();
+        tx.commit().await.unwrap();
+    }
+
+    pub async fn sign_in(shore: &Shore, operator: OperatorId, email: &str) -> Person {
+        let answer = attempt(shore, email, PASSWORD).await;
+        assert_eq!(answer.status, 200, "{answer:?}");
+        let cookie = answer.headers["set-cookie"].to_str().unwrap();
+        Person {
+            url: shore.url.clone(),
+            http: shore.http.clone(),
+            operator,
+            email: email.to_owned(),
+            cookie: cookie.split(';').next().unwrap().to_owned(),
+        }
+    }
+
+    /// The same person, talking to a server that was started again.
+    pub fn at(&self, shore: &Shore) -> Person {
+        Person {
+            url: shore.url.clone(),
+            ..self.clone()
+        }
+    }
+
+    /// A request as the dashboard makes it.
+    pub fn request(&self, method: Method, path: &str) -> reqwest::RequestBuilder {
+        self.http
+            .request(method, format!("{}/api/v1{path}", self.url))
+            .header("cookie", &self.cookie)
+            .header("x-binnacle-request", "1")
+    }
+
+    pub async fn get(&self, path: &str) -> Answer {
+        Answer::of(self.request(Method::GET, path)).await
+    }
+
+    pub async fn post(&self, path: &str, body: &Value) -> Answer {
+        Answer::of(self.request(Method::POST, path).json(body)).await
+    }
+
+    pub async fn create_vessel(&self, name: &str) -> Value {
+        self.post("/vessels", &json!({ "name": name })).await.good()
+    }
+}
+
+pub async fn attempt(shore: &Shore, email: &str, password: &str) -> Answer {
+    let request = shore
+        .http
+        .post(format!("{}/api/v1/session", shore.url))
+        .json(&json!({ "email": email, "password": password }));
+    Answer::of(request).await
+}
+
+async fn create_operator(shore: &Shore, name: &str) -> OperatorId {
+    let now = Time(shore.app.clock.now());
+    let mut tx = shore.app.db.begin().await.unwrap();
+    let id = binnacle_fleet::operators::create(&mut tx, name, now)
+        .await
+        .unwrap();
+    tx.commit().await.unwrap();
+    id
+}
+
+pub async fn patch(person: &Person, path: &str, body: &Value) -> Answer {
+    Answer::of(person.request(Method::PATCH, path).json(body)).await
+}

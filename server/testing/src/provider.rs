@@ -1,0 +1,350 @@
+//! An OpenID Connect provider, which says what it is told to: real keys, real tokens.
+//!
+//! It takes a code once, from who has the client's secret and the verifier of the challenge
+//! that the code was asked for with (RFC 7636).
+
+use crate::server::START;
+use axum::extract::{Form, Query, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Redirect, Response};
+use axum::routing::{get, post};
+use axum::{Json, Router};
+use binnacle_compass::time::Timestamp;
+use ring::rand::SystemRandom;
+use ring::rsa::PublicKeyComponents;
+use ring::signature::{
+    ECDSA_P256_SHA256_FIXED_SIGNING, EcdsaKeyPair, KeyPair, RSA_PKCS1_SHA256, RsaKeyPair,
+};
+use ring::{digest, hmac};
+use serde_json::{Value, json};
+use std::collections::HashMap;
+use std::process::Command;
+use std::sync::{Arc, Mutex};
+use tokio::net::TcpListener;
+use uuid::Uuid;
+
+const CLIENT_ID: &str = "binnacle";
+pub const CLIENT_SECRET: &str = "the-clients-secret";
+
+/// Who signs a token.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Signer {
+    #[default]
+    Itself,
+    /// Someone else, who calls their key by the same name.
+    Stranger,
+    /// Whoever knows the client's secret, which is not only the provider.
+    Secret,
+    Nobody,
+}
+
+#[derive(Clone)]
+pub struct Provider {
+    pub issuer: String,
+    said: Arc<Mutex<Said>>,
+}
+
+/// What it signs with, as most providers do and as some.
+#[derive(Clone)]
+enum Key {
+    /// RS256, which every provider has (OpenID Connect Core 1.0, section 15.1).
+    Rsa(Arc<RsaKeyPair>),
+    /// ES256.
+    Ecdsa(Arc<EcdsaKeyPair>),
+}
+
+struct Said {
+    key: Key,
+    key_id: String,
+    claims: Value,
+    signer: Signer,
+    user_info: Value,
+    codes: HashMap<String, HashMap<String, String>>,
+    secrets: Vec<String>,
+}
+
+/// The settings of a server that people may sign in to by the provider at an address.
+pub fn provider_settings(issuer: &str) -> [&str; 8] {
+    [
+        "--oidc-issuer",
+        issuer,
+        "--oidc-client-id",
+        CLIENT_ID,
+        "--oidc-client-secret",
+        CLIENT_SECRET,
+        "--oidc-name",
+        "Example Lines",
+    ]
+}
+
+impl Key {
+    fn ecdsa() -> Key {
+        let random = SystemRandom::new();
+        let algorithm = &ECDSA_P256_SHA256_FIXED_SIGNING;
+        let key = EcdsaKeyPair::generate_pkcs8(algorithm, &random).unwrap();
+        let key = EcdsaKeyPair::from_pkcs8(algorithm, key.as_ref(), &random).unwrap();
+        Key::Ecdsa(Arc::new(key))
+    }
+
+    /// Made by openssl: ring makes none.
+    fn rsa() -> Key {
+        let made = Command::new("openssl")
+            .args(["genpkey", "-algorithm", "RSA", "-outform", "DER"])
+            .args(["-pkeyopt", "rsa_keygen_bits:2048"])
+            .output()
+            .unwrap();
+        assert!(made.status.success(), "{made:?}");
+        // By its version it writes PKCS #8 or PKCS #1.
+        let key = RsaKeyPair::from_pkcs8(&made.stdout);
+        let key = key.or_else(|_| RsaKeyPair::from_der(&made.stdout));
+        Key::Rsa(Arc::new(key.unwrap()))
+    }
+
+    /// Another of the same kind.
+    fn another(&self) -> Key {
+        match self {
+            Key::Rsa(_) => Key::rsa(),
+            Key::Ecdsa(_) => Key::ecdsa(),
+        }
+    }
+
+    fn algorithm(&self) -> &'static str {
+        match self {
+            Key::Rsa(_) => "RS256",
+            Key::Ecdsa(_) => "ES256",
+        }
+    }
+
+    fn sign(&self, message: &[u8]) -> Vec<u8> {
+        let random = SystemRandom::new();
+        match self {
+            Key::Rsa(key) => {
+                let mut signature = vec![0; key.public().modulus_len()];
+                key.sign(&RSA_PKCS1_SHA256, &random, message, &mut signature)
+                    .unwrap();
+                signature
+            }
+            Key::Ecdsa(key) => key.sign(&random, message).unwrap().as_ref().to_vec(),
+        }
+    }
+
+    /// As a provider shows it (RFC 7517).
+    fn shown(&self, key_id: &str) -> Value {
+        match self {
+            Key::Rsa(key) => {
+                let parts = PublicKeyComponents::<Vec<u8>>::from(key.public());
+                json!({
+                    "kty": "RSA", "use": "sig", "alg": "RS256", "kid": key_id,
+                    "n": base64url(&parts.n), "e": base64url(&parts.e),
+                })
+            }
+            Key::Ecdsa(key) => {
+                let point = key.public_key().as_ref();
+                json!({
+                    "kty": "EC", "crv": "P-256", "use": "sig", "alg": "ES256", "kid": key_id,
+                    "x": base64url(&point[1..33]), "y": base64url(&point[33..]),
+                })
+            }
+        }
+    }
+}
+
+fn start_s() -> i64 {
+    Timestamp::parse(START).unwrap().micros() / 1_000_000
+}
+
+impl Provider {
+    pub async fn start() -> Provider {
+        Provider::start_at(0).await
+    }
+
+    pub async fn start_at(port: u16) -> Provider {
+        let listener = TcpListener::bind(("127.0.0.1", port)).await.unwrap();
+        let provider = Provider {
+            issuer: format!("http://{}", listener.local_addr().unwrap()),
+            said: Arc::new(Mutex::new(Said {
+                key: Key::ecdsa(),
+                key_id: "first".to_owned(),
+                claims: json!({}),
+                signer: Signer::Itself,
+                user_info: json!({}),
+                codes: HashMap::new(),
+                secrets: Vec::new(),
+            })),
+        };
+        let routes = Router::new()
+            .route("/.well-known/openid-configuration", get(configuration))
+            .route("/keys", get(keys))
+            .route("/authorize", get(authorize))
+            .route("/token", post(token))
+            .route("/userinfo", get(user_info))
+            .with_state(provider.clone());
+        tokio::spawn(async move { axum::serve(listener, routes).await });
+        provider
+    }
+
+    pub fn settings(&self) -> [&str; 8] {
+        provider_settings(&self.issuer)
+    }
+
+    /// What the next tokens say, over what they say by themselves; null takes away.
+    pub fn says(&self, claims: Value) {
+        let mut said = self.said.lock().unwrap();
+        said.claims = claims;
+        said.signer = Signer::Itself;
+    }
+
+    pub fn signed_by(&self, signer: Signer) {
+        self.said.lock().unwrap().signer = signer;
+    }
+
+    /// What it says to who asks besides.
+    pub fn tells(&self, user_info: Value) {
+        self.said.lock().unwrap().user_info = user_info;
+    }
+
+    /// Another key under another name, and the one before is gone.
+    pub fn changes_its_key(&self) {
+        let mut said = self.said.lock().unwrap();
+        (said.key, said.key_id) = (said.key.another(), "second".to_owned());
+    }
+
+    /// Signs with an RSA key from now on, which nobody has seen.
+    pub fn signs_by_rsa(&self) {
+        let mut said = self.said.lock().unwrap();
+        (said.key, said.key_id) = (Key::rsa(), "rsa".to_owned());
+    }
+
+    /// Every code and token that it gave.
+    pub fn secrets(&self) -> Vec<String> {
+        self.said.lock().unwrap().secrets.clone()
+    }
+}
+
+async fn configuration(State(provider): State<Provider>) -> Json<Value> {
+    let at = |path: &str| format!("{}{path}", provider.issuer);
+    Json(json!({
+        "issuer": provider.issuer,
+        "authorization_endpoint": at("/authorize"),
+        "token_endpoint": at("/token"),
+        "userinfo_endpoint": at("/userinfo"),
+        "jwks_uri": at("/keys"),
+        "response_types_supported": ["code"],
+        "subject_types_supported": ["public"],
+        "id_token_signing_alg_values_supported": ["RS256", "ES256", "HS256", "none"],
+    }))
+}
+
+async fn keys(State(provider): State<Provider>) -> Json<Value> {
+    let said = provider.said.lock().unwrap();
+    Json(json!({ "keys": [said.key.shown(&said.key_id)] }))
+}
+
+/// The person is asked nothing: it is who the test says.
+async fn authorize(
+    State(provider): State<Provider>,
+    Query(asked): Query<HashMap<String, String>>,
+) -> Redirect {
+    assert_eq!(asked["response_type"], "code");
+    assert_eq!(asked["client_id"], CLIENT_ID);
+    assert_eq!(asked["code_challenge_method"], "S256");
+    assert!(asked["scope"].split(' ').any(|scope| scope == "openid"));
+    let code = Uuid::new_v4().to_string();
+    let back = format!(
+        "{}?code={code}&state={}",
+        asked["redirect_uri"], asked["state"]
+    );
+    let mut said = provider.said.lock().unwrap();
+    said.secrets.push(code.clone());
+    said.codes.insert(code, asked);
+    Redirect::to(&back)
+}
+
+async fn token(
+    State(provider): State<Provider>,
+    headers: HeaderMap,
+    Form(sent): Form<HashMap<String, String>>,
+) -> Response {
+    let mut said = provider.said.lock().unwrap();
+    let pair = base64url(format!("{CLIENT_ID}:{CLIENT_SECRET}").as_bytes());
+    let basic = format!("Basic {}", pair.replace('-', "+").replace('_', "/"));
+    let verifier = digest::digest(&digest::SHA256, sent["code_verifier"].as_bytes());
+    let asked = said.codes.remove(&sent["code"]);
+    let asked = asked.filter(|asked| {
+        headers[header::AUTHORIZATION] == basic
+            && sent["grant_type"] == "authorization_code"
+            && sent["redirect_uri"] == asked["redirect_uri"]
+            && asked["code_challenge"] == base64url(verifier.as_ref())
+    });
+    let Some(asked) = asked else {
+        let refused = Json(json!({ "error": "invalid_grant" }));
+        return (StatusCode::BAD_REQUEST, refused).into_response();
+    };
+    let mut claims = json!({
+        "iss": provider.issuer, "aud": CLIENT_ID, "sub": "person-1", "nonce": asked["nonce"],
+        "iat": start_s(), "exp": start_s() + 3600,
+        "email": "ada@example.com", "email_verified": true,
+    });
+    for (name, value) in said.claims.as_object().unwrap() {
+        claims[name] = value.clone();
+    }
+    let claims = claims.as_object_mut().unwrap();
+    claims.retain(|_, value| !value.is_null());
+    let id_token = said.sign(&json!(claims).to_string());
+    let access_token = Uuid::new_v4().to_string();
+    said.secrets.push(id_token.clone());
+    said.secrets.push(access_token.clone());
+    Json(json!({ "access_token": access_token, "token_type": "Bearer", "id_token": id_token }))
+        .into_response()
+}
+
+async fn user_info(State(provider): State<Provider>, headers: HeaderMap) -> Response {
+    let said = provider.said.lock().unwrap();
+    let bearer = headers[header::AUTHORIZATION].to_str().unwrap();
+    let bearer = bearer.strip_prefix("Bearer ").unwrap();
+    if !said.secrets.iter().any(|known| known == bearer) {
+        return StatusCode::UNAUTHORIZED.into_response();
+    }
+    Json(said.user_info.clone()).into_response()
+}
+
+impl Said {
+    fn sign(&self, claims: &str) -> String {
+        let algorithm = match self.signer {
+            Signer::Itself | Signer::Stranger => self.key.algorithm(),
+            Signer::Secret => "HS256",
+            Signer::Nobody => "none",
+        };
+        let head = json!({ "alg": algorithm, "kid": self.key_id, "typ": "JWT" }).to_string();
+        let signed = format!(
+            "{}.{}",
+            base64url(head.as_bytes()),
+            base64url(claims.as_bytes())
+        );
+        let signature = match self.signer {
+            Signer::Itself => self.key.sign(signed.as_bytes()),
+            Signer::Stranger => self.key.another().sign(signed.as_bytes()),
+            Signer::Secret => {
+                let key = hmac::Key::new(hmac::HMAC_SHA256, CLIENT_SECRET.as_bytes());
+                hmac::sign(&key, signed.as_bytes()).as_ref().to_vec()
+            }
+            Signer::Nobody => Vec::new(),
+        };
+        format!("{signed}.{}", base64url(&signature))
+    }
+}
+
+/// RFC 4648 section 5, without padding.
+fn base64url(bytes: &[u8]) -> String {
+    const DIGITS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+    let bits: Vec<u8> = bytes
+        .iter()
+        .flat_map(|byte| (0..8).rev().map(move |bit| byte >> bit & 1))
+        .collect();
+    bits.chunks(6)
+        .map(|six| {
+            let value = six.iter().fold(0, |all, bit| all << 1 | bit);
+            char::from(DIGITS[usize::from(value << (6 - six.len()))])
+        })
+        .collect()
+}

@@ -1,0 +1,220 @@
+//! A mail relay that speaks SMTP (RFC 5321), and answers as it was told to.
+
+use std::collections::VecDeque;
+use std::future::pending;
+use std::sync::{Arc, Mutex};
+use tokio::io::{AsyncBufReadExt, AsyncRead, AsyncWrite, AsyncWriteExt, BufReader};
+use tokio::net::{TcpListener, TcpStream};
+use tokio_rustls::TlsAcceptor;
+
+/// A place in a conversation: before the answer there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum At {
+    Greeting,
+    Recipient,
+    Data,
+    /// After the letter's last line.
+    End,
+    Quit,
+}
+
+/// How one conversation goes.
+#[derive(Clone, Copy, Debug)]
+pub enum Mood {
+    Takes,
+    Says(At, &'static str),
+    Hangs(At),
+    Drops(At),
+}
+
+/// What was handed over, whether it was taken or not.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Letter {
+    pub from: String,
+    pub to: Vec<String>,
+    pub text: String,
+    pub encrypted: bool,
+}
+
+#[derive(Clone, Default)]
+pub struct Relay {
+    pub port: u16,
+    got: Arc<Mutex<Vec<Letter>>>,
+    heard: Arc<Mutex<Vec<String>>>,
+    moods: Arc<Mutex<VecDeque<Mood>>>,
+}
+
+/// How a relay encrypts.
+#[derive(Clone, Default)]
+pub enum Encryption {
+    #[default]
+    Nothing,
+    Start(TlsAcceptor),
+    Always(TlsAcceptor),
+}
+
+impl Relay {
+    pub async fn start() -> Relay {
+        Relay::start_with(Encryption::Nothing).await
+    }
+
+    pub async fn start_with(encryption: Encryption) -> Relay {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let relay = Relay {
+            port: listener.local_addr().unwrap().port(),
+            ..Relay::default()
+        };
+        let answering = relay.clone();
+        tokio::spawn(async move {
+            while let Ok((stream, _)) = listener.accept().await {
+                let (relay, encryption) = (answering.clone(), encryption.clone());
+                tokio::spawn(async move { relay.receive(stream, encryption).await });
+            }
+        });
+        relay
+    }
+
+    /// How the next conversation goes for which nothing was said yet.
+    pub fn next(&self, mood: Mood) {
+        self.moods.lock().unwrap().push_back(mood);
+    }
+
+    pub fn got(&self) -> Vec<Letter> {
+        self.got.lock().unwrap().clone()
+    }
+
+    /// Everything that was said to it, but for the letters.
+    pub fn heard(&self) -> Vec<String> {
+        self.heard.lock().unwrap().clone()
+    }
+
+    async fn receive(&self, stream: TcpStream, encryption: Encryption) {
+        let mood = self.moods.lock().unwrap().pop_front();
+        let mood = mood.unwrap_or(Mood::Takes);
+        match encryption {
+            Encryption::Nothing => {
+                self.talk(stream, mood, true, None).await;
+            }
+            Encryption::Always(acceptor) => {
+                if let Ok(stream) = acceptor.accept(stream).await {
+                    self.talk(stream, mood, true, Some(true)).await;
+                }
+            }
+            Encryption::Start(acceptor) => {
+                let Some(stream) = self.talk(stream, mood, true, Some(false)).await else {
+                    return;
+                };
+                if let Ok(stream) = acceptor.accept(stream).await {
+                    self.talk(stream, mood, false, Some(true)).await;
+                }
+            }
+        }
+    }
+
+    /// One conversation; the stream back if it is to be encrypted. `encrypted` is
+    /// none for a relay that cannot.
+    async fn talk<S>(
+        &self,
+        stream: S,
+        mood: Mood,
+        greets: bool,
+        encrypted: Option<bool>,
+    ) -> Option<S>
+    where
+        S: AsyncRead + AsyncWrite + Unpin,
+    {
+        let mut stream = BufReader::new(stream);
+        if greets {
+            answer(&mut stream, mood, At::Greeting, "220 relay.example").await?;
+        }
+        let (mut from, mut to) = (String::new(), Vec::new());
+        loop {
+            let line = read_line(&mut stream).await?;
+            self.heard.lock().unwrap().push(line.clone());
+            let word = line.to_ascii_uppercase();
+            if word.starts_with("EHLO") {
+                let offers = match encrypted {
+                    Some(false) => "250-relay.example\r\n250 STARTTLS",
+                    Some(true) => "250-relay.example\r\n250 AUTH PLAIN",
+                    None => "250 relay.example",
+                };
+                say(&mut stream, offers).await?;
+            } else if word == "STARTTLS" {
+                say(&mut stream, "220 go ahead").await?;
+                return Some(stream.into_inner());
+            } else if word.starts_with("AUTH") {
+                say(&mut stream, "235 welcome").await?;
+            } else if let Some(rest) = line.strip_prefix("MAIL FROM:") {
+                from = rest.trim().to_owned();
+                say(&mut stream, "250 ok").await?;
+            } else if let Some(rest) = line.strip_prefix("RCPT TO:") {
+                to.push(rest.trim().to_owned());
+                answer(&mut stream, mood, At::Recipient, "250 ok").await?;
+            } else if word == "DATA" {
+                if !answer(&mut stream, mood, At::Data, "354 go on").await? {
+                    continue;
+                }
+                let letter = Letter {
+                    from: from.clone(),
+                    to: std::mem::take(&mut to),
+                    text: read_letter(&mut stream).await?,
+                    encrypted: encrypted == Some(true),
+                };
+                self.got.lock().unwrap().push(letter);
+                answer(&mut stream, mood, At::End, "250 taken").await?;
+            } else if word == "QUIT" {
+                answer(&mut stream, mood, At::Quit, "221 bye").await?;
+                return None;
+            } else {
+                say(&mut stream, "500 what?").await?;
+            }
+        }
+    }
+}
+
+/// Answers at a place in the conversation; `false` if not as usual, none if the
+/// conversation is over.
+async fn answer<S>(stream: &mut S, mood: Mood, at: At, usual: &str) -> Option<bool>
+where
+    S: AsyncWrite + Unpin,
+{
+    match mood {
+        Mood::Says(place, line) if place == at => {
+            say(stream, line).await?;
+            Some(false)
+        }
+        Mood::Hangs(place) if place == at => pending().await,
+        Mood::Drops(place) if place == at => None,
+        _ => {
+            say(stream, usual).await?;
+            Some(true)
+        }
+    }
+}
+
+async fn say<S: AsyncWrite + Unpin>(stream: &mut S, line: &str) -> Option<()> {
+    stream
+        .write_all(format!("{line}\r\n").as_bytes())
+        .await
+        .ok()?;
+    stream.flush().await.ok()
+}
+
+async fn read_line<S: AsyncBufReadExt + Unpin>(stream: &mut S) -> Option<String> {
+    let mut line = String::new();
+    let read = stream.read_line(&mut line).await.ok()?;
+    (read > 0).then(|| line.trim_end_matches(['\r', '\n']).to_owned())
+}
+
+/// Up to the line with only a full stop, doubled ones undone (section 4.5.2).
+async fn read_letter<S: AsyncBufReadExt + Unpin>(stream: &mut S) -> Option<String> {
+    let mut text = String::new();
+    loop {
+        let line = read_line(stream).await?;
+        if line == "." {
+            return Some(text);
+        }
+        text.push_str(line.strip_prefix('.').unwrap_or(&line));
+        text.push_str("\r\n");
+    }
+}

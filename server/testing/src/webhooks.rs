@@ -1,0 +1,110 @@
+//! Webhooks, and a program that receives them.
+
+use crate::person::Person;
+use crate::server::Shore;
+use axum::Router;
+use axum::body::Bytes;
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode};
+use axum::response::{IntoResponse, Response};
+use axum::routing::post;
+use binnacle_platform::outbox::{self, Sent};
+use binnacle_platform::webhooks::{Reach, SIGNATURE_HEADER, Sender};
+use serde_json::{Value, json};
+use std::collections::VecDeque;
+use std::process::Command;
+use std::sync::{Arc, Mutex};
+
+/// A program that takes messages; it answers as it was told to, or 200.
+#[derive(Clone, Default)]
+pub struct Receiver {
+    got: Arc<Mutex<Vec<(String, String)>>>,
+    answers: Arc<Mutex<VecDeque<Response>>>,
+}
+
+impl Receiver {
+    pub async fn start() -> (Receiver, String) {
+        let receiver = Receiver::default();
+        let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let url = format!("http://{}/hook", listener.local_addr().unwrap());
+        let router = Router::new()
+            .route("/hook", post(take))
+            .with_state(receiver.clone());
+        tokio::spawn(async move { axum::serve(listener, router).await });
+        (receiver, url)
+    }
+
+    pub fn answer(&self, answer: impl IntoResponse) {
+        self.answers
+            .lock()
+            .unwrap()
+            .push_back(answer.into_response());
+    }
+
+    /// Answers 200 again.
+    pub fn answer_well(&self) {
+        self.answers.lock().unwrap().clear();
+    }
+
+    /// Signatures and bodies, in the order in which they came.
+    pub fn got(&self) -> Vec<(String, String)> {
+        self.got.lock().unwrap().clone()
+    }
+
+    pub fn kinds(&self) -> Vec<String> {
+        let got = self.got().into_iter();
+        got.map(|(_, body)| json_of(&body)["kind"].as_str().unwrap().to_owned())
+            .collect()
+    }
+}
+
+async fn take(State(receiver): State<Receiver>, headers: HeaderMap, body: Bytes) -> Response {
+    let signature = headers[SIGNATURE_HEADER].to_str().unwrap().to_owned();
+    let body = String::from_utf8(body.to_vec()).unwrap();
+    receiver.got.lock().unwrap().push((signature, body));
+    let answer = receiver.answers.lock().unwrap().pop_front();
+    answer.unwrap_or_else(|| StatusCode::OK.into_response())
+}
+
+pub fn json_of(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+pub async fn make(person: &Person, url: &str, kinds: &[&str]) -> Value {
+    let new = json!({ "url": url, "kinds": kinds });
+    person.post("/webhooks", &new).await.good()
+}
+
+pub fn path(webhook: &Value, rest: &str) -> String {
+    format!("/webhooks/{}{rest}", webhook["id"].as_str().unwrap())
+}
+
+/// Makes every delivery that is due now.
+pub async fn deliver(shore: &Shore) -> Vec<Sent> {
+    let sender = Sender::new(Reach::Anywhere).unwrap();
+    let mut sent = Vec::new();
+    while let Some(done) = outbox::step(&shore.app, &sender).await.unwrap() {
+        sent.push(done);
+    }
+    sent
+}
+
+/// Whether the example in the documentation takes a message for ours.
+pub fn example_says(secret: &str, signature: &str, body: &str, now_s: i64) -> bool {
+    let document = include_str!("../../../docs/webhooks.md");
+    let (_, example) = document.split_once("```python\n").unwrap();
+    let (example, _) = example.split_once("```").unwrap();
+    let ask = "import sys\n_, secret, header, body, now = sys.argv\n\
+               print(is_from_binnacle(secret, header, body.encode(), now=int(now)))";
+    let done = Command::new("python3")
+        .args(["-c", &format!("{example}\n{ask}"), secret, signature, body])
+        .arg(now_s.to_string())
+        .output()
+        .unwrap();
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    String::from_utf8(done.stdout).unwrap().trim() == "True"
+}

@@ -1,0 +1,299 @@
+//! Work orders: from the berth's reading to the evidence and the proof at sea.
+
+use crate::binnacles::{binnacle, put};
+use crate::person::{Answer, Person};
+use crate::server::Shore;
+use crate::ship::{Ship, days_at_sea, days_in, truth};
+use binnacle_adjustment::binnacle::{Binnacle, Setting};
+use binnacle_adjustment::corrector::effect;
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::model::Model;
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::ship::EarthField;
+use binnacle_compass::time::Timestamp;
+use reqwest::Method;
+use serde_json::{Value, json};
+
+/// The berth where all these ships are adjusted, and when the magnetometer is read.
+pub const BERTH: (f64, f64) = (43.35, -3.04);
+pub const AT: &str = "2026-11-21T06:30:00Z";
+pub const HEADING_DEG: f64 = 40.0;
+/// What no heading tells: the ships' λ.
+pub const LAMBDA: f64 = 0.9;
+
+/// The frame of a JPEG of 800 by 600, and the beginning of its scan.
+pub const PICTURE: &[u8] = &[
+    0xFF, 0xD8, 0xFF, 0xE0, 0, 4, 0, 0, 0xFF, 0xC0, 0, 11, 8, 0x02, 0x58, 0x03, 0x20, 1, 1, 0x11,
+    0, 0xFF, 0xDA, 0, 8,
+];
+
+/// A ship with a model, a binnacle with nothing in use, and an order to adjust it.
+pub struct Job {
+    pub person: Person,
+    pub ship: Ship,
+    pub compass: String,
+    pub order: String,
+}
+
+impl Job {
+    pub async fn begin(shore: &Shore) -> Job {
+        let person = shore.admin("ada").await;
+        Job::of(shore, person).await
+    }
+
+    pub async fn of(shore: &Shore, person: Person) -> Job {
+        Job::aboard(shore, person, &truth()).await
+    }
+
+    /// The same aboard a ship of this magnetism.
+    pub async fn aboard(shore: &Shore, person: Person, truth: &Model) -> Job {
+        let mut samples = days_at_sea(truth, "2026-11-01T00:00:00Z", 10.0);
+        samples.extend(days_in((10.0, -25.0), truth, "2026-11-11T00:00:00Z", 5.0));
+        samples.extend(days_at_sea(truth, "2026-11-16T00:00:00Z", 4.0));
+        Job::after(shore, person, &samples).await
+    }
+
+    /// The same aboard a ship that has sent these samples.
+    pub async fn after(shore: &Shore, person: Person, samples: &[Sample]) -> Job {
+        let ship = shore.ship(&person, "Nao").await;
+        ship.put(1, samples).await.good();
+        shore.advance(60.0);
+        shore.work().await;
+        let compasses = person.get(&ship.path("/compasses")).await.good();
+        let compass = compasses["items"][0]["id"].as_str().unwrap().to_owned();
+        let path = ship.path(&format!("/compasses/{compass}/binnacle"));
+        put(&person, &path, &binnacle()).await.good();
+        let mut job = Job {
+            person,
+            ship,
+            compass,
+            order: String::new(),
+        };
+        let made = job.person.post("/work-orders", &job.new_order()).await;
+        let made = made.good();
+        assert_eq!(made["has_binnacle"], true);
+        made["id"].as_str().unwrap().clone_into(&mut job.order);
+        job
+    }
+
+    pub fn new_order(&self) -> Value {
+        json!({
+            "vessel_id": self.ship.id, "compass_id": self.compass, "port": "Bilbao",
+            "berth": "A5", "planned_at": "2026-11-21T09:00:00Z",
+            "adjuster_name": "M. Etxeberria",
+        })
+    }
+
+    pub fn path(&self, rest: &str) -> String {
+        format!("/work-orders/{}{rest}", self.order)
+    }
+
+    pub async fn post(&self, rest: &str, body: &Value) -> Answer {
+        self.person.post(&self.path(rest), body).await
+    }
+
+    pub async fn seen(&self) -> Value {
+        self.person.get(&self.path("")).await.good()
+    }
+
+    /// Reads the berth, chooses a plan, and does its steps as foretold.
+    pub async fn adjust(&self) -> Value {
+        self.post("/berth-reading", &reading()).await.good();
+        self.follow_a_plan().await
+    }
+
+    /// Chooses a plan, and does its steps as foretold.
+    pub async fn follow_a_plan(&self) -> Value {
+        let mut order = self.post("/plan", &json!({})).await.good();
+        while let Some(step) = order["next_step"].as_object() {
+            let path = format!("/steps/{}", step["number"]);
+            let after = json!({ "after_deg": step["expected_compass_deg"] });
+            order = self.post(&path, &after).await.good();
+            assert_ne!(order["last_step"]["verdict"], "unexplained", "{order}");
+        }
+        order
+    }
+
+    pub async fn complete(&self) -> Value {
+        self.adjust().await;
+        self.post("/complete", &word()).await.good()
+    }
+
+    /// So many days at sea by a model, sent and analysed.
+    pub async fn sail(&mut self, shore: &Shore, ship: &Model, seq: u64, days: f64) -> Value {
+        let samples = days_at_sea(ship, "2026-11-21T12:00:00Z", days);
+        self.send(shore, seq, &samples, days + 0.5).await;
+        self.seen().await
+    }
+
+    /// Samples that are sent and analysed so many days from now.
+    pub async fn send(&mut self, shore: &Shore, seq: u64, samples: &[Sample], days: f64) {
+        shore.advance(86_400.0 * days);
+        self.ship.put(seq, samples).await.good();
+        shore.advance(60.0);
+        shore.work().await;
+        // No session lasts so long.
+        self.person = Person::sign_in(shore, self.person.operator, &self.person.email).await;
+    }
+
+    pub async fn open_alerts(&self) -> Vec<Value> {
+        let found = self.person.get("/alerts?open=true").await.good();
+        found["items"].as_array().unwrap().clone()
+    }
+
+    pub async fn evidence(&self) -> Vec<u8> {
+        let request = self
+            .person
+            .request(Method::GET, &self.path("/evidence.zip"));
+        let response = request.send().await.unwrap();
+        assert_eq!(response.status(), 200);
+        response.bytes().await.unwrap().to_vec()
+    }
+
+    pub async fn card(&self) -> Value {
+        self.person.get(&self.ship.path("/card.json")).await.good()
+    }
+
+    /// The card's status in each form: JSON, CSV, SVG.
+    pub async fn is_said_everywhere(&self, status: &str) {
+        let card = self.card().await;
+        assert_eq!(card["status"], status, "{card}");
+        let statement = card["statement"].as_str().unwrap();
+        assert!(statement.contains("Not a certificate"), "{statement}");
+        let csv = self.person.get(&self.ship.path("/card.csv")).await.text;
+        let word = format!(",{status},");
+        assert!(
+            csv.lines().skip(1).all(|line| line.contains(&word)),
+            "{csv}"
+        );
+        let svg = self.person.get(&self.ship.path("/card.svg")).await.text;
+        let mark = match status {
+            "verified" => "VERIFIED AT SEA – NOT A CERTIFICATE",
+            _ => "PREDICTED – NOT A CERTIFICATE",
+        };
+        assert!(svg.contains(mark), "{mark}");
+        assert!(svg.contains(&format!("Deviation card ({status})")));
+    }
+
+    /// What the book's cards were worth, in order of its entries.
+    pub async fn in_the_book(&self, from: &str) -> Vec<Value> {
+        let path = format!("/deviation-book?limit=200&from={from}");
+        let book = self.person.get(&self.ship.path(&path)).await.good();
+        let entries = book["items"].as_array().unwrap();
+        entries.iter().map(|e| e["card_status"].clone()).collect()
+    }
+
+    /// Another order for the same compass, whose plan keeps to these limits.
+    pub async fn order_again(&mut self, limits: Value) {
+        self.post("/cancel", &json!({ "text": "other limits" }))
+            .await
+            .good();
+        let mut order = self.new_order();
+        order["limits"] = limits;
+        let made = self.person.post("/work-orders", &order).await.good();
+        made["id"].as_str().unwrap().clone_into(&mut self.order);
+    }
+
+    /// The word of the first refusal of what is sent.
+    pub async fn refused(&self, rest: &str, body: &Value) -> Value {
+        let answer = self.post(rest, body).await;
+        assert_eq!(answer.problem(), "not-adjustable", "{answer:?}");
+        let refusal = answer.json()["refusals"][0].clone();
+        assert!(!refusal["cures"].as_array().unwrap().is_empty());
+        assert!(!refusal["words"].as_str().unwrap().is_empty());
+        refusal["refusal"].clone()
+    }
+
+    pub async fn photo(&self, bytes: &'static [u8]) -> Answer {
+        let path = self.path("/photos?caption=trays");
+        Answer::of(self.person.request(Method::POST, &path).body(bytes)).await
+    }
+
+    /// Where the logbook's new entry of magnetic cargo is withdrawn.
+    pub async fn load_steel(&self, from: &str) -> String {
+        let steel = json!({ "kind": "magnetic_cargo", "from": from });
+        let logbook = self.ship.path("/logbook");
+        let entry = self.person.post(&logbook, &steel).await.good();
+        format!("{logbook}/{}/withdraw", entry["id"].as_str().unwrap())
+    }
+
+    pub async fn withdraw(&self, path: &str) {
+        let reason = json!({ "reason": "another ship" });
+        self.person.post(path, &reason).await.good();
+    }
+}
+
+/// The model that an order foretells.
+pub fn foretold(order: &Value) -> Model {
+    serde_json::from_value(order["completion"]["model"].clone()).unwrap()
+}
+
+pub fn word() -> Value {
+    json!({
+        "adjuster_name": "M. Etxeberria", "adjuster_licence": "ES-CA-114",
+        "firm": "Nervión Compass", "signature": "M. Etxeberria",
+    })
+}
+
+/// What the same magnetometer reads there with correctors that stand so, where nothing
+/// was in use before.
+pub fn read_again(setting: &Value) -> Value {
+    read_again_after(&reading(), setting)
+}
+
+/// The same after another first reading.
+pub fn read_again_after(first: &Value, setting: &Value) -> Value {
+    let setting: Setting = serde_json::from_value(setting.clone()).unwrap();
+    let aboard: Binnacle = serde_json::from_value(binnacle()).unwrap();
+    let of_correctors = effect(&aboard, &setting);
+    let (magnetic_deg, earth) = at_berth();
+    let earth = earth.in_ship_axes(magnetic_deg.to_radians());
+    let part = |name: &str, axis: usize| {
+        let induced: f64 = (0..3).map(|c| of_correctors.chi[axis][c] * earth[c]).sum();
+        let added_ut = (of_correctors.b_nt[axis] + induced) / 1000.0;
+        first[name].as_f64().unwrap() + added_ut
+    };
+    let mut again = json!({
+        "at": AT, "unit": "microtesla",
+        "forward": part("forward", 0), "starboard": part("starboard", 1),
+    });
+    if first["down"].is_number() {
+        again["down"] = json!(part("down", 2));
+    }
+    again
+}
+
+/// Magnetic heading and the earth's field.
+pub fn at_berth() -> (f64, EarthField) {
+    let position = Position::new(BERTH.0, BERTH.1).unwrap();
+    let time = Timestamp::parse(AT).unwrap();
+    let earth = field(FieldModel::Igrf14, position, 0.0, time).unwrap();
+    let magnetic_deg = HEADING_DEG - earth.declination().degrees_east();
+    (magnetic_deg, earth.for_ship())
+}
+
+/// What a good magnetometer reads aboard the ship of these tests.
+pub fn reading() -> Value {
+    reading_aboard(&truth())
+}
+
+/// The same aboard a ship of this magnetism.
+pub fn reading_aboard(ship: &Model) -> Value {
+    let (magnetic_deg, earth) = at_berth();
+    let parameters = ship.parameters_over_lambda;
+    let u = parameters.field_over_lambda(magnetic_deg.to_radians(), earth);
+    let [forward, starboard] = u.map(|part| LAMBDA * part / 1000.0);
+    // A compass points along the field.
+    let compass_deg = (-starboard).atan2(forward).to_degrees().rem_euclid(360.0);
+    json!({
+        "at": AT, "lat": BERTH.0, "lon": BERTH.1, "heading_true_deg": HEADING_DEG,
+        "heading_from": "ashore", "forward": forward, "starboard": starboard,
+        "unit": "microtesla", "magnetometer": "fluxgate", "compass_deg": compass_deg,
+    })
+}
+
+pub fn hex(bytes: &[u8]) -> String {
+    let digits = |text: String, byte: &u8| text + &format!("{byte:02x}");
+    bytes.iter().fold(String::new(), digits)
+}

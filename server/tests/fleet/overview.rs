@@ -1,0 +1,106 @@
+//! The fleet at a glance.
+
+use binnacle_server_testing::Shore;
+use binnacle_server_testing::alerts::{limit, with_model};
+use binnacle_server_testing::on_both;
+use serde_json::{Value, json};
+
+on_both!(
+    a_glance_says_what_a_vessels_own_page_says,
+    a_glance_looks_ahead_to_the_next_port_call,
+    a_glance_can_be_of_one_vessel_and_is_never_of_another_operators,
+);
+
+const HOUR_S: f64 = 3_600.0;
+
+async fn a_glance_says_what_a_vessels_own_page_says(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = with_model(&shore, &ada).await;
+    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    ada.create_vessel("Kogge").await;
+
+    let fleet = ada.get("/fleet").await.good();
+    let vessels = fleet["vessels"].as_array().unwrap();
+    let names: Vec<&str> = vessels
+        .iter()
+        .map(|vessel| vessel["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["Nao", "Kogge"]);
+
+    let page = ada.get(&nao.path("")).await.good();
+    let glance = &vessels[0];
+    for field in ["id", "name", "last_upload_at", "open_alerts"] {
+        assert_eq!(glance[field], page[field], "{field}");
+    }
+    let worst = |vessel: &Value| vessel["worst"]["deviation_deg"].as_f64().unwrap();
+    assert!((worst(glance) - worst(&page)).abs() < 0.001);
+    assert_eq!(glance["position"], page["last_position"]);
+    assert_eq!(glance["model"]["version"], page["model"]["version"]);
+    assert_eq!(glance["alert"]["severity"], page["worst_alert"]);
+    assert_eq!(glance["alert"]["cause"], "deviation_over_limit");
+    // Fifty hours of samples touch five half days.
+    assert_eq!(glance["track"].as_array().unwrap().len(), 5);
+
+    let new = &vessels[1];
+    assert_eq!(new["track"], json!([]));
+    for field in [
+        "position",
+        "model",
+        "worst",
+        "alert",
+        "last_upload_at",
+        "next_call",
+    ] {
+        assert_eq!(new[field], Value::Null, "{field}");
+    }
+    shore.finish().await;
+}
+
+async fn a_glance_looks_ahead_to_the_next_port_call(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = with_model(&shore, &ada).await;
+    for (port, eta, etd) in [("FIHEL", "22T06", "22T18"), ("NLRTM", "21T08", "21T10")] {
+        let time = |hour: &str| format!("2026-11-{hour}:00:00Z");
+        let call = json!({ "port": port, "eta": time(eta), "etd": time(etd) });
+        ada.post(&nao.path("/port-calls"), &call).await.good();
+    }
+    let next = async || ada.get("/fleet").await.good()["vessels"][0]["next_call"].clone();
+    let first = next().await;
+    assert_eq!(
+        (&first["port"], &first["port_name"]),
+        (&json!("NLRTM"), &json!("Rotterdam"))
+    );
+    // As the deviation's own page has it for that place and time.
+    let there = nao.path("/deviation?lat=51.95&lon=4.13&at=2026-11-21T08:00:00Z&step_deg=5");
+    let rows = ada.get(&there).await.good()["rows"].clone();
+    let largest = |rows: &Value| {
+        let rows = rows.as_array().unwrap().iter();
+        rows.map(|row| row["deviation_deg"].as_f64().unwrap().abs())
+            .fold(0.0, f64::max)
+    };
+    let foretold = first["worst"]["deviation_deg"].as_f64().unwrap().abs();
+    assert!((foretold - largest(&rows)).abs() < 0.1, "{first}");
+
+    // Alongside she is until she sails; then the next call is the next.
+    shore.advance(2.0 * HOUR_S);
+    assert_eq!(next().await["port"], "NLRTM");
+    shore.advance(2.0 * HOUR_S);
+    assert_eq!(next().await["port"], "FIHEL");
+    shore.finish().await;
+}
+
+async fn a_glance_can_be_of_one_vessel_and_is_never_of_another_operators(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    ada.create_vessel("Nao").await;
+    let kogge = ada.create_vessel("Kogge").await;
+    let path = format!("/fleet?vessel={}", kogge["id"].as_str().unwrap());
+    let one = ada.get(&path).await.good();
+    assert_eq!(one["vessels"].as_array().unwrap().len(), 1);
+    assert_eq!(one["vessels"][0]["name"], "Kogge");
+
+    let eve = shore.admin("eve").await;
+    assert_eq!(eve.get(&path).await.good()["vessels"], json!([]));
+    assert_eq!(eve.get("/fleet").await.good()["vessels"], json!([]));
+    assert_eq!(eve.get("/fleet?vessel=x").await.problem(), "bad-request");
+    shore.finish().await;
+}

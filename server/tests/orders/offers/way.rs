@@ -1,0 +1,364 @@
+//! A firm's whole way through an order, by the example program of the documentation.
+
+use binnacle_orders::evidence;
+use binnacle_server_testing::offers::Trade;
+use binnacle_server_testing::on_both;
+use binnacle_server_testing::webhooks::{Receiver, deliver, make};
+use binnacle_server_testing::work_orders::{Job, reading};
+use binnacle_server_testing::{Answer, Person, Shore};
+use reqwest::Method;
+use serde_json::{Value, json};
+use std::path::Path;
+use std::process::Stdio;
+use tokio::io::AsyncWriteExt;
+use tokio::process::Command;
+use uuid::Uuid;
+
+on_both!(
+    the_example_client_carries_an_order_to_its_end,
+    the_example_client_asks_what_the_compass_reads_before_the_first_step,
+    the_example_client_bargains_writes_and_listens,
+    a_firm_reads_of_the_ship_only_while_the_order_is_open,
+    a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked,
+);
+
+const CLIENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/firm_client.py");
+const WHO: [&str; 4] = ["--adjuster", "M. Etxeberria", "--licence", "ES-CA-114"];
+
+/// The example program, run as a firm runs it.
+struct Client<'a> {
+    folder: &'a Path,
+    server: String,
+    token: String,
+}
+
+impl<'a> Client<'a> {
+    async fn of(shore: &Shore, person: &Person, folder: &'a Path) -> Client<'a> {
+        let token = json!({ "name": "office", "scope": "write" });
+        let made = person.post("/tokens", &token).await.good();
+        Client {
+            folder,
+            server: shore.url.clone(),
+            token: made["token"].as_str().unwrap().to_owned(),
+        }
+    }
+
+    async fn run(&self, arguments: &[&str], input: &[u8]) -> (Option<i32>, String) {
+        let mut child = Command::new("python3")
+            .arg(CLIENT)
+            .args(arguments)
+            .current_dir(self.folder)
+            .env("BINNACLE_SERVER", &self.server)
+            .env("BINNACLE_TOKEN", &self.token)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut stdin = child.stdin.take().unwrap();
+        stdin.write_all(input).await.unwrap();
+        drop(stdin);
+        let done = child.wait_with_output().await.unwrap();
+        let said = [done.stdout, done.stderr].concat();
+        (done.status.code(), String::from_utf8(said).unwrap())
+    }
+
+    async fn good(&self, arguments: &[&str]) -> String {
+        let (code, said) = self.run(arguments, b"").await;
+        assert_eq!(code, Some(0), "{arguments:?}: {said}");
+        said
+    }
+}
+
+async fn the_example_client_asks_what_the_compass_reads_before_the_first_step(shore: Shore) {
+    let (job, rosa) = offered(&shore).await;
+    let folder = tempfile::tempdir().unwrap();
+    let client = Client::of(&shore, &rosa, folder.path()).await;
+    let order = job.order.as_str();
+    client.good(&[&["accept", order], &WHO[..]].concat()).await;
+    client.good(&["on-board", order]).await;
+    let mut silent = reading();
+    silent.as_object_mut().unwrap().remove("compass_deg");
+    std::fs::write(folder.path().join("reading.json"), silent.to_string()).unwrap();
+    let adjust = ["adjust", order, "--reading", "reading.json"];
+    let (code, said) = client.run(&adjust, b"").await;
+    assert_ne!(code, Some(0), "nobody answered: {said}");
+    assert!(
+        said.contains("the compass reads, before the step"),
+        "{said}"
+    );
+    let adjusted = client.good(&["adjust", order, "--as-foretold"]).await;
+    assert!(adjusted.contains("adjusting"), "{adjusted}");
+    assert_eq!(job.seen().await["next_step"], json!(null));
+    shore.finish().await;
+}
+
+async fn openssl(folder: &Path, arguments: &[&str]) -> Vec<u8> {
+    let mut command = Command::new("openssl");
+    let done = command
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .await
+        .unwrap();
+    assert!(done.status.success(), "{done:?}");
+    done.stdout
+}
+
+/// An order offered to a firm of its own, and the firm's adjuster.
+async fn offered(shore: &Shore) -> (Job, Person) {
+    let job = Job::begin(shore).await;
+    let (firm, rosa) = job.person.adjuster(shore, "rosa").await;
+    let offer = json!({ "firms": [firm] });
+    job.post("/offer", &offer).await.good();
+    (job, rosa)
+}
+
+async fn the_example_client_carries_an_order_to_its_end(shore: Shore) {
+    let (job, rosa) = offered(&shore).await;
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let client = Client::of(&shore, &rosa, folder).await;
+    let (receiver, url) = Receiver::start().await;
+    let webhook = make(&rosa, &url, &["order.completed"]).await;
+    let order = job.order.as_str();
+
+    assert!(
+        client
+            .good(&["orders"])
+            .await
+            .contains("offered, answer by")
+    );
+    let (code, said) = client.run(&["on-board", order], b"").await;
+    assert_eq!(code, Some(2));
+    assert!(said.contains("wrong-state"), "{said}");
+    let accepted = client.good(&[&["accept", order], &WHO[..]].concat()).await;
+    assert!(accepted.contains("accepted"), "{accepted}");
+    client.good(&["on-board", order]).await;
+    std::fs::write(folder.join("reading.json"), reading().to_string()).unwrap();
+    let adjust = [
+        "adjust",
+        order,
+        "--reading",
+        "reading.json",
+        "--as-foretold",
+    ];
+    let adjusted = client.good(&adjust).await;
+    assert!(adjusted.contains("adjusting"), "{adjusted}");
+    let completed = client
+        .good(&[&["complete", order], &WHO[..]].concat())
+        .await;
+    assert!(completed.contains("adjusted"), "{completed}");
+
+    let key = ["genpkey", "-algorithm", "ED25519", "-out", "firm.pem"];
+    openssl(folder, &key).await;
+    let unknown = client.good(&["sign", order, "--key", "firm.pem"]).await;
+    assert!(unknown.contains("unknown key"), "{unknown}");
+    let register = ["register-key", "--key", "firm.pem", "--name", "Office"];
+    client.good(&register).await;
+    let signed = client.good(&["sign", order, "--key", "firm.pem"]).await;
+    assert!(signed.contains("signed with Office"), "{signed}");
+
+    client
+        .good(&["evidence", order, "--out", "evidence.zip"])
+        .await;
+    let theirs = evidence::verify(&std::fs::read(folder.join("evidence.zip")).unwrap());
+    assert!(theirs.problems.is_empty(), "{theirs:?}");
+    let facts = theirs.facts.join("\n");
+    for fact in [
+        "no signature covers it: rosa had registered it as \"Office\"",
+        "no signature covers it: no firm had registered it",
+        // The list of the firms that are asked.
+        "entries 2 are withheld: what they say cannot be looked into",
+    ] {
+        assert!(facts.contains(fact), "{fact}: {facts}");
+    }
+    let ours = evidence::verify(&job.evidence().await);
+    assert!(ours.problems.is_empty(), "{ours:?}");
+    assert!(!ours.facts.join("\n").contains("withheld"), "{ours:?}");
+    let seen = job.seen().await;
+    assert_eq!(seen["completion"]["firm"], "rosa");
+    assert_eq!(seen["signatures"][1]["key"]["firm_name"], "rosa");
+
+    deliver(&shore).await;
+    let (header, body) = receiver.got().pop().unwrap();
+    let now_s = shore.app.clock.now().micros() / 1_000_000;
+    let (secret, now_s) = (webhook["secret"].as_str().unwrap(), now_s.to_string());
+    let check = [
+        "check-webhook",
+        "--secret",
+        secret,
+        "--header",
+        &header,
+        "--now",
+        &now_s,
+    ];
+    let (code, said) = client.run(&check, body.as_bytes()).await;
+    assert_eq!((code, said.trim()), (Some(0), "from Binnacle"));
+    let forged = body.replace("adjusted", "verified");
+    assert_eq!(client.run(&check, forged.as_bytes()).await.0, Some(1));
+    shore.finish().await;
+}
+
+async fn the_example_client_bargains_writes_and_listens(shore: Shore) {
+    let trade = Trade::planned(&shore, 1).await;
+    let (firm, rosa) = &trade.firms[0];
+    let terms = json!({ "fee_eur": 1800, "working_days": ["Sun"] });
+    let path = format!("/firms/{firm}/terms");
+    let put = trade.ada.request(Method::PUT, &path).json(&terms);
+    Answer::of(put).await.good();
+    trade
+        .post(&trade.ada, "/offer", &trade.offer())
+        .await
+        .good();
+    let folder = tempfile::tempdir().unwrap();
+    let client = Client::of(&shore, rosa, folder.path()).await;
+    let order = trade.order.as_str();
+    let offered = client.good(&["order", order]).await;
+    assert!(offered.contains("offered at 1800.00 euros"), "{offered}");
+    let (code, said) = client.run(&["propose", order], b"").await;
+    assert_eq!(code, Some(2), "{said}");
+    let fee = ["propose", order, "--fee", "2100", "--text", "Two teams."];
+    assert!(client.good(&fee).await.contains("proposed"));
+    client
+        .good(&["say", order, "--text", "Is there a crane?"])
+        .await;
+    let yes = json!({ "text": "Done." });
+    trade.post(&trade.ada, "/messages", &yes).await;
+    let read = client.good(&["messages", order]).await;
+    assert!(read.contains("Is there a crane?"), "{read}");
+    assert!(read.contains("Done."), "{read}");
+    trade.post(&trade.ada, "/accept", &json!({})).await.good();
+    let agreed = client.good(&["order", order]).await;
+    assert!(agreed.contains("agreed at 2100.00 euros"), "{agreed}");
+    // All that there was since before the first: offer, proposal, both messages, agreement.
+    let none = Uuid::nil().to_string();
+    let heard = client
+        .good(&["events", "--last", &none, "--count", "5"])
+        .await;
+    let of_order = format!("work_order  order {order}");
+    assert_eq!(heard.matches(&of_order).count(), 5, "{heard}");
+    shore.finish().await;
+}
+
+async fn a_firm_reads_of_the_ship_only_while_the_order_is_open(shore: Shore) {
+    let (job, rosa) = offered(&shore).await;
+    let (_, other) = job.person.adjuster(&shore, "other").await;
+    let paths = ["/model", "/binnacle"].map(|rest| job.path(rest));
+    let vessel = [
+        job.ship.path("/model"),
+        job.ship
+            .path(&format!("/compasses/{}/binnacle", job.compass)),
+    ];
+    for (path, vessel) in paths.iter().zip(&vessel) {
+        let theirs = rosa.get(path).await.good();
+        assert_eq!(theirs, job.person.get(vessel).await.good());
+        assert_eq!(other.get(path).await.problem(), "not-found");
+    }
+    let post = |rest: &str, body: Value| {
+        let request = rosa.request(Method::POST, &job.path(rest)).json(&body);
+        Answer::of(request)
+    };
+    let early = post("/berth-reading", reading()).await;
+    assert_eq!(early.problem(), "wrong-state");
+    post("/accept", json!({})).await.good();
+    let early = post("/berth-reading", reading()).await;
+    assert_eq!(early.problem(), "wrong-state");
+    post("/on-board", json!({})).await.good();
+    post("/berth-reading", reading()).await.good();
+    assert!(rosa.get(&job.path("/plan")).await.good()["plans"].is_array());
+    let planned = post("/plan", json!({})).await.good();
+    assert!(planned["plan"].is_object());
+    job.post("/cancel", &json!({ "text": "sold" })).await.good();
+    for path in &paths {
+        assert_eq!(rosa.get(path).await.problem(), "not-found", "{path}");
+    }
+    assert_eq!(rosa.get(&job.path("/plan")).await.problem(), "wrong-state");
+    let order = rosa.get(&job.path("")).await.good();
+    assert_eq!(
+        (&order["state"], &order["plan"]),
+        (&json!("cancelled"), &Value::Null)
+    );
+    assert!(job.seen().await["plan"].is_object());
+    shore.finish().await;
+}
+
+async fn a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let (firm, rosa) = ada.adjuster(&shore, "rosa").await;
+    let (others, other) = ada.adjuster(&shore, "other").await;
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    openssl(
+        folder,
+        &["genpkey", "-algorithm", "ED25519", "-out", "firm.pem"],
+    )
+    .await;
+    let key = openssl(
+        folder,
+        &["pkey", "-in", "firm.pem", "-pubout", "-outform", "DER"],
+    )
+    .await;
+    let hex = |octets: &[u8]| {
+        let digits = |text: String, octet: &u8| text + &format!("{octet:02x}");
+        octets.iter().fold(String::new(), digits)
+    };
+    let public_key = hex(&key[key.len() - 32..]);
+    let proof = async |text: String| {
+        std::fs::write(folder.join("text"), text).unwrap();
+        let sign = [
+            "pkeyutl", "-sign", "-rawin", "-inkey", "firm.pem", "-in", "text",
+        ];
+        hex(&openssl(folder, &sign).await)
+    };
+    let new = |public_key: &str, proof: &str| json!({ "name": "Office", "public_key": public_key, "proof": proof });
+    let mine = proof(format!("binnacle firm key {firm}")).await;
+    let path = format!("/firms/{firm}/keys");
+    let theirs = format!("/firms/{others}/keys");
+    // Another firm cannot pass the key off as its own.
+    let stolen = other.post(&theirs, &new(&public_key, &mine)).await;
+    assert_eq!(stolen.problem(), "invalid");
+    for bad in [
+        new("00", &mine),
+        new(&public_key, "00"),
+        new(&"0".repeat(64), &mine),
+        // Of small order: this signature fits every text.
+        new(
+            &format!("01{}", "00".repeat(31)),
+            &format!("01{}", "00".repeat(63)),
+        ),
+    ] {
+        assert_eq!(rosa.post(&path, &bad).await.problem(), "invalid");
+    }
+    let made = rosa.post(&path, &new(&public_key, &mine)).await;
+    assert_eq!(made.status, 201, "{made:?}");
+    let again = rosa.post(&path, &new(&public_key, &mine)).await;
+    assert_eq!(again.problem(), "wrong-state");
+    for who in [&ada, &other] {
+        let foreign = who.post(&path, &new(&public_key, &mine)).await;
+        assert_eq!(foreign.problem(), "not-found");
+    }
+    assert_eq!(other.get(&path).await.problem(), "not-found");
+    let seen = ada.get(&path).await.good();
+    assert_eq!(seen["items"][0]["public_key"], public_key.as_str());
+    let id = made.good()["id"].clone();
+    let revoke = format!("{path}/{}", id.as_str().unwrap());
+    let foreign = Answer::of(other.request(Method::DELETE, &revoke)).await;
+    assert_eq!(foreign.problem(), "not-found");
+    assert_eq!(
+        Answer::of(rosa.request(Method::DELETE, &revoke))
+            .await
+            .status,
+        204
+    );
+    assert_eq!(
+        Answer::of(rosa.request(Method::DELETE, &revoke))
+            .await
+            .status,
+        404
+    );
+    let seen = rosa.get(&path).await.good();
+    assert!(seen["items"][0]["revoked_at"].is_string(), "{seen}");
+    assert_eq!(rosa.post(&path, &new(&public_key, &mine)).await.status, 201);
+    shore.finish().await;
+}

@@ -1,0 +1,89 @@
+//! What keeps an order within its limits, and its steps at where the compass stands.
+
+use binnacle_server_testing::Shore;
+use binnacle_server_testing::on_both;
+use binnacle_server_testing::work_orders::{Job, reading, word};
+use serde_json::{Value, json};
+
+on_both!(
+    a_step_starts_from_the_compass_as_it_was_last_read,
+    no_plan_beyond_the_limits_is_offered,
+    what_was_planned_beyond_the_limits_is_not_completed,
+);
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+}
+
+fn turned(from_deg: f64, to_deg: f64) -> f64 {
+    (to_deg - from_deg + 540.0).rem_euclid(360.0) - 180.0
+}
+
+async fn a_step_starts_from_the_compass_as_it_was_last_read(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    job.post("/berth-reading", &reading()).await.good();
+    let order = job.post("/plan", &json!({})).await.good();
+    let step = &order["next_step"];
+    let read_deg = (number(&step["expected_compass_deg"]) + 0.4).rem_euclid(360.0);
+    let stand = json!({ "setting": step["setting_after"], "compass_deg": read_deg });
+    let order = job.post("/corrector-settings", &stand).await.good();
+    assert_eq!(order["compass_deg"], read_deg);
+    let offer = job.person.get(&job.path("/plan")).await.good();
+    let next = &offer["plans"][0]["steps"][0];
+    let from_here = turned(read_deg, number(&next["expected_compass_deg"]));
+    assert!(
+        turned(number(&next["change_deg"]), from_here).abs() < 1e-6,
+        "{next}"
+    );
+    // Moved and not read: nobody knows what the compass reads now.
+    let stand = json!({ "setting": {} });
+    let order = job.post("/corrector-settings", &stand).await.good();
+    assert_eq!(order["compass_deg"], Value::Null);
+    let order = job.post("/plan", &json!({})).await.good();
+    let step = &order["next_step"];
+    let after = json!({ "after_deg": step["expected_compass_deg"] });
+    let path = format!("/steps/{}", step["number"]);
+    let refused = job.post(&path, &after).await;
+    assert_eq!(refused.problem(), "invalid");
+    assert!(refused.text.contains("before_deg"), "{refused:?}");
+    shore.finish().await;
+}
+
+async fn no_plan_beyond_the_limits_is_offered(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    let order = job.post("/berth-reading", &reading()).await.good();
+    let limits = &order["limits"];
+    let offer = job.person.get(&job.path("/plan")).await.good();
+    let plans = offer["plans"].as_array().unwrap();
+    for table in plans
+        .iter()
+        .flat_map(|plan| plan["after"].as_array().unwrap())
+    {
+        let (reach, band) = (&table["reach_deg"], &table["widest_band_deg"]);
+        assert!(number(reach) <= number(&limits["residual_deg"]), "{table}");
+        assert!(number(band) <= number(&limits["band_deg"]), "{table}");
+    }
+    let next = json!({ "plan": plans.len() + 1 });
+    assert_eq!(job.post("/plan", &next).await.problem(), "invalid");
+    shore.finish().await;
+}
+
+async fn what_was_planned_beyond_the_limits_is_not_completed(shore: Shore) {
+    let mut job = Job::begin(&shore).await;
+    job.order_again(json!({ "residual_deg": 2.9 })).await;
+    job.adjust().await;
+    // As if it had been planned when plans beyond the limits were still offered.
+    shore
+        .sql(
+            "UPDATE work_order_entries \
+             SET line = REPLACE(line, '\"residual_deg\":2.9', '\"residual_deg\":0.5')",
+        )
+        .await;
+    let refused = job.post("/complete", &word()).await;
+    assert_eq!(refused.problem(), "not-adjustable", "{refused:?}");
+    let refusal = refused.json()["refusals"][0].clone();
+    assert_eq!(refusal["refusal"], "residual_too_large");
+    assert!(!refusal["cures"].as_array().unwrap().is_empty());
+    assert_eq!(job.seen().await["state"], "adjusting");
+    shore.finish().await;
+}

@@ -1,0 +1,131 @@
+//! A step that the compass shows otherwise, and what becomes of what was learnt from it.
+
+use binnacle_compass::model::Model;
+use binnacle_server_testing::on_both;
+use binnacle_server_testing::work_orders::{Job, read_again_after, reading_aboard};
+use binnacle_server_testing::{Shore, truth};
+use serde_json::{Value, json};
+
+on_both!(
+    a_tray_in_another_hole_leaves_no_stronger_magnets_behind,
+    a_tray_that_was_put_right_leaves_no_stronger_magnets_behind,
+);
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+}
+
+/// A ship that wants magnets near the card, where holes tell.
+fn ship() -> Model {
+    let mut ship = truth();
+    (
+        ship.parameters_over_lambda.bx_nt,
+        ship.parameters_over_lambda.by_nt,
+    ) = (3_500.0, -3_000.0);
+    ship
+}
+
+/// What the compass reads at the berth with correctors that stand so, but for its needles.
+fn shown_deg(setting: &Value) -> f64 {
+    let field = read_again_after(&reading_aboard(&ship()), setting);
+    let [forward, starboard] = ["forward", "starboard"].map(|part| number(&field[part]));
+    (-starboard).atan2(forward).to_degrees()
+}
+
+fn turn_deg(from: &Value, to: &Value) -> f64 {
+    (shown_deg(to) - shown_deg(from) + 540.0).rem_euclid(360.0) - 180.0
+}
+
+/// The same with the step's tray so many holes off, with its hole; none where it cannot be.
+fn miscounted(step: &Value, by: i64) -> Option<(u64, Value)> {
+    let to = &step["to"];
+    let hole = u64::try_from(to["hole"].as_i64()? + by).ok()?;
+    let mut setting = step["setting_after"].clone();
+    let axis = step["corrector"].as_str()?.to_owned();
+    let trays = setting[axis.as_str()].as_array_mut()?;
+    if trays.iter().any(|tray| tray["hole"] == hole) {
+        return None;
+    }
+    let mut trays = trays.iter_mut();
+    trays.find(|tray| tray["hole"] == to["hole"])?["hole"] = json!(hole);
+    Some((hole, setting))
+}
+
+/// A job whose last step went three holes off, with the step, how the correctors stand, and
+/// what the compass reads.
+async fn gone_wrong(shore: &Shore) -> (Job, Value, Value, f64) {
+    let person = shore.admin("ada").await;
+    let job = Job::aboard(shore, person, &ship()).await;
+    let read = reading_aboard(&ship());
+    job.post("/berth-reading", &read).await.good();
+    let mut order = job.post("/plan", &json!({})).await.good();
+    loop {
+        let step = order["next_step"].clone();
+        assert!(step.is_object(), "no step shows three holes: {order}");
+        let path = format!("/steps/{}", step["number"]);
+        let before_deg = number(&order["compass_deg"]);
+        let shows = |(hole, setting): (u64, Value)| {
+            let turned_deg = turn_deg(&step["setting_before"], &setting);
+            let off_deg = (turned_deg - number(&step["change_deg"])).abs();
+            let share = turned_deg / number(&step["change_deg"]);
+            let is_shown = off_deg > 1.3 * number(&step["tolerance_deg"]);
+            (is_shown && (0.4..1.9).contains(&share)).then_some((hole, setting, turned_deg))
+        };
+        let mut off = [-3, 3].into_iter().filter_map(|by| miscounted(&step, by));
+        if let Some((hole, setting, turned_deg)) = off.find_map(shows) {
+            let compass_deg = (before_deg + turned_deg).rem_euclid(360.0);
+            let read = json!({ "after_deg": compass_deg });
+            let order = job.post(&path, &read).await.good();
+            let said = &order["last_step"];
+            assert_eq!(said["verdict"], "other_strength", "{said}");
+            let words = said["words"].as_str().unwrap();
+            assert!(
+                words.contains(&format!("or stands at hole {hole}")),
+                "{words}"
+            );
+            return (job, step, setting, compass_deg);
+        }
+        let after = json!({ "after_deg": step["expected_compass_deg"] });
+        order = job.post(&path, &after).await.good();
+    }
+}
+
+/// Follows a new plan: the magnets do what the catalogue has of them.
+async fn goes_on(job: &Job, said: &Value) {
+    let order = job.post("/corrector-settings", said).await.good();
+    assert_eq!(order["last_step"], Value::Null);
+    let mut order = job.post("/plan", &json!({})).await.good();
+    while let Some(step) = order["next_step"].as_object() {
+        let turned_deg = turn_deg(&step["setting_before"], &step["setting_after"]);
+        let after_deg = (number(&order["compass_deg"]) + turned_deg).rem_euclid(360.0);
+        let path = format!("/steps/{}", step["number"]);
+        let read = json!({ "after_deg": after_deg });
+        order = job.post(&path, &read).await.good();
+        let verdict = &order["last_step"]["verdict"];
+        assert!(
+            *verdict == "confirmed" || *verdict == "not_seen",
+            "{}",
+            order["last_step"]
+        );
+    }
+}
+
+async fn a_tray_in_another_hole_leaves_no_stronger_magnets_behind(shore: Shore) {
+    let (job, _, setting, compass_deg) = gone_wrong(&shore).await;
+    let said = json!({
+        "setting": setting, "compass_deg": compass_deg, "note": "counted from the top",
+    });
+    goes_on(&job, &said).await;
+    shore.finish().await;
+}
+
+async fn a_tray_that_was_put_right_leaves_no_stronger_magnets_behind(shore: Shore) {
+    let (job, step, setting, compass_deg) = gone_wrong(&shore).await;
+    let as_planned = &step["setting_after"];
+    let compass_deg = compass_deg + turn_deg(&setting, as_planned);
+    let said = json!({
+        "setting": as_planned, "compass_deg": compass_deg.rem_euclid(360.0),
+    });
+    goes_on(&job, &said).await;
+    shore.finish().await;
+}

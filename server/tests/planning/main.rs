@@ -1,0 +1,10 @@
+//! The server's schedule as others see it: over real HTTP, on both databases.
+
+#![allow(clippy::unwrap_used, reason = "these are tests")]
+
+mod calendar;
+mod notifications;
+mod out_of_service;
+mod port_calls;
+mod reports;
+mod schedule;

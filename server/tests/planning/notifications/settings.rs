@@ -1,0 +1,81 @@
+//! What a person says of how to be told.
+
+use super::say;
+use binnacle_server_testing::offers::Trade;
+use binnacle_server_testing::on_both;
+use binnacle_server_testing::{Answer, Shore};
+use reqwest::Method;
+use serde_json::json;
+
+on_both!(
+    each_is_told_in_the_usual_way_until_they_say_otherwise,
+    settings_that_make_no_sense_are_refused,
+    a_token_that_may_only_read_changes_no_settings,
+);
+
+async fn each_is_told_in_the_usual_way_until_they_say_otherwise(shore: Shore) {
+    let trade = Trade::planned(&shore, 1).await;
+    let usual = trade.ada.get("/me/notifications").await.good();
+    assert_eq!(usual["settings"]["time_zone"], "UTC");
+    assert_eq!(usual["settings"]["quiet_hours"], json!(null));
+    assert_eq!(usual["ways"]["answered"], "mail");
+    assert_eq!(usual["ways"]["due_soon"], "digest");
+    assert_eq!(usual["ways"]["alert"], "list");
+    assert_eq!(usual["ways"]["offered"], json!(null));
+    assert_eq!(
+        (&usual["address"], &usual["sending"]),
+        (&json!("ada@example.com"), &json!(true))
+    );
+    assert_eq!(usual["next_digest_at"], "2026-11-22T07:00:00Z");
+    let viewer = trade.ada.viewer(&shore).await;
+    let theirs = viewer.get("/me/notifications").await.good();
+    assert_eq!(theirs["ways"]["answered"], "list");
+    let firms = trade.firms[0].1.get("/me/notifications").await.good();
+    assert_eq!(firms["ways"]["offered"], "mail");
+    assert_eq!(firms["ways"]["alert"], json!(null));
+    let wanted = json!({
+        "time_zone": "Pacific/Auckland", "ways": { "answered": "off" },
+        "quiet_hours": { "from": "20:00", "to": "06:00" },
+        "digest": { "every": "week", "on": "friday", "at": "17:30" },
+    });
+    say(&viewer, &wanted).await.good();
+    let said = viewer.get("/me/notifications").await.good();
+    assert_eq!(said["settings"], wanted);
+    assert_eq!(said["ways"]["answered"], "off");
+    assert_eq!(said["next_digest_at"], "2026-11-27T04:30:00Z");
+    shore.finish().await;
+}
+
+async fn settings_that_make_no_sense_are_refused(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    for bad in [
+        json!({ "time_zone": "Europe/Atlantis" }),
+        json!({ "quiet_hours": { "from": "25:00", "to": "06:00" } }),
+        json!({ "quiet_hours": { "from": "22:00", "to": "22:00" } }),
+        json!({ "quiet_hours": { "from": "22:00", "to": "08:00" } }),
+        json!({ "digest": { "every": "minute", "at": "07:00" } }),
+        json!({ "ways": { "offered": "mail" } }),
+        json!({ "ways": { "answered": "pigeon" } }),
+        json!({ "volume": 11 }),
+    ] {
+        assert_eq!(say(&ada, &bad).await.problem(), "invalid", "{bad}");
+    }
+    let usual = ada.get("/me/notifications").await.good();
+    assert_eq!(usual["settings"]["time_zone"], "UTC");
+    let root = ada.platform_admin(&shore).await;
+    assert_eq!(root.get("/me/notifications").await.problem(), "forbidden");
+    shore.finish().await;
+}
+
+async fn a_token_that_may_only_read_changes_no_settings(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let token = json!({ "name": "ERP", "scope": "read" });
+    let token = ada.post("/tokens", &token).await.good()["token"].clone();
+    let url = format!("{}/api/v1/me/notifications", shore.url);
+    for (method, status) in [(Method::GET, 200), (Method::PUT, 403)] {
+        let request = shore.http.request(method, &url).json(&json!({}));
+        let answer = Answer::of(request.bearer_auth(token.as_str().unwrap())).await;
+        assert_eq!(answer.status, status, "{answer:?}");
+    }
+    shore.finish().await;
+}

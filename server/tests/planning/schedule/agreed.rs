@@ -1,0 +1,71 @@
+//! A job that a firm has agreed to.
+
+use super::offers::{firm, offer};
+use super::{due_vessel, enter, solve};
+use binnacle_server_testing::patch;
+use binnacle_server_testing::port_calls;
+use binnacle_server_testing::{Answer, Person, Shore};
+use serde_json::{Value, json};
+
+/// A ship in Rotterdam from the fourteenth to the fifteenth, and a firm that has the job.
+pub(super) struct Agreed {
+    pub(super) ada: Person,
+    pub(super) rosa: Person,
+    pub(super) firm: String,
+    pub(super) nao: Value,
+    /// Paths of the order and of the call.
+    pub(super) order: String,
+    pub(super) call: String,
+}
+
+impl Agreed {
+    pub(super) async fn new(shore: &Shore) -> Agreed {
+        let ada = shore.admin("ada").await;
+        let nao = due_vessel(&ada, "Nao").await;
+        let call = enter(&ada, &nao, "NLRTM", 14).await;
+        let (firm, rosa) = firm(shore, &ada, "rosa").await;
+        let plan = solve(&ada).await;
+        let order = offer(&ada, &plan, &nao).await;
+        rosa.post(&format!("{order}/accept"), &json!({}))
+            .await
+            .good();
+        let id = call["id"].as_str().unwrap();
+        let call = format!("{}/{id}", port_calls::path(&nao));
+        Agreed {
+            ada,
+            rosa,
+            firm,
+            nao,
+            order,
+            call,
+        }
+    }
+
+    pub(super) async fn moves(&self, eta: &str, etd: &str) {
+        let times = json!({ "eta": eta, "etd": etd });
+        patch(&self.ada, &self.call, &times).await.good();
+    }
+
+    pub(super) async fn seen(&self) -> Value {
+        self.ada.get(&self.order).await.good()
+    }
+
+    pub(super) async fn retime(&self, at: &str) -> Answer {
+        let asked = json!({ "terms": { "planned_at": at }, "answer_within_hours": 1,
+                            "text": "She is late." });
+        self.ada
+            .post(&format!("{}/retime", self.order), &asked)
+            .await
+    }
+
+    pub(super) async fn answer(&self, who: &Person, yes: &str) -> Answer {
+        who.post(&format!("{}/retime/{yes}", self.order), &json!({}))
+            .await
+    }
+}
+
+/// What the two sides wrote to each other.
+pub(super) async fn messages(person: &Person, order: &str) -> Vec<Value> {
+    let list = person.get(&format!("{order}/messages")).await.good();
+    list["items"].as_array().unwrap().clone()
+}

@@ -1,0 +1,214 @@
+//! What a firm is paid: offered as the schedule has it, proposed otherwise, agreed on.
+
+use super::offers::{firm, offer};
+use super::{due_vessel, enter, put, solve, terms};
+use binnacle_server_testing::on_both;
+use binnacle_server_testing::patch;
+use binnacle_server_testing::port_calls;
+use binnacle_server_testing::webhooks::{Receiver, deliver, make};
+use binnacle_server_testing::{Person, Shore};
+use serde_json::{Value, json};
+
+on_both!(
+    an_offer_carries_the_fee_that_the_schedule_saw,
+    a_firm_proposes_another_fee_alone_and_the_operator_agrees,
+    a_fee_that_is_not_agreed_to_leaves_the_next_firm_its_own,
+    a_fee_alone_leaves_what_became_of_the_call,
+    who_answers_for_another_firm_is_refused,
+);
+
+/// A ship whose job is offered to one firm of two; the order's path.
+async fn asked(shore: &Shore) -> (Person, Value, Person, String) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 14).await;
+    let (_, rosa) = firm(shore, &ada, "rosa").await;
+    let plan = solve(&ada).await;
+    let order = offer(&ada, &plan, &nao).await;
+    (ada, nao, rosa, order)
+}
+
+async fn propose(who: &Person, order: &str, terms: &Value) -> Value {
+    let path = format!("{order}/propose");
+    who.post(&path, &json!({ "terms": terms })).await.good()
+}
+
+async fn yes(who: &Person, order: &str) -> Value {
+    who.post(&format!("{order}/accept"), &json!({}))
+        .await
+        .good()
+}
+
+async fn an_offer_carries_the_fee_that_the_schedule_saw(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    let path = format!("/vessels/{}/compasses", nao["id"].as_str().unwrap());
+    let second = json!({ "name": "Steering", "role": "steering" });
+    ada.post(&path, &second).await.good();
+    enter(&ada, &nao, "NLRTM", 14).await;
+    let (id, rosa) = firm(&shore, &ada, "rosa").await;
+    let mut dearer = terms();
+    dearer["extra_compass_eur"] = json!(400.5);
+    put(&ada, &format!("/firms/{id}/terms"), &dearer)
+        .await
+        .good();
+    let plan = solve(&ada).await;
+    let job = &plan["jobs"][0];
+    assert_eq!(job["fee_eur"], 2200.5, "{job}");
+    let new = json!({ "version": plan["version"],
+                      "compass_id": job["compasses"][0]["compass_id"] });
+    let offered = ada.post("/schedule/offer", &new).await.json();
+    let mut fees = Vec::new();
+    for order in offered["orders"].as_array().unwrap() {
+        let path = format!("/work-orders/{}", order["order_id"].as_str().unwrap());
+        let seen = rosa.get(&path).await.good();
+        assert_eq!(seen["fee_eur"], Value::Null, "nothing is agreed on yet");
+        fees.push(seen["offers"][0]["fee_eur"].as_f64().unwrap());
+        // Whoever says yes has it at that.
+        let taken = yes(&rosa, &path).await;
+        assert_eq!(taken["fee_eur"], seen["offers"][0]["fee_eur"]);
+        let log = ada.get(&format!("{path}/entries")).await.good();
+        let said = log["items"].as_array().unwrap().last().unwrap();
+        assert_eq!(said["entry"]["kind"], "accepted");
+        assert_eq!(said["entry"]["content"]["fee_eur"], taken["fee_eur"]);
+    }
+    assert_eq!(fees, [1800.0, 400.5]);
+    // What is offered by hand is offered at the fee for one compass.
+    let pinta = due_vessel(&ada, "Pinta").await;
+    let by_hand = json!({ "vessel_id": pinta["id"], "compass_id": super::compass_of(&pinta),
+                          "port": "BEANR", "planned_at": "2026-12-01T08:00:00Z",
+                          "offer": { "firms": [id] } });
+    let made = ada.post("/work-orders", &by_hand).await.good();
+    assert_eq!(made["offers"][0]["fee_eur"], 1800.0, "{made}");
+    shore.finish().await;
+}
+
+async fn a_firm_proposes_another_fee_alone_and_the_operator_agrees(shore: Shore) {
+    let (ada, _, rosa, order) = asked(&shore).await;
+    let (receiver, url) = Receiver::start().await;
+    make(&ada, &url, &["order.answered"]).await;
+    let before = ada.get(&order).await.good();
+    let nothing = json!({ "terms": {}, "text": "Hm." });
+    let refused = rosa.post(&format!("{order}/propose"), &nothing).await;
+    assert_eq!(refused.problem(), "invalid");
+    for fee in [-1.0, 1e7] {
+        let wrong = json!({ "terms": { "fee_eur": fee } });
+        let refused = rosa.post(&format!("{order}/propose"), &wrong).await;
+        assert_eq!(refused.problem(), "invalid", "{fee}");
+    }
+    let proposed = propose(&rosa, &order, &json!({ "fee_eur": 2100 })).await;
+    assert_eq!(proposed["state"], "proposed");
+    let seen = ada.get(&order).await.good();
+    assert_eq!(seen["offers"][0]["fee_eur"], 1800.0);
+    let asked = json!({ "planned_at": before["planned_at"], "fee_eur": 2100.0 });
+    assert_eq!(seen["offers"][0]["terms"], asked);
+    let told = ada.get("/notifications?kind=answered").await.good();
+    assert!(told.to_string().contains("for 2100.00 euros"), "{told}");
+    let agreed = yes(&ada, &order).await;
+    assert_eq!(agreed["state"], "accepted");
+    for (field, is) in [
+        ("fee_eur", &json!(2100.0)),
+        ("planned_at", &before["planned_at"]),
+        ("berth", &before["berth"]),
+        ("firm", &json!("rosa")),
+    ] {
+        assert_eq!(&agreed[field], is, "{field}");
+    }
+    deliver(&shore).await;
+    let bodies: Vec<Value> = receiver
+        .got()
+        .iter()
+        .map(|(_, body)| serde_json::from_str(body).unwrap())
+        .collect();
+    assert_eq!(bodies[0]["entry"]["terms"], asked);
+    assert_eq!(bodies[1]["entry"]["kind"], "proposal_accepted");
+    assert_eq!(bodies[1]["entry"]["terms"]["fee_eur"], 2100.0);
+    shore.finish().await;
+}
+
+async fn a_fee_that_is_not_agreed_to_leaves_the_next_firm_its_own(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 14).await;
+    let (_, rosa) = firm(&shore, &ada, "rosa").await;
+    let (second, juan) = firm(&shore, &ada, "juan").await;
+    let mut dearer = terms();
+    dearer["fee_eur"] = json!(1950);
+    put(&ada, &format!("/firms/{second}/terms"), &dearer)
+        .await
+        .good();
+    let plan = solve(&ada).await;
+    let new = json!({ "version": plan["version"], "compass_id": super::compass_of(&nao),
+                      "then": [second] });
+    let offered = ada.post("/schedule/offer", &new).await.json();
+    let order = format!(
+        "/work-orders/{}",
+        offered["orders"][0]["order_id"].as_str().unwrap()
+    );
+    propose(&rosa, &order, &json!({ "fee_eur": 2500 })).await;
+    let no = ada.post(&format!("{order}/decline"), &json!({})).await;
+    assert_eq!(no.status, 204, "{no:?}");
+    let seen = juan.get(&order).await.good();
+    assert_eq!(seen["offers"][0]["fee_eur"], 1950.0);
+    assert!(!seen.to_string().contains("2500"), "{seen}");
+    // A firm that asks for another time only has it at the fee that was offered.
+    let later = json!({ "planned_at": "2026-12-15T10:00:00Z" });
+    propose(&juan, &order, &later).await;
+    let agreed = yes(&ada, &order).await;
+    assert_eq!(agreed["fee_eur"], 1950.0);
+    assert_eq!(agreed["planned_at"], "2026-12-15T10:00:00Z");
+    shore.finish().await;
+}
+
+async fn a_fee_alone_leaves_what_became_of_the_call(shore: Shore) {
+    let (ada, nao, rosa, order) = asked(&shore).await;
+    let calls = ada.get(&port_calls::path(&nao)).await.good();
+    let call = calls["items"][0]["id"].as_str().unwrap();
+    let call = format!("{}/{call}", port_calls::path(&nao));
+    let late = json!({ "eta": "2026-12-17T06:00:00Z", "etd": "2026-12-18T18:00:00Z" });
+    patch(&ada, &call, &late).await.good();
+    propose(&rosa, &order, &json!({ "fee_eur": 2100 })).await;
+    let agreed = yes(&ada, &order).await;
+    assert_eq!(
+        agreed["call_fit"], "needs_new_day",
+        "nobody agreed on another day"
+    );
+    assert_eq!(agreed["fee_eur"], 2100.0);
+    // Another time leaves the fee.
+    let later = json!({ "terms": { "planned_at": "2026-12-17T08:00:00Z" } });
+    ada.post(&format!("{order}/retime"), &later).await.good();
+    let moved = yes(&rosa, &format!("{order}/retime")).await;
+    assert_eq!(moved["call_fit"], Value::Null);
+    assert_eq!(moved["fee_eur"], 2100.0);
+    shore.finish().await;
+}
+
+async fn who_answers_for_another_firm_is_refused(shore: Shore) {
+    let (ada, _, rosa, order) = asked(&shore).await;
+    let (other, _) = firm(&shore, &ada, "juan").await;
+    let theirs = json!({ "firm_id": other });
+    let message = json!({ "firm_id": other, "text": "Hello." });
+    let bodies = [
+        ("accept", &theirs),
+        ("decline", &theirs),
+        ("messages", &message),
+    ];
+    for (rest, body) in bodies {
+        let refused = rosa.post(&format!("{order}/{rest}"), body).await;
+        assert_eq!(refused.problem(), "invalid", "{rest}");
+        assert!(refused.text.contains("is not your firm"), "{refused:?}");
+    }
+    assert_eq!(ada.get(&order).await.good()["state"], "offered");
+    yes(&rosa, &order).await;
+    let later = json!({ "terms": { "planned_at": "2026-12-15T10:00:00Z" } });
+    ada.post(&format!("{order}/retime"), &later).await.good();
+    for (who, rest) in [
+        (&rosa, "retime/accept"),
+        (&rosa, "retime/decline"),
+        (&ada, "retime/decline"),
+    ] {
+        let refused = who.post(&format!("{order}/{rest}"), &theirs).await;
+        assert_eq!(refused.problem(), "invalid", "{rest}");
+    }
+    shore.finish().await;
+}

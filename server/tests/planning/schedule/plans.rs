@@ -1,0 +1,319 @@
+//! Plans: made, kept, and made anew when what they rest on changes.
+
+use super::{compass_of, due_vessel, enter, first, follow, planned_firm, put, solve};
+use binnacle_planning::schedule::{self, PlanSlots};
+use binnacle_platform::db::Pools;
+use binnacle_schedule::{input, plan};
+use binnacle_server_testing::on_both;
+use binnacle_server_testing::port_calls;
+use binnacle_server_testing::{Person, Shore};
+use serde_json::{Value, json};
+
+on_both!(
+    a_plan_names_who_goes_where_and_is_made_again_from_its_input,
+    what_cannot_be_done_says_why_and_what_would_help,
+    a_moved_eta_makes_another_plan_that_says_what_it_costs,
+    a_storm_of_changes_makes_one_plan_after_half_a_minute,
+    a_plan_is_made_anew_each_day,
+    an_operator_without_firms_gets_no_plan_by_itself,
+    a_compass_with_an_order_under_way_is_beside_the_plan,
+    a_fleet_that_is_too_large_to_be_planned_is_told_so,
+    settings_weigh_and_are_checked,
+    schedules_are_an_operators_own,
+);
+
+async fn current(person: &Person) -> Value {
+    person.get("/schedule").await.good()
+}
+
+async fn a_plan_names_who_goes_where_and_is_made_again_from_its_input(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let none = json!({ "plan": null, "outdated_since": null, "problem": null });
+    assert_eq!(current(&ada).await, none);
+    assert_eq!(ada.get("/schedule/input").await.problem(), "not-found");
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 8).await;
+    planned_firm(&shore, &ada, "Maas Compass").await;
+    let outdated = current(&ada).await["outdated_since"].clone();
+    assert!(outdated.is_string(), "{outdated}");
+    let made = solve(&ada).await;
+    assert_eq!(first(&made), ("NLRTM", "2026-12-09", "Maas Compass"));
+    let job = &made["jobs"][0];
+    assert_eq!(job["vessel_name"], "Nao");
+    assert_eq!(job["compasses"][0]["compass_name"], "Standard compass");
+    assert_eq!(
+        (&job["state"], &job["due_on"]),
+        (&json!("proposed"), &json!("2026-12-20"))
+    );
+    assert_eq!(
+        (&job["fee_eur"], &job["travel_eur"]),
+        (&json!(1800.0), &json!(100.0))
+    );
+    assert_eq!(made["proven_optimal"], true);
+    assert_eq!(made["changes"][0]["what"], "new");
+    // The same again is the same plan.
+    assert_eq!(solve(&ada).await, made);
+    assert_eq!(current(&ada).await["plan"], made);
+    let again = ada.get("/schedule/input").await;
+    let again = plan::plan(&input::read(&again.text).unwrap());
+    assert!((again.cost_eur - made["cost_eur"].as_f64().unwrap()).abs() < 1e-9);
+    assert_eq!(again.jobs.len(), 1);
+    shore.finish().await;
+}
+
+async fn what_cannot_be_done_says_why_and_what_would_help(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    let pinta = due_vessel(&ada, "Pinta").await;
+    for vessel in [&nao, &pinta] {
+        // One team, one day: only one of them.
+        let call = json!({ "port": "NLRTM", "eta": "2026-12-08T06:00:00Z",
+                           "etd": "2026-12-08T20:00:00Z" });
+        ada.post(&port_calls::path(vessel), &call).await.good();
+    }
+    let far = ada.create_vessel("Far").await;
+    enter(&ada, &far, "BRSSZ", 1).await;
+    planned_firm(&shore, &ada, "Maas Compass").await;
+    let made = solve(&ada).await;
+    assert_eq!(made["jobs"].as_array().unwrap().len(), 1);
+    let unscheduled = made["unscheduled"].as_array().unwrap();
+    let of = |name: &str| unscheduled.iter().find(|one| one["vessel_name"] == name);
+    let santos = of("Far").unwrap().to_string();
+    assert!(santos.contains("no firm serves Santos"), "{santos}");
+    let other = of("Nao").or(of("Pinta")).unwrap().to_string();
+    assert!(other.contains("teams of 2026-12-08 go to"), "{other}");
+    assert!(other.contains("one more team of Maas Compass on 2026-12-08"));
+    shore.finish().await;
+}
+
+async fn a_moved_eta_makes_another_plan_that_says_what_it_costs(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    let call = enter(&ada, &nao, "NLRTM", 8).await;
+    enter(&ada, &nao, "BEANR", 15).await;
+    planned_firm(&shore, &ada, "Maas Compass").await;
+    assert_eq!(follow(&shore).await, Some(ada.operator));
+    let before = current(&ada).await["plan"].clone();
+    assert_eq!(first(&before), ("NLRTM", "2026-12-09", "Maas Compass"));
+    let one = format!(
+        "{}/{}",
+        port_calls::path(&nao),
+        call["id"].as_str().unwrap()
+    );
+    let withdrawn = json!({ "reason": "charter cancelled" });
+    ada.post(&format!("{one}/withdraw"), &withdrawn)
+        .await
+        .good();
+    assert_eq!(follow(&shore).await, Some(ada.operator));
+    let after = current(&ada).await["plan"].clone();
+    assert_eq!(first(&after), ("BEANR", "2026-12-16", "Maas Compass"));
+    let change = &after["changes"][0];
+    assert_eq!(change["what"], "moved");
+    assert_eq!(
+        (&change["from"]["port_name"], &change["from"]["day"]),
+        (&json!("Rotterdam"), &json!("2026-12-09"))
+    );
+    assert_eq!(
+        (&change["from"]["paid_eur"], &change["to"]["paid_eur"]),
+        (&json!(1900.0), &json!(2200.0))
+    );
+    assert!(
+        change["why"].as_str().unwrap().contains("cancelled"),
+        "{change}"
+    );
+    let against = &after["against"];
+    assert_eq!(
+        (&against["version"], &against["moved"], &against["paid_eur"]),
+        (&json!(1), &json!(1), &json!(300.0))
+    );
+    let plans = ada.get("/schedule/plans").await.good();
+    let versions: Vec<&Value> = plans["items"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|plan| &plan["version"])
+        .collect();
+    assert_eq!(versions, [2, 1]);
+    assert_eq!(ada.get("/schedule/plans/1").await.good(), before);
+    let told = shore.events().await;
+    assert_eq!(told.iter().filter(|kind| *kind == "schedule").count(), 2);
+    shore.finish().await;
+}
+
+async fn a_storm_of_changes_makes_one_plan_after_half_a_minute(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    planned_firm(&shore, &ada, "Maas Compass").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    for day in [1, 8, 15] {
+        enter(&ada, &nao, "NLRTM", day).await;
+    }
+    shore.advance(20.0);
+    assert_eq!(
+        schedule::step(&shore.app, &PlanSlots::default())
+            .await
+            .unwrap(),
+        None
+    );
+    let second = shore.second().await;
+    shore.advance(11.0);
+    let (here, there) = (PlanSlots::default(), PlanSlots::default());
+    let (one, other) = tokio::join!(
+        schedule::step(&shore.app, &here),
+        schedule::step(&second, &there)
+    );
+    // Two servers, one schedule.
+    assert!(one.unwrap().is_some() != other.unwrap().is_some());
+    assert_eq!(
+        schedule::step(&shore.app, &PlanSlots::default())
+            .await
+            .unwrap(),
+        None
+    );
+    assert_eq!(current(&ada).await["plan"]["version"], 1);
+    second.db.close().await;
+    shore.finish().await;
+}
+
+async fn a_plan_is_made_anew_each_day(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    planned_firm(&shore, &ada, "Maas Compass").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 8).await;
+    assert!(follow(&shore).await.is_some());
+    shore.advance(86_000.0);
+    assert_eq!(
+        schedule::step(&shore.app, &PlanSlots::default())
+            .await
+            .unwrap(),
+        None
+    );
+    shore.advance(500.0);
+    assert!(
+        schedule::step(&shore.app, &PlanSlots::default())
+            .await
+            .unwrap()
+            .is_some()
+    );
+    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let plan = current(&ada).await["plan"].clone();
+    assert_eq!(plan["version"], 2);
+    assert_eq!(plan["changes"][0]["what"], "kept");
+    shore.finish().await;
+}
+
+async fn an_operator_without_firms_gets_no_plan_by_itself(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 8).await;
+    assert!(follow(&shore).await.is_some());
+    assert_eq!(follow(&shore).await, None);
+    assert_eq!(current(&ada).await["plan"], json!(null));
+    shore.finish().await;
+}
+
+async fn a_compass_with_an_order_under_way_is_beside_the_plan(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 8).await;
+    planned_firm(&shore, &ada, "Maas Compass").await;
+    let order = json!({ "vessel_id": nao["id"], "compass_id": compass_of(&nao),
+                        "port": "Rotterdam", "planned_at": "2026-12-08T10:00:00Z" });
+    let order = ada.post("/work-orders", &order).await.good();
+    let made = solve(&ada).await;
+    assert_eq!(made["jobs"], json!([]));
+    assert_eq!(made["under_way"][0]["order_id"], order["id"]);
+    assert_eq!(made["under_way"][0]["vessel_name"], "Nao");
+    let cancel = format!("/work-orders/{}/cancel", order["id"].as_str().unwrap());
+    ada.post(&cancel, &json!({ "text": "no time" }))
+        .await
+        .good();
+    assert_eq!(solve(&ada).await["jobs"].as_array().unwrap().len(), 1);
+    shore.finish().await;
+}
+
+/// Calls by the second, beside the one that there is; with a name for each.
+macro_rules! many_calls {
+    ($id:literal) => {
+        concat!(
+            "WITH RECURSIVE n (i) AS (SELECT CAST(1 AS BIGINT)
+                                      UNION ALL SELECT i + 1 FROM n WHERE i < 50000)
+             INSERT INTO port_calls (vessel_id, id, reference, port, eta, eta_uncertainty_h, etd,
+                                     etd_uncertainty_h, source, revision, created_at, created_by)
+             SELECT c.vessel_id, ",
+            $id,
+            ", 'n' || n.i, c.port, c.etd + n.i * 1000000, 0, c.etd + n.i * 1000000 + 500000, 0,
+                    'api', 1, c.created_at, c.created_by
+             FROM port_calls c, n"
+        )
+    };
+}
+
+async fn a_fleet_that_is_too_large_to_be_planned_is_told_so(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    planned_firm(&shore, &ada, "Maas Compass").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 8).await;
+    shore
+        .sql(match shore.app.db.pools() {
+            Pools::Sqlite { .. } => many_calls!("randomblob(16)"),
+            Pools::Postgres(_) => many_calls!("gen_random_uuid()"),
+        })
+        .await;
+    let said = "this fleet cannot be planned: port_calls: 50001 entries exceed the limit of 50000";
+    let refused = ada.post("/schedule/solve", &json!({})).await;
+    assert_eq!(refused.problem(), "wrong-state");
+    assert_eq!(refused.json()["detail"], said);
+    follow(&shore).await;
+    assert_eq!(current(&ada).await["problem"], said);
+    shore.finish().await;
+}
+
+async fn settings_weigh_and_are_checked(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 8).await;
+    planned_firm(&shore, &ada, "Maas Compass").await;
+    for wrong in [
+        json!({ "horizon_days": 0 }),
+        json!({ "weights": { "job_h": 0 } }),
+        json!({ "weights": { "late_eur_day": -1 } }),
+        json!({ "weights": { "colour": 1 } }),
+        json!({ "terms": { "soon_days": -1 } }),
+    ] {
+        let answer = put(&ada, "/schedule/settings", &wrong).await;
+        assert_eq!(answer.problem(), "invalid", "{wrong}");
+    }
+    assert_eq!(
+        ada.get("/schedule/settings").await.good()["horizon_days"],
+        180
+    );
+    // Longer jobs than the firm has hours.
+    let long = json!({ "weights": { "job_h": 11 } });
+    put(&ada, "/schedule/settings", &long).await.good();
+    let made = solve(&ada).await;
+    let because = made["unscheduled"][0]["because"].to_string();
+    assert!(because.contains("too few working hours"), "{because}");
+    let near = json!({ "horizon_days": 7 });
+    put(&ada, "/schedule/settings", &near).await.good();
+    let made = solve(&ada).await;
+    assert_eq!(made["later"][0]["vessel_name"], "Nao");
+    shore.finish().await;
+}
+
+async fn schedules_are_an_operators_own(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let eve = shore.admin("eve").await;
+    due_vessel(&ada, "Nao").await;
+    planned_firm(&shore, &ada, "Maas Compass").await;
+    solve(&ada).await;
+    assert_eq!(current(&eve).await["plan"], json!(null));
+    assert_eq!(eve.get("/schedule/plans/1").await.problem(), "not-found");
+    assert_eq!(eve.get("/schedule/input").await.problem(), "not-found");
+    let plans = eve.get("/schedule/plans").await.good();
+    assert_eq!(plans["items"], json!([]));
+    let viewer = ada.viewer(&shore).await;
+    assert!(current(&viewer).await["plan"].is_object());
+    let solved = viewer.post("/schedule/solve", &json!({})).await;
+    assert_eq!(solved.problem(), "forbidden");
+    shore.finish().await;
+}

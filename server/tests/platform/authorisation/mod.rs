@@ -1,0 +1,229 @@
+//! Every route, with every method, as every role, against one's own data and another's.
+
+mod table;
+mod world;
+
+use binnacle_server::routes::openapi;
+use binnacle_server_testing::on_both;
+use binnacle_server_testing::{Answer, Shore};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use table::{OPEN, TABLE};
+use world::{Key, ROLES, Side, answer, request};
+
+on_both!(every_role_may_do_what_the_table_says_and_nothing_to_others_data);
+
+/// This names in its body what it is about.
+const IN_BODY: &str = "POST /work-orders";
+
+/// What an operation says of itself in the document.
+struct Operation {
+    name: String,
+    method: String,
+    path: String,
+    has_body: bool,
+}
+
+fn operations() -> Vec<Operation> {
+    let document = serde_json::to_value(openapi()).unwrap();
+    let mut found = Vec::new();
+    for (path, methods) in document["paths"].as_object().unwrap() {
+        for (method, operation) in methods.as_object().unwrap() {
+            let method = method.to_uppercase();
+            let short = path.strip_prefix("/api/v1").unwrap_or(path);
+            found.push(Operation {
+                name: format!("{method} {short}"),
+                method,
+                path: short.to_owned(),
+                has_body: !operation["requestBody"].is_null(),
+            });
+        }
+    }
+    found
+}
+
+fn url(path: &str) -> String {
+    match path {
+        "/healthz" | "/readyz" | "/metrics" => path.to_owned(),
+        of_api => format!("/api/v1{of_api}"),
+    }
+}
+
+/// The last word of a problem's type; empty for what is none.
+fn kind(answer: &Answer) -> String {
+    let problem: Option<Value> = serde_json::from_str(&answer.text).ok();
+    let kind = problem
+        .as_ref()
+        .and_then(|problem| problem["type"].as_str());
+    kind.map_or_else(String::new, |kind| {
+        kind.rsplit('/').next().unwrap_or_default().to_owned()
+    })
+}
+
+#[test]
+fn every_operation_has_a_line_in_the_table_and_every_line_an_operation() {
+    let named: BTreeSet<String> = operations().into_iter().map(|one| one.name).collect();
+    let lines: BTreeSet<String> = TABLE.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let missing: Vec<_> = named.difference(&lines).collect();
+    let left_over: Vec<_> = lines.difference(&named).collect();
+    assert!(
+        missing.is_empty() && left_over.is_empty(),
+        "say in table.rs who may: {missing:#?}; there are no more: {left_over:#?}"
+    );
+    assert_eq!(lines.len(), TABLE.len(), "a line stands there twice");
+    assert!(TABLE.iter().all(|(_, rule)| rule.len() == ROLES.len()));
+}
+
+/// What takes something away comes last, and what ends sessions after everything.
+fn rank(one: &Operation) -> u8 {
+    match (one.method.as_str(), one.path.as_str()) {
+        ("GET", _) => 0,
+        ("DELETE", "/tokens/{id}") => 3,
+        ("DELETE", "/sessions/{id}") => 4,
+        (_, "/me/password") => 6,
+        ("DELETE", "/sessions") => 7,
+        ("DELETE", "/session") => 8,
+        (_, path) if path.starts_with("/me/") => 5,
+        ("DELETE", _) => 2,
+        _ => 1,
+    }
+}
+
+struct Trial<'a> {
+    shore: &'a Shore,
+    ada: &'a Side,
+    eve: &'a Side,
+    faults: Vec<String>,
+}
+
+async fn every_role_may_do_what_the_table_says_and_nothing_to_others_data(shore: Shore) {
+    let (ada, root) = Side::new(&shore, "ada", None).await;
+    let (eve, _) = Side::new(&shore, "eve", Some(&root)).await;
+    let mut trial = Trial {
+        shore: &shore,
+        ada: &ada,
+        eve: &eve,
+        faults: Vec::new(),
+    };
+    let mut all = operations();
+    // Reads come first: what someone has tried stands in their own audit log.
+    all.sort_by_key(rank);
+    for one in &all {
+        trial.refuses(one).await;
+    }
+    for one in &all {
+        trial.lets(one).await;
+    }
+    assert!(trial.faults.is_empty(), "{:#?}", trial.faults);
+    shore.finish().await;
+}
+
+impl Trial<'_> {
+    /// As someone, of what that role of ada's side has, or of what is nowhere.
+    async fn ask(&self, one: &Operation, key: Option<&Key>, role: usize, real: bool) -> Answer {
+        let path = url(&self.ada.fill(&one.path, role, real));
+        let mut asked = request(self.shore, key, &one.method, &path);
+        if one.has_body {
+            asked = asked.json(&self.ada.body(&one.name));
+        }
+        answer(asked).await
+    }
+
+    fn expect(&mut self, holds: bool, one: &Operation, who: &str, answer: &Answer) {
+        if !holds {
+            let told: String = answer.text.chars().take(160).collect();
+            let fault = format!("{} as {who}: {} {told}", one.name, answer.status);
+            self.faults.push(fault);
+        }
+    }
+
+    /// Nobody, the operator's own people who may not, and everyone of the other's.
+    async fn refuses(&mut self, one: &Operation) {
+        let rule = rule(one);
+        if rule == OPEN {
+            return;
+        }
+        let nobody = self.ask(one, None, 0, true).await;
+        let holds = nobody.status == 401 && kind(&nobody) == "unauthenticated";
+        self.expect(holds, one, "nobody", &nobody);
+        for (index, role) in ROLES.iter().enumerate() {
+            let sign = rule.as_bytes()[index];
+            let expected = match sign {
+                b'1' => 401,
+                b'3' => 403,
+                _ => 404,
+            };
+            if sign != b'+' {
+                let own = self
+                    .ask(one, Some(&self.ada.keys[index]), index, true)
+                    .await;
+                self.expect(own.status == expected, one, role, &own);
+            }
+            // A platform admin is of neither side.
+            if index > 6 {
+                continue;
+            }
+            let key = self.eve.keys[index].clone();
+            let who = format!("another's {role}");
+            if sign != b'+' && sign != b'4' {
+                let theirs = self.ask(one, Some(&key), index, true).await;
+                self.expect(theirs.status == expected, one, &who, &theirs);
+            } else if one.name == IN_BODY {
+                let theirs = self.ask(one, Some(&key), index, true).await;
+                self.expect(theirs.status == 404, one, &who, &theirs);
+            } else if one.method == "GET" || one.path.contains('{') {
+                self.finds_nothing(one, (&key, index), &who).await;
+            }
+        }
+    }
+
+    /// Whoever asks for what is another's is told just what they are told of nothing.
+    async fn finds_nothing(&mut self, one: &Operation, (key, role): (&Key, usize), who: &str) {
+        let theirs = self.ask(one, Some(key), role, true).await;
+        for mark in &self.ada.marks {
+            if theirs.text.contains(mark.as_str()) {
+                let fault = format!("{} as {who} tells of {mark}", one.name);
+                self.faults.push(fault);
+            }
+        }
+        let by_id = one.path.contains("{id}") || one.path.contains("{stream}");
+        if !by_id || one.name == "PUT /agents/logbook/{id}" {
+            return;
+        }
+        let nowhere = self.ask(one, Some(key), role, false).await;
+        let same = (theirs.status, kind(&theirs)) == (nowhere.status, kind(&nowhere));
+        self.expect(same, one, who, &theirs);
+        // What cannot be read is refused before it is looked for.
+        let unread = one.has_body && [400, 415, 422].contains(&theirs.status);
+        self.expect(theirs.status == 404 || unread, one, who, &theirs);
+    }
+
+    /// The operator's own people who may.
+    async fn lets(&mut self, one: &Operation) {
+        let rule = rule(one);
+        if rule == OPEN {
+            return;
+        }
+        let mut is_gone = false;
+        for (index, role) in ROLES.iter().enumerate() {
+            // The admin's own token has ended her sessions just before.
+            let ended = one.name == "DELETE /session" && index == 0;
+            if rule.as_bytes()[index] != b'+' || ended {
+                continue;
+            }
+            let own = self
+                .ask(one, Some(&self.ada.keys[index]), index, true)
+                .await;
+            let kind = kind(&own);
+            let refused = ["unauthenticated", "forbidden", "internal"].contains(&kind.as_str());
+            let missing = kind == "not-found" && !is_gone;
+            self.expect(!refused && !missing && own.status < 500, one, role, &own);
+            is_gone |= one.method == "DELETE" && own.status < 300;
+        }
+    }
+}
+
+fn rule(one: &Operation) -> &'static str {
+    let line = TABLE.iter().find(|(name, _)| *name == one.name);
+    line.unwrap_or_else(|| panic!("no line for {}", one.name)).1
+}

@@ -1,0 +1,356 @@
+//! Two operators, each with people, tokens, a firm and a ship, and something of everything.
+
+use crate::second_factor;
+use binnacle_platform::ids::FirmId;
+use binnacle_platform::session::Role;
+use binnacle_server_testing::alerts;
+use binnacle_server_testing::binnacles::{binnacle, put};
+use binnacle_server_testing::port_calls::call;
+use binnacle_server_testing::work_orders::{PICTURE, hex};
+use binnacle_server_testing::{Answer, PASSWORD, Person, Ship, Shore};
+use reqwest::{Method, RequestBuilder};
+use ring::signature::{Ed25519KeyPair, KeyPair};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// In the order of a rule's signs.
+pub(super) const ROLES: [&str; 9] = [
+    "admin",
+    "viewer",
+    "admin's token that reads",
+    "admin's token that writes",
+    "adjuster",
+    "adjuster's token that reads",
+    "agent",
+    "platform admin",
+    "platform admin's token that reads",
+];
+
+/// How someone makes a request.
+#[derive(Clone)]
+pub(super) enum Key {
+    Cookie(String),
+    Token(String),
+}
+
+/// One operator's side of the world.
+pub(super) struct Side {
+    /// In the order of [`ROLES`].
+    pub(super) keys: Vec<Key>,
+    ids: BTreeMap<&'static str, String>,
+    /// What each role was told: it is theirs alone.
+    told: BTreeMap<usize, String>,
+    /// What nobody else may ever be told: ids and names.
+    pub(super) marks: Vec<String>,
+}
+
+const EVERY_DAY: [&str; 7] = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
+/// Something that is nowhere.
+const NONE: &str = "019a0000-0000-7000-8000-000000000000";
+
+impl Side {
+    pub(super) async fn new(shore: &Shore, name: &str, root: Option<&[Key]>) -> (Side, Vec<Key>) {
+        let admin = shore.admin(name).await;
+        let viewer = admin.viewer(shore).await;
+        let (firm, adjuster) = admin.adjuster(shore, &format!("firm-{name}")).await;
+        let ship = shore.ship(&admin, &format!("ship-of-{name}")).await;
+        let root = if let Some(keys) = root {
+            keys.to_vec()
+        } else {
+            let root = admin.platform_admin(shore).await;
+            second_factor::set_up(shore, &root).await;
+            let token = token(&root, "read").await;
+            vec![Key::Cookie(root.cookie), token.1]
+        };
+        for person in [&viewer, &adjuster] {
+            second_factor::set_up(shore, person).await;
+        }
+        let (_, codes) = second_factor::set_up(shore, &admin).await;
+        let read = token(&admin, "read").await;
+        let write = token(&admin, "write").await;
+        let firms = token(&adjuster, "read").await;
+        alerts::departs(&ship).await;
+        let mut ids = possessions(&admin, &ship, &format!("{firm}")).await;
+        ids.extend(of_an_order(&admin, &adjuster, firm, &ids).await);
+        ids.insert("colleague", colleague(shore, &admin, &ship).await);
+        ids.insert("firm", firm.to_string());
+        ids.insert("operator", admin.operator.to_string());
+        ids.insert("token", token(&admin, "read").await.0);
+        second_factor::sign_in(shore, &admin.email, &codes[0])
+            .await
+            .good();
+        let sessions = admin.get("/sessions").await.good();
+        let session = sessions["items"][1]["id"].as_str().unwrap();
+        ids.insert("session", session.to_owned());
+        let mut told = BTreeMap::new();
+        for (role, person) in [(0, &admin), (1, &viewer), (3, &admin), (4, &adjuster)] {
+            let listed = person.get("/notifications").await.good();
+            told.insert(role, text(&listed["items"][0]["id"]));
+        }
+        let keys = vec![
+            Key::Cookie(admin.cookie),
+            Key::Cookie(viewer.cookie),
+            read.1,
+            write.1,
+            Key::Cookie(adjuster.cookie),
+            firms.1,
+            Key::Token(ship.token),
+        ];
+        let keys: Vec<Key> = keys.into_iter().chain(root.clone()).collect();
+        let mut marks: Vec<String> = ids.values().cloned().collect();
+        marks.extend([format!("ship-of-{name}"), format!("{name}@example.com")]);
+        let side = Side {
+            keys,
+            ids,
+            told,
+            marks,
+        };
+        (side, root)
+    }
+
+    /// A path of the document with this side's ids, as that role has them, or with such as
+    /// are nowhere.
+    pub(super) fn fill(&self, path: &str, role: usize, real: bool) -> String {
+        let first = path.split('/').nth(1).unwrap();
+        let of_id = match first {
+            "notifications" => "notification",
+            "alerts" => "alert",
+            _ if path == "/users/{id}/second-factor" => "colleague",
+            "vessels" => "vessel",
+            "work-orders" => "order",
+            "webhooks" => "webhook",
+            "mail-recipients" => "recipient",
+            "calendar-feeds" => "feed",
+            "firms" => "firm",
+            "operators" => "operator",
+            "users" => "user",
+            "sessions" => "session",
+            "tokens" => "token",
+            _ => "",
+        };
+        let mut filled = path.to_owned();
+        for name in [
+            "id", "compass", "agent", "stream", "entry", "call", "firm", "key", "delivery", "photo",
+        ] {
+            let key = match (name, first) {
+                ("id", _) => of_id,
+                ("delivery", "mail-recipients") => "letter",
+                _ => name,
+            };
+            let told = self.told.get(&role).filter(|_| key == "notification");
+            let id = told.or_else(|| self.ids.get(key)).filter(|_| real);
+            let id = id.map_or(NONE, String::as_str);
+            filled = filled.replace(&format!("{{{name}}}"), id);
+        }
+        filled
+            .replace("{seq}", "1")
+            .replace("{version}", "1")
+            .replace("{n}", "1")
+            .replace("{name}", "class_a_trays")
+    }
+
+    /// A body for an operation, with this side's ids.
+    pub(super) fn body(&self, operation: &str) -> Value {
+        let (vessel, compass, firm) =
+            (&self.ids["vessel"], &self.ids["compass"], &self.ids["firm"]);
+        match operation {
+            "POST /work-orders" => json!({
+                "vessel_id": vessel, "compass_id": compass, "port": "Bilbao",
+                "planned_at": "2026-11-22T08:00:00Z",
+            }),
+            "PATCH /notifications/{id}" => json!({ "read": true }),
+            "POST /calendar-feeds" => json!({ "name": "Fleet" }),
+            "POST /webhooks" | "PUT /webhooks/{id}" => {
+                json!({ "url": "https://erp.example.com/", "kinds": ["alert.raised"] })
+            }
+            "POST /tokens" => json!({ "name": "ERP", "scope": "read" }),
+            "POST /firms" | "POST /operators" => json!({ "name": "New" }),
+            "PUT /me/password" => {
+                json!({ "current": PASSWORD, "new": "seven gulls over the quay" })
+            }
+            "POST /me/second-factor"
+            | "POST /me/second-factor/recovery-codes"
+            | "POST /me/second-factor/remove" => json!({ "password": PASSWORD }),
+            "POST /me/second-factor/confirm" => json!({ "code": "000000" }),
+            "POST /firms/{id}/keys" => json!({
+                "name": "K", "public_key": "0".repeat(64), "proof": "0".repeat(128),
+            }),
+            "POST /schedule/pins" => pin(&self.ids),
+            "POST /work-orders/{id}/offer" => json!({ "firms": [firm] }),
+            "POST /work-orders/{id}/cancel"
+            | "POST /work-orders/{id}/close"
+            | "POST /work-orders/{id}/remarks"
+            | "POST /work-orders/{id}/messages" => {
+                json!({ "text": "x" })
+            }
+            "POST /vessels/{id}/port-calls" => call("NLRTM", 20),
+            "PUT /vessels/{id}/compasses/{compass}/binnacle" => binnacle(),
+            "POST /vessels/{id}/compasses" => json!({ "name": "Aft", "role": "steering" }),
+            _ => json!({}),
+        }
+    }
+}
+
+/// Something of everything that is an operator's.
+async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'static str, String> {
+    let vessel = ship.id.clone();
+    let agents = admin.get(&ship.path("/agents")).await.good();
+    let compasses = admin.get(&ship.path("/compasses")).await.good();
+    let compass = text(&compasses["items"][0]["id"]);
+    let entry = json!({ "kind": "lightning", "from": "2026-11-20T00:00:00Z" });
+    let entry = admin.post(&ship.path("/logbook"), &entry).await.good();
+    let port_call = call("NLRTM", 8);
+    let port_call = admin
+        .post(&ship.path("/port-calls"), &port_call)
+        .await
+        .good();
+    let kept = ship.path(&format!("/compasses/{compass}/binnacle"));
+    put(admin, &kept, &binnacle()).await.good();
+    let webhook = json!({ "url": "https://erp.example.com/", "kinds": ["order.offered"] });
+    let webhook = admin.post("/webhooks", &webhook).await.good();
+    let known = json!({ "flag_state": "NO", "gross_tonnage": 24000 });
+    put(admin, &ship.path("/particulars"), &known).await.good();
+    let terms =
+        json!({ "fee_eur": 1800, "ports": [{ "port": "NLRTM" }], "working_days": EVERY_DAY });
+    put(admin, &format!("/firms/{firm}/terms"), &terms)
+        .await
+        .good();
+    let order = json!({
+        "vessel_id": vessel, "compass_id": compass, "port": "Bilbao",
+        "planned_at": "2026-11-22T08:00:00Z", "offer": { "firms": [firm] },
+    });
+    let order = admin.post("/work-orders", &order).await.good();
+    let told = format!("/webhooks/{}/deliveries", text(&webhook["id"]));
+    let told = admin.get(&told).await.good();
+    admin.post("/schedule/solve", &json!({})).await.good();
+    let recipient = json!({ "address": format!("office-{vessel}@example.com") });
+    let recipient = admin.post("/mail-recipients", &recipient).await.good();
+    let tried = format!("/mail-recipients/{}/test", text(&recipient["id"]));
+    admin.post(&tried, &json!({})).await;
+    let letters = format!("/mail-recipients/{}/deliveries", text(&recipient["id"]));
+    let letters = admin.get(&letters).await.good();
+    let alerts = admin.get("/alerts").await.good();
+    let feed = json!({ "name": "Fleet" });
+    let feed = admin.post("/calendar-feeds", &feed).await.good();
+    let user =
+        json!({ "email": format!("mate-{vessel}@example.com"), "name": "Mate", "role": "viewer" });
+    let user = admin.post("/users", &user).await.good();
+    BTreeMap::from([
+        ("agent", text(&agents["items"][0]["agent_id"])),
+        ("stream", ship.stream.to_string()),
+        ("vessel", vessel),
+        ("compass", compass),
+        ("entry", text(&entry["id"])),
+        ("call", text(&port_call["id"])),
+        ("order", text(&order["id"])),
+        ("webhook", text(&webhook["id"])),
+        ("delivery", text(&told["items"][0]["id"])),
+        ("recipient", text(&recipient["id"])),
+        ("letter", text(&letters["items"][0]["id"])),
+        ("alert", text(&alerts["items"][0]["id"])),
+        ("feed", text(&feed["id"])),
+        ("user", text(&user["user"]["id"])),
+    ])
+}
+
+/// A key of the firm's, a photograph of an order, and where its job is to stay.
+async fn of_an_order(
+    admin: &Person,
+    adjuster: &Person,
+    firm: FirmId,
+    ids: &BTreeMap<&'static str, String>,
+) -> [(&'static str, String); 2] {
+    let seed: [u8; 32] = std::array::from_fn(|place| firm.0.as_bytes()[place % 16]);
+    let pair = Ed25519KeyPair::from_seed_unchecked(&seed).unwrap();
+    let proof = pair.sign(format!("binnacle firm key {firm}").as_bytes());
+    let key = json!({
+        "name": "Office", "public_key": hex(pair.public_key().as_ref()),
+        "proof": hex(proof.as_ref()),
+    });
+    let key = adjuster
+        .post(&format!("/firms/{firm}/keys"), &key)
+        .await
+        .good();
+    let order = format!("/work-orders/{}", ids["order"]);
+    let yes = json!({ "adjuster_name": "M. Etxeberria" });
+    adjuster.post(&format!("{order}/accept"), &yes).await.good();
+    let photos = format!("{order}/photos?caption=trays");
+    let photo = admin.request(Method::POST, &photos).body(PICTURE);
+    let photo = Answer::of(photo).await.good();
+    let mut all = ids.clone();
+    all.insert("firm", firm.to_string());
+    admin.post("/schedule/pins", &pin(&all)).await.good();
+    [
+        ("key", text(&key["id"])),
+        ("photo", text(&photo["photos"][0]["photo"])),
+    ]
+}
+
+fn pin(ids: &BTreeMap<&'static str, String>) -> Value {
+    json!({
+        "compass_id": ids["compass"], "call_id": ids["call"], "firm_id": ids["firm"],
+        "day": "2026-12-08",
+    })
+}
+
+/// Someone with a second factor, who can lose it: their id.
+async fn colleague(shore: &Shore, admin: &Person, ship: &Ship) -> String {
+    let email = format!("purser-{}@example.com", ship.id);
+    Person::create(shore, Some(admin.operator.into()), &email, Role::Viewer).await;
+    let purser = Person::sign_in(shore, admin.operator, &email).await;
+    second_factor::set_up(shore, &purser).await;
+    text(&purser.get("/me").await.good()["user_id"])
+}
+
+#[track_caller]
+fn text(value: &Value) -> String {
+    let text = value.as_str();
+    text.unwrap_or_else(|| panic!("no text: {value}"))
+        .to_owned()
+}
+
+/// A token of a person's: its id, and how it is used.
+async fn token(person: &Person, scope: &str) -> (String, Key) {
+    let new = json!({ "name": "ERP", "scope": scope });
+    let made = person.post("/tokens", &new).await.good();
+    let secret = made["token"].as_str().unwrap().to_owned();
+    (made["id"].as_str().unwrap().to_owned(), Key::Token(secret))
+}
+
+/// A request by someone, or by nobody.
+pub(super) fn request(
+    shore: &Shore,
+    key: Option<&Key>,
+    method: &str,
+    path: &str,
+) -> RequestBuilder {
+    let method = Method::from_bytes(method.as_bytes()).unwrap();
+    let request = shore.http.request(method, format!("{}{path}", shore.url));
+    match key {
+        Some(Key::Cookie(cookie)) => request
+            .header("cookie", cookie)
+            .header("x-binnacle-request", "1"),
+        Some(Key::Token(token)) => request.bearer_auth(token),
+        None => request,
+    }
+}
+
+/// What is answered; of live events, which have no end, only that they begin.
+pub(super) async fn answer(request: RequestBuilder) -> Answer {
+    let response = request.send().await.unwrap();
+    let (status, headers) = (response.status().as_u16(), response.headers().clone());
+    let endless = headers
+        .get("content-type")
+        .is_some_and(|kind| kind == "text/event-stream");
+    let bytes = if endless {
+        Vec::new()
+    } else {
+        response.bytes().await.unwrap().to_vec()
+    };
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    Answer {
+        status,
+        headers,
+        text,
+    }
+}

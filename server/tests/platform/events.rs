@@ -1,0 +1,225 @@
+//! Live events.
+
+use binnacle_platform::db::Pools;
+use binnacle_platform::events;
+use binnacle_server_testing::on_both;
+use binnacle_server_testing::{Answer, Engine, Person, Shore, passage};
+use futures_util::StreamExt;
+use reqwest::Method;
+use serde_json::json;
+use std::time::Duration;
+use tokio::time::timeout;
+
+on_both!(
+    a_dashboard_hears_of_a_batch_and_a_model,
+    a_dashboard_hears_of_a_report,
+    a_dashboard_that_comes_back_gets_what_it_missed,
+    nobody_hears_of_another_operators_fleet,
+    a_revoked_token_and_an_ended_session_hear_no_more,
+    a_stopping_server_lets_its_dashboards_go,
+    events_are_forgotten_after_a_day,
+);
+
+#[tokio::test]
+async fn a_broken_line_to_postgres_is_mended_and_what_was_missed_is_told() {
+    let shore = Shore::start(Engine::Postgres).await;
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut source = Source::open(&ada, None).await;
+    let Pools::Postgres(pool) = shore.app.db.pools() else {
+        unreachable!("PostgreSQL was asked for");
+    };
+    let broken: Vec<bool> = sqlx::query_scalar(
+        "SELECT pg_terminate_backend(pid) FROM pg_stat_activity
+         WHERE datname = current_database() AND query LIKE 'LISTEN%'",
+    )
+    .fetch_all(pool)
+    .await
+    .unwrap();
+    assert_eq!(broken, [true]);
+    nao.put(1, &passage(DAY, 3)).await.good();
+    let (_, batch) = source.next().await.unwrap();
+    assert!(batch.contains(&nao.id), "{batch}");
+    shore.finish().await;
+}
+
+const DAY: &str = "2026-11-15T00:00:00Z";
+
+/// What an event source reads.
+struct Source {
+    stream: futures_util::stream::BoxStream<'static, reqwest::Result<Vec<u8>>>,
+    text: String,
+}
+
+impl Source {
+    async fn open(person: &Person, last: Option<&str>) -> Source {
+        let mut request = person.request(Method::GET, "/events");
+        if let Some(last) = last {
+            request = request.header("last-event-id", last);
+        }
+        Source::of(request).await
+    }
+
+    async fn of(request: reqwest::RequestBuilder) -> Source {
+        let response = request.send().await.unwrap();
+        assert_eq!(response.headers()["content-type"], "text/event-stream");
+        let chunks = futures_util::stream::unfold(response, |mut response| async {
+            let chunk = response.chunk().await.transpose()?;
+            Some((chunk.map(|bytes| bytes.to_vec()), response))
+        });
+        Source {
+            stream: chunks.boxed(),
+            text: String::new(),
+        }
+    }
+
+    /// The next event's id and data; `None` when the server has hung up.
+    async fn next(&mut self) -> Option<(String, String)> {
+        let read = timeout(Duration::from_secs(20), self.read());
+        read.await.expect("an event within 20 s")
+    }
+
+    async fn read(&mut self) -> Option<(String, String)> {
+        loop {
+            if let Some((block, rest)) = self.text.split_once("\n\n") {
+                let field = |name: &str| {
+                    let line = block.lines().find_map(|line| line.strip_prefix(name));
+                    line.map(|value| value.trim().to_owned())
+                };
+                let found = field("id:").zip(field("data:"));
+                let rest = rest.to_owned();
+                self.text = rest;
+                if found.is_some() {
+                    return found;
+                }
+                continue;
+            }
+            let bytes = self.stream.next().await?.ok()?;
+            self.text.push_str(&String::from_utf8(bytes).unwrap());
+        }
+    }
+}
+
+async fn a_dashboard_hears_of_a_batch_and_a_model(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut source = Source::open(&ada, None).await;
+    nao.put(1, &passage(DAY, 300)).await.good();
+    let (_, batch) = source.next().await.unwrap();
+    assert_eq!(
+        batch,
+        format!("{{\"vessel_id\":\"{}\",\"kind\":\"batch\"}}", nao.id)
+    );
+    shore.advance(10.0);
+    shore.work().await;
+    let (_, model) = source.next().await.unwrap();
+    assert!(model.contains("\"kind\":\"model\""), "{model}");
+    shore.finish().await;
+}
+
+async fn a_dashboard_hears_of_a_report(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut source = Source::open(&ada, None).await;
+    let lightning = json!({ "kind": "lightning", "from": DAY });
+    ada.post(&nao.path("/logbook"), &lightning).await.good();
+    let (_, heard) = source.next().await.unwrap();
+    assert!(heard.contains("\"kind\":\"logbook\""), "{heard}");
+    shore.finish().await;
+}
+
+async fn a_dashboard_that_comes_back_gets_what_it_missed(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut source = Source::open(&ada, None).await;
+    nao.put(1, &passage(DAY, 300)).await.good();
+    let (seen, _) = source.next().await.unwrap();
+    drop(source);
+    shore.advance(10.0);
+    shore.work().await;
+    let mut source = Source::open(&ada, Some(&seen)).await;
+    let (_, missed) = source.next().await.unwrap();
+    assert!(missed.contains("\"kind\":\"model\""), "{missed}");
+    shore.finish().await;
+}
+
+async fn nobody_hears_of_another_operators_fleet(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let eve = shore.admin("eve").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let kogge = shore.ship(&eve, "Kogge").await;
+    let mut source = Source::open(&eve, None).await;
+    nao.put(1, &passage(DAY, 3)).await.good();
+    kogge.put(1, &passage(DAY, 3)).await.good();
+    let (_, first) = source.next().await.unwrap();
+    assert!(first.contains(&kogge.id), "{first}");
+    shore.finish().await;
+}
+
+async fn a_revoked_token_and_an_ended_session_hear_no_more(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let grace = ada.viewer(&shore).await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let token = json!({ "name": "ERP", "scope": "read" });
+    let made = ada.post("/tokens", &token).await.good();
+    let url = format!("{}/api/v1/events", shore.url);
+    let request = shore.http.get(url);
+    let mut by_token = Source::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
+    let mut by_session = Source::open(&grace, None).await;
+    let mut kept = Source::open(&ada, None).await;
+    nao.put(1, &passage(DAY, 3)).await.good();
+    for source in [&mut by_token, &mut by_session, &mut kept] {
+        assert!(source.next().await.is_some());
+    }
+    let path = format!("/tokens/{}", made["id"].as_str().unwrap());
+    for ended in [
+        ada.request(Method::DELETE, &path),
+        grace.request(Method::DELETE, "/session"),
+    ] {
+        assert_eq!(Answer::of(ended).await.status, 204);
+    }
+    nao.put(2, &passage("2026-11-16T00:00:00Z", 3)).await.good();
+    assert!(kept.next().await.is_some());
+    assert_eq!(by_token.next().await, None);
+    assert_eq!(by_session.next().await, None);
+    shore.finish().await;
+}
+
+async fn a_stopping_server_lets_its_dashboards_go(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let mut source = Source::open(&ada, None).await;
+    shore.app.stopping.cancel();
+    assert_eq!(source.next().await, None);
+    shore.finish().await;
+}
+
+async fn left(shore: &Shore) -> (i64,) {
+    let sql = "SELECT COUNT(*) FROM events";
+    match shore.app.db.pools() {
+        Pools::Sqlite { readers, .. } => sqlx::query_as(sql).fetch_one(readers).await,
+        Pools::Postgres(pool) => sqlx::query_as(sql).fetch_one(pool).await,
+    }
+    .unwrap()
+}
+
+async fn events_are_forgotten_after_a_day(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut source = Source::open(&ada, None).await;
+    nao.put(1, &passage(DAY, 3)).await.good();
+    nao.put(2, &passage(DAY, 3)).await.good();
+    let (seen, _) = source.next().await.unwrap();
+    shore.advance(86_401.0);
+    events::prune(&shore.app.db, shore.app.clock.now().into())
+        .await
+        .unwrap();
+    nao.put(3, &passage(DAY, 3)).await.good();
+    // No session lasts so long.
+    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let mut source = Source::open(&ada, Some(&seen)).await;
+    let (third, _) = source.next().await.unwrap();
+    // Were the second still there, it would have come before.
+    let (listed,) = left(&shore).await;
+    assert_eq!(listed, 1, "after {third}");
+    shore.finish().await;
+}

@@ -1,0 +1,379 @@
+//! An operator's people: invited, changed, shut out, removed.
+
+use binnacle_server_testing::on_both;
+use binnacle_server_testing::{Answer, PASSWORD, Person, Shore, attempt};
+use reqwest::Method;
+use serde_json::{Value, json};
+
+on_both!(
+    who_is_invited_sets_a_password_and_signs_in,
+    a_code_works_once_and_for_a_week,
+    a_weak_password_is_refused_and_the_code_stays_good,
+    an_e_mail_has_one_account,
+    who_is_shut_out_is_out_at_once,
+    who_forgot_the_password_gets_another_code,
+    who_is_removed_is_gone_with_their_tokens,
+    an_operator_keeps_an_admin,
+    two_admins_cannot_remove_each_other,
+    nobody_sees_another_operators_people,
+    an_admins_token_makes_nobody_and_becomes_nobody,
+    another_code_ends_tokens_and_calendars,
+    a_calendar_ends_with_who_made_it,
+);
+
+const GOOD: &str = "seven gulls over the quay";
+
+async fn invite(admin: &Person, email: &str, role: &str) -> Value {
+    let new = json!({ "email": email, "name": "Grace Hopper", "role": role });
+    let answer = admin.post("/users", &new).await;
+    assert_eq!(answer.status, 201, "{answer:?}");
+    answer.json()
+}
+
+async fn accept(shore: &Shore, code: &str, password: &str) -> Answer {
+    let url = format!("{}/api/v1/invitations/accept", shore.url);
+    let body = json!({ "code": code, "password": password });
+    Answer::of(shore.http.post(url).json(&body)).await
+}
+
+async fn change(admin: &Person, id: &Value, body: Value) -> Answer {
+    let path = format!("/users/{}", id.as_str().unwrap());
+    Answer::of(admin.request(Method::PATCH, &path).json(&body)).await
+}
+
+async fn remove(admin: &Person, id: &Value) -> Answer {
+    let path = format!("/users/{}", id.as_str().unwrap());
+    Answer::of(admin.request(Method::DELETE, &path)).await
+}
+
+async fn who_is_invited_sets_a_password_and_signs_in(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let invited = invite(&ada, " Grace@Example.com ", "viewer").await;
+    let code = invited["invitation"]["code"].as_str().unwrap();
+    let link = format!("https://binnacle.example/invitation#{code}");
+    assert_eq!(invited["invitation"]["link"], link.as_str());
+    assert_eq!(invited["user"]["state"], "invited");
+    assert_eq!(invited["user"]["email"], "grace@example.com");
+    // Not even with the empty password that is stored.
+    for guess in ["", code] {
+        let early = attempt(&shore, "grace@example.com", guess).await;
+        assert_eq!(early.problem(), "wrong-password");
+    }
+    let accepted = accept(&shore, &code.to_lowercase(), GOOD).await.good();
+    assert_eq!(accepted["email"], "grace@example.com");
+    let signed_in = attempt(&shore, "grace@example.com", GOOD).await;
+    assert_eq!(signed_in.good()["role"], "viewer");
+    let listed = ada.get("/users").await.good();
+    assert_eq!(listed["items"][1]["state"], "active");
+    assert_eq!(listed["items"][1]["invitation_expires_at"], json!(null));
+    assert_eq!(listed["items"][0]["last_seen_at"], "2026-11-21T07:00:00Z");
+    assert!(!ada.get("/users").await.text.contains("argon2"));
+    shore.finish().await;
+}
+
+async fn a_code_works_once_and_for_a_week(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let invited = invite(&ada, "grace@example.com", "viewer").await;
+    let code = invited["invitation"]["code"].as_str().unwrap().to_owned();
+    accept(&shore, &code, GOOD).await.good();
+    let again = accept(&shore, &code, "another good long one").await;
+    assert_eq!(again.problem(), "not-found");
+    let wrong = accept(&shore, "AAAA-AAAA-AAAA-AAAA", GOOD).await;
+    assert_eq!(wrong.problem(), "not-found");
+    let other = invite(&ada, "mary@example.com", "viewer").await;
+    shore.advance(7.0 * 86_400.0);
+    let late = accept(&shore, other["invitation"]["code"].as_str().unwrap(), GOOD).await;
+    assert_eq!(late.problem(), "gone");
+    shore.finish().await;
+}
+
+async fn a_weak_password_is_refused_and_the_code_stays_good(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let invited = invite(&ada, "grace@example.com", "viewer").await;
+    let code = invited["invitation"]["code"].as_str().unwrap();
+    for weak in [
+        "short",
+        "password1234",
+        "grace@example.com",
+        "GraceHopper12",
+    ] {
+        let refused = accept(&shore, code, weak).await;
+        assert_eq!(refused.problem(), "invalid", "{weak}");
+        assert!(
+            refused.json()["detail"]
+                .as_str()
+                .unwrap()
+                .starts_with("password: ")
+        );
+    }
+    accept(&shore, code, GOOD).await.good();
+    shore.finish().await;
+}
+
+async fn an_e_mail_has_one_account(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let new = json!({ "email": "ADA@example.com", "name": "Ada", "role": "viewer" });
+    assert_eq!(ada.post("/users", &new).await.problem(), "wrong-state");
+    for bad in ["", "ada", "a b@example.com", "=x|y", "ada@exämple.com"] {
+        let new = json!({ "email": bad, "name": "Ada", "role": "viewer" });
+        assert_eq!(ada.post("/users", &new).await.problem(), "invalid", "{bad}");
+    }
+    let root = json!({ "email": "r@example.com", "name": "R", "role": "platform_admin" });
+    assert_eq!(ada.post("/users", &root).await.problem(), "invalid");
+    shore.finish().await;
+}
+
+async fn who_is_shut_out_is_out_at_once(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let viewer = ada.viewer(&shore).await;
+    let token = json!({ "name": "ERP", "scope": "read" });
+    let token = viewer.post("/tokens", &token).await.good()["token"].clone();
+    let by_token = || {
+        let request = shore.http.get(format!("{}/api/v1/vessels", shore.url));
+        Answer::of(request.bearer_auth(token.as_str().unwrap()))
+    };
+    assert_eq!(by_token().await.status, 200);
+    let id = viewer.get("/me").await.good()["user_id"].clone();
+    let disabled = change(&ada, &id, json!({ "disabled": true })).await.good();
+    assert_eq!(disabled["state"], "disabled");
+    assert_eq!(viewer.get("/me").await.problem(), "unauthenticated");
+    assert_eq!(by_token().await.problem(), "unauthenticated");
+    let refused = attempt(&shore, &viewer.email, PASSWORD).await;
+    assert_eq!(refused.problem(), "wrong-password");
+    let path = format!("/users/{}/invitation", id.as_str().unwrap());
+    assert_eq!(ada.post(&path, &json!({})).await.problem(), "wrong-state");
+
+    change(&ada, &id, json!({ "disabled": false })).await.good();
+    assert_eq!(attempt(&shore, &viewer.email, PASSWORD).await.status, 200);
+    shore.finish().await;
+}
+
+async fn who_forgot_the_password_gets_another_code(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let viewer = ada.viewer(&shore).await;
+    let id = viewer.get("/me").await.good()["user_id"].clone();
+    let path = format!("/users/{}/invitation", id.as_str().unwrap());
+    let first = ada.post(&path, &json!({})).await.good();
+    let second = ada.post(&path, &json!({})).await.good();
+    // Until it is used nothing is otherwise.
+    assert_eq!(viewer.get("/me").await.status, 200);
+    let old = accept(&shore, first["code"].as_str().unwrap(), GOOD).await;
+    assert_eq!(old.problem(), "not-found");
+    accept(&shore, second["code"].as_str().unwrap(), GOOD)
+        .await
+        .good();
+    assert_eq!(viewer.get("/me").await.problem(), "unauthenticated");
+    let before = attempt(&shore, &viewer.email, PASSWORD).await;
+    assert_eq!(before.problem(), "wrong-password");
+    assert_eq!(attempt(&shore, &viewer.email, GOOD).await.status, 200);
+    shore.finish().await;
+}
+
+async fn who_is_removed_is_gone_with_their_tokens(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let viewer = ada.viewer(&shore).await;
+    let token = json!({ "name": "ERP", "scope": "read" });
+    let made = viewer.post("/tokens", &token).await.good();
+    let id = viewer.get("/me").await.good()["user_id"].clone();
+    assert_eq!(remove(&viewer, &id).await.problem(), "forbidden");
+    assert_eq!(remove(&ada, &id).await.status, 204);
+    assert_eq!(remove(&ada, &id).await.problem(), "not-found");
+    assert_eq!(viewer.get("/me").await.problem(), "unauthenticated");
+    let request = shore.http.get(format!("{}/api/v1/me", shore.url));
+    let by_token = Answer::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
+    assert_eq!(by_token.problem(), "unauthenticated");
+    // The e-mail is free again.
+    invite(&ada, &viewer.email, "viewer").await;
+    shore.finish().await;
+}
+
+async fn an_operator_keeps_an_admin(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let id = ada.get("/me").await.good()["user_id"].clone();
+    // Who was only invited cannot take the admin's place.
+    invite(&ada, "grace@example.com", "admin").await;
+    for body in [json!({ "role": "viewer" }), json!({ "disabled": true })] {
+        let refused = change(&ada, &id, body).await;
+        assert_eq!(refused.problem(), "wrong-state");
+    }
+    assert_eq!(remove(&ada, &id).await.problem(), "wrong-state");
+    assert_eq!(ada.get("/me").await.good()["role"], "admin");
+
+    let viewer = ada.viewer(&shore).await;
+    let other = viewer.get("/me").await.good()["user_id"].clone();
+    change(&ada, &other, json!({ "role": "admin" }))
+        .await
+        .good();
+    let named = json!({ "role": "viewer", "name": "Ada, retired" });
+    assert_eq!(
+        change(&ada, &id, named).await.good()["name"],
+        "Ada, retired"
+    );
+    assert_eq!(ada.get("/users").await.problem(), "forbidden");
+    assert_eq!(viewer.get("/users").await.status, 200);
+    shore.finish().await;
+}
+
+async fn two_admins_cannot_remove_each_other(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let grace = ada.viewer(&shore).await;
+    let ids = [
+        ada.get("/me").await.good()["user_id"].clone(),
+        grace.get("/me").await.good()["user_id"].clone(),
+    ];
+    change(&ada, &ids[1], json!({ "role": "admin" }))
+        .await
+        .good();
+    let (one, other) = tokio::join!(remove(&ada, &ids[1]), remove(&grace, &ids[0]));
+    let gone = [&one, &other]
+        .iter()
+        .filter(|answer| answer.status == 204)
+        .count();
+    assert_eq!(gone, 1, "{one:?} {other:?}");
+    shore.finish().await;
+}
+
+async fn nobody_sees_another_operators_people(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let eve = shore.admin("eve").await;
+    let id = ada.get("/me").await.good()["user_id"].clone();
+    let listed = eve.get("/users").await.good();
+    assert_eq!(listed["items"].as_array().unwrap().len(), 1);
+    let path = format!("/users/{}/invitation", id.as_str().unwrap());
+    let answers = [
+        change(&eve, &id, json!({ "disabled": true })).await,
+        remove(&eve, &id).await,
+        eve.post(&path, &json!({})).await,
+    ];
+    for answer in answers {
+        assert_eq!(answer.problem(), "not-found");
+    }
+    assert_eq!(ada.get("/me").await.status, 200);
+    shore.finish().await;
+}
+
+/// Asks with a token of someone's.
+struct Program {
+    http: reqwest::Client,
+    url: String,
+    token: String,
+}
+
+impl Program {
+    async fn of(shore: &Shore, person: &Person) -> Program {
+        let new = json!({ "name": "ERP", "scope": "write" });
+        let made = person.post("/tokens", &new).await.good();
+        Program {
+            http: shore.http.clone(),
+            url: format!("{}/api/v1", shore.url),
+            token: made["token"].as_str().unwrap().to_owned(),
+        }
+    }
+
+    async fn ask(&self, method: Method, path: &str, body: &Value) -> Answer {
+        let request = self.http.request(method, format!("{}{path}", self.url));
+        Answer::of(request.bearer_auth(&self.token).json(body)).await
+    }
+}
+
+async fn an_admins_token_makes_nobody_and_becomes_nobody(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let viewer = ada.viewer(&shore).await;
+    let other = viewer.get("/me").await.good()["user_id"].clone();
+    let other = other.as_str().unwrap();
+    let own = ada.get("/me").await.good()["user_id"].clone();
+    let program = Program::of(&shore, &ada).await;
+    let new = json!({ "email": "eve@example.com", "name": "Eve", "role": "admin" });
+    let tried = [
+        (Method::POST, "/users".to_owned(), new),
+        (
+            Method::POST,
+            format!("/users/{other}/invitation"),
+            json!({}),
+        ),
+        (
+            Method::POST,
+            format!("/users/{}/invitation", own.as_str().unwrap()),
+            json!({}),
+        ),
+        (
+            Method::PATCH,
+            format!("/users/{other}"),
+            json!({ "role": "admin" }),
+        ),
+        (Method::DELETE, format!("/users/{other}"), json!({})),
+        (
+            Method::DELETE,
+            format!("/users/{other}/second-factor"),
+            json!({}),
+        ),
+        (
+            Method::PUT,
+            "/sign-in-rules".to_owned(),
+            json!({ "second_factor_required": false }),
+        ),
+    ];
+    for (method, path, body) in tried {
+        let refused = program.ask(method, &path, &body).await;
+        assert_eq!(refused.problem(), "forbidden", "{path}");
+    }
+    // What a program is for, it may.
+    assert_eq!(
+        program.ask(Method::GET, "/users", &json!({})).await.status,
+        200
+    );
+    let listed = ada.get("/users").await.good();
+    assert_eq!(listed["items"].as_array().unwrap().len(), 2);
+    shore.finish().await;
+}
+
+async fn calendar(shore: &Shore, person: &Person) -> String {
+    let made = person
+        .post("/calendar-feeds", &json!({ "name": "Fleet" }))
+        .await
+        .good();
+    let url = made["url"].as_str().unwrap();
+    url.replace("https://binnacle.example", &shore.url)
+}
+
+async fn another_code_ends_tokens_and_calendars(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let grace = ada.viewer(&shore).await;
+    let id = grace.get("/me").await.good()["user_id"].clone();
+    change(&ada, &id, json!({ "role": "admin" })).await.good();
+    let program = Program::of(&shore, &grace).await;
+    let address = calendar(&shore, &grace).await;
+    let http = shore.http.clone();
+    let reads = || Answer::of(http.get(&address));
+    assert_eq!(reads().await.status, 200);
+    let path = format!("/users/{}/invitation", id.as_str().unwrap());
+    let code = ada.post(&path, &json!({})).await.good()["code"].clone();
+    // Until it is used nothing is otherwise.
+    assert_eq!(
+        program.ask(Method::GET, "/me", &json!({})).await.status,
+        200
+    );
+    accept(&shore, code.as_str().unwrap(), GOOD).await.good();
+    let by_token = program.ask(Method::GET, "/me", &json!({})).await;
+    assert_eq!(by_token.problem(), "unauthenticated");
+    assert_eq!(reads().await.problem(), "unauthenticated");
+    shore.finish().await;
+}
+
+async fn a_calendar_ends_with_who_made_it(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let grace = ada.viewer(&shore).await;
+    let id = grace.get("/me").await.good()["user_id"].clone();
+    change(&ada, &id, json!({ "role": "admin" })).await.good();
+    let (hers, adas) = (calendar(&shore, &grace).await, calendar(&shore, &ada).await);
+    let http = shore.http.clone();
+    let reads = |address: &str| Answer::of(http.get(address));
+    change(&ada, &id, json!({ "disabled": true })).await.good();
+    assert_eq!(reads(&hers).await.problem(), "unauthenticated");
+    change(&ada, &id, json!({ "disabled": false })).await.good();
+    assert_eq!(reads(&hers).await.status, 200);
+    assert_eq!(remove(&ada, &id).await.status, 204);
+    assert_eq!(reads(&hers).await.problem(), "unauthenticated");
+    assert_eq!(reads(&adas).await.status, 200);
+    shore.finish().await;
+}

@@ -1,0 +1,256 @@
+//! Nothing secret is in the log, not even in the most talkative one that can be asked for.
+
+use crate::second_factor::app_code;
+use binnacle_platform::clock::Clock;
+use binnacle_server_testing::{CLIENT_SECRET, Provider, client};
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread::JoinHandle;
+
+/// The program, with everything that it says.
+struct Program {
+    child: Child,
+    url: String,
+    said: JoinHandle<String>,
+}
+
+impl Program {
+    fn start(folder: &Path, log: &str, more: &[&str]) -> Program {
+        let mut child = binnacle(folder)
+            .args(["serve", "--listen", "127.0.0.1:0", "--webhooks-to-private"])
+            .args(["--smtp-url", "smtp://relay:smtp-pass-word@localhost:9"])
+            .args(["--mail-from", "alerts@binnacle.example"])
+            .args(["--public-url", "http://127.0.0.1"])
+            .args(more)
+            .env("BINNACLE_LOG", log)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut errors = child.stderr.take().unwrap();
+        let said = std::thread::spawn(move || {
+            let mut all = Vec::new();
+            errors.read_to_end(&mut all).unwrap();
+            String::from_utf8_lossy(&all).into_owned()
+        });
+        let mut line = String::new();
+        let mut out = BufReader::new(child.stdout.take().unwrap());
+        out.read_line(&mut line).unwrap();
+        let url = line.trim().strip_prefix("listening on ").unwrap();
+        Program {
+            url: url.to_owned(),
+            child,
+            said,
+        }
+    }
+
+    fn stop(mut self) -> String {
+        let pid = rustix::process::Pid::from_child(&self.child);
+        rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
+        self.child.wait().unwrap();
+        self.said.join().unwrap()
+    }
+}
+
+fn binnacle(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_binnacle-server"));
+    command
+        .current_dir(folder)
+        .env("BINNACLE_DATABASE_URL", "sqlite://binnacle.db");
+    command
+}
+
+fn admin(folder: &Path, arguments: &[&str]) -> Value {
+    let output = binnacle(folder).arg("admin").args(arguments).output();
+    serde_json::from_slice(&output.unwrap().stdout).unwrap()
+}
+
+/// What has been secret so far; asks in one's name.
+struct Drive {
+    http: reqwest::Client,
+    url: String,
+    secrets: Vec<String>,
+}
+
+impl Drive {
+    /// Notes the secrets of an answer.
+    fn keep(&mut self, value: &Value) -> String {
+        let secret = value.as_str().unwrap().to_owned();
+        self.secrets.push(secret.clone());
+        secret
+    }
+
+    /// Waits until something was sent, or tried: another process does it.
+    async fn until_tried(&self, key: &str, receiver: &str) {
+        for _ in 0..5000 {
+            let path = format!("{receiver}/deliveries");
+            let (_, list) = self.ask(key, "GET", &path, json!({})).await;
+            if list["items"][0]["attempts"].as_i64().unwrap() > 0 {
+                return;
+            }
+        }
+        panic!("nothing was sent to {receiver}");
+    }
+
+    /// Keeps the cookies, and what stands in addresses.
+    async fn signs_in_by_the_provider(&mut self) {
+        let there = self.follow("/api/v1/session/provider/start", "").await;
+        let cookie = self.secrets.last().unwrap().clone();
+        let back = self.http.get(&there).send().await.unwrap();
+        let back = back.headers()["location"].to_str().unwrap().to_owned();
+        let (_, path) = back.split_once("127.0.0.1").unwrap();
+        let (_, state) = path.split_once("state=").unwrap();
+        self.secrets.push(state.to_owned());
+        let cookie = format!("binnacle_provider={cookie}");
+        assert_eq!(self.follow(path, &cookie).await, "/");
+    }
+
+    /// Where it leads; keeps the value of the first cookie that comes with it.
+    async fn follow(&mut self, path: &str, cookie: &str) -> String {
+        let url = format!("{}{path}", self.url);
+        let asked = self.http.get(url).header("cookie", cookie);
+        let answer = asked.send().await.unwrap();
+        let set = answer.headers()["set-cookie"].to_str().unwrap();
+        let (_, value) = set.split(';').next().unwrap().split_once('=').unwrap();
+        self.secrets.push(value.to_owned());
+        answer.headers()["location"].to_str().unwrap().to_owned()
+    }
+
+    async fn ask(&self, key: &str, method: &str, path: &str, body: Value) -> (String, Value) {
+        let method = reqwest::Method::from_bytes(method.as_bytes()).unwrap();
+        let url = format!("{}/api/v1{path}", self.url);
+        let asked = self.http.request(method, url).json(&body);
+        let asked = if key.contains('=') {
+            asked
+                .header("cookie", key)
+                .header("x-binnacle-request", "1")
+        } else {
+            asked.bearer_auth(key)
+        };
+        let answer = asked.send().await.unwrap();
+        let cookie = answer.headers().get("set-cookie");
+        let cookie = cookie.map_or("", |cookie| cookie.to_str().unwrap());
+        let cookie = cookie.split(';').next().unwrap().to_owned();
+        let bytes = answer.bytes().await.unwrap();
+        (cookie, serde_json::from_slice(&bytes).unwrap_or_default())
+    }
+}
+
+/// Whom a new server's first command makes, with the password.
+fn first_admin(folder: &Path) -> Value {
+    let operator = admin(folder, &["create", "operator", "--name", "ada"]);
+    let operator = operator["operator_id"].as_str().unwrap();
+    let user = ["create", "user", "--operator", operator, "--role", "admin"];
+    let who = ["--email", "ada@example.com", "--name", "Ada"];
+    let user: Vec<&str> = user.into_iter().chain(who).collect();
+    admin(folder, &user)
+}
+
+#[tokio::test]
+async fn no_password_token_key_code_or_cookie_is_in_the_most_talkative_log() {
+    let _ = rustls::crypto::ring::default_provider().install_default();
+    let provider = Provider::start().await;
+    let folder = tempfile::tempdir().unwrap();
+    let made = first_admin(folder.path());
+    let program = Program::start(folder.path(), "trace", &provider.settings());
+    let mut drive = Drive {
+        http: client(),
+        url: program.url.clone(),
+        secrets: vec!["smtp-pass-word".to_owned(), "a-wrong-guess".to_owned()],
+    };
+    let password = drive.keep(&made["password"]);
+    let email = "ada@example.com";
+    let wrong = json!({ "email": email, "password": "a-wrong-guess" });
+    drive.ask("", "POST", "/session", wrong).await;
+    let right = json!({ "email": email, "password": password });
+    let (cookie, _) = drive.ask("", "POST", "/session", right).await;
+    let session = cookie.split_once('=').unwrap().1.to_owned();
+    drive.secrets.push(session);
+
+    let lasting = Clock::System.now().micros() / 1_000_000 + 3600;
+    provider.says(json!({ "exp": lasting }));
+    drive.signs_in_by_the_provider().await;
+    drive.secrets.extend(provider.secrets());
+    drive.secrets.push(CLIENT_SECRET.to_owned());
+
+    let token = json!({ "name": "ERP", "scope": "write" });
+    let (_, token) = drive.ask(&cookie, "POST", "/tokens", token).await;
+    let token = drive.keep(&token["token"]);
+    let vessel = json!({ "name": "Nao" });
+    let (_, vessel) = drive.ask(&token, "POST", "/vessels", vessel).await;
+    let agents = format!("/vessels/{}/agents", vessel["id"].as_str().unwrap());
+    let (_, code) = drive.ask(&token, "POST", &agents, json!({})).await;
+    let code = drive.keep(&code["code"]);
+    let enrol = json!({ "code": code, "agent_version": "1" });
+    let (_, agent) = drive.ask("", "POST", "/agents/enrol", enrol).await;
+    let agent = drive.keep(&agent["token"]);
+    let (_, next) = drive.ask(&agent, "POST", "/agents/token", json!({})).await;
+    let next = drive.keep(&next["token"]);
+    let put = json!({ "token": next });
+    drive.ask(&agent, "PUT", "/agents/token", put).await;
+    drive.ask(&next, "POST", "/streams", json!({})).await;
+
+    let hook = format!("{}/none?key=in-the-address", drive.url);
+    drive.secrets.push("in-the-address".to_owned());
+    let hook = json!({ "url": hook, "kinds": ["alert.raised"] });
+    let (_, hook) = drive.ask(&cookie, "POST", "/webhooks", hook).await;
+    drive.keep(&hook["secret"]);
+    let hook = format!("/webhooks/{}", hook["id"].as_str().unwrap());
+    let test = format!("{hook}/test");
+    drive.ask(&cookie, "POST", &test, json!({})).await;
+    drive.until_tried(&cookie, &hook).await;
+    let mail = json!({ "address": "office@example.com" });
+    let (_, mail) = drive.ask(&cookie, "POST", "/mail-recipients", mail).await;
+    let mail = format!("/mail-recipients/{}", mail["id"].as_str().unwrap());
+    let test = format!("{mail}/test");
+    drive.ask(&cookie, "POST", &test, json!({})).await;
+    drive.until_tried(&cookie, &mail).await;
+    let feed = json!({ "name": "Fleet" });
+    let (_, feed) = drive.ask(&cookie, "POST", "/calendar-feeds", feed).await;
+    let feed = feed["url"]
+        .as_str()
+        .unwrap()
+        .split_once("?token=")
+        .unwrap()
+        .1;
+    let feed = drive.keep(&json!(feed));
+    let read = format!("/calendar.ics?token={feed}");
+    drive.ask("", "GET", &read, json!({})).await;
+
+    let again = json!({ "password": password });
+    let (_, begun) = drive.ask(&cookie, "POST", "/me/second-factor", again).await;
+    let secret = drive.keep(&begun["secret"]);
+    let unix_s = Clock::System.now().micros() / 1_000_000;
+    let code = json!({ "code": app_code(&secret, unix_s) });
+    let confirm = "/me/second-factor/confirm";
+    let (_, codes) = drive.ask(&cookie, "POST", confirm, code).await;
+    for code in codes["recovery_codes"].as_array().unwrap() {
+        drive.keep(code);
+    }
+    let code = codes["recovery_codes"][0].clone();
+    let right = json!({ "email": email, "password": password, "code": code });
+    let (cookie, _) = drive.ask("", "POST", "/session", right).await;
+    let session = cookie.split_once('=').unwrap().1.to_owned();
+    drive.secrets.push(session);
+    let colleague = json!({ "email": "bob@example.com", "name": "Bob", "role": "viewer" });
+    let (_, bob) = drive.ask(&cookie, "POST", "/users", colleague).await;
+    let code = drive.keep(&bob["invitation"]["code"]);
+    drive
+        .secrets
+        .push("a lantern astern at midnight".to_owned());
+    let accept = json!({ "code": code, "password": "a lantern astern at midnight" });
+    drive.ask("", "POST", "/invitations/accept", accept).await;
+    let changed = json!({ "current": password, "new": "seven gulls over the quay" });
+    drive.secrets.push("seven gulls over the quay".to_owned());
+    drive.ask(&cookie, "PUT", "/me/password", changed).await;
+
+    let said = program.stop();
+    assert!(said.contains("TRACE") && said.contains("sqlx"), "{said}");
+    for secret in &drive.secrets {
+        assert!(!secret.is_empty());
+        let line = said.lines().find(|line| line.contains(secret.as_str()));
+        assert_eq!(line, None, "{secret:?} is in the log");
+    }
+}

@@ -1,0 +1,91 @@
+//! The dashboard's host, and what surrounds every answer.
+
+use binnacle_server_testing::{Answer, Engine, Shore};
+use reqwest::header::HeaderName;
+
+#[tokio::test]
+async fn any_path_but_the_apis_answers_with_a_page() {
+    let shore = Shore::start(Engine::Sqlite).await;
+    for path in ["/", "/vessels/1", "/index.html"] {
+        let page = Answer::of(shore.http.get(format!("{}{path}", shore.url))).await;
+        assert_eq!(page.status, 200);
+        assert!(
+            page.headers["content-type"]
+                .to_str()
+                .unwrap()
+                .starts_with("text/html")
+        );
+        let policy = page.headers["content-security-policy"].to_str().unwrap();
+        assert!(
+            policy.starts_with("default-src 'none'; script-src 'self';"),
+            "{policy}"
+        );
+        assert_eq!(page.headers["x-content-type-options"], "nosniff");
+    }
+    let missing = shore.http.get(format!("{}/assets/none.js", shore.url));
+    assert_eq!(Answer::of(missing).await.status, 404);
+    for path in ["/api/none", "/api/v1/none", "/api/v2/vessels"] {
+        let answer = Answer::of(shore.http.get(format!("{}{path}", shore.url))).await;
+        assert_eq!(answer.problem(), "not-found", "{path}");
+    }
+    shore.finish().await;
+}
+
+#[tokio::test]
+async fn the_operations_routes_tell_how_the_server_is() {
+    let shore = Shore::start(Engine::Sqlite).await;
+    for (path, text) in [("/healthz", "ok"), ("/readyz", "ready")] {
+        let answer = Answer::of(shore.http.get(format!("{}{path}", shore.url))).await;
+        assert_eq!((answer.status, answer.text.as_str()), (200, text));
+    }
+    let metrics = Answer::of(shore.http.get(format!("{}/metrics", shore.url))).await;
+    assert!(
+        metrics.text.contains("binnacle_http_requests_total"),
+        "{metrics:?}"
+    );
+    shore.finish().await;
+}
+
+#[tokio::test]
+async fn metrics_are_read_on_the_same_machine_or_with_their_token() {
+    let read = async |shore: &Shore, header: (&str, &str)| {
+        let asked = shore.http.get(format!("{}/metrics", shore.url));
+        Answer::of(asked.header(header.0, header.1)).await.status
+    };
+    let shore = Shore::start(Engine::Sqlite).await;
+    assert_eq!(read(&shore, ("accept", "text/plain")).await, 200);
+    // Whom a proxy that the server was not told of lets in may be anybody.
+    for by in ["x-forwarded-for", "forwarded"] {
+        assert_eq!(read(&shore, (by, "127.0.0.1")).await, 401, "{by}");
+    }
+    shore.finish().await;
+    let proxied = Shore::start_with(Engine::Sqlite, &["--proxies", "1"]).await;
+    assert_eq!(read(&proxied, ("x-forwarded-for", "192.0.2.7")).await, 401);
+    proxied.finish().await;
+
+    let token = "a-token-of-the-scraper";
+    let shore = Shore::start_with(Engine::Sqlite, &["--metrics-token", token]).await;
+    for (sent, status) in [
+        (format!("Bearer {token}"), 200),
+        (format!("Bearer {token}s"), 401),
+        (token.to_owned(), 401),
+        (String::new(), 401),
+    ] {
+        let answered = read(&shore, ("authorization", &sent)).await;
+        assert_eq!(answered, status, "{sent}");
+    }
+    assert_eq!(read(&shore, ("accept", "text/plain")).await, 401);
+    shore.finish().await;
+}
+
+#[tokio::test]
+async fn an_agents_answer_carries_no_header_that_it_does_not_need() {
+    let shore = Shore::start(Engine::Sqlite).await;
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let answer = nao.put(1, &[]).await;
+    let mut names: Vec<&str> = answer.headers.keys().map(HeaderName::as_str).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["content-length", "content-type", "date"]);
+    shore.finish().await;
+}

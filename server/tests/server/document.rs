@@ -1,0 +1,47 @@
+//! The API's document.
+
+use binnacle_server::routes::openapi;
+use binnacle_server_testing::{Answer, Engine, Shore};
+use serde_json::Value;
+
+#[test]
+fn the_committed_document_is_the_servers() {
+    let committed = include_str!("../../openapi.json");
+    let current = openapi().to_pretty_json().unwrap();
+    assert!(
+        committed.trim_end() == current.trim_end(),
+        "run `cargo run -p binnacle-server -- openapi > server/openapi.json`, then `npm run schema` in web"
+    );
+}
+
+#[test]
+fn every_answer_is_described_and_every_problem_is_one() {
+    let document = serde_json::to_value(openapi()).unwrap();
+    for (path, operations) in document["paths"].as_object().unwrap() {
+        for (method, operation) in operations.as_object().unwrap() {
+            for (status, answer) in operation["responses"].as_object().unwrap() {
+                let place = format!("{method} {path} {status}");
+                assert!(answer["description"].is_string(), "{place}");
+                let problem = answer["content"].get("application/problem+json");
+                assert_eq!(problem.is_some(), status.starts_with('4'), "{place}");
+            }
+        }
+    }
+}
+
+#[tokio::test]
+async fn the_document_and_its_page_are_served_to_anyone() {
+    let shore = Shore::start(Engine::Sqlite).await;
+    let document = Answer::of(shore.http.get(format!("{}/api/openapi.json", shore.url))).await;
+    assert_eq!(document.good()["openapi"], "3.1.0");
+    let page = Answer::of(shore.http.get(format!("{}/api/docs", shore.url))).await;
+    let paths: Value = document.json()["paths"].take();
+    for path in paths.as_object().unwrap().keys() {
+        assert!(
+            page.text.contains(path.as_str()),
+            "{path} is not on the page"
+        );
+    }
+    assert!(!page.text.contains("<script"), "the page needs no script");
+    shore.finish().await;
+}

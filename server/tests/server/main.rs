@@ -1,0 +1,21 @@
+//! The server's commands and documents as others see it: over real HTTP, on both databases.
+
+#![allow(clippy::unwrap_used, reason = "these are tests")]
+
+mod commands;
+mod dashboard;
+mod document;
+mod documented;
+mod fit;
+mod migration;
+mod plan;
+mod schedule;
+
+use binnacle_server_testing::program;
+use std::path::Path;
+use std::process::Output;
+
+/// Runs the server's program in a folder.
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    program::run(env!("CARGO_BIN_EXE_binnacle-server"), folder, arguments)
+}
