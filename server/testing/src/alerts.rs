@@ -1,7 +1,7 @@
 //! Alerts: raised by a limit, and reported by an agent.
 
-use crate::person::{Answer, Person};
-use crate::server::Shore;
+use crate::person::{ApiResponse, Person};
+use crate::server::TestServer;
 use crate::ship::{Ship, passage};
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
@@ -17,22 +17,22 @@ const AGENT_DAY: &str = "2026-11-20T00:00:00Z";
 const A_WHILE_S: f64 = 10.0;
 
 /// Sets the vessel's limits and has her analysed.
-pub async fn limit(shore: &Shore, person: &Person, ship: &Ship, limits: Value) {
+pub async fn limit(server: &TestServer, person: &Person, ship: &Ship, limits: Value) {
     let mut settings = person.get(&ship.path("/settings")).await.good();
     settings["alerts"] = limits;
     let request = person.request(Method::PUT, &ship.path("/settings"));
-    Answer::of(request.json(&settings)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    ApiResponse::of(request.json(&settings)).await.good();
+    server.advance(A_WHILE_S);
+    server.work().await;
 }
 
 /// A ship with a model, whose greatest deviation lies between 3 and 12 degrees.
-pub async fn with_model(shore: &Shore, person: &Person) -> Ship {
-    let ship = shore.ship(person, "Nao").await;
-    limit(shore, person, &ship, json!({ "deviation_deg": 45.0 })).await;
+pub async fn ship_with_model(server: &TestServer, person: &Person) -> Ship {
+    let ship = server.ship(person, "Nao").await;
+    limit(server, person, &ship, json!({ "deviation_deg": 45.0 })).await;
     ship.put(1, &passage(DAY, 300)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     ship
 }
 
@@ -65,7 +65,7 @@ pub async fn put_agent_alerts(ship: &Ship, seq: u64, samples: Vec<Sample>, alert
 }
 
 /// The ship's agent says that her compass parts from her gyro.
-pub async fn departs(ship: &Ship) {
+pub async fn report_departure(ship: &Ship) {
     let id = Uuid::parse_str(&ship.id).unwrap().as_u128();
     let mut open = agent_alert(1, 1, ShipAlertState::Open);
     open.id = Uuid::from_u128(id);
@@ -73,7 +73,7 @@ pub async fn departs(ship: &Ship) {
 }
 
 /// The same with that and no sample.
-pub async fn says_that_it_departs(ship: &Ship, seq: u64) {
+pub async fn report_departure_without_samples(ship: &Ship, seq: u64) {
     let open = agent_alert(1, 1, ShipAlertState::Open);
     put_agent_alerts(ship, seq, Vec::new(), vec![open]).await;
 }

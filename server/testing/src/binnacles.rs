@@ -1,6 +1,6 @@
 //! A binnacle as these tests enter it.
 
-use crate::person::{Answer, Person};
+use crate::person::{ApiResponse, Person};
 use binnacle_adjustment::binnacle::SHIPPED;
 use reqwest::Method;
 use serde_json::{Value, json};
@@ -21,6 +21,6 @@ pub fn binnacle() -> Value {
     })
 }
 
-pub async fn put(person: &Person, path: &str, body: &Value) -> Answer {
-    Answer::of(person.request(Method::PUT, path).json(body)).await
+pub async fn put(person: &Person, path: &str, body: &Value) -> ApiResponse {
+    ApiResponse::of(person.request(Method::PUT, path).json(body)).await
 }

@@ -28,11 +28,14 @@ pub mod webhooks;
 pub mod work_orders;
 
 pub use database::Engine;
-pub use person::{Answer, Person, attempt, password_hash, patch};
+pub use person::{ApiResponse, Person, attempt, password_hash, patch};
 pub use provider::{CLIENT_SECRET, Provider, Signer, provider_settings};
-pub use relay::{At, Encryption, Letter, Mood, Relay};
-pub use server::{DAY_S, HOUR_S, PASSWORD, Prepared, START, Shore, client};
-pub use ship::{Ship, days_at_sea, days_in, exchange, frame, passage, sample, struck, truth};
+pub use relay::{Behaviour, Encryption, Letter, Relay, Stage};
+pub use server::{DAY_S, HOUR_S, PASSWORD, Prepared, START, TestServer, client};
+pub use ship::{
+    Ship, days_at_sea, days_in_waters, exchange, frame, model_after_step, passage, sample,
+    true_model,
+};
 
 /// Runs each test on SQLite and on PostgreSQL.
 #[macro_export]
@@ -41,13 +44,13 @@ macro_rules! on_both {
         mod sqlite {
             $(#[tokio::test]
             async fn $test() {
-                super::$test($crate::Shore::start($crate::Engine::Sqlite).await).await;
+                super::$test($crate::TestServer::start($crate::Engine::Sqlite).await).await;
             })*
         }
         mod postgres {
             $(#[tokio::test]
             async fn $test() {
-                super::$test($crate::Shore::start($crate::Engine::Postgres).await).await;
+                super::$test($crate::TestServer::start($crate::Engine::Postgres).await).await;
             })*
         }
     };

@@ -2,7 +2,7 @@
 
 use crate::person::Person;
 use crate::relay::{Letter, Relay};
-use crate::server::Shore;
+use crate::server::TestServer;
 use binnacle_platform::config;
 use binnacle_platform::mail::Mailer;
 use binnacle_platform::outbox::{self, Sent};
@@ -45,10 +45,10 @@ pub async fn test(person: &Person, recipient: &Value) -> Value {
 }
 
 /// Sends every letter that is due now.
-pub async fn deliver(shore: &Shore, relay: &Relay) -> Vec<Sent> {
+pub async fn deliver(server: &TestServer, relay: &Relay) -> Vec<Sent> {
     let mailer = mailer(relay);
     let mut sent = Vec::new();
-    while let Some(done) = outbox::step(&shore.app, &mailer).await.unwrap() {
+    while let Some(done) = outbox::step(&server.app, &mailer).await.unwrap() {
         sent.push(done);
     }
     sent
@@ -73,7 +73,7 @@ pub fn read(letter: &Letter) -> Value {
 }
 
 pub fn subjects(relay: &Relay) -> Vec<String> {
-    let got = relay.got();
+    let got = relay.letters();
     let subjects = got.iter().map(|letter| read(letter)["subject"].take());
     subjects
         .map(|subject| subject.as_str().unwrap().to_owned())

@@ -1,7 +1,7 @@
 //! An operator with a ship, and firms that work for it.
 
-use crate::person::{Answer, Person};
-use crate::server::Shore;
+use crate::person::{ApiResponse, Person};
+use crate::server::TestServer;
 use binnacle_platform::ids::FirmId;
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 pub const NEXT_DAY: &str = "2026-11-22T13:00:00Z";
 
 /// An operator with a ship, and firms that work for it.
-pub struct Trade {
+pub struct OfferParties {
     pub ada: Person,
     pub vessel: String,
     pub compass: String,
@@ -17,10 +17,10 @@ pub struct Trade {
     pub order: String,
 }
 
-impl Trade {
+impl OfferParties {
     /// With so many firms, the order planned but not offered.
-    pub async fn planned(shore: &Shore, firms: usize) -> Trade {
-        let ada = shore.admin("ada").await;
+    pub async fn planned(server: &TestServer, firms: usize) -> OfferParties {
+        let ada = server.admin("ada").await;
         let vessel = ada.create_vessel("Nao").await;
         let vessel = vessel["id"].as_str().unwrap().to_owned();
         let compasses = ada
@@ -28,7 +28,7 @@ impl Trade {
             .await
             .good();
         let compass = compasses["items"][0]["id"].as_str().unwrap().to_owned();
-        let mut trade = Trade {
+        let mut parties = OfferParties {
             ada,
             vessel,
             compass,
@@ -36,26 +36,26 @@ impl Trade {
             order: String::new(),
         };
         for name in ["rosa", "juan", "pepa"].into_iter().take(firms) {
-            trade.firms.push(trade.ada.adjuster(shore, name).await);
+            parties.firms.push(parties.ada.adjuster(server, name).await);
         }
-        let made = trade
+        let made = parties
             .ada
-            .post("/work-orders", &trade.new_order())
+            .post("/work-orders", &parties.new_order())
             .await
             .good();
         assert_eq!(made["has_binnacle"], false);
-        made["id"].as_str().unwrap().clone_into(&mut trade.order);
-        trade
+        made["id"].as_str().unwrap().clone_into(&mut parties.order);
+        parties
     }
 
     /// With so many firms, offered to them, each with an hour to answer.
-    pub async fn offered(shore: &Shore, firms: usize) -> Trade {
-        let trade = Trade::planned(shore, firms).await;
-        trade
-            .post(&trade.ada, "/offer", &trade.offer())
+    pub async fn offered(server: &TestServer, firms: usize) -> OfferParties {
+        let parties = OfferParties::planned(server, firms).await;
+        parties
+            .post(&parties.ada, "/offer", &parties.offer())
             .await
             .good();
-        trade
+        parties
     }
 
     pub fn new_order(&self) -> Value {
@@ -74,11 +74,11 @@ impl Trade {
         format!("/work-orders/{}{rest}", self.order)
     }
 
-    pub async fn post(&self, who: &Person, rest: &str, body: &Value) -> Answer {
+    pub async fn post(&self, who: &Person, rest: &str, body: &Value) -> ApiResponse {
         who.post(&self.path(rest), body).await
     }
 
-    pub async fn seen(&self) -> Value {
+    pub async fn view_order(&self) -> Value {
         self.ada.get(&self.path("")).await.good()
     }
 
@@ -92,7 +92,7 @@ impl Trade {
 
     /// How the offers stand, in order.
     pub async fn offers(&self) -> Vec<String> {
-        let order = self.seen().await;
+        let order = self.view_order().await;
         let offers = order["offers"].as_array().unwrap().iter();
         offers
             .map(|offer| offer["state"].as_str().unwrap().to_owned())

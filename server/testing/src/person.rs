@@ -1,6 +1,6 @@
 //! Someone with a browser.
 
-use crate::server::{PASSWORD, Shore};
+use crate::server::{PASSWORD, TestServer};
 use binnacle_orders::firms;
 use binnacle_platform::ids::{FirmId, OperatorId};
 use binnacle_platform::secret;
@@ -22,16 +22,16 @@ pub struct Person {
 
 /// A status and what came with it.
 #[derive(Debug)]
-pub struct Answer {
+pub struct ApiResponse {
     pub status: u16,
     pub headers: reqwest::header::HeaderMap,
     pub text: String,
 }
 
-impl Answer {
-    pub async fn of(request: reqwest::RequestBuilder) -> Answer {
+impl ApiResponse {
+    pub async fn of(request: reqwest::RequestBuilder) -> ApiResponse {
         let response = request.send().await.unwrap();
-        Answer {
+        ApiResponse {
             status: response.status().as_u16(),
             headers: response.headers().clone(),
             text: response.text().await.unwrap(),
@@ -66,57 +66,57 @@ pub fn password_hash() -> &'static str {
 }
 
 impl Person {
-    pub(crate) async fn admin(shore: &Shore, name: &str) -> Person {
-        let operator = create_operator(shore, name).await;
+    pub(crate) async fn admin(server: &TestServer, name: &str) -> Person {
+        let operator = create_operator(server, name).await;
         let email = format!("{name}@example.com");
-        Person::create(shore, Some(operator.into()), &email, Role::Admin).await;
-        Person::sign_in(shore, operator, &email).await
+        Person::create(server, Some(operator.into()), &email, Role::Admin).await;
+        Person::sign_in(server, operator, &email).await
     }
 
     /// An adjuster of a new firm's that works for this person's operator, signed in.
-    pub async fn adjuster(&self, shore: &Shore, name: &str) -> (FirmId, Person) {
-        let now = Time(shore.app.clock.now());
-        let mut tx = shore.app.db.begin().await.unwrap();
+    pub async fn adjuster(&self, server: &TestServer, name: &str) -> (FirmId, Person) {
+        let now = Time(server.app.clock.now());
+        let mut tx = server.app.db.begin().await.unwrap();
         let firm = firms::create(&mut tx, name, now).await.unwrap();
         firms::engage(&mut tx, self.operator, firm, now)
             .await
             .unwrap();
         tx.commit().await.unwrap();
         let email = format!("{name}@adjusters.example");
-        Person::create(shore, Some(firm.into()), &email, Role::Adjuster).await;
-        (firm, Person::sign_in(shore, self.operator, &email).await)
+        Person::create(server, Some(firm.into()), &email, Role::Adjuster).await;
+        (firm, Person::sign_in(server, self.operator, &email).await)
     }
 
     /// Someone who manages operators and firms, signed in.
-    pub async fn platform_admin(&self, shore: &Shore) -> Person {
+    pub async fn platform_admin(&self, server: &TestServer) -> Person {
         let email = "root@example.com";
-        Person::create(shore, None, email, Role::PlatformAdmin).await;
-        Person::sign_in(shore, self.operator, email).await
+        Person::create(server, None, email, Role::PlatformAdmin).await;
+        Person::sign_in(server, self.operator, email).await
     }
 
     /// A colleague of this person, signed in.
-    pub async fn viewer(&self, shore: &Shore) -> Person {
+    pub async fn viewer(&self, server: &TestServer) -> Person {
         let email = format!("viewer-{}", self.email);
-        Person::create(shore, Some(self.operator.into()), &email, Role::Viewer).await;
-        Person::sign_in(shore, self.operator, &email).await
+        Person::create(server, Some(self.operator.into()), &email, Role::Viewer).await;
+        Person::sign_in(server, self.operator, &email).await
     }
 
-    pub async fn create(shore: &Shore, tenant: Option<Tenant>, email: &str, role: Role) {
-        let now = Time(shore.app.clock.now());
-        let mut tx = shore.app.db.begin().await.unwrap();
+    pub async fn create(server: &TestServer, tenant: Option<Tenant>, email: &str, role: Role) {
+        let now = Time(server.app.clock.now());
+        let mut tx = server.app.db.begin().await.unwrap();
         session::create_user(&mut tx, tenant, email, email, role, password_hash(), now)
             .await
             .unwrap();
         tx.commit().await.unwrap();
     }
 
-    pub async fn sign_in(shore: &Shore, operator: OperatorId, email: &str) -> Person {
-        let answer = attempt(shore, email, PASSWORD).await;
-        assert_eq!(answer.status, 200, "{answer:?}");
-        let cookie = answer.headers["set-cookie"].to_str().unwrap();
+    pub async fn sign_in(server: &TestServer, operator: OperatorId, email: &str) -> Person {
+        let response = attempt(server, email, PASSWORD).await;
+        assert_eq!(response.status, 200, "{response:?}");
+        let cookie = response.headers["set-cookie"].to_str().unwrap();
         Person {
-            url: shore.url.clone(),
-            http: shore.http.clone(),
+            url: server.url.clone(),
+            http: server.http.clone(),
             operator,
             email: email.to_owned(),
             cookie: cookie.split(';').next().unwrap().to_owned(),
@@ -124,9 +124,9 @@ impl Person {
     }
 
     /// The same person, talking to a server that was started again.
-    pub fn at(&self, shore: &Shore) -> Person {
+    pub fn at(&self, server: &TestServer) -> Person {
         Person {
-            url: shore.url.clone(),
+            url: server.url.clone(),
             ..self.clone()
         }
     }
@@ -139,12 +139,12 @@ impl Person {
             .header("x-binnacle-request", "1")
     }
 
-    pub async fn get(&self, path: &str) -> Answer {
-        Answer::of(self.request(Method::GET, path)).await
+    pub async fn get(&self, path: &str) -> ApiResponse {
+        ApiResponse::of(self.request(Method::GET, path)).await
     }
 
-    pub async fn post(&self, path: &str, body: &Value) -> Answer {
-        Answer::of(self.request(Method::POST, path).json(body)).await
+    pub async fn post(&self, path: &str, body: &Value) -> ApiResponse {
+        ApiResponse::of(self.request(Method::POST, path).json(body)).await
     }
 
     pub async fn create_vessel(&self, name: &str) -> Value {
@@ -152,17 +152,17 @@ impl Person {
     }
 }
 
-pub async fn attempt(shore: &Shore, email: &str, password: &str) -> Answer {
-    let request = shore
+pub async fn attempt(server: &TestServer, email: &str, password: &str) -> ApiResponse {
+    let request = server
         .http
-        .post(format!("{}/api/v1/session", shore.url))
+        .post(format!("{}/api/v1/session", server.url))
         .json(&json!({ "email": email, "password": password }));
-    Answer::of(request).await
+    ApiResponse::of(request).await
 }
 
-async fn create_operator(shore: &Shore, name: &str) -> OperatorId {
-    let now = Time(shore.app.clock.now());
-    let mut tx = shore.app.db.begin().await.unwrap();
+async fn create_operator(server: &TestServer, name: &str) -> OperatorId {
+    let now = Time(server.app.clock.now());
+    let mut tx = server.app.db.begin().await.unwrap();
     let id = binnacle_fleet::operators::create(&mut tx, name, now)
         .await
         .unwrap();
@@ -170,6 +170,6 @@ async fn create_operator(shore: &Shore, name: &str) -> OperatorId {
     id
 }
 
-pub async fn patch(person: &Person, path: &str, body: &Value) -> Answer {
-    Answer::of(person.request(Method::PATCH, path).json(body)).await
+pub async fn patch(person: &Person, path: &str, body: &Value) -> ApiResponse {
+    ApiResponse::of(person.request(Method::PATCH, path).json(body)).await
 }

@@ -9,7 +9,7 @@ use tokio_rustls::TlsAcceptor;
 
 /// A place in a conversation: before the answer there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum At {
+pub enum Stage {
     Greeting,
     Recipient,
     Data,
@@ -20,11 +20,11 @@ pub enum At {
 
 /// How one conversation goes.
 #[derive(Clone, Copy, Debug)]
-pub enum Mood {
-    Takes,
-    Says(At, &'static str),
-    Hangs(At),
-    Drops(At),
+pub enum Behaviour {
+    Accept,
+    Reply(Stage, &'static str),
+    Hang(Stage),
+    Drop(Stage),
 }
 
 /// What was handed over, whether it was taken or not.
@@ -39,9 +39,9 @@ pub struct Letter {
 #[derive(Clone, Default)]
 pub struct Relay {
     pub port: u16,
-    got: Arc<Mutex<Vec<Letter>>>,
-    heard: Arc<Mutex<Vec<String>>>,
-    moods: Arc<Mutex<VecDeque<Mood>>>,
+    letters: Arc<Mutex<Vec<Letter>>>,
+    commands: Arc<Mutex<Vec<String>>>,
+    behaviours: Arc<Mutex<VecDeque<Behaviour>>>,
 }
 
 /// How a relay encrypts.
@@ -75,37 +75,37 @@ impl Relay {
     }
 
     /// How the next conversation goes for which nothing was said yet.
-    pub fn next(&self, mood: Mood) {
-        self.moods.lock().unwrap().push_back(mood);
+    pub fn behave_next(&self, behaviour: Behaviour) {
+        self.behaviours.lock().unwrap().push_back(behaviour);
     }
 
-    pub fn got(&self) -> Vec<Letter> {
-        self.got.lock().unwrap().clone()
+    pub fn letters(&self) -> Vec<Letter> {
+        self.letters.lock().unwrap().clone()
     }
 
     /// Everything that was said to it, but for the letters.
-    pub fn heard(&self) -> Vec<String> {
-        self.heard.lock().unwrap().clone()
+    pub fn commands(&self) -> Vec<String> {
+        self.commands.lock().unwrap().clone()
     }
 
     async fn receive(&self, stream: TcpStream, encryption: Encryption) {
-        let mood = self.moods.lock().unwrap().pop_front();
-        let mood = mood.unwrap_or(Mood::Takes);
+        let behaviour = self.behaviours.lock().unwrap().pop_front();
+        let behaviour = behaviour.unwrap_or(Behaviour::Accept);
         match encryption {
             Encryption::Nothing => {
-                self.talk(stream, mood, true, None).await;
+                self.talk(stream, behaviour, true, None).await;
             }
             Encryption::Always(acceptor) => {
                 if let Ok(stream) = acceptor.accept(stream).await {
-                    self.talk(stream, mood, true, Some(true)).await;
+                    self.talk(stream, behaviour, true, Some(true)).await;
                 }
             }
             Encryption::Start(acceptor) => {
-                let Some(stream) = self.talk(stream, mood, true, Some(false)).await else {
+                let Some(stream) = self.talk(stream, behaviour, true, Some(false)).await else {
                     return;
                 };
                 if let Ok(stream) = acceptor.accept(stream).await {
-                    self.talk(stream, mood, false, Some(true)).await;
+                    self.talk(stream, behaviour, false, Some(true)).await;
                 }
             }
         }
@@ -116,7 +116,7 @@ impl Relay {
     async fn talk<S>(
         &self,
         stream: S,
-        mood: Mood,
+        behaviour: Behaviour,
         greets: bool,
         encrypted: Option<bool>,
     ) -> Option<S>
@@ -125,12 +125,12 @@ impl Relay {
     {
         let mut stream = BufReader::new(stream);
         if greets {
-            answer(&mut stream, mood, At::Greeting, "220 relay.example").await?;
+            response(&mut stream, behaviour, Stage::Greeting, "220 relay.example").await?;
         }
         let (mut from, mut to) = (String::new(), Vec::new());
         loop {
             let line = read_line(&mut stream).await?;
-            self.heard.lock().unwrap().push(line.clone());
+            self.commands.lock().unwrap().push(line.clone());
             let word = line.to_ascii_uppercase();
             if word.starts_with("EHLO") {
                 let offers = match encrypted {
@@ -149,9 +149,9 @@ impl Relay {
                 say(&mut stream, "250 ok").await?;
             } else if let Some(rest) = line.strip_prefix("RCPT TO:") {
                 to.push(rest.trim().to_owned());
-                answer(&mut stream, mood, At::Recipient, "250 ok").await?;
+                response(&mut stream, behaviour, Stage::Recipient, "250 ok").await?;
             } else if word == "DATA" {
-                if !answer(&mut stream, mood, At::Data, "354 go on").await? {
+                if !response(&mut stream, behaviour, Stage::Data, "354 go on").await? {
                     continue;
                 }
                 let letter = Letter {
@@ -160,10 +160,10 @@ impl Relay {
                     text: read_letter(&mut stream).await?,
                     encrypted: encrypted == Some(true),
                 };
-                self.got.lock().unwrap().push(letter);
-                answer(&mut stream, mood, At::End, "250 taken").await?;
+                self.letters.lock().unwrap().push(letter);
+                response(&mut stream, behaviour, Stage::End, "250 taken").await?;
             } else if word == "QUIT" {
-                answer(&mut stream, mood, At::Quit, "221 bye").await?;
+                response(&mut stream, behaviour, Stage::Quit, "221 bye").await?;
                 return None;
             } else {
                 say(&mut stream, "500 what?").await?;
@@ -174,17 +174,17 @@ impl Relay {
 
 /// Answers at a place in the conversation; `false` if not as usual, none if the
 /// conversation is over.
-async fn answer<S>(stream: &mut S, mood: Mood, at: At, usual: &str) -> Option<bool>
+async fn response<S>(stream: &mut S, behaviour: Behaviour, at: Stage, usual: &str) -> Option<bool>
 where
     S: AsyncWrite + Unpin,
 {
-    match mood {
-        Mood::Says(place, line) if place == at => {
+    match behaviour {
+        Behaviour::Reply(place, line) if place == at => {
             say(stream, line).await?;
             Some(false)
         }
-        Mood::Hangs(place) if place == at => pending().await,
-        Mood::Drops(place) if place == at => None,
+        Behaviour::Hang(place) if place == at => pending().await,
+        Behaviour::Drop(place) if place == at => None,
         _ => {
             say(stream, usual).await?;
             Some(true)

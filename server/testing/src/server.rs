@@ -26,7 +26,7 @@ pub const PASSWORD: &str = "correct horse battery";
 
 /// A running server with a clock that the test moves. Its worker does nothing by
 /// itself: the test calls [`Shore::work`].
-pub struct Shore {
+pub struct TestServer {
     pub app: App,
     pub url: String,
     pub http: reqwest::Client,
@@ -34,21 +34,21 @@ pub struct Shore {
     database: Database,
 }
 
-impl Shore {
-    pub async fn start(engine: Engine) -> Shore {
-        Shore::start_with(engine, &[]).await
+impl TestServer {
+    pub async fn start(engine: Engine) -> TestServer {
+        TestServer::start_with(engine, &[]).await
     }
 
     /// A server with settings of its own.
-    pub async fn start_with(engine: Engine, settings: &[&str]) -> Shore {
+    pub async fn start_with(engine: Engine, settings: &[&str]) -> TestServer {
         let database = Database::new(engine).await;
         let clock = Clock::manual(Timestamp::parse(START).unwrap());
-        Shore::open(database, clock, settings).await
+        TestServer::open(database, clock, settings).await
     }
 
     /// A migrated database, before the server opens it.
     pub async fn prepared(engine: Engine) -> Prepared {
-        let prepared = Shore::bare(engine).await;
+        let prepared = TestServer::bare(engine).await;
         prepared.db.migrate().await.unwrap();
         prepared
     }
@@ -60,7 +60,7 @@ impl Shore {
         Prepared { db, database }
     }
 
-    async fn open(database: Database, clock: Clock, settings: &[&str]) -> Shore {
+    async fn open(database: Database, clock: Clock, settings: &[&str]) -> TestServer {
         let db = Db::connect(&database.url, subscribers()).await.unwrap();
         db.migrate().await.unwrap();
         let config = config(&database.url, settings);
@@ -68,7 +68,7 @@ impl Shore {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let url = format!("http://{}", listener.local_addr().unwrap());
         let serving = tokio::spawn(command::run(app.clone(), listener));
-        Shore {
+        TestServer {
             app,
             url,
             http: client(),
@@ -78,10 +78,10 @@ impl Shore {
     }
 
     /// Stops the server and starts another on the same database.
-    pub async fn restart(self) -> Shore {
+    pub async fn restart(self) -> TestServer {
         self.app.stopping.cancel();
         self.serving.await.unwrap().unwrap();
-        Shore::open(self.database, self.app.clock, &[]).await
+        TestServer::open(self.database, self.app.clock, &[]).await
     }
 
     /// Stops the server and removes its database.
@@ -156,10 +156,10 @@ pub struct Prepared {
 
 impl Prepared {
     /// Starts the server on it.
-    pub async fn open(self) -> Shore {
+    pub async fn open(self) -> TestServer {
         self.db.close().await;
         let clock = Clock::manual(Timestamp::parse(START).unwrap());
-        Shore::open(self.database, clock, &[]).await
+        TestServer::open(self.database, clock, &[]).await
     }
 
     /// Removes the database.

@@ -1,7 +1,7 @@
 //! A ship with an agent, whose batches the test makes.
 
-use crate::person::{Answer, Person};
-use crate::server::Shore;
+use crate::person::{ApiResponse, Person};
+use crate::server::TestServer;
 use binnacle_compass::angle::{CompassHeading, TrueHeading};
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::model::Model;
@@ -22,18 +22,20 @@ pub struct Ship {
 }
 
 impl Ship {
-    pub(crate) async fn enrol(shore: &Shore, person: &Person, name: &str) -> Ship {
+    pub(crate) async fn enrol(server: &TestServer, person: &Person, name: &str) -> Ship {
         let vessel = person.create_vessel(name).await;
         let id = vessel["id"].as_str().unwrap().to_owned();
         let code = person
             .post(&format!("/vessels/{id}/agents"), &json!({}))
             .await
             .good();
-        let enrolled = exchange(shore, code["code"].as_str().unwrap()).await.good();
+        let enrolled = exchange(server, code["code"].as_str().unwrap())
+            .await
+            .good();
         let enrolled: EnrolAnswer = serde_json::from_value(enrolled).unwrap();
         Ship {
-            url: shore.url.clone(),
-            http: shore.http.clone(),
+            url: server.url.clone(),
+            http: server.http.clone(),
             id,
             token: enrolled.token,
             stream: enrolled.stream,
@@ -41,22 +43,22 @@ impl Ship {
     }
 
     /// The same ship, talking to a server that was started again.
-    pub fn at(&mut self, shore: &Shore) {
-        self.url.clone_from(&shore.url);
+    pub fn at(&mut self, server: &TestServer) {
+        self.url.clone_from(&server.url);
     }
 
-    pub async fn put(&self, seq: u64, samples: &[Sample]) -> Answer {
+    pub async fn put(&self, seq: u64, samples: &[Sample]) -> ApiResponse {
         self.put_bytes(seq, frame(self.stream, seq, samples)).await
     }
 
-    pub async fn put_bytes(&self, seq: u64, bytes: Vec<u8>) -> Answer {
+    pub async fn put_bytes(&self, seq: u64, bytes: Vec<u8>) -> ApiResponse {
         let path = format!("/streams/{}/batches/{seq}", self.stream);
-        Answer::of(self.request(reqwest::Method::PUT, &path).body(bytes)).await
+        ApiResponse::of(self.request(reqwest::Method::PUT, &path).body(bytes)).await
     }
 
     pub async fn downlink(&self, has: &str) -> Value {
         let path = format!("/streams/{}/downlink{has}", self.stream);
-        Answer::of(self.request(reqwest::Method::GET, &path))
+        ApiResponse::of(self.request(reqwest::Method::GET, &path))
             .await
             .good()
     }
@@ -64,10 +66,10 @@ impl Ship {
     /// The answer in the compact form, its octets with it.
     pub async fn compact(&self, has: &str) -> (Downlink, usize) {
         let path = format!("/streams/{}/downlink?form=1{has}", self.stream);
-        let answer = self.request(reqwest::Method::GET, &path).send().await;
-        let answer = answer.unwrap();
-        assert_eq!(answer.headers().get("content-type"), None);
-        let octets = answer.bytes().await.unwrap();
+        let response = self.request(reqwest::Method::GET, &path).send().await;
+        let response = response.unwrap();
+        assert_eq!(response.headers().get("content-type"), None);
+        let octets = response.bytes().await.unwrap();
         (
             binnacle_wire::downlink::decode(&octets).unwrap(),
             octets.len(),
@@ -88,18 +90,18 @@ impl Ship {
         person.post(&self.path("/logbook"), entry).await.good()
     }
 
-    pub async fn put_report(&self, id: &str, report: &Value) -> Answer {
+    pub async fn put_report(&self, id: &str, report: &Value) -> ApiResponse {
         let path = format!("/agents/logbook/{id}");
-        Answer::of(self.request(reqwest::Method::PUT, &path).json(report)).await
+        ApiResponse::of(self.request(reqwest::Method::PUT, &path).json(report)).await
     }
 }
 
-pub async fn exchange(shore: &Shore, code: &str) -> Answer {
-    let request = shore
+pub async fn exchange(server: &TestServer, code: &str) -> ApiResponse {
+    let request = server
         .http
-        .post(format!("{}/api/v1/agents/enrol", shore.url))
+        .post(format!("{}/api/v1/agents/enrol", server.url))
         .json(&json!({ "code": code, "agent_version": "1.2.3" }));
-    Answer::of(request).await
+    ApiResponse::of(request).await
 }
 
 pub fn frame(stream: StreamId, seq: u64, samples: &[Sample]) -> Vec<u8> {
@@ -118,7 +120,7 @@ pub fn frame(stream: StreamId, seq: u64, samples: &[Sample]) -> Vec<u8> {
 const BISCAY: (f64, f64) = (48.0, -6.0);
 
 /// A ship whose magnetism is known.
-pub fn truth() -> Model {
+pub fn true_model() -> Model {
     serde_json::from_value(json!({ "parameters_over_lambda": {
         "bx_nt": 1500.0, "chi13": -0.01, "by_nt": -900.0, "chi23": 0.002,
         "chi11_minus_chi22": 0.04, "chi12": 0.001, "chi21": 0.002,
@@ -128,12 +130,12 @@ pub fn truth() -> Model {
 
 /// What that ship's compass and gyro read on a true heading at a time.
 pub fn sample(time: Timestamp, heading_deg: f64) -> Sample {
-    sample_of(&truth(), BISCAY, time, heading_deg)
+    sample_of(&true_model(), BISCAY, time, heading_deg)
 }
 
 /// The same ship after a step of her permanent magnetism, nT.
-pub fn struck(bx_nt: f64, by_nt: f64) -> Model {
-    let mut ship = truth();
+pub fn model_after_step(bx_nt: f64, by_nt: f64) -> Model {
+    let mut ship = true_model();
     ship.parameters_over_lambda.bx_nt += bx_nt;
     ship.parameters_over_lambda.by_nt += by_nt;
     ship
@@ -170,11 +172,11 @@ pub fn passage(from: &str, samples: usize) -> Vec<Sample> {
 /// So many days at sea from a day and hour on, in legs of three hours, with a sample
 /// every ten minutes from both references, all a little off.
 pub fn days_at_sea(ship: &Model, from: &str, days: f64) -> Vec<Sample> {
-    days_in(BISCAY, ship, from, days)
+    days_in_waters(BISCAY, ship, from, days)
 }
 
 /// The same in other waters, degrees north and east.
-pub fn days_in(place: (f64, f64), ship: &Model, from: &str, days: f64) -> Vec<Sample> {
+pub fn days_in_waters(place: (f64, f64), ship: &Model, from: &str, days: f64) -> Vec<Sample> {
     let start = Timestamp::parse(from).unwrap();
     let samples = (days * 144.0).round() as u32;
     (0..samples)

@@ -1,7 +1,7 @@
 //! Webhooks, and a program that receives them.
 
 use crate::person::Person;
-use crate::server::Shore;
+use crate::server::TestServer;
 use axum::Router;
 use axum::body::Bytes;
 use axum::extract::State;
@@ -18,8 +18,8 @@ use std::sync::{Arc, Mutex};
 /// A program that takes messages; it answers as it was told to, or 200.
 #[derive(Clone, Default)]
 pub struct Receiver {
-    got: Arc<Mutex<Vec<(String, String)>>>,
-    answers: Arc<Mutex<VecDeque<Response>>>,
+    received: Arc<Mutex<Vec<(String, String)>>>,
+    responses: Arc<Mutex<VecDeque<Response>>>,
 }
 
 impl Receiver {
@@ -34,25 +34,25 @@ impl Receiver {
         (receiver, url)
     }
 
-    pub fn answer(&self, answer: impl IntoResponse) {
-        self.answers
+    pub fn respond_next(&self, response: impl IntoResponse) {
+        self.responses
             .lock()
             .unwrap()
-            .push_back(answer.into_response());
+            .push_back(response.into_response());
     }
 
     /// Answers 200 again.
-    pub fn answer_well(&self) {
-        self.answers.lock().unwrap().clear();
+    pub fn respond_normally(&self) {
+        self.responses.lock().unwrap().clear();
     }
 
     /// Signatures and bodies, in the order in which they came.
-    pub fn got(&self) -> Vec<(String, String)> {
-        self.got.lock().unwrap().clone()
+    pub fn received(&self) -> Vec<(String, String)> {
+        self.received.lock().unwrap().clone()
     }
 
     pub fn kinds(&self) -> Vec<String> {
-        let got = self.got().into_iter();
+        let got = self.received().into_iter();
         got.map(|(_, body)| json_of(&body)["kind"].as_str().unwrap().to_owned())
             .collect()
     }
@@ -61,9 +61,9 @@ impl Receiver {
 async fn take(State(receiver): State<Receiver>, headers: HeaderMap, body: Bytes) -> Response {
     let signature = headers[SIGNATURE_HEADER].to_str().unwrap().to_owned();
     let body = String::from_utf8(body.to_vec()).unwrap();
-    receiver.got.lock().unwrap().push((signature, body));
-    let answer = receiver.answers.lock().unwrap().pop_front();
-    answer.unwrap_or_else(|| StatusCode::OK.into_response())
+    receiver.received.lock().unwrap().push((signature, body));
+    let response = receiver.responses.lock().unwrap().pop_front();
+    response.unwrap_or_else(|| StatusCode::OK.into_response())
 }
 
 pub fn json_of(text: &str) -> Value {
@@ -80,17 +80,17 @@ pub fn path(webhook: &Value, rest: &str) -> String {
 }
 
 /// Makes every delivery that is due now.
-pub async fn deliver(shore: &Shore) -> Vec<Sent> {
+pub async fn deliver(server: &TestServer) -> Vec<Sent> {
     let sender = Sender::new(Reach::Anywhere).unwrap();
     let mut sent = Vec::new();
-    while let Some(done) = outbox::step(&shore.app, &sender).await.unwrap() {
+    while let Some(done) = outbox::step(&server.app, &sender).await.unwrap() {
         sent.push(done);
     }
     sent
 }
 
 /// Whether the example in the documentation takes a message for ours.
-pub fn example_says(secret: &str, signature: &str, body: &str, now_s: i64) -> bool {
+pub fn example_accepts(secret: &str, signature: &str, body: &str, now_s: i64) -> bool {
     let document = include_str!("../../../docs/webhooks.md");
     let (_, example) = document.split_once("```python\n").unwrap();
     let (example, _) = example.split_once("```").unwrap();

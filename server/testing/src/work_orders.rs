@@ -1,9 +1,9 @@
 //! Work orders: from the berth's reading to the evidence and the proof at sea.
 
 use crate::binnacles::{binnacle, put};
-use crate::person::{Answer, Person};
-use crate::server::Shore;
-use crate::ship::{Ship, days_at_sea, days_in, truth};
+use crate::person::{ApiResponse, Person};
+use crate::server::TestServer;
+use crate::ship::{Ship, days_at_sea, days_in_waters, true_model};
 use binnacle_adjustment::binnacle::{Binnacle, Setting};
 use binnacle_adjustment::corrector::effect;
 use binnacle_compass::field::{FieldModel, field};
@@ -37,29 +37,34 @@ pub struct Job {
 }
 
 impl Job {
-    pub async fn begin(shore: &Shore) -> Job {
-        let person = shore.admin("ada").await;
-        Job::of(shore, person).await
+    pub async fn begin(server: &TestServer) -> Job {
+        let person = server.admin("ada").await;
+        Job::of(server, person).await
     }
 
-    pub async fn of(shore: &Shore, person: Person) -> Job {
-        Job::aboard(shore, person, &truth()).await
+    pub async fn of(server: &TestServer, person: Person) -> Job {
+        Job::aboard(server, person, &true_model()).await
     }
 
     /// The same aboard a ship of this magnetism.
-    pub async fn aboard(shore: &Shore, person: Person, truth: &Model) -> Job {
-        let mut samples = days_at_sea(truth, "2026-11-01T00:00:00Z", 10.0);
-        samples.extend(days_in((10.0, -25.0), truth, "2026-11-11T00:00:00Z", 5.0));
-        samples.extend(days_at_sea(truth, "2026-11-16T00:00:00Z", 4.0));
-        Job::after(shore, person, &samples).await
+    pub async fn aboard(server: &TestServer, person: Person, true_model: &Model) -> Job {
+        let mut samples = days_at_sea(true_model, "2026-11-01T00:00:00Z", 10.0);
+        samples.extend(days_in_waters(
+            (10.0, -25.0),
+            true_model,
+            "2026-11-11T00:00:00Z",
+            5.0,
+        ));
+        samples.extend(days_at_sea(true_model, "2026-11-16T00:00:00Z", 4.0));
+        Job::after(server, person, &samples).await
     }
 
     /// The same aboard a ship that has sent these samples.
-    pub async fn after(shore: &Shore, person: Person, samples: &[Sample]) -> Job {
-        let ship = shore.ship(&person, "Nao").await;
+    pub async fn after(server: &TestServer, person: Person, samples: &[Sample]) -> Job {
+        let ship = server.ship(&person, "Nao").await;
         ship.put(1, samples).await.good();
-        shore.advance(60.0);
-        shore.work().await;
+        server.advance(60.0);
+        server.work().await;
         let compasses = person.get(&ship.path("/compasses")).await.good();
         let compass = compasses["items"][0]["id"].as_str().unwrap().to_owned();
         let path = ship.path(&format!("/compasses/{compass}/binnacle"));
@@ -89,22 +94,22 @@ impl Job {
         format!("/work-orders/{}{rest}", self.order)
     }
 
-    pub async fn post(&self, rest: &str, body: &Value) -> Answer {
+    pub async fn post(&self, rest: &str, body: &Value) -> ApiResponse {
         self.person.post(&self.path(rest), body).await
     }
 
-    pub async fn seen(&self) -> Value {
+    pub async fn view_order(&self) -> Value {
         self.person.get(&self.path("")).await.good()
     }
 
     /// Reads the berth, chooses a plan, and does its steps as foretold.
     pub async fn adjust(&self) -> Value {
         self.post("/berth-reading", &reading()).await.good();
-        self.follow_a_plan().await
+        self.follow_plan().await
     }
 
     /// Chooses a plan, and does its steps as foretold.
-    pub async fn follow_a_plan(&self) -> Value {
+    pub async fn follow_plan(&self) -> Value {
         let mut order = self.post("/plan", &json!({})).await.good();
         while let Some(step) = order["next_step"].as_object() {
             let path = format!("/steps/{}", step["number"]);
@@ -117,24 +122,24 @@ impl Job {
 
     pub async fn complete(&self) -> Value {
         self.adjust().await;
-        self.post("/complete", &word()).await.good()
+        self.post("/complete", &completion_details()).await.good()
     }
 
     /// So many days at sea by a model, sent and analysed.
-    pub async fn sail(&mut self, shore: &Shore, ship: &Model, seq: u64, days: f64) -> Value {
+    pub async fn sail(&mut self, server: &TestServer, ship: &Model, seq: u64, days: f64) -> Value {
         let samples = days_at_sea(ship, "2026-11-21T12:00:00Z", days);
-        self.send(shore, seq, &samples, days + 0.5).await;
-        self.seen().await
+        self.send(server, seq, &samples, days + 0.5).await;
+        self.view_order().await
     }
 
     /// Samples that are sent and analysed so many days from now.
-    pub async fn send(&mut self, shore: &Shore, seq: u64, samples: &[Sample], days: f64) {
-        shore.advance(86_400.0 * days);
+    pub async fn send(&mut self, server: &TestServer, seq: u64, samples: &[Sample], days: f64) {
+        server.advance(86_400.0 * days);
         self.ship.put(seq, samples).await.good();
-        shore.advance(60.0);
-        shore.work().await;
+        server.advance(60.0);
+        server.work().await;
         // No session lasts so long.
-        self.person = Person::sign_in(shore, self.person.operator, &self.person.email).await;
+        self.person = Person::sign_in(server, self.person.operator, &self.person.email).await;
     }
 
     pub async fn open_alerts(&self) -> Vec<Value> {
@@ -156,7 +161,7 @@ impl Job {
     }
 
     /// The card's status in each form: JSON, CSV, SVG.
-    pub async fn is_said_everywhere(&self, status: &str) {
+    pub async fn expect_card_status(&self, status: &str) {
         let card = self.card().await;
         assert_eq!(card["status"], status, "{card}");
         let statement = card["statement"].as_str().unwrap();
@@ -177,7 +182,7 @@ impl Job {
     }
 
     /// What the book's cards were worth, in order of its entries.
-    pub async fn in_the_book(&self, from: &str) -> Vec<Value> {
+    pub async fn book_statuses(&self, from: &str) -> Vec<Value> {
         let path = format!("/deviation-book?limit=200&from={from}");
         let book = self.person.get(&self.ship.path(&path)).await.good();
         let entries = book["items"].as_array().unwrap();
@@ -185,7 +190,7 @@ impl Job {
     }
 
     /// Another order for the same compass, whose plan keeps to these limits.
-    pub async fn order_again(&mut self, limits: Value) {
+    pub async fn replace_order(&mut self, limits: Value) {
         self.post("/cancel", &json!({ "text": "other limits" }))
             .await
             .good();
@@ -197,17 +202,17 @@ impl Job {
 
     /// The word of the first refusal of what is sent.
     pub async fn refused(&self, rest: &str, body: &Value) -> Value {
-        let answer = self.post(rest, body).await;
-        assert_eq!(answer.problem(), "not-adjustable", "{answer:?}");
-        let refusal = answer.json()["refusals"][0].clone();
+        let response = self.post(rest, body).await;
+        assert_eq!(response.problem(), "not-adjustable", "{response:?}");
+        let refusal = response.json()["refusals"][0].clone();
         assert!(!refusal["cures"].as_array().unwrap().is_empty());
         assert!(!refusal["words"].as_str().unwrap().is_empty());
         refusal["refusal"].clone()
     }
 
-    pub async fn photo(&self, bytes: &'static [u8]) -> Answer {
+    pub async fn photo(&self, bytes: &'static [u8]) -> ApiResponse {
         let path = self.path("/photos?caption=trays");
-        Answer::of(self.person.request(Method::POST, &path).body(bytes)).await
+        ApiResponse::of(self.person.request(Method::POST, &path).body(bytes)).await
     }
 
     /// Where the logbook's new entry of magnetic cargo is withdrawn.
@@ -225,11 +230,11 @@ impl Job {
 }
 
 /// The model that an order foretells.
-pub fn foretold(order: &Value) -> Model {
+pub fn predicted_model(order: &Value) -> Model {
     serde_json::from_value(order["completion"]["model"].clone()).unwrap()
 }
 
-pub fn word() -> Value {
+pub fn completion_details() -> Value {
     json!({
         "adjuster_name": "M. Etxeberria", "adjuster_licence": "ES-CA-114",
         "firm": "Nervión Compass", "signature": "M. Etxeberria",
@@ -238,12 +243,12 @@ pub fn word() -> Value {
 
 /// What the same magnetometer reads there with correctors that stand so, where nothing
 /// was in use before.
-pub fn read_again(setting: &Value) -> Value {
-    read_again_after(&reading(), setting)
+pub fn second_reading(setting: &Value) -> Value {
+    second_reading_after(&reading(), setting)
 }
 
 /// The same after another first reading.
-pub fn read_again_after(first: &Value, setting: &Value) -> Value {
+pub fn second_reading_after(first: &Value, setting: &Value) -> Value {
     let setting: Setting = serde_json::from_value(setting.clone()).unwrap();
     let aboard: Binnacle = serde_json::from_value(binnacle()).unwrap();
     let of_correctors = effect(&aboard, &setting);
@@ -275,11 +280,11 @@ pub fn at_berth() -> (f64, EarthField) {
 
 /// What a good magnetometer reads aboard the ship of these tests.
 pub fn reading() -> Value {
-    reading_aboard(&truth())
+    reading_on_ship(&true_model())
 }
 
 /// The same aboard a ship of this magnetism.
-pub fn reading_aboard(ship: &Model) -> Value {
+pub fn reading_on_ship(ship: &Model) -> Value {
     let (magnetic_deg, earth) = at_berth();
     let parameters = ship.parameters_over_lambda;
     let u = parameters.field_over_lambda(magnetic_deg.to_radians(), earth);

@@ -4,7 +4,7 @@ use binnacle_compass::time::Timestamp;
 use binnacle_fleet::alerts;
 use binnacle_server_testing::alerts::{agent_alert, put_agent_alerts};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Person, Shore, passage};
+use binnacle_server_testing::{Person, TestServer, passage};
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::batch::{Batch, Thinned};
 use serde_json::{Value, json};
@@ -24,9 +24,9 @@ on_both!(
 const DAY: &str = "2026-11-20T00:00:00Z";
 
 /// Nothing comes for hours.
-async fn hours_pass(shore: &Shore) {
-    shore.advance(7.0 * 3600.0);
-    alerts::check_timed(&shore.app).await.unwrap();
+async fn hours_pass(server: &TestServer) {
+    server.advance(7.0 * 3600.0);
+    alerts::check_timed(&server.app).await.unwrap();
 }
 
 async fn list(person: &Person) -> Vec<Value> {
@@ -34,11 +34,13 @@ async fn list(person: &Person) -> Vec<Value> {
     listed["items"].as_array().unwrap().clone()
 }
 
-async fn a_ships_alert_is_the_vessels_at_once_and_her_samples_are_analysed_at_once(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_ships_alert_is_the_vessels_at_once_and_her_samples_are_analysed_at_once(
+    server: TestServer,
+) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 6)).await.good();
-    assert_eq!(shore.work().await.len(), 0, "it waits for more batches");
+    assert_eq!(server.work().await.len(), 0, "it waits for more batches");
 
     let open = agent_alert(1, 1, ShipAlertState::Open);
     put_agent_alerts(&nao, 3, passage("2026-11-20T04:00:00Z", 3), vec![open]).await;
@@ -53,14 +55,14 @@ async fn a_ships_alert_is_the_vessels_at_once_and_her_samples_are_analysed_at_on
         summary.contains("reported by the ship's agent"),
         "{summary}"
     );
-    assert!(!shore.work().await.is_empty(), "nothing is waited for");
-    shore.finish().await;
+    assert!(!server.work().await.is_empty(), "nothing is waited for");
+    server.finish().await;
 }
 
-async fn revisions_in_any_order_and_again_end_alike(shore: Shore) {
+async fn revisions_in_any_order_and_again_end_alike(server: TestServer) {
     use ShipAlertState::{Agree, Open};
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let say = |seq: u64, revision: u32| {
         let state = if revision < 3 { Open } else { Agree };
         put_agent_alerts(&nao, seq, Vec::new(), vec![agent_alert(1, revision, state)])
@@ -77,21 +79,21 @@ async fn revisions_in_any_order_and_again_end_alike(shore: Shore) {
     assert_eq!((quiet.len(), &quiet[0]["state"]), (1, &json!("raised")));
     let summary = quiet[0]["summary"].as_str().unwrap();
     assert!(summary.contains("they agree"), "{summary}");
-    hours_pass(&shore).await;
+    hours_pass(&server).await;
     let over = list(&ada).await;
     assert_eq!((over.len(), &over[0]["state"]), (1, &json!("cleared")));
     assert_eq!(over[0]["cleared_by"], Value::Null);
     assert_eq!(over[0]["clearing_reason"], "it is over");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_analysis_does_not_clear_what_the_ship_says(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn an_analysis_does_not_clear_what_the_ship_says(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let open = agent_alert(1, 1, ShipAlertState::Open);
     put_agent_alerts(&nao, 1, passage(DAY, 300), vec![open]).await;
-    shore.work().await;
-    alerts::check_silence(&shore.app).await.unwrap();
+    server.work().await;
+    alerts::check_silence(&server.app).await.unwrap();
     let open: Vec<Value> = list(&ada)
         .await
         .into_iter()
@@ -99,30 +101,30 @@ async fn an_analysis_does_not_clear_what_the_ship_says(shore: Shore) {
         .collect();
     assert_eq!(open.len(), 1);
     assert_eq!(open[0]["state"], "raised");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_alert_of_a_spool_that_was_lost_does_not_stay_open(shore: Shore) {
+async fn an_alert_of_a_spool_that_was_lost_does_not_stay_open(server: TestServer) {
     use ShipAlertState::{NotJudged, Open};
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     put_agent_alerts(&nao, 1, Vec::new(), vec![agent_alert(1, 1, Open)]).await;
     // The agent that was put in its place knows nothing of it, and has one of its own.
     put_agent_alerts(&nao, 2, Vec::new(), vec![agent_alert(2, 1, Open)]).await;
     assert_eq!(list(&ada).await.len(), 1, "updated, not repeated");
     put_agent_alerts(&nao, 3, Vec::new(), vec![agent_alert(2, 2, NotJudged)]).await;
-    hours_pass(&shore).await;
+    hours_pass(&server).await;
     let cleared = &list(&ada).await[0];
     assert_eq!(cleared["state"], "cleared");
     let why = cleared["clearing_reason"].as_str().unwrap();
     assert!(why.contains("not known to be over"), "{why}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_parts_again_and_again_within_hours_is_one_alert(shore: Shore) {
+async fn what_parts_again_and_again_within_hours_is_one_alert(server: TestServer) {
     use ShipAlertState::{Agree, Open};
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let begun = Timestamp::parse("2026-11-20T04:00:00Z").unwrap();
     let said = |id: u128, hours: f64, revision: u32, state| {
         let since = begun.plus_seconds(3600.0 * hours);
@@ -155,20 +157,20 @@ async fn what_parts_again_and_again_within_hours_is_one_alert(shore: Shore) {
     assert_eq!(one[0]["since"], "2026-11-20T04:00:00Z");
     // Samples tell, before the clock does, that they have stayed together.
     put_agent_alerts(&nao, 7, passage("2026-11-20T14:00:00Z", 60), Vec::new()).await;
-    shore.advance(3600.0);
-    shore.work().await;
+    server.advance(3600.0);
+    server.work().await;
     let over = list(&ada).await;
     let states: Vec<&Value> = over.iter().map(|alert| &alert["state"]).collect();
     assert_eq!(states, [&json!("cleared")], "{over:?}");
     // A day later it is another.
     put_agent_alerts(&nao, 8, Vec::new(), vec![said(4, 30.0, 1, Open)]).await;
     assert_eq!(list(&ada).await.len(), 2);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_a_person_cleared_is_another_alert_when_it_parts_anew(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn what_a_person_cleared_is_another_alert_when_it_parts_anew(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let since = Timestamp::parse("2026-11-21T04:00:00Z").unwrap();
     let open = ShipAlert {
         since,
@@ -196,12 +198,12 @@ async fn what_a_person_cleared_is_another_alert_when_it_parts_anew(shore: Shore)
     put_agent_alerts(&nao, 3, Vec::new(), vec![anew]).await;
     let raised = list(&ada).await;
     assert_eq!((raised.len(), &raised[0]["state"]), (2, &json!("raised")));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_was_thinned_on_board_is_counted(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn what_was_thinned_on_board_is_counted(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let batch = Batch {
         stream: nao.stream,
         seq: 1,
@@ -219,5 +221,5 @@ async fn what_was_thinned_on_board_is_counted(shore: Shore) {
     let streams = ada.get(&nao.path("/agents")).await.good();
     let tally = &streams["items"][0]["tally"];
     assert_eq!(*tally, json!({ "accepted": 1080, "thinned": 720 }));
-    shore.finish().await;
+    server.finish().await;
 }

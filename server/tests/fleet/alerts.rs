@@ -3,9 +3,9 @@
 use binnacle_compass::angle::TrueHeading;
 use binnacle_fleet::alerts;
 use binnacle_server_testing::DAY_S;
-use binnacle_server_testing::alerts::{limit, with_model};
+use binnacle_server_testing::alerts::{limit, ship_with_model};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Person, Shore, passage};
+use binnacle_server_testing::{ApiResponse, Person, TestServer, passage};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -35,12 +35,12 @@ fn path(alert: &Value, rest: &str) -> String {
     format!("/alerts/{}{rest}", alert["id"].as_str().unwrap())
 }
 
-async fn an_alert_follows_the_vessels_limits_and_is_updated_not_repeated(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = with_model(&shore, &ada).await;
+async fn an_alert_follows_the_vessels_limits_and_is_updated_not_repeated(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
     assert_eq!(list(&ada, "").await, Vec::<Value>::new());
 
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let raised = list(&ada, "").await;
     assert_eq!(raised.len(), 1, "{raised:?}");
     let alert = &raised[0];
@@ -64,7 +64,7 @@ async fn an_alert_follows_the_vessels_limits_and_is_updated_not_repeated(shore: 
     let at_a_glance = ada.get("/fleet").await.good()["vessels"][0]["alert"].clone();
     assert_eq!(at_a_glance["id"], alert["id"]);
 
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let updated = list(&ada, "").await;
     assert_eq!(updated.len(), 1);
     assert_eq!(
@@ -73,7 +73,7 @@ async fn an_alert_follows_the_vessels_limits_and_is_updated_not_repeated(shore: 
     );
     assert_eq!(updated[0]["since"], alert["since"]);
 
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
     let cleared = ada.get(&path(alert, "")).await.good();
     assert_eq!(
         (&cleared["state"], &cleared["cleared_by"]),
@@ -86,15 +86,15 @@ async fn an_alert_follows_the_vessels_limits_and_is_updated_not_repeated(shore: 
     // Other limits are no other model.
     let versions = ada.get(&nao.path("/models")).await.good();
     assert_eq!(versions["items"].as_array().unwrap().len(), 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_alert_is_acknowledged_once_with_a_note(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = with_model(&shore, &ada).await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+async fn an_alert_is_acknowledged_once_with_a_note(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let alert = list(&ada, "").await.remove(0);
-    let viewer = ada.viewer(&shore).await;
+    let viewer = ada.viewer(&server).await;
     let refused = viewer.post(&path(&alert, "/acknowledge"), &json!({})).await;
     assert_eq!(refused.problem(), "forbidden");
 
@@ -105,7 +105,7 @@ async fn an_alert_is_acknowledged_once_with_a_note(shore: Shore) {
         (&json!("acknowledged"), &json!("ada@example.com"))
     );
     assert_eq!(known["acknowledgement_note"], "Azimuth taken");
-    shore.advance(60.0);
+    server.advance(60.0);
     let again = ada
         .post(&path(&alert, "/acknowledge"), &json!({}))
         .await
@@ -125,41 +125,41 @@ async fn an_alert_is_acknowledged_once_with_a_note(shore: Shore) {
         .post(&path(&alert, "/clear"), &json!({ "reason": " " }))
         .await;
     assert_eq!(empty.problem(), "invalid");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_alert_that_got_worse_wants_to_be_acknowledged_again(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = with_model(&shore, &ada).await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+async fn an_alert_that_got_worse_wants_to_be_acknowledged_again(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let alert = list(&ada, "").await.remove(0);
     assert_eq!(alert["severity"], "warning");
     // Without a body: a note is not asked for.
     let request = ada.request(Method::POST, &path(&alert, "/acknowledge"));
-    let known = Answer::of(request).await.good();
+    let known = ApiResponse::of(request).await.good();
     assert_eq!(known["acknowledgement_note"], Value::Null);
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let worse = ada.get(&path(&alert, "")).await.good();
     assert_eq!(
         (&worse["severity"], &worse["state"]),
         (&json!("critical"), &json!("raised"))
     );
     assert_eq!(worse["acknowledged_by"], Value::Null);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_a_person_cleared_comes_back_only_when_it_gets_worse(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = with_model(&shore, &ada).await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+async fn what_a_person_cleared_comes_back_only_when_it_gets_worse(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let alert = list(&ada, "").await.remove(0);
     let reason = json!({ "reason": "Known; she is sold" });
     let cleared = ada.post(&path(&alert, "/clear"), &reason).await.good();
     assert_eq!(cleared["clearing_reason"], "Known; she is sold");
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.4 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.4 })).await;
     assert_eq!(list(&ada, "?open=true").await, Vec::<Value>::new());
 
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let open = list(&ada, "?open=true").await;
     assert_eq!(open.len(), 1);
     assert_ne!(open[0]["id"], alert["id"]);
@@ -169,27 +169,27 @@ async fn what_a_person_cleared_comes_back_only_when_it_gets_worse(shore: Shore) 
     );
     // Once its cause was away, it comes back like any other.
     ada.post(&path(&open[0], "/clear"), &reason).await.good();
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     assert_eq!(list(&ada, "?open=true").await.len(), 1);
     assert_eq!(list(&ada, "").await.len(), 3);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_silent_agent_is_an_alert_until_it_sends_again(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_silent_agent_is_an_alert_until_it_sends_again(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 3)).await.good();
-    shore.advance(2.9 * DAY_S);
-    alerts::check_silence(&shore.app).await.unwrap();
+    server.advance(2.9 * DAY_S);
+    alerts::check_silence(&server.app).await.unwrap();
     // No session lasts so long unused.
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     assert_eq!(list(&ada, "").await, Vec::<Value>::new());
-    shore.advance(0.2 * DAY_S);
+    server.advance(0.2 * DAY_S);
     for _ in 0..2 {
-        alerts::check_silence(&shore.app).await.unwrap();
+        alerts::check_silence(&server.app).await.unwrap();
     }
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     let raised = list(&ada, "").await;
     assert_eq!(raised.len(), 1);
     assert_eq!(
@@ -197,35 +197,35 @@ async fn a_silent_agent_is_an_alert_until_it_sends_again(shore: Shore) {
         (&json!("silent_agent"), &json!("notice"))
     );
     // An analysis has no say in it.
-    shore.work().await;
+    server.work().await;
     assert_eq!(list(&ada, "?open=true").await.len(), 1);
     nao.put(2, &passage(DAY, 3)).await.good();
-    alerts::check_silence(&shore.app).await.unwrap();
+    alerts::check_silence(&server.app).await.unwrap();
     assert_eq!(list(&ada, "?open=true").await, Vec::<Value>::new());
     assert_eq!(list(&ada, "?state=cleared").await.len(), 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn two_servers_that_look_at_once_raise_one_alert(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    shore.ship(&ada, "Nao").await;
-    let second = shore.second().await;
-    shore.advance(4.0 * DAY_S);
+async fn two_servers_that_look_at_once_raise_one_alert(server: TestServer) {
+    let ada = server.admin("ada").await;
+    server.ship(&ada, "Nao").await;
+    let second = server.second().await;
+    server.advance(4.0 * DAY_S);
     let (one, other) = tokio::join!(
-        alerts::check_silence(&shore.app),
+        alerts::check_silence(&server.app),
         alerts::check_silence(&second)
     );
     one.unwrap();
     other.unwrap();
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     assert_eq!(list(&ada, "").await.len(), 1);
     second.db.close().await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn references_that_part_are_an_alert_and_not_the_compasss_fault(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn references_that_part_are_an_alert_and_not_the_compasss_fault(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let mut samples = passage(DAY, 400);
     for (index, sample) in samples.iter_mut().enumerate() {
         sample.satellite = sample.gyro;
@@ -236,15 +236,15 @@ async fn references_that_part_are_an_alert_and_not_the_compasss_fault(shore: Sho
             .and_then(|gyro| TrueHeading::new(gyro.degrees() + wrong_deg));
     }
     limit(
-        &shore,
+        &server,
         &ada,
         &nao,
         json!({ "deviation_deg": 45.0, "band95_deg": 45.0 }),
     )
     .await;
     nao.put(1, &samples).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let raised = list(&ada, "").await;
     let causes: Vec<&Value> = raised.iter().map(|alert| &alert["cause"]).collect();
     assert_eq!(causes, ["reference_fault"], "{raised:?}");
@@ -254,17 +254,17 @@ async fn references_that_part_are_an_alert_and_not_the_compasss_fault(shore: Sho
             .unwrap()
             .contains("compass itself is not suspected")
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn the_list_filters_and_pages(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = with_model(&shore, &ada).await;
-    let other = shore.ship(&ada, "Santa Clara").await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
-    shore.advance(4.0 * DAY_S);
-    alerts::check_silence(&shore.app).await.unwrap();
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+async fn the_list_filters_and_pages(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
+    let other = server.ship(&ada, "Santa Clara").await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    server.advance(4.0 * DAY_S);
+    alerts::check_silence(&server.app).await.unwrap();
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     assert_eq!(list(&ada, "").await.len(), 3);
     assert_eq!(list(&ada, "?severity=warning").await.len(), 1);
     assert_eq!(list(&ada, &format!("?vessel={}", other.id)).await.len(), 1);
@@ -277,17 +277,17 @@ async fn the_list_filters_and_pages(shore: Shore) {
     // The newest come first.
     assert_eq!(rest[0]["cause"], "deviation_over_limit");
     assert_eq!(ada.get("/alerts?state=odd").await.problem(), "bad-request");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn another_operators_alerts_are_not_there(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
-    shore.ship(&ada, "Nao").await;
-    shore.advance(4.0 * DAY_S);
-    alerts::check_silence(&shore.app).await.unwrap();
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
-    let eve = Person::sign_in(&shore, eve.operator, &eve.email).await;
+async fn another_operators_alerts_are_not_there(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
+    server.ship(&ada, "Nao").await;
+    server.advance(4.0 * DAY_S);
+    alerts::check_silence(&server.app).await.unwrap();
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
+    let eve = Person::sign_in(&server, eve.operator, &eve.email).await;
     let alert = list(&ada, "").await.remove(0);
     assert_eq!(list(&eve, "").await, Vec::<Value>::new());
     assert_eq!(eve.get(&path(&alert, "")).await.problem(), "not-found");
@@ -299,40 +299,40 @@ async fn another_operators_alerts_are_not_there(shore: Shore) {
         );
     }
     assert_eq!(ada.get(&path(&alert, "")).await.good()["state"], "raised");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn without_a_model_an_alert_is_not_said_to_be_over(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = with_model(&shore, &ada).await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+async fn without_a_model_an_alert_is_not_said_to_be_over(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let open = list(&ada, "?open=true").await.remove(0);
     assert_eq!(open["cause"], "deviation_over_limit");
 
     // The samples are all of the time before.
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-18T06:00:00Z" });
     ada.post(&nao.path("/logbook"), &adjusted).await.good();
-    shore.work().await;
+    server.work().await;
     let alert = ada.get(&path(&open, "")).await.good();
     assert_eq!(alert["state"], "cleared");
     let reason = alert["clearing_reason"].as_str().unwrap();
     assert!(reason.ends_with("it is not known to be over"), "{reason}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn after_an_adjustment_the_old_card_is_withdrawn_at_once(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = with_model(&shore, &ada).await;
+async fn after_an_adjustment_the_old_card_is_withdrawn_at_once(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
     let model = ada.get(&nao.path("/model")).await.good();
     let has = format!("?model={}", model["id"].as_str().unwrap());
     assert_eq!(nao.downlink(&has).await.get("card_withdrawn"), None);
 
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-18T06:00:00Z" });
     let entry = ada.post(&nao.path("/logbook"), &adjusted).await.good();
-    shore.work().await;
-    let answer = ada.get(&nao.path("/model")).await;
-    assert_eq!(answer.problem(), "no-model-yet");
-    let detail = answer.json()["detail"].as_str().unwrap().to_owned();
+    server.work().await;
+    let response = ada.get(&nao.path("/model")).await;
+    assert_eq!(response.problem(), "no-model-yet");
+    let detail = response.json()["detail"].as_str().unwrap().to_owned();
     assert!(
         detail.contains("has not held since 2026-11-18T06:00:00Z (adjustment)"),
         "{detail}"
@@ -347,11 +347,11 @@ async fn after_an_adjustment_the_old_card_is_withdrawn_at_once(shore: Shore) {
         );
     }
     let withdrawn = json!({ "since": "2026-11-18T06:00:00Z", "reason": "adjustment" });
-    assert_eq!(answer.json()["card_withdrawn"], withdrawn);
+    assert_eq!(response.json()["card_withdrawn"], withdrawn);
     let told = nao.downlink(&has).await;
     assert_eq!(told["card_withdrawn"], withdrawn);
     assert_eq!(nao.downlink("").await.get("card_withdrawn"), None);
-    let missed = shore.events().await;
+    let missed = server.events().await;
     assert_eq!(
         missed.iter().filter(|kind| *kind == "model").count(),
         2,
@@ -361,7 +361,7 @@ async fn after_an_adjustment_the_old_card_is_withdrawn_at_once(shore: Shore) {
     // A report that was wrong is withdrawn, and the card holds again.
     let withdraw = format!("/logbook/{}/withdraw", entry["id"].as_str().unwrap());
     ada.post(&nao.path(&withdraw), &json!({})).await.good();
-    shore.work().await;
+    server.work().await;
     let again = ada.get(&nao.path("/model")).await.good();
     assert_eq!(again["model"], model["model"]);
     let told = nao.downlink(&has).await;
@@ -369,5 +369,5 @@ async fn after_an_adjustment_the_old_card_is_withdrawn_at_once(shore: Shore) {
         (&told["model"]["id"], told.get("card_withdrawn")),
         (&again["id"], None)
     );
-    shore.finish().await;
+    server.finish().await;
 }

@@ -2,7 +2,7 @@
 
 use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Person, Shore};
+use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -24,8 +24,8 @@ async fn place(person: &Person) -> String {
     format!("/vessels/{id}/compasses/{compass}/binnacle")
 }
 
-async fn the_types_that_are_shipped_can_be_read(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn the_types_that_are_shipped_can_be_read(server: TestServer) {
+    let ada = server.admin("ada").await;
     let list = ada.get("/binnacle-types").await.good();
     let types = list["items"].as_array().unwrap();
     assert!(types.len() >= 2, "{types:?}");
@@ -37,11 +37,11 @@ async fn the_types_that_are_shipped_can_be_read(shore: Shore) {
     }
     let none = ada.get("/binnacle-types/nowhere").await;
     assert_eq!(none.problem(), "not-found");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_binnacle_is_kept_in_every_revision(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_binnacle_is_kept_in_every_revision(server: TestServer) {
+    let ada = server.admin("ada").await;
     let path = place(&ada).await;
     assert_eq!(ada.get(&path).await.problem(), "not-found");
     let first = put(&ada, &path, &binnacle()).await.good();
@@ -72,11 +72,11 @@ async fn a_binnacle_is_kept_in_every_revision(shore: Shore) {
         json!([])
     );
     assert_eq!(page["next"], Value::Null);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_is_exported_can_be_written_again(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn what_is_exported_can_be_written_again(server: TestServer) {
+    let ada = server.admin("ada").await;
     let path = place(&ada).await;
     put(&ada, &path, &binnacle()).await.good();
     let file = ada.get(&format!("{path}.json")).await;
@@ -84,11 +84,11 @@ async fn what_is_exported_can_be_written_again(shore: Shore) {
     assert!(disposition.starts_with("attachment"), "{disposition}");
     let again = put(&ada, &path, &file.good()).await.good();
     assert_eq!(again["revision"], 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_binnacle_sent_again_under_its_key_is_one_revision(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_binnacle_sent_again_under_its_key_is_one_revision(server: TestServer) {
+    let ada = server.admin("ada").await;
     let path = place(&ada).await;
     let mut other = binnacle();
     other["serial"] = json!("2048");
@@ -96,7 +96,7 @@ async fn a_binnacle_sent_again_under_its_key_is_one_revision(shore: Shore) {
         let request = ada
             .request(Method::PUT, &path)
             .header("idempotency-key", key);
-        Answer::of(request.json(&body))
+        ApiResponse::of(request.json(&body))
     };
     assert_eq!(send(binnacle(), "a").await.good()["revision"], 1);
     assert_eq!(send(other, "b").await.good()["revision"], 2);
@@ -105,11 +105,11 @@ async fn a_binnacle_sent_again_under_its_key_is_one_revision(shore: Shore) {
     let mut third = binnacle();
     third["serial"] = json!("2049");
     assert_eq!(send(third, "a").await.problem(), "idempotency-key-reused");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_is_no_binnacle_is_refused_by_its_field_and_leaves_nothing(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn what_is_no_binnacle_is_refused_by_its_field_and_leaves_nothing(server: TestServer) {
+    let ada = server.admin("ada").await;
     let path = place(&ada).await;
     let tray = |hole: u16| json!([{ "hole": hole, "magnet": "200 mm", "count": 1, "red": "port" }]);
     for (pointer, value, named) in [
@@ -131,27 +131,30 @@ async fn what_is_no_binnacle_is_refused_by_its_field_and_leaves_nothing(shore: S
         let mut wrong = binnacle();
         let (parent, name) = pointer.rsplit_once('/').unwrap();
         wrong.pointer_mut(parent).unwrap()[name] = value;
-        let answer = put(&ada, &path, &wrong).await;
-        assert_eq!((answer.status, answer.problem().as_str()), (422, "invalid"));
-        let detail = answer.json()["detail"].as_str().unwrap().to_owned();
+        let response = put(&ada, &path, &wrong).await;
+        assert_eq!(
+            (response.status, response.problem().as_str()),
+            (422, "invalid")
+        );
+        let detail = response.json()["detail"].as_str().unwrap().to_owned();
         assert!(detail.contains(named), "{pointer}: {detail}");
     }
     assert_eq!(ada.get(&path).await.problem(), "not-found");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_viewer_reads_a_binnacle_and_does_not_write(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_viewer_reads_a_binnacle_and_does_not_write(server: TestServer) {
+    let ada = server.admin("ada").await;
     let path = place(&ada).await;
     put(&ada, &path, &binnacle()).await.good();
-    let bob = ada.viewer(&shore).await;
+    let bob = ada.viewer(&server).await;
     assert_eq!(bob.get(&path).await.good()["revision"], 1);
     assert_eq!(put(&bob, &path, &binnacle()).await.problem(), "forbidden");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn the_fleet_says_what_each_compass_stands_in_and_which_stand_in_nothing(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn the_fleet_says_what_each_compass_stands_in_and_which_stand_in_nothing(server: TestServer) {
+    let ada = server.admin("ada").await;
     let mut paths = Vec::new();
     for name in ["Nao", "Pinta", "Niña"] {
         let vessel = ada.create_vessel(name).await;
@@ -170,7 +173,7 @@ async fn the_fleet_says_what_each_compass_stands_in_and_which_stand_in_nothing(s
     put(&ada, &paths[2].1, &binnacle()).await.good();
     let sold = json!({ "in_service": false });
     let sold = ada.request(Method::PATCH, &paths[2].0).json(&sold);
-    Answer::of(sold).await.good();
+    ApiResponse::of(sold).await.good();
 
     let first = ada.get("/binnacles?limit=1").await.good();
     let nao = &first["items"][0];
@@ -194,7 +197,7 @@ async fn the_fleet_says_what_each_compass_stands_in_and_which_stand_in_nothing(s
         (&json!("Pinta"), &Value::Null)
     );
 
-    let eve = shore.admin("eve").await;
+    let eve = server.admin("eve").await;
     assert_eq!(eve.get("/binnacles").await.good()["items"], json!([]));
-    shore.finish().await;
+    server.finish().await;
 }

@@ -5,7 +5,8 @@ use binnacle_fleet::alerts;
 use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{
-    Answer, Person, Ship, Shore, days_at_sea, days_in, passage, struck, truth,
+    ApiResponse, Person, Ship, TestServer, days_at_sea, days_in_waters, model_after_step, passage,
+    true_model,
 };
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::batch::Batch;
@@ -32,23 +33,25 @@ const A_WHILE_S: f64 = 10.0;
 const DAY_S: f64 = 86_400.0;
 
 /// A ship with five days of samples and a model of them.
-async fn modelled(shore: &Shore, ada: &Person) -> Ship {
-    let nao = shore.ship(ada, "Nao Victoria").await;
-    nao.put(1, &days_at_sea(&truth(), FROM, 5.0)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+async fn modelled(server: &TestServer, ada: &Person) -> Ship {
+    let nao = server.ship(ada, "Nao Victoria").await;
+    nao.put(1, &days_at_sea(&true_model(), FROM, 5.0))
+        .await
+        .good();
+    server.advance(A_WHILE_S);
+    server.work().await;
     nao
 }
 
 async fn amend(ada: &Person, path: &str, body: Value) {
-    Answer::of(ada.request(Method::PATCH, path).json(&body))
+    ApiResponse::of(ada.request(Method::PATCH, path).json(&body))
         .await
         .good();
 }
 
-async fn a_card_says_what_the_model_predicts_and_what_it_is_worth(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = modelled(&shore, &ada).await;
+async fn a_card_says_what_the_model_predicts_and_what_it_is_worth(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = modelled(&server, &ada).await;
     let vessel = json!({ "imo_number": "9074729", "call_sign": "EAVN", "flag": "Spain" });
     amend(&ada, &nao.path(""), vessel).await;
     let card = ada.get(&nao.path("/card.json")).await.good();
@@ -115,12 +118,12 @@ async fn a_card_says_what_the_model_predicts_and_what_it_is_worth(shore: Shore) 
         laden["notes"].to_string().contains("magnetic cargo"),
         "{laden}"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn the_four_forms_of_a_card_agree_and_are_the_same_each_time(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = modelled(&shore, &ada).await;
+async fn the_four_forms_of_a_card_agree_and_are_the_same_each_time(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = modelled(&server, &ada).await;
     amend(
         &ada,
         &nao.path(""),
@@ -136,18 +139,18 @@ async fn the_four_forms_of_a_card_agree_and_are_the_same_each_time(shore: Shore)
     ] {
         let get = async || {
             let path = nao.path(&format!("/card.{form}"));
-            let answer = ada.request(Method::GET, &path).send().await.unwrap();
-            assert_eq!(answer.status(), 200);
-            assert_eq!(answer.headers()["content-type"], kind);
-            let name = answer.headers()["content-disposition"].to_str().unwrap();
+            let response = ada.request(Method::GET, &path).send().await.unwrap();
+            assert_eq!(response.status(), 200);
+            assert_eq!(response.headers()["content-type"], kind);
+            let name = response.headers()["content-disposition"].to_str().unwrap();
             let expected = format!(
                 "inline; filename=\"deviation-card-nao-b-victoria-b-standard-compass-v1.{form}\""
             );
             assert_eq!(name, expected);
-            answer.bytes().await.unwrap()
+            response.bytes().await.unwrap()
         };
         let bytes = get().await;
-        shore.advance(3600.0);
+        server.advance(3600.0);
         assert!(bytes == get().await, "{form} is not the same an hour later");
         let text = String::from_utf8_lossy(&bytes);
         match form {
@@ -171,12 +174,12 @@ async fn the_four_forms_of_a_card_agree_and_are_the_same_each_time(shore: Shore)
             }
         }
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_card_is_for_the_place_and_the_date_that_are_asked_for(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = modelled(&shore, &ada).await;
+async fn a_card_is_for_the_place_and_the_date_that_are_asked_for(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = modelled(&server, &ada).await;
     let here = ada.get(&nao.path("/card.json")).await.good();
     assert_eq!(
         (&here["place"]["lat"], &here["place"]["lon"]),
@@ -190,12 +193,12 @@ async fn a_card_is_for_the_place_and_the_date_that_are_asked_for(shore: Shore) {
     // Where the field is stronger this ship's deviation is less.
     let worst = |card: &Value| card["worst"]["deviation_deg"].as_f64().unwrap().abs();
     assert!(worst(&there) < worst(&here), "{there}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn each_compass_has_a_card_of_its_own(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = modelled(&shore, &ada).await;
+async fn each_compass_has_a_card_of_its_own(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = modelled(&server, &ada).await;
     let element = json!({ "name": "Element", "role": "transmitting", "serial_number": "7" });
     let other = ada.post(&nao.path("/compasses"), &element).await.good();
     let of = |id: &Value| nao.path(&format!("/card.json?compass={}", id.as_str().unwrap()));
@@ -207,12 +210,12 @@ async fn each_compass_has_a_card_of_its_own(shore: Shore) {
         ada.get(&of(&card["vessel"]["id"])).await.problem(),
         "not-found"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_card_tells_how_the_correctors_were_last_recorded(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = modelled(&shore, &ada).await;
+async fn a_card_tells_how_the_correctors_were_last_recorded(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = modelled(&server, &ada).await;
     let card = ada.get(&nao.path("/card.json")).await.good();
     assert_eq!(card["correctors"], json!(null));
     let compass = card["compass"]["id"].as_str().unwrap();
@@ -233,12 +236,12 @@ async fn a_card_tells_how_the_correctors_were_last_recorded(shore: Shore) {
     for words in ["1 × 200 mm in hole 7, red to port", ">Flinders bar<"] {
         assert!(svg.contains(words), "{words}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_cannot_be_asked_is_refused_by_its_field(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = modelled(&shore, &ada).await;
+async fn what_cannot_be_asked_is_refused_by_its_field(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = modelled(&server, &ada).await;
     for (wrong, problem) in [
         ("?lat=95&lon=0", "invalid"),
         ("?lat=1", "invalid"),
@@ -248,29 +251,29 @@ async fn what_cannot_be_asked_is_refused_by_its_field(shore: Shore) {
         ("?compass=1", "bad-request"),
     ] {
         for form in ["json", "pdf", "svg", "csv"] {
-            let answer = ada.get(&nao.path(&format!("/card.{form}{wrong}"))).await;
-            assert_eq!(answer.problem(), problem, "{form}{wrong}");
+            let response = ada.get(&nao.path(&format!("/card.{form}{wrong}"))).await;
+            assert_eq!(response.problem(), problem, "{form}{wrong}");
         }
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// Status, the problem's last word, and what it says.
 async fn refusal(ada: &Person, nao: &Ship, query: &str) -> (u16, String, String) {
-    let answer = ada.get(&nao.path(&format!("/card.pdf{query}"))).await;
-    let detail = answer.json()["detail"].to_string();
-    (answer.status, answer.problem(), detail)
+    let response = ada.get(&nao.path(&format!("/card.pdf{query}"))).await;
+    let detail = response.json()["detail"].to_string();
+    (response.status, response.problem(), detail)
 }
 
-async fn there_is_no_card_where_it_would_mislead(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = modelled(&shore, &ada).await;
+async fn there_is_no_card_where_it_would_mislead(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = modelled(&server, &ada).await;
     let refused = async |query: &str| {
-        let answer = ada.get(&nao.path(&format!("/card.pdf{query}"))).await;
+        let response = ada.get(&nao.path(&format!("/card.pdf{query}"))).await;
         (
-            answer.status,
-            answer.problem(),
-            answer.json()["detail"].to_string(),
+            response.status,
+            response.problem(),
+            response.json()["detail"].to_string(),
         )
     };
     // One latitude tells little of another.
@@ -280,8 +283,8 @@ async fn there_is_no_card_where_it_would_mislead(shore: Shore) {
     let (_, problem, _) = refused("?lat=-64.1&lon=136").await;
     assert_eq!(problem, "field-too-weak");
 
-    shore.advance(100.0 * DAY_S);
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    server.advance(100.0 * DAY_S);
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     let refused = async |query: &str| refusal(&ada, &nao, query).await;
     let (status, problem, detail) = refused("").await;
     assert_eq!((status, problem.as_str()), (409, "model-too-old"));
@@ -289,34 +292,34 @@ async fn there_is_no_card_where_it_would_mislead(shore: Shore) {
 
     let moved = json!({ "kind": "corrector_change", "from": "2026-11-20T00:00:00Z" });
     ada.post(&nao.path("/logbook"), &moved).await.good();
-    shore.work().await;
+    server.work().await;
     let (status, problem, detail) = refused("").await;
     assert_eq!((status, problem.as_str()), (404, "no-model-yet"));
     assert!(detail.contains("the card has not held since"), "{detail}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn there_is_no_card_where_headings_are_ambiguous(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn there_is_no_card_where_headings_are_ambiguous(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     // A field of her own that is nothing to the earth's in Biscay, and outdoes it in the
     // far south.
-    let ship = struck(3000.0, 0.0);
-    let mut strong = days_in((10.0, -25.0), &ship, "2026-11-10T00:00:00Z", 4.0);
+    let ship = model_after_step(3000.0, 0.0);
+    let mut strong = days_in_waters((10.0, -25.0), &ship, "2026-11-10T00:00:00Z", 4.0);
     strong.extend(days_at_sea(&ship, FROM, 5.0));
     nao.put(1, &strong).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     ada.get(&nao.path("/card.json")).await.good();
     let (status, problem, detail) = refusal(&ada, &nao, "?lat=-61&lon=136").await;
     assert_eq!((status, problem.as_str()), (409, "headings-ambiguous"));
     assert!(detail.contains("heading"), "{detail}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn there_is_no_card_of_a_compass_that_is_suspected(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = modelled(&shore, &ada).await;
+async fn there_is_no_card_of_a_compass_that_is_suspected(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = modelled(&server, &ada).await;
     ada.get(&nao.path("/card.json")).await.good();
     let since = Timestamp::parse("2026-11-20T04:00:00Z").unwrap();
     let mut aboard = ShipAlert {
@@ -340,10 +343,10 @@ async fn there_is_no_card_of_a_compass_that_is_suspected(shore: Shore) {
     let (status, _, detail) = refusal(&ada, &nao, "").await;
     assert_eq!(status, 409);
     assert!(detail.contains("they agree"), "{detail}");
-    shore.advance(7.0 * 3600.0);
-    alerts::check_timed(&shore.app).await.unwrap();
+    server.advance(7.0 * 3600.0);
+    alerts::check_timed(&server.app).await.unwrap();
     ada.get(&nao.path("/card.json")).await.good();
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// A batch with nothing but an alert of the ship's own.
@@ -359,18 +362,18 @@ fn reporting(ship: &Ship, seq: u64, alert: ShipAlert) -> Vec<u8> {
     binnacle_wire::encode(&batch).unwrap()
 }
 
-async fn a_card_from_after_a_change_says_that_no_older_one_holds(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let mut samples = days_at_sea(&truth(), "2026-11-01T00:00:00Z", 10.0);
+async fn a_card_from_after_a_change_says_that_no_older_one_holds(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let mut samples = days_at_sea(&true_model(), "2026-11-01T00:00:00Z", 10.0);
     samples.extend(days_at_sea(
-        &struck(1500.0, 900.0),
+        &model_after_step(1500.0, 900.0),
         "2026-11-11T00:00:00Z",
         8.0,
     ));
     nao.put(1, &samples).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let card = ada.get(&nao.path("/card.json")).await.good();
     let since = card["replaces"]["since"].as_str().unwrap().to_owned();
     assert!(since.starts_with("2026-11-1"), "{card}");
@@ -388,11 +391,11 @@ async fn a_card_from_after_a_change_says_that_no_older_one_holds(shore: Shore) {
     assert_eq!(before.problem(), "invalid");
     assert!(before.text.contains("the model holds from"), "{before:?}");
 
-    let calm = shore.ship(&ada, "Calm").await;
+    let calm = server.ship(&ada, "Calm").await;
     calm.put(1, &passage(FROM, 300)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let card = ada.get(&calm.path("/card.json")).await.good();
     assert_eq!(card["replaces"], json!(null));
-    shore.finish().await;
+    server.finish().await;
 }

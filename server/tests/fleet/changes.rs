@@ -7,7 +7,9 @@ use binnacle_compass::sample::Sample;
 use binnacle_compass::ship::EarthField;
 use binnacle_server_testing::mail;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Person, Relay, Ship, Shore, days_at_sea, days_in, struck, truth};
+use binnacle_server_testing::{
+    Person, Relay, Ship, TestServer, days_at_sea, days_in_waters, model_after_step, true_model,
+};
 use serde_json::{Value, json};
 
 on_both!(
@@ -30,16 +32,16 @@ const BASE: &str = "2026-10-20T00:00:00Z";
 /// and are over.
 const HIT: &str = "2026-11-09T00:00:00Z";
 
-async fn a_struck_ships_timeline_has_both_epochs_with_their_curves(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = well_known(&shore, &ada).await;
+async fn a_struck_ships_timeline_has_both_epochs_with_their_curves(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = well_known(&server, &ada).await;
     let calm = ada.get(&nao.path("/changes")).await.good();
     assert_eq!(calm["changes"], json!([]));
     assert_eq!(calm["epochs"].as_array().unwrap().len(), 1);
     assert_eq!(calm["epochs"][0]["model_version"], 1);
 
-    let struck = days_at_sea(&struck(3000.0, 2000.0), HIT, 2.0);
-    send(&shore, &nao, 2, &struck).await;
+    let model_after_step = days_at_sea(&model_after_step(3000.0, 2000.0), HIT, 2.0);
+    send(&server, &nao, 2, &model_after_step).await;
     let timeline = ada.get(&nao.path("/changes")).await.good();
     let changes = timeline["changes"].as_array().unwrap();
     assert_eq!(changes.len(), 1, "{changes:?}");
@@ -80,32 +82,32 @@ async fn a_struck_ships_timeline_has_both_epochs_with_their_curves(shore: Shore)
     assert!((most - said).abs() < 0.15 * said, "{most} and {said}");
     assert!(epochs[1]["curve"][0]["band95_deg"].as_f64().unwrap() > 0.0);
     assert_eq!(timeline["place"]["lat"], 48.0);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn before_the_first_analysis_the_timeline_is_empty(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn before_the_first_analysis_the_timeline_is_empty(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let timeline = ada.get(&nao.path("/changes")).await.good();
     assert_eq!(timeline["analysed_at"], Value::Null);
     assert_eq!(timeline["epochs"], json!([]));
     assert_eq!(timeline["changes"], json!([]));
-    let eve = shore.admin("eve").await;
+    let eve = server.admin("eve").await;
     assert_eq!(eve.get(&nao.path("/changes")).await.problem(), "not-found");
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// A ship with a model of three weeks at sea.
-async fn well_known(shore: &Shore, person: &Person) -> Ship {
-    let ship = shore.ship(person, "Nao").await;
-    send(shore, &ship, 1, &days_at_sea(&truth(), BASE, 20.0)).await;
+async fn well_known(server: &TestServer, person: &Person) -> Ship {
+    let ship = server.ship(person, "Nao").await;
+    send(server, &ship, 1, &days_at_sea(&true_model(), BASE, 20.0)).await;
     ship
 }
 
-async fn send(shore: &Shore, ship: &Ship, seq: u64, samples: &[Sample]) {
+async fn send(server: &TestServer, ship: &Ship, seq: u64, samples: &[Sample]) {
     ship.put(seq, samples).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
 }
 
 async fn open_alerts(person: &Person) -> Vec<Value> {
@@ -134,12 +136,12 @@ fn widest_band_deg(model: &Value) -> f64 {
         .fold(0.0, f64::max)
 }
 
-async fn a_struck_ship_raises_one_alert_that_follows_what_is_known(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = well_known(&shore, &ada).await;
+async fn a_struck_ship_raises_one_alert_that_follows_what_is_known(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = well_known(&server, &ada).await;
     assert_eq!(open_alerts(&ada).await, Vec::<Value>::new());
-    let struck = days_at_sea(&struck(3000.0, 2000.0), HIT, 4.0);
-    send(&shore, &nao, 2, &struck[..36]).await;
+    let model_after_step = days_at_sea(&model_after_step(3000.0, 2000.0), HIT, 4.0);
+    send(&server, &nao, 2, &model_after_step[..36]).await;
     let of_lightning = |alerts: Vec<Value>| -> Vec<Value> {
         let mut alerts = alerts;
         alerts.retain(|alert| alert["cause"] == "lightning_or_shock");
@@ -153,8 +155,8 @@ async fn a_struck_ship_raises_one_alert_that_follows_what_is_known(shore: Shore)
     assert!(told(&raised[0], "summary").contains("lightning or a shock"));
     assert!(told(&raised[0], "since").as_str() > "2026-11-08T20");
     for day in 0..3 {
-        let samples = &struck[36 + 144 * day..36 + 144 * (day + 1)];
-        send(&shore, &nao, 3 + day as u64, samples).await;
+        let samples = &model_after_step[36 + 144 * day..36 + 144 * (day + 1)];
+        send(&server, &nao, 3 + day as u64, samples).await;
     }
     let later = of_lightning(open_alerts(&ada).await);
     assert_eq!(later.len(), 1, "{later:?}");
@@ -172,7 +174,7 @@ async fn a_struck_ship_raises_one_alert_that_follows_what_is_known(shore: Shore)
         "{reason}"
     );
     assert_eq!(change["due_on"], "2026-12-08");
-    shore.finish().await;
+    server.finish().await;
 }
 
 async fn of_lightning(person: &Person, query: &str) -> Vec<Value> {
@@ -186,31 +188,31 @@ async fn of_lightning(person: &Person, query: &str) -> Vec<Value> {
 const HIT_AGAIN: &str = "2026-11-14T00:00:00Z";
 
 fn struck_again(days: f64) -> Vec<Sample> {
-    days_at_sea(&struck(1200.0, 3200.0), HIT_AGAIN, days)
+    days_at_sea(&model_after_step(1200.0, 3200.0), HIT_AGAIN, days)
 }
 
-async fn a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first(server: TestServer) {
+    let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     mail::add(&ada, "bridge@example.com", "notice").await;
     let kinds = json!(["alert.raised", "alert.updated", "alert.cleared"]);
     let hook = json!({ "url": "https://example.com/hook", "kinds": kinds });
     let hook = ada.post("/webhooks", &hook).await.good();
-    let nao = well_known(&shore, &ada).await;
-    let first = days_at_sea(&struck(3000.0, 2000.0), HIT, 5.0);
-    send(&shore, &nao, 2, &first[..36]).await;
+    let nao = well_known(&server, &ada).await;
+    let first = days_at_sea(&model_after_step(3000.0, 2000.0), HIT, 5.0);
+    send(&server, &nao, 2, &first[..36]).await;
     let alert = of_lightning(&ada, "?open=true").await.remove(0);
     let path = format!("/alerts/{}", alert["id"].as_str().unwrap());
     let note = json!({ "note": "Master informed" });
     ada.post(&format!("{path}/acknowledge"), &note).await.good();
-    send(&shore, &nao, 3, &first[36..]).await;
+    send(&server, &nao, 3, &first[36..]).await;
     // The same strike, perhaps dated better, is still acknowledged.
     let known = ada.get(&path).await.good();
     assert_eq!(known["state"], "acknowledged", "{known}");
-    mail::deliver(&shore, &relay).await;
+    mail::deliver(&server, &relay).await;
     let told = mail::subjects(&relay).len();
 
-    send(&shore, &nao, 4, &struck_again(2.0)).await;
+    send(&server, &nao, 4, &struck_again(2.0)).await;
     let open = of_lightning(&ada, "?open=true").await;
     assert_eq!(open.len(), 1, "{open:?}");
     assert_eq!(
@@ -231,7 +233,7 @@ async fn a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first(s
         first["clearing_reason"],
         "another event of the same cause followed"
     );
-    mail::deliver(&shore, &relay).await;
+    mail::deliver(&server, &relay).await;
     let subjects = mail::subjects(&relay).split_off(told);
     let lightning: Vec<&String> = subjects
         .iter()
@@ -244,26 +246,26 @@ async fn a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first(s
     let sent: Vec<&Value> = sent["items"].as_array().unwrap().iter().collect();
     let raised = sent.iter().filter(|sent| sent["kind"] == "alert.raised");
     assert!(raised.count() >= 2, "{sent:?}");
-    shore.finish().await;
+    server.finish().await;
 }
 
 async fn a_strike_before_a_person_cleared_the_last_ones_alert_is_told_when_it_arrives(
-    shore: Shore,
+    server: TestServer,
 ) {
-    let ada = shore.admin("ada").await;
-    let nao = well_known(&shore, &ada).await;
-    let first = days_at_sea(&struck(3000.0, 2000.0), HIT, 5.0);
-    send(&shore, &nao, 2, &first[..36]).await;
+    let ada = server.admin("ada").await;
+    let nao = well_known(&server, &ada).await;
+    let first = days_at_sea(&model_after_step(3000.0, 2000.0), HIT, 5.0);
+    send(&server, &nao, 2, &first[..36]).await;
     let alert = of_lightning(&ada, "?open=true").await.remove(0);
     let clear = format!("/alerts/{}/clear", alert["id"].as_str().unwrap());
     let reason = json!({ "reason": "Azimuths taken" });
     ada.post(&clear, &reason).await.good();
-    send(&shore, &nao, 3, &first[36..]).await;
+    send(&server, &nao, 3, &first[36..]).await;
     let open = of_lightning(&ada, "?open=true").await;
     assert_eq!(open, Vec::<Value>::new(), "the same strike stays cleared");
 
     // Of a week before the person cleared the alert.
-    send(&shore, &nao, 4, &struck_again(2.0)).await;
+    send(&server, &nao, 4, &struck_again(2.0)).await;
     let open = of_lightning(&ada, "?open=true").await;
     assert_eq!(open.len(), 1, "{open:?}");
     assert!(
@@ -272,16 +274,16 @@ async fn a_strike_before_a_person_cleared_the_last_ones_alert_is_told_when_it_ar
     );
     let cleared = of_lightning(&ada, "?state=cleared").await;
     assert_eq!(cleared[0]["clearing_reason"], "Azimuths taken");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = well_known(&shore, &ada).await;
+async fn a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = well_known(&server, &ada).await;
     let base = told(&nao, &Value::Null).await["model"].take();
     assert_eq!(base.get("replaces"), None);
-    let struck = days_at_sea(&struck(3000.0, 2000.0), HIT, 4.0);
-    send(&shore, &nao, 2, &struck[..36]).await;
+    let model_after_step = days_at_sea(&model_after_step(3000.0, 2000.0), HIT, 4.0);
+    send(&server, &nao, 2, &model_after_step[..36]).await;
     let interim = told(&nao, &base).await["model"].take();
     assert_eq!(
         interim["replaces"]["reason"], "lightning_or_shock",
@@ -291,19 +293,23 @@ async fn a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band(shore: Sh
     let (before, after) = (widest_band_deg(&base), widest_band_deg(&interim));
     assert!(after > 1.2 * before, "{before} and then {after}");
     // The band holds what the ship is now.
-    send(&shore, &nao, 3, &struck[36..]).await;
+    send(&server, &nao, 3, &model_after_step[36..]).await;
     let later = told(&nao, &interim).await["model"].take();
     assert!(widest_band_deg(&later) < after);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn after_discharge_the_base_model_is_back_on_the_bridge(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = well_known(&shore, &ada).await;
+async fn after_discharge_the_base_model_is_back_on_the_bridge(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = well_known(&server, &ada).await;
     let base = told(&nao, &Value::Null).await["model"].take();
     // Loaded for eight hours, at sea for five days, discharged.
-    let loaded = days_at_sea(&struck(2500.0, -2500.0), "2026-11-09T08:00:00Z", 5.0);
-    send(&shore, &nao, 2, &loaded).await;
+    let loaded = days_at_sea(
+        &model_after_step(2500.0, -2500.0),
+        "2026-11-09T08:00:00Z",
+        5.0,
+    );
+    send(&server, &nao, 2, &loaded).await;
     let with_cargo = told(&nao, &base).await["model"].take();
     assert_eq!(
         with_cargo["replaces"]["reason"], "magnetic_cargo",
@@ -315,8 +321,8 @@ async fn after_discharge_the_base_model_is_back_on_the_bridge(shore: Shore) {
         .find(|alert| alert["cause"] == "magnetic_cargo");
     assert!(cargo.is_some(), "{raised:?}");
 
-    let discharged = days_at_sea(&truth(), "2026-11-14T16:00:00Z", 1.0);
-    send(&shore, &nao, 3, &discharged).await;
+    let discharged = days_at_sea(&true_model(), "2026-11-14T16:00:00Z", 1.0);
+    send(&server, &nao, 3, &discharged).await;
     let timeline = ada.get(&nao.path("/changes")).await.good();
     assert_eq!(
         timeline["epochs"][2]["resumes"], 0,
@@ -332,21 +338,25 @@ async fn after_discharge_the_base_model_is_back_on_the_bridge(shore: Shore) {
         open.iter().all(|alert| alert["cause"] != "magnetic_cargo"),
         "{open:?}"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = well_known(&shore, &ada).await;
+async fn work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = well_known(&server, &ada).await;
     let base = told(&nao, &Value::Null).await["model"].take();
     let repair = json!({ "kind": "repair", "from": "2026-11-09T00:00:00Z" });
     ada.post(&nao.path("/logbook"), &repair).await.good();
-    shore.work().await;
+    server.work().await;
     // No sample since: no card holds, and the ship is told at once.
     let withdrawn = told(&nao, &base).await["card_withdrawn"].take();
     assert_eq!(withdrawn["reason"], "repair");
-    let after = days_at_sea(&struck(3000.0, 2000.0), "2026-11-09T12:00:00Z", 4.0);
-    send(&shore, &nao, 2, &after).await;
+    let after = days_at_sea(
+        &model_after_step(3000.0, 2000.0),
+        "2026-11-09T12:00:00Z",
+        4.0,
+    );
+    send(&server, &nao, 2, &after).await;
     let timeline = ada.get(&nao.path("/changes")).await.good();
     assert_eq!(timeline["epochs"].as_array().unwrap().len(), 2);
     assert_eq!(timeline["epochs"][1]["begun_by"], "repair");
@@ -358,12 +368,12 @@ async fn work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert(shore: S
         causes.iter().all(|cause| *cause == "deviation_over_limit"),
         "{causes:?}"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// Thirty days at sea, the needle astray for some hours so long before the end.
 fn astray(place: (f64, f64), from_h: usize, to_h: usize, deg: Swing) -> Vec<Sample> {
-    let mut samples = days_in(place, &truth(), "2026-10-21T00:00:00Z", 30.0);
+    let mut samples = days_in_waters(place, &true_model(), "2026-10-21T00:00:00Z", 30.0);
     let place = |hours| samples.len() - 6 * hours;
     let (from, to) = (place(from_h), place(to_h));
     for (i, sample) in samples[from..to].iter_mut().enumerate() {
@@ -393,21 +403,21 @@ async fn last_change(person: &Person, ship: &Ship) -> Value {
         .clone()
 }
 
-async fn two_ships_in_one_storm_name_it_and_one_alone_does_not(shore: Shore) {
-    let (ada, eve) = (shore.admin("ada").await, shore.admin("eve").await);
-    let nao = shore.ship(&ada, "Nao").await;
-    send(&shore, &nao, 1, &passed((48.0, -6.0), 14)).await;
+async fn two_ships_in_one_storm_name_it_and_one_alone_does_not(server: TestServer) {
+    let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
+    let nao = server.ship(&ada, "Nao").await;
+    send(&server, &nao, 1, &passed((48.0, -6.0), 14)).await;
     let alone = last_change(&ada, &nao).await;
     assert_eq!(alone["cause"], "local_anomaly", "{alone}");
 
     // Another one in other hours is none the wiser, nor makes Nao so.
-    let victoria = shore.ship(&eve, "Victoria").await;
-    send(&shore, &victoria, 1, &passed((30.0, -40.0), 62)).await;
+    let victoria = server.ship(&eve, "Victoria").await;
+    send(&server, &victoria, 1, &passed((30.0, -40.0), 62)).await;
     assert_eq!(last_change(&eve, &victoria).await["cause"], "local_anomaly");
     assert_eq!(last_change(&ada, &nao).await, alone);
 
-    let gaviota = shore.ship(&eve, "Gaviota").await;
-    send(&shore, &gaviota, 1, &passed((58.0, -20.0), 14)).await;
+    let gaviota = server.ship(&eve, "Gaviota").await;
+    send(&server, &gaviota, 1, &passed((58.0, -20.0), 14)).await;
     let stormy = last_change(&ada, &nao).await;
     assert_eq!(stormy["cause"], "magnetic_storm", "{stormy}");
     let told = stormy.to_string();
@@ -417,23 +427,23 @@ async fn two_ships_in_one_storm_name_it_and_one_alone_does_not(shore: Shore) {
     );
     assert!(!told.contains("Gaviota"));
     assert_eq!(last_change(&eve, &gaviota).await["cause"], "magnetic_storm");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_alert_follows_what_other_ships_show_without_another_fit(shore: Shore) {
-    let (ada, eve) = (shore.admin("ada").await, shore.admin("eve").await);
-    let nao = shore.ship(&ada, "Nao").await;
-    send(&shore, &nao, 1, &passing((48.0, -6.0))).await;
+async fn an_alert_follows_what_other_ships_show_without_another_fit(server: TestServer) {
+    let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
+    let nao = server.ship(&ada, "Nao").await;
+    send(&server, &nao, 1, &passing((48.0, -6.0))).await;
     let before = open_alerts(&ada).await;
     assert_eq!(before.len(), 1, "{before:?}");
     assert_eq!(before[0]["severity"], "warning");
     assert!(!before[0]["evidence"].to_string().contains("other ship"));
 
-    let gaviota = shore.ship(&eve, "Gaviota").await;
-    send(&shore, &gaviota, 1, &passing((58.0, -20.0))).await;
+    let gaviota = server.ship(&eve, "Gaviota").await;
+    send(&server, &gaviota, 1, &passing((58.0, -20.0))).await;
     // Ada's alert follows by itself.
-    shore.advance(100.0);
-    shore.work().await;
+    server.advance(100.0);
+    server.work().await;
     let after = open_alerts(&ada).await;
     assert_eq!(after.len(), 1, "{after:?}");
     assert_eq!(after[0]["cause"], "magnetic_storm");
@@ -443,20 +453,20 @@ async fn an_alert_follows_what_other_ships_show_without_another_fit(shore: Shore
     );
     let versions = ada.get(&nao.path("/models")).await.good();
     assert_eq!(versions["items"].as_array().unwrap().len(), 1);
-    shore.advance(1000.0);
+    server.advance(1000.0);
     assert_eq!(
-        shore.work().await,
+        server.work().await,
         [],
         "they do not wake each other for ever"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// Degrees by the number of the reading.
 type Swing = fn(f64) -> f64;
 
-async fn however_far_the_needle_swings_one_alert_says_so(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn however_far_the_needle_swings_one_alert_says_so(server: TestServer) {
+    let ada = server.admin("ada").await;
     let swings: [(&str, Swing); 4] = [
         ("Pinta", |i| 6.0 * (0.7 * i).sin()),
         ("Nina", |i| 10.0 * (0.7 * i).sin()),
@@ -465,8 +475,8 @@ async fn however_far_the_needle_swings_one_alert_says_so(shore: Shore) {
     ];
     let mut causes = Vec::new();
     for (name, swing) in swings {
-        let ship = shore.ship(&ada, name).await;
-        send(&shore, &ship, 1, &astray((48.0, -6.0), 6, 0, swing)).await;
+        let ship = server.ship(&ada, name).await;
+        send(&server, &ship, 1, &astray((48.0, -6.0), 6, 0, swing)).await;
         let open = open_alerts(&ada).await;
         let of_her: Vec<&Value> = open.iter().filter(|a| a["vessel_name"] == name).collect();
         assert_eq!(of_her.len(), 1, "{name}: {open:?}");
@@ -478,5 +488,5 @@ async fn however_far_the_needle_swings_one_alert_says_so(shore: Shore) {
         ["compass_fault", "compass_fault"],
         "{causes:?}"
     );
-    shore.finish().await;
+    server.finish().await;
 }

@@ -1,7 +1,7 @@
 //! The compass deviation book.
 
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Person, Shore, days_at_sea, truth};
+use binnacle_server_testing::{Person, TestServer, days_at_sea, true_model};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -21,13 +21,15 @@ fn entries(book: &Value) -> Vec<Value> {
     book["items"].as_array().unwrap().clone()
 }
 
-async fn the_book_has_each_watch_and_each_large_alteration(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn the_book_has_each_watch_and_each_large_alteration(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     // Legs of three hours: three of four watches have an alteration in them.
-    nao.put(1, &days_at_sea(&truth(), FROM, 2.0)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    nao.put(1, &days_at_sea(&true_model(), FROM, 2.0))
+        .await
+        .good();
+    server.advance(A_WHILE_S);
+    server.work().await;
     let book = entries(&ada.get(&nao.path("/deviation-book")).await.good());
     let of = |occasion: &str| book.iter().filter(|e| e["occasion"] == occasion).count();
     assert_eq!(of("watch"), 12);
@@ -63,9 +65,9 @@ async fn the_book_has_each_watch_and_each_large_alteration(shore: Shore) {
 
     let pdf = async || {
         let request = ada.request(Method::GET, &nao.path("/deviation-book.pdf"));
-        let answer = request.send().await.unwrap();
-        assert_eq!(answer.headers()["content-type"], "application/pdf");
-        let name = answer.headers()["content-disposition"]
+        let response = request.send().await.unwrap();
+        assert_eq!(response.headers()["content-type"], "application/pdf");
+        let name = response.headers()["content-disposition"]
             .to_str()
             .unwrap()
             .to_owned();
@@ -73,27 +75,27 @@ async fn the_book_has_each_watch_and_each_large_alteration(shore: Shore) {
             name,
             "inline; filename=\"deviation-book-nao-standard-compass.pdf\""
         );
-        answer.bytes().await.unwrap()
+        response.bytes().await.unwrap()
     };
     let printed = pdf().await;
     assert!(printed.starts_with(b"%PDF-1."));
-    shore.advance(60.0);
+    server.advance(60.0);
     assert!(
         printed == pdf().await,
         "the same book is not the same a minute later"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn the_book_pages_and_filters_without_losing_an_entry(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn the_book_pages_and_filters_without_losing_an_entry(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     // Samples are kept in rows of 30 days: one begins on the third.
-    nao.put(1, &days_at_sea(&truth(), "2026-11-01T00:00:00Z", 5.0))
+    nao.put(1, &days_at_sea(&true_model(), "2026-11-01T00:00:00Z", 5.0))
         .await
         .good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let whole = entries(&ada.get(&nao.path("/deviation-book")).await.good());
     let mut paged = Vec::new();
     let mut after = String::new();
@@ -121,23 +123,25 @@ async fn the_book_pages_and_filters_without_losing_an_entry(shore: Shore) {
         whole.iter().filter(within).cloned().collect::<Vec<_>>()
     );
     assert!(!part.is_empty() && part.len() < whole.len());
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_card_counts_only_from_when_it_was_made_until_it_was_withdrawn(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    nao.put(1, &days_at_sea(&truth(), FROM, 5.0)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
-    // The model is of the 21st; two more days are observed after that.
-    shore.advance(2.5 * DAY_S);
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
-    nao.put(2, &days_at_sea(&truth(), "2026-11-21T08:00:00Z", 2.0))
+async fn a_card_counts_only_from_when_it_was_made_until_it_was_withdrawn(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    nao.put(1, &days_at_sea(&true_model(), FROM, 5.0))
         .await
         .good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
+    // The model is of the 21st; two more days are observed after that.
+    server.advance(2.5 * DAY_S);
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
+    nao.put(2, &days_at_sea(&true_model(), "2026-11-21T08:00:00Z", 2.0))
+        .await
+        .good();
+    server.advance(A_WHILE_S);
+    server.work().await;
     let book = entries(&ada.get(&nao.path("/deviation-book")).await.good());
     let models = ada.get(&nao.path("/models")).await.good();
     assert_eq!(models["items"].as_array().unwrap().len(), 2);
@@ -169,31 +173,31 @@ async fn a_card_counts_only_from_when_it_was_made_until_it_was_withdrawn(shore: 
 
     let moved = json!({ "kind": "corrector_change", "from": "2026-11-22T12:00:00Z" });
     ada.post(&nao.path("/logbook"), &moved).await.good();
-    shore.work().await;
+    server.work().await;
     let book = entries(&ada.get(&nao.path("/deviation-book")).await.good());
     for entry in book {
         let time = entry["time"].as_str().unwrap();
         let held = ("2026-11-21".."2026-11-22T12:00:00Z").contains(&time);
         assert_eq!(!entry["model_version"].is_null(), held, "{entry}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_book_without_entries_is_an_empty_book(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_book_without_entries_is_an_empty_book(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let empty = json!({ "items": [], "next": null });
     assert_eq!(ada.get(&nao.path("/deviation-book")).await.good(), empty);
     let csv = ada.get(&nao.path("/deviation-book.csv")).await;
     assert_eq!((csv.status, csv.text.lines().count()), (200, 1));
     let pdf = ada.get(&nao.path("/deviation-book.pdf")).await;
     assert!(pdf.status == 200 && pdf.text.starts_with("%PDF-1."));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_is_no_range_is_refused_by_its_field(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn what_is_no_range_is_refused_by_its_field(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     for form in ["", ".csv", ".pdf"] {
         for (wrong, problem) in [
             ("?from=yesterday", "invalid"),
@@ -204,17 +208,17 @@ async fn what_is_no_range_is_refused_by_its_field(shore: Shore) {
             ("?compass=00000000-0000-0000-0000-000000000000", "not-found"),
             ("?compass=aft", "bad-request"),
         ] {
-            let answer = ada
+            let response = ada
                 .get(&nao.path(&format!("/deviation-book{form}{wrong}")))
                 .await;
-            assert_eq!(answer.problem(), problem, "{form}{wrong}");
+            assert_eq!(response.problem(), problem, "{form}{wrong}");
         }
     }
     for cursor in ["x", "9223372036854775807"] {
-        let answer = ada
+        let response = ada
             .get(&nao.path(&format!("/deviation-book?after={cursor}")))
             .await;
-        assert_eq!(answer.problem(), "bad-request", "{cursor}");
+        assert_eq!(response.problem(), "bad-request", "{cursor}");
     }
-    shore.finish().await;
+    server.finish().await;
 }

@@ -2,7 +2,7 @@
 
 use binnacle_fleet::alerts;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Person, Ship, Shore, exchange, sample};
+use binnacle_server_testing::{ApiResponse, Person, Ship, TestServer, exchange, sample};
 use binnacle_wire::batch::StreamId;
 use reqwest::Method;
 use serde_json::{Value, json};
@@ -21,35 +21,35 @@ on_both!(
     two_computers_are_no_alert_any_more_when_nothing_has_shown_them_for_a_week,
 );
 
-async fn a_code_works_once(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_code_works_once(server: TestServer) {
+    let ada = server.admin("ada").await;
     let vessel = ada.create_vessel("Nao").await;
     let path = format!("/vessels/{}/agents", vessel["id"].as_str().unwrap());
     let code = ada.post(&path, &json!({})).await.good();
     let code = code["code"].as_str().unwrap();
-    let enrolled = exchange(&shore, code).await.good();
+    let enrolled = exchange(&server, code).await.good();
     assert_eq!(enrolled["vessel_name"], "Nao");
     assert_eq!(enrolled["compass_name"], "Standard compass");
-    assert_eq!(exchange(&shore, code).await.problem(), "gone");
+    assert_eq!(exchange(&server, code).await.problem(), "gone");
     assert_eq!(
-        exchange(&shore, "0000-0000-0000-0000").await.problem(),
+        exchange(&server, "0000-0000-0000-0000").await.problem(),
         "not-found"
     );
     let streams = ada.get(&path).await.good();
     assert_eq!(streams["items"].as_array().unwrap().len(), 1);
     assert_eq!(streams["items"][0]["stream"], enrolled["stream"]);
     assert_eq!(streams["items"][0]["agent_version"], "1.2.3");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_code_expires(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_code_expires(server: TestServer) {
+    let ada = server.admin("ada").await;
     let vessel = ada.create_vessel("Nao").await;
     let path = format!("/vessels/{}/agents", vessel["id"].as_str().unwrap());
     let made = ada.post(&path, &json!({ "valid_for_s": 60 })).await.good();
     assert_eq!(made["expires_at"], "2026-11-21T07:01:00Z");
-    shore.advance(60.0);
-    let late = exchange(&shore, made["code"].as_str().unwrap()).await;
+    server.advance(60.0);
+    let late = exchange(&server, made["code"].as_str().unwrap()).await;
     assert_eq!(late.problem(), "gone");
     assert!(late.text.contains("a new one"), "{late:?}");
     let usual = ada.post(&path, &json!({})).await.good();
@@ -58,143 +58,143 @@ async fn a_code_expires(shore: Shore) {
         let refused = ada.post(&path, &json!({ "valid_for_s": wrong })).await;
         assert_eq!(refused.problem(), "invalid");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_code_may_be_typed_carelessly(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_code_may_be_typed_carelessly(server: TestServer) {
+    let ada = server.admin("ada").await;
     let vessel = ada.create_vessel("Nao").await;
     let path = format!("/vessels/{}/agents", vessel["id"].as_str().unwrap());
     let made = ada.post(&path, &json!({})).await.good();
     let code = made["code"].as_str().unwrap();
     let typed = format!(" {} ", code.to_lowercase().replace('-', " "));
-    assert_eq!(exchange(&shore, &typed).await.status, 200);
-    shore.finish().await;
+    assert_eq!(exchange(&server, &typed).await.status, 200);
+    server.finish().await;
 }
 
-async fn a_code_for_another_vessels_compass_is_refused(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn a_code_for_another_vessels_compass_is_refused(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     let theirs = ada.create_vessel("Nao").await;
     let ours = eve.create_vessel("Kogge").await;
     let path = format!("/vessels/{}/agents", ours["id"].as_str().unwrap());
     let wanted = json!({ "compass_id": theirs["compasses"][0]["id"] });
     assert_eq!(eve.post(&path, &wanted).await.problem(), "not-found");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_agent_reaches_only_its_own_streams(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let kogge = shore.ship(&ada, "Kogge").await;
+async fn an_agent_reaches_only_its_own_streams(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let kogge = server.ship(&ada, "Kogge").await;
     let stolen = binnacle_server_testing::frame(kogge.stream, 1, &[]);
     let path = format!("/streams/{}/batches/1", kogge.stream);
-    let put = Answer::of(nao.request(Method::PUT, &path).body(stolen)).await;
+    let put = ApiResponse::of(nao.request(Method::PUT, &path).body(stolen)).await;
     assert_eq!(put.problem(), "not-found");
     let path = format!("/streams/{}/downlink", kogge.stream);
-    let asked = Answer::of(nao.request(Method::GET, &path)).await;
+    let asked = ApiResponse::of(nao.request(Method::GET, &path)).await;
     assert_eq!(asked.problem(), "not-found");
     // And it is no key to the fleet.
-    let vessels = Answer::of(nao.request(Method::GET, "/vessels")).await;
+    let vessels = ApiResponse::of(nao.request(Method::GET, "/vessels")).await;
     assert_eq!(vessels.problem(), "unauthenticated");
 
-    let opened = Answer::of(nao.request(Method::POST, "/streams")).await;
+    let opened = ApiResponse::of(nao.request(Method::POST, "/streams")).await;
     assert_eq!(opened.status, 201);
     let stream = opened.json()["stream"].as_str().unwrap().to_owned();
     let second = binnacle_wire::batch::StreamId(stream.parse().unwrap());
-    let now = shore.app.clock.now();
+    let now = server.app.clock.now();
     let batch = binnacle_server_testing::frame(second, 1, &[sample(now, 90.0)]);
     let path = format!("/streams/{stream}/batches/1");
-    let put = Answer::of(nao.request(Method::PUT, &path).body(batch)).await;
+    let put = ApiResponse::of(nao.request(Method::PUT, &path).body(batch)).await;
     assert_eq!(put.good()["contiguous_seq"], 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn how_the_link_did_in_the_last_week_is_told(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn how_the_link_did_in_the_last_week_is_told(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let path = format!("/vessels/{}/agents", nao.id);
     let told = async |who: &Person| who.get(&path).await.good()["items"][0]["last_week"].clone();
     let nothing = json!({ "batches": 0, "octets": 0, "longest_wait_s": null });
     assert_eq!(told(&ada).await, nothing);
     let mut octets = 0;
     for (seq, waited_s) in [(1, 60.0), (2, 7200.0), (3, 600.0)] {
-        let taken = shore.app.clock.now().plus_seconds(-waited_s);
+        let taken = server.app.clock.now().plus_seconds(-waited_s);
         let batch = binnacle_server_testing::frame(nao.stream, seq, &[sample(taken, 90.0)]);
         octets += batch.len();
         nao.put_bytes(seq, batch).await.good();
     }
     let week = json!({ "batches": 3, "octets": octets, "longest_wait_s": 7200 });
     assert_eq!(told(&ada).await, week);
-    shore.advance(8.0 * 86_400.0);
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    server.advance(8.0 * 86_400.0);
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     assert_eq!(told(&ada).await, nothing);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_waits_on_board_and_a_budget_that_is_short_are_told(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn what_waits_on_board_and_a_budget_that_is_short_are_told(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let path = nao.path("/agents");
     let told = async || ada.get(&path).await.good()["items"][0]["aboard"].clone();
     assert_eq!(told().await, Value::Null);
     let send = async |seq: u64, said: &str| {
-        let taken = [sample(shore.app.clock.now(), 90.0)];
+        let taken = [sample(server.app.clock.now(), 90.0)];
         let batch = binnacle_server_testing::frame(nao.stream, seq, &taken);
         let path = format!("/streams/{}/batches/{seq}{said}", nao.stream);
         let put = nao.request(Method::PUT, &path).body(batch);
-        Answer::of(put).await.good();
+        ApiResponse::of(put).await.good();
     };
     send(1, "").await;
     assert_eq!(told().await, Value::Null, "it was not said");
-    let now = || shore.app.clock.now().to_string();
+    let now = || server.app.clock.now().to_string();
     send(2, "?waits=12&budget=-40").await;
     let short = json!({ "batches_waiting": 12, "budget_left_percent": -40, "at": now() });
     assert_eq!(told().await, short);
-    shore.advance(3600.0);
+    server.advance(3600.0);
     send(3, "?wait=1").await;
     let well = json!({ "batches_waiting": 0, "budget_left_percent": null, "at": now() });
     assert_eq!(told().await, well);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_token_is_replaced_by_one_that_was_made_for_the_agent_and_not_before(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let mut nao = shore.ship(&ada, "Nao").await;
-    let other = shore.ship(&ada, "Arrano").await;
-    let made = Answer::of(nao.request(Method::POST, "/agents/token")).await;
+async fn a_token_is_replaced_by_one_that_was_made_for_the_agent_and_not_before(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let mut nao = server.ship(&ada, "Nao").await;
+    let other = server.ship(&ada, "Arrano").await;
+    let made = ApiResponse::of(nao.request(Method::POST, "/agents/token")).await;
     let new = made.good()["token"].as_str().unwrap().to_owned();
     let old = std::mem::replace(&mut nao.token, new.clone());
     let path = format!("/streams/{}/downlink", nao.stream);
-    let early = Answer::of(nao.request(Method::GET, &path)).await;
+    let early = ApiResponse::of(nao.request(Method::GET, &path)).await;
     assert_eq!(early.status, 401, "it is not in place yet");
     nao.token = old;
     for wrong in [&other.token, "short", ""] {
         let request = nao.request(Method::PUT, "/agents/token");
-        let refused = Answer::of(request.json(&json!({ "token": wrong }))).await;
+        let refused = ApiResponse::of(request.json(&json!({ "token": wrong }))).await;
         assert_eq!(refused.status, 422, "{wrong}");
     }
     let request = nao.request(Method::PUT, "/agents/token");
-    let replaced = Answer::of(request.json(&json!({ "token": new }))).await;
+    let replaced = ApiResponse::of(request.json(&json!({ "token": new }))).await;
     assert_eq!(replaced.status, 204);
-    let late = Answer::of(nao.request(Method::GET, &path)).await;
+    let late = ApiResponse::of(nao.request(Method::GET, &path)).await;
     assert_eq!(late.status, 401, "the old one is not known any more");
     nao.token = new;
     assert_eq!(nao.downlink("").await["contiguous_seq"], 0);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn revoke(person: &Person, ship: &Ship) -> Answer {
+async fn revoke(person: &Person, ship: &Ship) -> ApiResponse {
     let streams = person.get(&ship.path("/agents")).await.good();
     let agent = streams["items"][0]["agent_id"].as_str().unwrap();
     let path = ship.path(&format!("/agents/{agent}"));
-    Answer::of(person.request(Method::DELETE, &path)).await
+    ApiResponse::of(person.request(Method::DELETE, &path)).await
 }
 
-async fn a_revoked_agent_is_known_no_more_and_what_it_sent_stays(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let now = shore.app.clock.now();
+async fn a_revoked_agent_is_known_no_more_and_what_it_sent_stays(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let now = server.app.clock.now();
     nao.put(1, &[sample(now, 90.0)]).await.good();
     for _ in 0..2 {
         assert_eq!(revoke(&ada, &nao).await.status, 204);
@@ -205,12 +205,12 @@ async fn a_revoked_agent_is_known_no_more_and_what_it_sent_stays(shore: Shore) {
     let stream = &streams["items"][0];
     assert_eq!(stream["revoked_at"], "2026-11-21T07:00:00Z");
     assert_eq!(stream["batches"], 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// The same agent's other stream.
 async fn another_stream(ship: &Ship) -> StreamId {
-    let opened = Answer::of(ship.request(Method::POST, "/streams")).await;
+    let opened = ApiResponse::of(ship.request(Method::POST, "/streams")).await;
     StreamId(opened.json()["stream"].as_str().unwrap().parse().unwrap())
 }
 
@@ -218,7 +218,7 @@ async fn put_in(ship: &Ship, stream: StreamId, seq: u64) {
     let path = format!("/streams/{stream}/batches/{seq}");
     let frame = binnacle_server_testing::frame(stream, seq, &[]);
     let put = ship.request(Method::PUT, &path).body(frame);
-    Answer::of(put).await.good();
+    ApiResponse::of(put).await.good();
 }
 
 async fn clones(person: &Person) -> Vec<Value> {
@@ -229,10 +229,10 @@ async fn clones(person: &Person) -> Vec<Value> {
 }
 
 async fn a_second_computer_with_an_agents_files_is_an_alert_until_the_agent_is_revoked(
-    shore: Shore,
+    server: TestServer,
 ) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     put_in(&nao, nao.stream, 1).await;
     let second = another_stream(&nao).await;
     // So far it may be the same computer, which opened it in vain.
@@ -253,24 +253,26 @@ async fn a_second_computer_with_an_agents_files_is_an_alert_until_the_agent_is_r
         let last = found[0]["evidence"][1].as_str().unwrap();
         assert!(last.starts_with(&format!("Batch {seq} arrived")), "{last}");
     }
-    shore.work().await;
+    server.work().await;
     assert_eq!(clones(&ada).await[0]["state"], "raised");
     revoke(&ada, &nao).await;
     assert_eq!(clones(&ada).await[0]["state"], "cleared");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn two_computers_are_no_alert_any_more_when_nothing_has_shown_them_for_a_week(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn two_computers_are_no_alert_any_more_when_nothing_has_shown_them_for_a_week(
+    server: TestServer,
+) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let second = another_stream(&nao).await;
     put_in(&nao, second, 1).await;
     put_in(&nao, nao.stream, 1).await;
     for (days, state) in [(6.0, "raised"), (1.1, "cleared")] {
-        shore.advance(days * 86_400.0);
-        alerts::check_timed(&shore.app).await.unwrap();
-        let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+        server.advance(days * 86_400.0);
+        alerts::check_timed(&server.app).await.unwrap();
+        let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
         assert_eq!(clones(&ada).await[0]["state"], state);
     }
-    shore.finish().await;
+    server.finish().await;
 }

@@ -2,7 +2,9 @@
 
 use binnacle_platform::db::Pools;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Engine, Shore, days_at_sea, frame, passage, truth};
+use binnacle_server_testing::{
+    ApiResponse, Engine, TestServer, days_at_sea, frame, passage, true_model,
+};
 use binnacle_wire::batch::StreamId;
 use serde_json::json;
 use uuid::Uuid;
@@ -24,46 +26,46 @@ on_both!(
 
 const DAY: &str = "2026-11-20T00:00:00Z";
 
-async fn the_answer_that_waits_tells_what_the_samples_showed(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let samples = days_at_sea(&truth(), "2026-11-10T00:00:00Z", 6.0);
+async fn the_answer_that_waits_tells_what_the_samples_showed(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let samples = days_at_sea(&true_model(), "2026-11-10T00:00:00Z", 6.0);
     let path = format!("/streams/{}/batches/1?wait=50", nao.stream);
     let request = nao.request(reqwest::Method::PUT, &path);
-    let sending = Answer::of(request.body(frame(nao.stream, 1, &samples)));
+    let sending = ApiResponse::of(request.body(frame(nao.stream, 1, &samples)));
     let working = async {
-        while shore.work().await.is_empty() {
+        while server.work().await.is_empty() {
             tokio::task::yield_now().await;
         }
     };
-    let (answer, ()) = tokio::join!(sending, working);
-    let answer = answer.good();
-    assert_eq!(answer["contiguous_seq"], 1);
-    assert_eq!(answer["model"]["version"], 1, "{answer}");
-    shore.finish().await;
+    let (response, ()) = tokio::join!(sending, working);
+    let response = response.good();
+    assert_eq!(response["contiguous_seq"], 1);
+    assert_eq!(response["model"]["version"], 1, "{response}");
+    server.finish().await;
 }
 
-async fn a_wait_without_a_worker_ends(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_wait_without_a_worker_ends(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let path = format!("/streams/{}/batches/1?wait=0", nao.stream);
     let request = nao.request(reqwest::Method::PUT, &path);
-    let sending = Answer::of(request.body(frame(nao.stream, 1, &passage(DAY, 6))));
-    let answer = sending.await.good();
-    assert_eq!(answer["contiguous_seq"], 1);
-    assert!(answer.get("model").is_none());
-    shore.finish().await;
+    let sending = ApiResponse::of(request.body(frame(nao.stream, 1, &passage(DAY, 6))));
+    let response = sending.await.good();
+    assert_eq!(response["contiguous_seq"], 1);
+    assert!(response.get("model").is_none());
+    server.finish().await;
 }
 
-async fn a_batch_sent_twice_is_stored_once(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_batch_sent_twice_is_stored_once(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let samples = passage(DAY, 6);
     for _ in 0..2 {
-        let answer = nao.put(1, &samples).await.good();
-        assert_eq!(answer["contiguous_seq"], 1);
-        assert_eq!(answer["server_time"], "2026-11-21T07:00:00Z");
-        assert!(answer.get("model").is_none() && answer.get("settings").is_none());
+        let response = nao.put(1, &samples).await.good();
+        assert_eq!(response["contiguous_seq"], 1);
+        assert_eq!(response["server_time"], "2026-11-21T07:00:00Z");
+        assert!(response.get("model").is_none() && response.get("settings").is_none());
     }
     let streams = ada.get(&nao.path("/agents")).await.good();
     let stream = &streams["items"][0];
@@ -71,52 +73,52 @@ async fn a_batch_sent_twice_is_stored_once(shore: Shore) {
     assert_eq!(stream["samples"], 6);
     assert_eq!(stream["tally"], json!({ "accepted": 360 }));
     assert_eq!(stream["last_upload_at"], "2026-11-21T07:00:00Z");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn other_bytes_under_the_same_number_fork_the_stream(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn other_bytes_under_the_same_number_fork_the_stream(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 6)).await.good();
     let other = nao.put(1, &passage(DAY, 5)).await;
     assert_eq!(other.status, 409);
     assert_eq!(other.problem(), "stream-forked");
     let streams = ada.get(&nao.path("/agents")).await.good();
     assert_eq!(streams["items"][0]["samples"], 6);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn batches_out_of_order_are_acknowledged_up_to_the_gap(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn batches_out_of_order_are_acknowledged_up_to_the_gap(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     for (seq, contiguous) in [(2, 0), (5, 0), (1, 2), (4, 2), (3, 5), (6, 6)] {
-        let answer = nao.put(seq, &passage(DAY, 2)).await.good();
-        assert_eq!(answer["contiguous_seq"], contiguous, "after batch {seq}");
+        let response = nao.put(seq, &passage(DAY, 2)).await.good();
+        assert_eq!(response["contiguous_seq"], contiguous, "after batch {seq}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_batch_without_samples_counts_its_windows(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_batch_without_samples_counts_its_windows(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     assert_eq!(nao.put(1, &[]).await.good()["contiguous_seq"], 1);
-    assert_eq!(shore.work().await, []);
-    shore.finish().await;
+    assert_eq!(server.work().await, []);
+    server.finish().await;
 }
 
-async fn a_late_batch_does_not_move_the_ship_back(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_late_batch_does_not_move_the_ship_back(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(2, &passage("2026-11-20T12:00:00Z", 1)).await.good();
     nao.put(1, &passage(DAY, 1)).await.good();
     let vessel = ada.get(&nao.path("")).await.good();
     assert_eq!(vessel["last_position"]["at"], "2026-11-20T12:00:00Z");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_date_to_come_does_not_say_where_the_ship_was_last(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_date_to_come_does_not_say_where_the_ship_was_last(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let at = async || ada.get(&nao.path("")).await.good()["last_position"]["at"].clone();
     let mut samples = passage(DAY, 1);
     // The server's clock is at 07:00 on the 21st.
@@ -129,26 +131,26 @@ async fn a_date_to_come_does_not_say_where_the_ship_was_last(shore: Shore) {
     assert_eq!(at().await, "2026-11-22T07:00:00Z");
     let streams = ada.get(&nao.path("/agents")).await.good();
     assert_eq!(streams["items"][0]["samples"], 5);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_position_from_a_day_to_come_is_replaced(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_position_from_a_day_to_come_is_replaced(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 1)).await.good();
     // As an earlier version left it: the year 2046.
-    shore
+    server
         .sql("UPDATE vessels SET last_sample_at = 2414448000000000")
         .await;
     nao.put(2, &passage("2026-11-20T12:00:00Z", 1)).await.good();
     let vessel = ada.get(&nao.path("")).await.good();
     assert_eq!(vessel["last_position"]["at"], "2026-11-20T12:00:00Z");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_is_not_the_batch_named_is_refused_and_not_stored(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn what_is_not_the_batch_named_is_refused_and_not_stored(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let good = frame(nao.stream, 1, &passage(DAY, 6));
     let numbered = |seq| frame(nao.stream, seq, &passage(DAY, 1));
     let mut flipped = good.clone();
@@ -166,8 +168,8 @@ async fn what_is_not_the_batch_named_is_refused_and_not_stored(shore: Shore) {
         (u64::MAX, numbered(u64::MAX), "bad-request"),
     ];
     for (seq, bytes, problem) in cases {
-        let answer = nao.put_bytes(seq, bytes).await;
-        assert_eq!(answer.problem(), problem, "{answer:?}");
+        let response = nao.put_bytes(seq, bytes).await;
+        assert_eq!(response.problem(), problem, "{response:?}");
     }
     for seq in ["0", "-1", "x", "99999999999999999999"] {
         let path = format!("/streams/{}/batches/{seq}", nao.stream);
@@ -180,47 +182,47 @@ async fn what_is_not_the_batch_named_is_refused_and_not_stored(shore: Shore) {
     assert_eq!(streams["items"][0]["batches"], 0);
     let highest = (1 << 53) - 1;
     nao.put(highest, &passage(DAY, 1)).await.good();
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_was_acknowledged_outlives_the_server(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let mut nao = shore.ship(&ada, "Nao").await;
+async fn what_was_acknowledged_outlives_the_server(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let mut nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 40)).await.good();
-    let shore = shore.restart().await;
-    let ada = ada.at(&shore);
-    nao.at(&shore);
+    let server = server.restart().await;
+    let ada = ada.at(&server);
+    nao.at(&server);
     assert_eq!(nao.downlink("").await["contiguous_seq"], 1);
     // The job too: it was stored with the batch.
-    shore.advance(5.0);
-    assert_eq!(shore.work().await.len(), 1);
+    server.advance(5.0);
+    assert_eq!(server.work().await.len(), 1);
     let listed = ada.get(&nao.path("/samples")).await.good();
     assert_eq!(listed["items"].as_array().unwrap().len(), 40);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn batches_of_one_stream_at_once_are_all_stored(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn batches_of_one_stream_at_once_are_all_stored(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let samples = passage(DAY, 2);
     let puts = (1..=20).map(|seq| nao.put(seq, &samples));
-    for answer in futures_util::future::join_all(puts).await {
-        answer.good();
+    for response in futures_util::future::join_all(puts).await {
+        response.good();
     }
     assert_eq!(nao.downlink("").await["contiguous_seq"], 20);
     let streams = ada.get(&nao.path("/agents")).await.good();
     assert_eq!(streams["items"][0]["batches"], 20);
     assert_eq!(streams["items"][0]["tally"], json!({ "accepted": 2400 }));
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// SQLite rolls a transaction back itself when the disk is full.
 #[tokio::test]
 async fn a_disk_that_was_full_takes_batches_again() {
-    let shore = Shore::start(Engine::Sqlite).await;
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let Pools::Sqlite { writer, .. } = shore.app.db.pools() else {
+    let server = TestServer::start(Engine::Sqlite).await;
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let Pools::Sqlite { writer, .. } = server.app.db.pools() else {
         unreachable!("it was started on SQLite");
     };
     // Not below what it has.
@@ -233,7 +235,7 @@ async fn a_disk_that_was_full_takes_batches_again() {
     }
     let limit = sqlx::query("PRAGMA max_page_count = 1000000");
     limit.execute(writer).await.unwrap();
-    let answer = nao.put(seq, &passage(DAY, 500)).await.good();
-    assert_eq!(answer["contiguous_seq"], seq);
-    shore.finish().await;
+    let response = nao.put(seq, &passage(DAY, 500)).await.good();
+    assert_eq!(response["contiguous_seq"], seq);
+    server.finish().await;
 }

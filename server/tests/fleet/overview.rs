@@ -1,7 +1,7 @@
 //! The fleet at a glance.
 
-use binnacle_server_testing::Shore;
-use binnacle_server_testing::alerts::{limit, with_model};
+use binnacle_server_testing::TestServer;
+use binnacle_server_testing::alerts::{limit, ship_with_model};
 use binnacle_server_testing::on_both;
 use serde_json::{Value, json};
 
@@ -13,10 +13,10 @@ on_both!(
 
 const HOUR_S: f64 = 3_600.0;
 
-async fn a_glance_says_what_a_vessels_own_page_says(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = with_model(&shore, &ada).await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+async fn a_glance_says_what_a_vessels_own_page_says(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     ada.create_vessel("Kogge").await;
 
     let fleet = ada.get("/fleet").await.good();
@@ -53,12 +53,12 @@ async fn a_glance_says_what_a_vessels_own_page_says(shore: Shore) {
     ] {
         assert_eq!(new[field], Value::Null, "{field}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_glance_looks_ahead_to_the_next_port_call(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = with_model(&shore, &ada).await;
+async fn a_glance_looks_ahead_to_the_next_port_call(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
     for (port, eta, etd) in [("FIHEL", "22T06", "22T18"), ("NLRTM", "21T08", "21T10")] {
         let time = |hour: &str| format!("2026-11-{hour}:00:00Z");
         let call = json!({ "port": port, "eta": time(eta), "etd": time(etd) });
@@ -78,19 +78,19 @@ async fn a_glance_looks_ahead_to_the_next_port_call(shore: Shore) {
         rows.map(|row| row["deviation_deg"].as_f64().unwrap().abs())
             .fold(0.0, f64::max)
     };
-    let foretold = first["worst"]["deviation_deg"].as_f64().unwrap().abs();
-    assert!((foretold - largest(&rows)).abs() < 0.1, "{first}");
+    let predicted_model = first["worst"]["deviation_deg"].as_f64().unwrap().abs();
+    assert!((predicted_model - largest(&rows)).abs() < 0.1, "{first}");
 
     // Alongside she is until she sails; then the next call is the next.
-    shore.advance(2.0 * HOUR_S);
+    server.advance(2.0 * HOUR_S);
     assert_eq!(next().await["port"], "NLRTM");
-    shore.advance(2.0 * HOUR_S);
+    server.advance(2.0 * HOUR_S);
     assert_eq!(next().await["port"], "FIHEL");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_glance_can_be_of_one_vessel_and_is_never_of_another_operators(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_glance_can_be_of_one_vessel_and_is_never_of_another_operators(server: TestServer) {
+    let ada = server.admin("ada").await;
     ada.create_vessel("Nao").await;
     let kogge = ada.create_vessel("Kogge").await;
     let path = format!("/fleet?vessel={}", kogge["id"].as_str().unwrap());
@@ -98,9 +98,9 @@ async fn a_glance_can_be_of_one_vessel_and_is_never_of_another_operators(shore: 
     assert_eq!(one["vessels"].as_array().unwrap().len(), 1);
     assert_eq!(one["vessels"][0]["name"], "Kogge");
 
-    let eve = shore.admin("eve").await;
+    let eve = server.admin("eve").await;
     assert_eq!(eve.get(&path).await.good()["vessels"], json!([]));
     assert_eq!(eve.get("/fleet").await.good()["vessels"], json!([]));
     assert_eq!(eve.get("/fleet?vessel=x").await.problem(), "bad-request");
-    shore.finish().await;
+    server.finish().await;
 }

@@ -6,7 +6,7 @@ use binnacle_fleet::ingest::{Imported, Incomplete, import};
 use binnacle_platform::ids::VesselId;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::program::assert_refused;
-use binnacle_server_testing::{Ship, Shore, frame, passage};
+use binnacle_server_testing::{Ship, TestServer, frame, passage};
 use binnacle_wire::burst::{read_ack, split};
 use serde_json::json;
 use tempfile::TempDir;
@@ -28,55 +28,55 @@ fn long_passage(ship: &Ship) -> Vec<Sample> {
     long.next().unwrap()
 }
 
-async fn brought(shore: &Shore, ship: &Ship, messages: &[Vec<u8>]) -> Imported {
+async fn brought(server: &TestServer, ship: &Ship, messages: &[Vec<u8>]) -> Imported {
     let vessel = VesselId(ship.id.parse().unwrap());
     let named = messages.iter().zip(1..);
     let named: Vec<_> = named
         .map(|(m, n)| (format!("{n}.sbd"), m.clone()))
         .collect();
-    let now = shore.app.clock.now().into();
-    import(&shore.app.db, vessel, &named, now).await.unwrap()
+    let now = server.app.clock.now().into();
+    import(&server.app.db, vessel, &named, now).await.unwrap()
 }
 
-async fn messages_become_the_batches_that_they_were_cut_from_and_once(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn messages_become_the_batches_that_they_were_cut_from_and_once(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let passage_1 = long_passage(&nao);
     let first = split(&frame(nao.stream, 1, &passage_1)).unwrap();
     let second = split(&frame(nao.stream, 2, &passage("2026-11-21T00:00:00Z", 3))).unwrap();
     let mut messages = [second, first].concat();
     messages.reverse();
     let missing = messages.pop().unwrap();
-    let imported = brought(&shore, &nao, &messages).await;
+    let imported = brought(&server, &nao, &messages).await;
     assert_eq!((imported.stored, imported.repeated), (1, 0));
     assert!(imported.incomplete.is_empty() && imported.refused.is_empty());
     assert_eq!(read_ack(&imported.answers[0].1).unwrap().contiguous_seq, 1);
     messages.push(missing);
-    let imported = brought(&shore, &nao, &messages).await;
+    let imported = brought(&server, &nao, &messages).await;
     assert_eq!((imported.stored, imported.repeated), (1, 1));
     assert_eq!(read_ack(&imported.answers[0].1).unwrap().contiguous_seq, 2);
     // Over the ordinary link, too.
-    let answer = nao.put(1, &passage_1).await.good();
-    assert_eq!(answer["contiguous_seq"], 2);
+    let response = nao.put(1, &passage_1).await.good();
+    assert_eq!(response["contiguous_seq"], 2);
     let streams = ada.get(&nao.path("/agents")).await.good();
     let samples = passage_1.len() + 3;
     assert_eq!(streams["items"][0]["samples"], samples);
     let tally = json!({ "accepted": samples * 60 });
     assert_eq!(streams["items"][0]["tally"], tally);
-    assert_eq!(shore.work().await.len(), 1, "it is analysed");
-    shore.finish().await;
+    assert_eq!(server.work().await.len(), 1, "it is analysed");
+    server.finish().await;
 }
 
-async fn what_is_no_message_or_no_batch_of_the_vessel_keeps_nothing_else_back(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let other = shore.ship(&ada, "Arrano").await;
+async fn what_is_no_message_or_no_batch_of_the_vessel_keeps_nothing_else_back(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let other = server.ship(&ada, "Arrano").await;
     let mut messages = split(&frame(other.stream, 1, &passage(DAY, 3))).unwrap();
     messages.push(b"AT+SBDIX".to_vec());
     messages.extend(split(&frame(nao.stream, 1, &passage(DAY, 3))).unwrap());
     let day = split(&frame(nao.stream, 2, &long_passage(&nao))).unwrap();
     messages.push(day[0].clone());
-    let imported = brought(&shore, &nao, &messages).await;
+    let imported = brought(&server, &nao, &messages).await;
     assert_eq!(imported.stored, 1);
     let refused: Vec<&str> = imported
         .refused
@@ -92,19 +92,19 @@ async fn what_is_no_message_or_no_batch_of_the_vessel_keeps_nothing_else_back(sh
     assert_eq!(imported.incomplete, [waits]);
     let streams = ada.get(&other.path("/agents")).await.good();
     assert_eq!(streams["items"][0]["batches"], 0);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn other_bytes_under_a_number_that_is_there_are_refused(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn other_bytes_under_a_number_that_is_there_are_refused(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 6)).await.good();
     let messages = split(&frame(nao.stream, 1, &passage(DAY, 5))).unwrap();
-    let imported = brought(&shore, &nao, &messages).await;
+    let imported = brought(&server, &nao, &messages).await;
     assert_eq!(imported.refused.len(), 1);
     let streams = ada.get(&nao.path("/agents")).await.good();
     assert_eq!(streams["items"][0]["samples"], 6);
-    shore.finish().await;
+    server.finish().await;
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Vessels and compasses.
 
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Shore};
+use binnacle_server_testing::{ApiResponse, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -13,8 +13,8 @@ on_both!(
     what_is_written_of_a_vessel_and_her_compass_can_be_amended,
 );
 
-async fn vessels_page_in_the_order_they_were_entered(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn vessels_page_in_the_order_they_were_entered(server: TestServer) {
+    let ada = server.admin("ada").await;
     for name in ["A", "B", "C"] {
         ada.create_vessel(name).await;
     }
@@ -33,14 +33,14 @@ async fn vessels_page_in_the_order_they_were_entered(shore: Shore) {
     assert_eq!(names, ["A", "B", "C"]);
     assert_eq!(ada.get("/vessels?after=x").await.problem(), "bad-request");
     assert_eq!(ada.get("/vessels?limit=x").await.problem(), "bad-request");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_create_request_sent_again_creates_nothing_more(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_create_request_sent_again_creates_nothing_more(server: TestServer) {
+    let ada = server.admin("ada").await;
     let create = async |body: Value| {
         let request = ada.request(Method::POST, "/vessels");
-        Answer::of(request.header("idempotency-key", "k-1").json(&body)).await
+        ApiResponse::of(request.header("idempotency-key", "k-1").json(&body)).await
     };
     let first = create(json!({ "name": "Nao" })).await;
     let again = create(json!({ "name": "Nao" })).await;
@@ -51,17 +51,17 @@ async fn a_create_request_sent_again_creates_nothing_more(shore: Shore) {
     let listed = ada.get("/vessels").await.good();
     assert_eq!(listed["items"].as_array().unwrap().len(), 1);
 
-    let eve = shore.admin("eve").await;
+    let eve = server.admin("eve").await;
     let request = eve
         .request(Method::POST, "/vessels")
         .header("idempotency-key", "k-1");
-    let theirs = Answer::of(request.json(&json!({ "name": "Nao" }))).await;
+    let theirs = ApiResponse::of(request.json(&json!({ "name": "Nao" }))).await;
     assert_ne!(theirs.good()["id"], first.json()["id"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_is_no_vessel_is_refused_by_its_field(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn what_is_no_vessel_is_refused_by_its_field(server: TestServer) {
+    let ada = server.admin("ada").await;
     let long = "x".repeat(201);
     for (body, field) in [
         (json!({ "name": "  " }), "name"),
@@ -74,17 +74,17 @@ async fn what_is_no_vessel_is_refused_by_its_field(shore: Shore) {
         (json!({ "imo_number": "9074729" }), "name"),
         (json!({ "name": 5 }), "name"),
     ] {
-        let answer = ada.post("/vessels", &body).await;
-        assert_eq!(answer.problem(), "invalid");
-        let detail = answer.json()["detail"].as_str().unwrap().to_owned();
+        let response = ada.post("/vessels", &body).await;
+        assert_eq!(response.problem(), "invalid");
+        let detail = response.json()["detail"].as_str().unwrap().to_owned();
         assert!(detail.contains(field), "{detail}");
     }
     assert_eq!(ada.get("/vessels").await.good()["items"], json!([]));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_vessel_may_have_more_compasses(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_vessel_may_have_more_compasses(server: TestServer) {
+    let ada = server.admin("ada").await;
     let vessel = ada.create_vessel("Nao").await;
     let path = format!("/vessels/{}/compasses", vessel["id"].as_str().unwrap());
     let aft = json!({ "name": "Aft", "role": "steering" });
@@ -99,16 +99,16 @@ async fn a_vessel_may_have_more_compasses(shore: Shore) {
     assert_eq!(roles, ["standard", "steering"]);
     let odd = json!({ "name": "Aft", "role": "odd" });
     assert_eq!(ada.post(&path, &odd).await.problem(), "invalid");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_is_written_of_a_vessel_and_her_compass_can_be_amended(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn what_is_written_of_a_vessel_and_her_compass_can_be_amended(server: TestServer) {
+    let ada = server.admin("ada").await;
     let body = json!({ "name": "Nao", "imo_number": "9074729", "flag": "Spain" });
     let vessel = ada.post("/vessels", &body).await.good();
     let path = format!("/vessels/{}", vessel["id"].as_str().unwrap());
     let amend = async |path: &str, body: Value| {
-        Answer::of(ada.request(Method::PATCH, path).json(&body)).await
+        ApiResponse::of(ada.request(Method::PATCH, path).json(&body)).await
     };
     let change = json!({ "call_sign": " EAVN ", "flag": null });
     let amended = amend(&path, change).await.good();
@@ -122,9 +122,9 @@ async fn what_is_written_of_a_vessel_and_her_compass_can_be_amended(shore: Shore
         (json!({ "name": " " }), "name"),
         (json!({ "callsign": "EAVN" }), "callsign"),
     ] {
-        let answer = amend(&path, wrong).await;
-        assert_eq!(answer.problem(), "invalid");
-        assert!(answer.text.contains(field), "{answer:?}");
+        let response = amend(&path, wrong).await;
+        assert_eq!(response.problem(), "invalid");
+        assert!(response.text.contains(field), "{response:?}");
     }
     assert_eq!(ada.get(&path).await.good(), amended);
 
@@ -157,10 +157,10 @@ async fn what_is_written_of_a_vessel_and_her_compass_can_be_amended(shore: Shore
     let none = format!("{path}/compasses/{}", vessel["id"].as_str().unwrap());
     assert_eq!(amend(&none, json!({})).await.problem(), "not-found");
 
-    let viewer = ada.viewer(&shore).await;
+    let viewer = ada.viewer(&server).await;
     for path in [&path, &compass] {
-        let answer = Answer::of(viewer.request(Method::PATCH, path).json(&json!({}))).await;
-        assert_eq!(answer.problem(), "forbidden");
+        let response = ApiResponse::of(viewer.request(Method::PATCH, path).json(&json!({}))).await;
+        assert_eq!(response.problem(), "forbidden");
     }
-    shore.finish().await;
+    server.finish().await;
 }

@@ -2,11 +2,11 @@
 
 use crate::schedule::{compass_of, due_vessel, enter};
 use binnacle_planning::notifications::look;
-use binnacle_server_testing::offers::Trade;
+use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::patch;
 use binnacle_server_testing::port_calls;
-use binnacle_server_testing::{Answer, Person, Shore};
+use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use icalendar::{CalendarComponent, CalendarDateTime, Component, DatePerhapsTime};
 use reqwest::Method;
 use serde_json::{Value, json};
@@ -74,16 +74,16 @@ async fn feed(person: &Person, new: &Value) -> Value {
 }
 
 /// What someone reads who has nothing but the address.
-async fn read(shore: &Shore, made: &Value) -> Answer {
+async fn read(server: &TestServer, made: &Value) -> ApiResponse {
     let url = made["url"].as_str().unwrap();
     let path = url.strip_prefix("https://binnacle.example").unwrap();
-    Answer::of(shore.http.get(format!("{}{path}", shore.url))).await
+    ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await
 }
 
-async fn a_calendar_is_read_by_its_secret_address_until_it_is_removed(shore: Shore) {
-    let trade = Trade::planned(&shore, 0).await;
-    let made = feed(&trade.ada, &json!({ "name": "Our fleet" })).await;
-    let found = read(&shore, &made).await;
+async fn a_calendar_is_read_by_its_secret_address_until_it_is_removed(server: TestServer) {
+    let parties = OfferParties::planned(&server, 0).await;
+    let made = feed(&parties.ada, &json!({ "name": "Our fleet" })).await;
+    let found = read(&server, &made).await;
     assert_eq!(
         found.headers["content-type"],
         "text/calendar; charset=utf-8"
@@ -94,105 +94,107 @@ async fn a_calendar_is_read_by_its_secret_address_until_it_is_removed(shore: Sho
     assert_eq!(of(&calendar, "DTEND"), "20261122T110000Z");
     assert_eq!(of(&calendar, "STATUS"), "TENTATIVE");
     assert_eq!(of(&calendar, "LOCATION"), "Bilbao\\, A5");
-    assert_eq!(found.text, read(&shore, &made).await.text);
+    assert_eq!(found.text, read(&server, &made).await.text);
     // The same by a token or a session, and nothing without.
-    let own = trade.ada.get("/calendar.ics").await;
+    let own = parties.ada.get("/calendar.ics").await;
     assert_eq!(of(&lines(&own.text), "UID"), of(&calendar, "UID"));
-    let url = format!("{}/api/v1/calendar.ics?token=bnc_wrong", shore.url);
-    let wrong = Answer::of(shore.http.get(url)).await;
+    let url = format!("{}/api/v1/calendar.ics?token=bnc_wrong", server.url);
+    let wrong = ApiResponse::of(server.http.get(url)).await;
     assert_eq!(wrong.problem(), "unauthenticated");
 
-    let listed = trade.ada.get("/calendar-feeds").await.good();
+    let listed = parties.ada.get("/calendar-feeds").await.good();
     assert!(!listed.to_string().contains("bnc_"), "{listed}");
     let path = format!("/calendar-feeds/{}", made["id"].as_str().unwrap());
-    let eve = shore.admin("eve").await;
+    let eve = server.admin("eve").await;
     assert_eq!(eve.get("/calendar-feeds").await.good()["items"], json!([]));
-    let theirs = Answer::of(eve.request(Method::DELETE, &path)).await;
+    let theirs = ApiResponse::of(eve.request(Method::DELETE, &path)).await;
     assert_eq!(theirs.problem(), "not-found");
-    let removed = Answer::of(trade.ada.request(Method::DELETE, &path)).await;
+    let removed = ApiResponse::of(parties.ada.request(Method::DELETE, &path)).await;
     assert_eq!(removed.status, 204);
-    assert_eq!(read(&shore, &made).await.problem(), "unauthenticated");
-    shore.finish().await;
+    assert_eq!(read(&server, &made).await.problem(), "unauthenticated");
+    server.finish().await;
 }
 
-async fn an_event_keeps_its_uid_and_its_sequence_grows(shore: Shore) {
-    let trade = Trade::planned(&shore, 1).await;
-    let made = feed(&trade.ada, &json!({ "name": "Our fleet" })).await;
-    let before = lines(&read(&shore, &made).await.text);
-    shore.advance(60.0);
-    trade
-        .post(&trade.ada, "/offer", &trade.offer())
+async fn an_event_keeps_its_uid_and_its_sequence_grows(server: TestServer) {
+    let parties = OfferParties::planned(&server, 1).await;
+    let made = feed(&parties.ada, &json!({ "name": "Our fleet" })).await;
+    let before = lines(&read(&server, &made).await.text);
+    server.advance(60.0);
+    parties
+        .post(&parties.ada, "/offer", &parties.offer())
         .await
         .good();
-    trade
-        .post(&trade.firms[0].1, "/accept", &json!({}))
+    parties
+        .post(&parties.firms[0].1, "/accept", &json!({}))
         .await
         .good();
-    let after = lines(&read(&shore, &made).await.text);
+    let after = lines(&read(&server, &made).await.text);
     assert_eq!(of(&before, "UID"), of(&after, "UID"));
     let sequence = |lines: &[String]| of(lines, "SEQUENCE").parse::<u32>().unwrap();
     assert!(sequence(&after) > sequence(&before));
     assert!(of(&after, "DTSTAMP") > of(&before, "DTSTAMP"));
     assert_eq!(of(&after, "STATUS"), "CONFIRMED");
-    trade
-        .post(&trade.ada, "/cancel", &json!({ "text": "sold" }))
+    parties
+        .post(&parties.ada, "/cancel", &json!({ "text": "sold" }))
         .await
         .good();
-    let cancelled = lines(&read(&shore, &made).await.text);
+    let cancelled = lines(&read(&server, &made).await.text);
     assert_eq!(of(&cancelled, "STATUS"), "CANCELLED");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_firms_calendar_shows_what_the_firm_sees(shore: Shore) {
-    let trade = Trade::offered(&shore, 2).await;
+async fn a_firms_calendar_shows_what_the_firm_sees(server: TestServer) {
+    let parties = OfferParties::offered(&server, 2).await;
     let mut feeds = Vec::new();
-    for (_, adjuster) in &trade.firms {
+    for (_, adjuster) in &parties.firms {
         feeds.push(feed(adjuster, &json!({ "name": "Orders" })).await);
     }
-    let rosas = read(&shore, &feeds[0]).await.text;
+    let rosas = read(&server, &feeds[0]).await.text;
     assert!(
         of(&lines(&rosas), "SUMMARY").ends_with("(offered)"),
         "{rosas}"
     );
-    assert!(!read(&shore, &feeds[1]).await.text.contains("VEVENT"));
-    trade.post(&trade.firms[0].1, "/decline", &json!({})).await;
-    assert!(!read(&shore, &feeds[0]).await.text.contains("VEVENT"));
-    assert!(read(&shore, &feeds[1]).await.text.contains("VEVENT"));
-    shore.finish().await;
+    assert!(!read(&server, &feeds[1]).await.text.contains("VEVENT"));
+    parties
+        .post(&parties.firms[0].1, "/decline", &json!({}))
+        .await;
+    assert!(!read(&server, &feeds[0]).await.text.contains("VEVENT"));
+    assert!(read(&server, &feeds[1]).await.text.contains("VEVENT"));
+    server.finish().await;
 }
 
-async fn a_vessels_calendar_shows_that_vessel(shore: Shore) {
-    let trade = Trade::planned(&shore, 1).await;
-    let other = trade.ada.create_vessel("Other").await;
+async fn a_vessels_calendar_shows_that_vessel(server: TestServer) {
+    let parties = OfferParties::planned(&server, 1).await;
+    let other = parties.ada.create_vessel("Other").await;
     let new = |vessel: &Value| json!({ "name": "One ship", "vessel_id": vessel });
-    let ours = feed(&trade.ada, &new(&trade.new_order()["vessel_id"])).await;
-    let empty = feed(&trade.ada, &new(&other["id"])).await;
-    assert!(read(&shore, &ours).await.text.contains("VEVENT"));
-    assert!(!read(&shore, &empty).await.text.contains("VEVENT"));
-    let eve = shore.admin("eve").await;
-    for who in [&eve, &trade.firms[0].1] {
+    let ours = feed(&parties.ada, &new(&parties.new_order()["vessel_id"])).await;
+    let empty = feed(&parties.ada, &new(&other["id"])).await;
+    assert!(read(&server, &ours).await.text.contains("VEVENT"));
+    assert!(!read(&server, &empty).await.text.contains("VEVENT"));
+    let eve = server.admin("eve").await;
+    for who in [&eve, &parties.firms[0].1] {
         let refused = who.post("/calendar-feeds", &new(&other["id"])).await;
         assert_eq!(refused.problem(), "not-found");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn long_and_strange_words_come_through(shore: Shore) {
-    let trade = Trade::planned(&shore, 0).await;
-    trade
-        .post(&trade.ada, "/cancel", &json!({ "text": "x" }))
+async fn long_and_strange_words_come_through(server: TestServer) {
+    let parties = OfferParties::planned(&server, 0).await;
+    parties
+        .post(&parties.ada, "/cancel", &json!({ "text": "x" }))
         .await
         .good();
-    let mut new = trade.new_order();
+    let mut new = parties.new_order();
     let port = "Ría de Bilbao; muelle «A», ".repeat(7);
     new["port"] = json!(port.trim());
     new["planned_at"] = json!("2026-11-23T08:00:00Z");
-    trade.ada.post("/work-orders", &new).await.good();
-    let calendar = lines(&trade.ada.get("/calendar.ics").await.text);
+    parties.ada.post("/work-orders", &new).await.good();
+    let calendar = lines(&parties.ada.get("/calendar.ics").await.text);
     let escaped = port.trim().replace(';', "\\;").replace(',', "\\,");
     let place = format!("LOCATION:{escaped}\\, A5");
     assert!(calendar.contains(&place), "{calendar:?}");
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// The events of a calendar as a reader of its own has them, by their UIDs.
@@ -219,13 +221,13 @@ fn sequence(event: &icalendar::Event) -> u32 {
     event.property_value("SEQUENCE").unwrap().parse().unwrap()
 }
 
-async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let call = enter(&ada, &nao, "NLRTM", 8).await;
-    look(&shore.app).await.unwrap();
+    look(&server.app).await.unwrap();
     let made = feed(&ada, &json!({ "name": "Nao", "vessel_id": nao["id"] })).await;
-    let before = events(&read(&shore, &made).await.text);
+    let before = events(&read(&server, &made).await.text);
     let call_uid = format!("call-{}@binnacle", call["id"].as_str().unwrap());
     let due_uid = format!("due-{}@binnacle", compass_of(&nao));
     assert_eq!(before.keys().collect::<Vec<_>>(), [&call_uid, &due_uid]);
@@ -240,7 +242,7 @@ async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(shore: 
     assert_eq!(due.property_value("TRANSP"), Some("TRANSPARENT"));
 
     // She is late, and not sure of it; and was adjusted meanwhile.
-    shore.advance(3600.0);
+    server.advance(3600.0);
     let one = call["id"].as_str().unwrap();
     let one = format!("{}/{one}", port_calls::path(&nao));
     let later = json!({ "eta": "2026-12-08T12:00:00Z", "eta_uncertainty_h": 12 });
@@ -248,8 +250,8 @@ async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(shore: 
     let path = format!("/vessels/{}/logbook", nao["id"].as_str().unwrap());
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-20T08:00:00Z" });
     ada.post(&path, &adjusted).await.good();
-    look(&shore.app).await.unwrap();
-    let after = events(&read(&shore, &made).await.text);
+    look(&server.app).await.unwrap();
+    let after = events(&read(&server, &made).await.text);
     let (is, due_now) = (&after[&call_uid], &after[&due_uid]);
     assert_eq!(instant(is.get_start()), "2026-12-08T12:00:00+00:00");
     let said = is.get_description().unwrap();
@@ -263,36 +265,36 @@ async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(shore: 
         assert!(after.get_last_modified() > before.get_last_modified());
     }
     // Nothing has changed: the same octets, for whoever asks again.
-    look(&shore.app).await.unwrap();
-    let again = read(&shore, &made).await.text;
-    assert_eq!(again, read(&shore, &made).await.text);
+    look(&server.app).await.unwrap();
+    let again = read(&server, &made).await.text;
+    assert_eq!(again, read(&server, &made).await.text);
     assert_eq!(sequence(&events(&again)[&due_uid]), sequence(due_now));
 
     let why = json!({ "reason": "ice" });
     ada.post(&format!("{one}/withdraw"), &why).await.good();
-    let gone = events(&read(&shore, &made).await.text);
+    let gone = events(&read(&server, &made).await.text);
     let gone = &gone[&call_uid];
     assert_eq!(gone.property_value("STATUS"), Some("CANCELLED"));
     assert!(gone.get_description().unwrap().contains("Withdrawn: ice"));
     assert!(sequence(gone) > sequence(is));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_fleets_calendar_has_every_vessels_and_a_firms_none(shore: Shore) {
-    let trade = Trade::offered(&shore, 1).await;
-    let pinta = due_vessel(&trade.ada, "Pinta").await;
-    enter(&trade.ada, &pinta, "BEANR", 8).await;
-    let eve = shore.admin("eve").await;
+async fn a_fleets_calendar_has_every_vessels_and_a_firms_none(server: TestServer) {
+    let parties = OfferParties::offered(&server, 1).await;
+    let pinta = due_vessel(&parties.ada, "Pinta").await;
+    enter(&parties.ada, &pinta, "BEANR", 8).await;
+    let eve = server.admin("eve").await;
     let hers = due_vessel(&eve, "Nina").await;
     enter(&eve, &hers, "NLRTM", 8).await;
-    look(&shore.app).await.unwrap();
-    let fleet = events(&trade.ada.get("/calendar.ics").await.text);
+    look(&server.app).await.unwrap();
+    let fleet = events(&parties.ada.get("/calendar.ics").await.text);
     let kinds = |begin: &str| fleet.keys().filter(|uid| uid.starts_with(begin)).count();
     assert_eq!(kinds("call-"), 1);
     // Of the one vessel nothing is known, and all binds her.
     assert_eq!(kinds("due-"), 2);
     assert_eq!(fleet.len(), 4);
-    let firms = events(&trade.firms[0].1.get("/calendar.ics").await.text);
+    let firms = events(&parties.firms[0].1.get("/calendar.ics").await.text);
     assert_eq!(firms.len(), 1, "{:?}", firms.keys());
-    shore.finish().await;
+    server.finish().await;
 }

@@ -1,9 +1,9 @@
 //! A vessel that is sold or laid up.
 
 use crate::schedule::{due_vessel, enter, follow, planned_firm, solve};
-use binnacle_server_testing::alerts::{limit, with_model};
+use binnacle_server_testing::alerts::{limit, ship_with_model};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Person, Ship, Shore, passage};
+use binnacle_server_testing::{ApiResponse, Person, Ship, TestServer, passage};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -18,9 +18,9 @@ on_both!(
 const A_WHILE_S: f64 = 10.0;
 const LATER: &str = "2026-11-15T12:00:00Z";
 
-async fn set(person: &Person, vessel: &str, in_service: bool) -> Answer {
+async fn set(person: &Person, vessel: &str, in_service: bool) -> ApiResponse {
     let request = person.request(Method::PATCH, vessel);
-    Answer::of(request.json(&json!({ "in_service": in_service }))).await
+    ApiResponse::of(request.json(&json!({ "in_service": in_service }))).await
 }
 
 async fn items(person: &Person, path: &str) -> Vec<Value> {
@@ -29,9 +29,9 @@ async fn items(person: &Person, path: &str) -> Vec<Value> {
 }
 
 /// A ship whose deviation is over her limit, with a call ahead.
-async fn over_her_limit(shore: &Shore, person: &Person) -> Ship {
-    let nao = with_model(shore, person).await;
-    limit(shore, person, &nao, json!({ "deviation_deg": 1.0 })).await;
+async fn over_her_limit(server: &TestServer, person: &Person) -> Ship {
+    let nao = ship_with_model(server, person).await;
+    limit(server, person, &nao, json!({ "deviation_deg": 1.0 })).await;
     let call =
         json!({ "port": "ESBIO", "eta": "2026-12-01T06:00:00Z", "etd": "2026-12-02T18:00:00Z" });
     person.post(&nao.path("/port-calls"), &call).await.good();
@@ -39,10 +39,10 @@ async fn over_her_limit(shore: &Shore, person: &Person) -> Ship {
     nao
 }
 
-async fn a_vessel_out_of_service_is_in_no_list_and_calls_for_no_alert(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = over_her_limit(&shore, &ada).await;
-    let kogge = shore.ship(&ada, "Kogge").await;
+async fn a_vessel_out_of_service_is_in_no_list_and_calls_for_no_alert(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = over_her_limit(&server, &ada).await;
+    let kogge = server.ship(&ada, "Kogge").await;
 
     let vessel = set(&ada, &nao.path(""), false).await.good();
     assert!(vessel["out_of_service_at"].is_string(), "{vessel}");
@@ -74,32 +74,34 @@ async fn a_vessel_out_of_service_is_in_no_list_and_calls_for_no_alert(shore: Sho
     assert_eq!(items(&ada, &nao.path("/port-calls")).await.len(), 1);
     ada.get(&nao.path("/deviation")).await.good();
 
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.5 })).await;
-    shore.advance(5.0 * 86_400.0);
-    binnacle_fleet::alerts::check_timed(&shore.app)
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.5 })).await;
+    server.advance(5.0 * 86_400.0);
+    binnacle_fleet::alerts::check_timed(&server.app)
         .await
         .unwrap();
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     // Both have been silent.
     let open = items(&ada, "/alerts?open=true").await;
     assert_eq!(open.len(), 1, "{open:?}");
     assert_eq!(open[0]["vessel_name"], "Kogge");
     drop(kogge);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_her_agents_still_send_is_kept_and_back_in_service_she_is_as_before(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = over_her_limit(&shore, &ada).await;
+async fn what_her_agents_still_send_is_kept_and_back_in_service_she_is_as_before(
+    server: TestServer,
+) {
+    let ada = server.admin("ada").await;
+    let nao = over_her_limit(&server, &ada).await;
     set(&ada, &nao.path(""), false).await.good();
     nao.put(2, &passage(LATER, 30)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     assert_eq!(items(&ada, "/alerts?open=true").await, Vec::<Value>::new());
 
     let vessel = set(&ada, &nao.path(""), true).await.good();
     assert_eq!(vessel["out_of_service_at"], Value::Null);
-    shore.work().await;
+    server.work().await;
     let open = items(&ada, "/alerts?open=true").await;
     assert_eq!(open.len(), 1, "{open:?}");
     assert_eq!(open[0]["cause"], "deviation_over_limit");
@@ -107,12 +109,12 @@ async fn what_her_agents_still_send_is_kept_and_back_in_service_she_is_as_before
     assert_eq!(samples["items"].as_array().unwrap().len(), 330);
     assert_eq!(items(&ada, "/vessels").await.len(), 1);
     assert_eq!(items(&ada, "/port-calls").await.len(), 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_vessel_with_an_order_under_way_stays_in_service(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_vessel_with_an_order_under_way_stays_in_service(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let compass = &items(&ada, &nao.path("/compasses")).await[0]["id"];
     let vessel = ada.get(&nao.path("")).await.good()["id"].clone();
     let order = json!({
@@ -133,26 +135,26 @@ async fn a_vessel_with_an_order_under_way_stays_in_service(shore: Shore) {
         (refused.status, refused.problem().as_str()),
         (409, "wrong-state")
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn only_an_admin_of_hers_takes_a_vessel_out_of_service(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let eve = shore.admin("eve").await;
+async fn only_an_admin_of_hers_takes_a_vessel_out_of_service(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let eve = server.admin("eve").await;
     assert_eq!(set(&eve, &nao.path(""), false).await.status, 404);
-    let viewer = ada.viewer(&shore).await;
+    let viewer = ada.viewer(&server).await;
     assert_eq!(set(&viewer, &nao.path(""), false).await.status, 403);
     assert_eq!(
         ada.get(&nao.path("")).await.good()["out_of_service_at"],
         Value::Null
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_vessel_out_of_service_leaves_the_plan_and_comes_back_into_it(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    planned_firm(&shore, &ada, "rosa").await;
+async fn a_vessel_out_of_service_leaves_the_plan_and_comes_back_into_it(server: TestServer) {
+    let ada = server.admin("ada").await;
+    planned_firm(&server, &ada, "rosa").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
     let path = format!("/vessels/{}", nao["id"].as_str().unwrap());
@@ -164,8 +166,8 @@ async fn a_vessel_out_of_service_leaves_the_plan_and_comes_back_into_it(shore: S
     assert_eq!(jobs().await, 1);
     for (in_service, planned) in [(false, 0), (true, 1)] {
         set(&ada, &path, in_service).await.good();
-        assert_eq!(follow(&shore).await, Some(ada.operator));
+        assert_eq!(follow(&server).await, Some(ada.operator));
         assert_eq!(jobs().await, planned);
     }
-    shore.finish().await;
+    server.finish().await;
 }

@@ -2,11 +2,11 @@
 
 use crate::schedule::{due_vessel, put};
 use binnacle_planning::reports::look;
-use binnacle_server_testing::alerts::with_model;
+use binnacle_server_testing::alerts::ship_with_model;
 use binnacle_server_testing::mail::deliver;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::work_orders::Job;
-use binnacle_server_testing::{Person, Relay, Shore};
+use binnacle_server_testing::{Person, Relay, TestServer};
 use serde_json::{Value, json};
 use std::process::Command;
 
@@ -27,9 +27,9 @@ async fn report(person: &Person, query: &str) -> Value {
     person.get(&format!("/reports/fleet{query}")).await.good()
 }
 
-async fn a_report_says_what_is_due_and_how_bad_it_is(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = with_model(&shore, &ada).await;
+async fn a_report_says_what_is_due_and_how_bad_it_is(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
     let santa = due_vessel(&ada, "Santa").await;
     let order = json!({
         "vessel_id": santa["id"], "compass_id": santa["compasses"][0]["id"], "port": "Bilbao",
@@ -69,11 +69,11 @@ async fn a_report_says_what_is_due_and_how_bad_it_is(shore: Shore) {
     assert_eq!(second["deviation_deg"], json!(null));
     assert_eq!(found["jobs"], json!([]));
     assert_eq!(found["saved"]["saved_eur"], 0.0);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_job_is_reckoned_against_a_swing(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_job_is_reckoned_against_a_swing(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.complete().await;
     let found = report(&job.person, "").await;
     let [done] = &found["jobs"].as_array().unwrap()[..] else {
@@ -106,17 +106,17 @@ async fn a_job_is_reckoned_against_a_swing(shore: Shore) {
         "UPDATE work_orders SET state = 'closed'",
     ];
     for (stands, sql) in ["failed", "closed"].into_iter().zip(failed) {
-        shore.sql(sql).await;
+        server.sql(sql).await;
         let failed = report(&job.person, "").await;
         assert_eq!(failed["jobs"][0]["state"], stands);
         assert_eq!(failed["jobs"][0]["spared_swing"], false);
         assert_eq!(failed["saved"]["saved_eur"], 0.0);
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn the_files_say_what_the_report_says(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn the_files_say_what_the_report_says(server: TestServer) {
+    let ada = server.admin("ada").await;
     due_vessel(&ada, "=HYPERLINK(\"x\"), Nao").await;
     let due = ada.get("/reports/fleet.csv").await;
     assert_eq!(due.headers["content-type"], "text/csv; charset=utf-8");
@@ -152,7 +152,7 @@ async fn the_files_say_what_the_report_says(shore: Shore) {
     // The same report is the same octets.
     let request = ada.request(reqwest::Method::GET, "/reports/fleet.pdf");
     assert_eq!(request.send().await.unwrap().bytes().await.unwrap(), pdf);
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// A letter's text and attachments as Python's mail parser reads them.
@@ -175,9 +175,9 @@ fn parts(letter: &str) -> Value {
     serde_json::from_slice(&done.stdout).unwrap()
 }
 
-async fn the_report_of_a_month_goes_once_to_those_who_were_on_the_list(shore: Shore) {
+async fn the_report_of_a_month_goes_once_to_those_who_were_on_the_list(server: TestServer) {
     let relay = Relay::start().await;
-    let ada = shore.admin("ada").await;
+    let ada = server.admin("ada").await;
     due_vessel(&ada, "Nao").await;
     let wanted =
         json!({ "monthly_to": ["Chief@Example.com", "chief@example.com", "b@example.com"] });
@@ -187,19 +187,19 @@ async fn the_report_of_a_month_goes_once_to_those_who_were_on_the_list(shore: Sh
     let fewer = json!({ "monthly_to": ["b@example.com"] });
     put(&ada, "/reports/settings", &fewer).await.good();
     // October was over before anybody was on the list.
-    assert_eq!(look(&shore.app).await.unwrap(), 0);
-    shore.advance(9.95 * DAY_S);
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    assert_eq!(look(&server.app).await.unwrap(), 0);
+    server.advance(9.95 * DAY_S);
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     let late = json!({ "monthly_to": ["b@example.com", "late@example.com"] });
-    assert_eq!(look(&shore.app).await.unwrap(), 0);
+    assert_eq!(look(&server.app).await.unwrap(), 0);
     put(&ada, "/reports/settings", &late).await.good();
-    shore.advance(0.05 * DAY_S);
-    let other = shore.second().await;
-    let (one, two) = tokio::join!(look(&shore.app), look(&other));
+    server.advance(0.05 * DAY_S);
+    let other = server.second().await;
+    let (one, two) = tokio::join!(look(&server.app), look(&other));
     assert_eq!(one.unwrap() + two.unwrap(), 1);
-    assert_eq!(look(&shore.app).await.unwrap(), 0);
-    deliver(&shore, &relay).await;
-    let got = relay.got();
+    assert_eq!(look(&server.app).await.unwrap(), 0);
+    deliver(&server, &relay).await;
+    let got = relay.letters();
     assert_eq!(got.len(), 1);
     assert_eq!(got[0].to, ["<b@example.com>"]);
     let letter = &got[0];
@@ -221,13 +221,13 @@ async fn the_report_of_a_month_goes_once_to_those_who_were_on_the_list(shore: Sh
     assert!(due.contains("Nao,Standard compass,2026-12-20"), "{due}");
     assert_eq!(read["files"].as_object().unwrap().len(), 4);
     other.db.close().await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_report_that_cannot_be_made_holds_up_no_other_operators(shore: Shore) {
-    let (ada, eve) = (shore.admin("ada").await, shore.admin("eve").await);
+async fn a_report_that_cannot_be_made_holds_up_no_other_operators(server: TestServer) {
+    let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     due_vessel(&ada, "Nao").await;
-    shore
+    server
         .sql("UPDATE vessel_particulars SET particulars = '{'")
         .await;
     due_vessel(&eve, "Pinta").await;
@@ -235,21 +235,21 @@ async fn a_report_that_cannot_be_made_holds_up_no_other_operators(shore: Shore) 
     for admin in [&ada, &eve] {
         put(admin, "/reports/settings", &wanted).await.good();
     }
-    shore.advance(10.0 * DAY_S);
-    assert_eq!(look(&shore.app).await.unwrap(), 1);
-    shore.finish().await;
+    server.advance(10.0 * DAY_S);
+    assert_eq!(look(&server.app).await.unwrap(), 1);
+    server.finish().await;
 }
 
-async fn a_job_that_was_sent_after_its_month_is_in_the_next_report(shore: Shore) {
+async fn a_job_that_was_sent_after_its_month_is_in_the_next_report(server: TestServer) {
     let relay = Relay::start().await;
-    let job = Job::begin(&shore).await;
+    let job = Job::begin(&server).await;
     let ada = &job.person;
     let wanted = json!({ "monthly_to": ["b@example.com"] });
     put(ada, "/reports/settings", &wanted).await.good();
     job.complete().await;
     assert_eq!(report(ada, "").await["jobs"][0]["order_id"], job.order);
     // As if the phone had kept it until the second of December, 00:00 UTC.
-    shore
+    server
         .sql(
             "UPDATE work_orders SET completion_received_at = 1796169600000000
              WHERE completion_received_at >= completed_at",
@@ -258,10 +258,10 @@ async fn a_job_that_was_sent_after_its_month_is_in_the_next_report(shore: Shore)
     let mut told = Vec::new();
     // The first of December, of January and of February.
     for days in [10.0, 31.0, 31.0] {
-        shore.advance(days * DAY_S);
-        assert_eq!(look(&shore.app).await.unwrap(), 1);
-        deliver(&shore, &relay).await;
-        let letter = relay.got().pop().unwrap();
+        server.advance(days * DAY_S);
+        assert_eq!(look(&server.app).await.unwrap(), 1);
+        deliver(&server, &relay).await;
+        let letter = relay.letters().pop().unwrap();
         let files = parts(&letter.text)["files"].clone();
         let jobs = files.as_object().unwrap().iter();
         let mut jobs = jobs.filter(|(name, _)| name.starts_with("compass-jobs"));
@@ -269,11 +269,11 @@ async fn a_job_that_was_sent_after_its_month_is_in_the_next_report(shore: Shore)
         told.push(csv.lines().count() - 1);
     }
     assert_eq!(told, [0, 1, 0]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn settings_and_times_that_make_no_sense_are_refused(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn settings_and_times_that_make_no_sense_are_refused(server: TestServer) {
+    let ada = server.admin("ada").await;
     let many: Vec<String> = (0..21).map(|n| format!("a{n}@example.com")).collect();
     for bad in [
         json!({ "swing_eur": -1 }),
@@ -293,22 +293,22 @@ async fn settings_and_times_that_make_no_sense_are_refused(shore: Shore) {
     }
     let odd = ada.get("/reports/fleet?from=yesterday").await;
     assert_eq!(odd.status, 400, "{odd:?}");
-    let viewer = ada.viewer(&shore).await;
+    let viewer = ada.viewer(&server).await;
     let refused = put(&viewer, "/reports/settings", &json!({})).await;
     assert_eq!(refused.problem(), "forbidden");
     report(&viewer, "").await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn another_operators_fleet_is_in_no_report(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn another_operators_fleet_is_in_no_report(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.complete().await;
-    let eve = shore.admin("eve").await;
+    let eve = server.admin("eve").await;
     let found = report(&eve, "").await;
     for table in ["due", "deviation", "jobs"] {
         assert_eq!(found[table], json!([]), "{table}");
     }
-    let (_, rosa) = job.person.adjuster(&shore, "rosa").await;
+    let (_, rosa) = job.person.adjuster(&server, "rosa").await;
     assert_eq!(rosa.get("/reports/fleet").await.problem(), "forbidden");
-    shore.finish().await;
+    server.finish().await;
 }

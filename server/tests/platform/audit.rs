@@ -3,10 +3,10 @@
 use crate::run;
 use binnacle_platform::audit::forget;
 use binnacle_server_testing::binnacles::{binnacle, put};
-use binnacle_server_testing::offers::Trade;
+use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::program::good;
-use binnacle_server_testing::{Answer, Engine, PASSWORD, Person, Shore, attempt};
+use binnacle_server_testing::{ApiResponse, Engine, PASSWORD, Person, TestServer, attempt};
 use reqwest::Method;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -41,15 +41,15 @@ fn done(lines: &[Value]) -> Vec<String> {
     lines.iter().rev().map(said).collect()
 }
 
-async fn a_change_has_its_line(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_change_has_its_line(server: TestServer) {
+    let ada = server.admin("ada").await;
     let made = ada.post("/vessels", &json!({ "name": "Nao" })).await;
     let id = made.good()["id"].clone();
     let path = format!("/vessels/{}", id.as_str().unwrap());
     let named = ada
         .request(Method::PATCH, &path)
         .json(&json!({ "name": "Nao Victoria" }));
-    Answer::of(named).await.good();
+    ApiResponse::of(named).await.good();
     ada.get(&path).await.good();
     let found = lines(&ada, "").await;
     assert_eq!(
@@ -72,86 +72,86 @@ async fn a_change_has_its_line(shore: Shore) {
     assert_eq!(found[1]["vessel_id"], id);
     let header = made.headers["x-request-id"].to_str().unwrap();
     assert_eq!(found[1]["id"], header);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_change_that_is_refused_has_its_line_too(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let viewer = ada.viewer(&shore).await;
-    let eve = shore.admin("eve").await;
+async fn a_change_that_is_refused_has_its_line_too(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let viewer = ada.viewer(&server).await;
+    let eve = server.admin("eve").await;
     let vessel = ada.create_vessel("Nao").await;
     let path = format!("/vessels/{}", vessel["id"].as_str().unwrap());
     let change = json!({ "name": "Mine" });
     for (who, expected) in [(&viewer, 403), (&eve, 404)] {
-        let refused = Answer::of(who.request(Method::PATCH, &path).json(&change)).await;
+        let refused = ApiResponse::of(who.request(Method::PATCH, &path).json(&change)).await;
         assert_eq!(refused.status, expected);
     }
-    let nobody = shore.http.patch(format!("{}/api/v1{path}", shore.url));
-    assert_eq!(Answer::of(nobody.json(&change)).await.status, 401);
-    let wrong = attempt(&shore, "ada@example.com", "wrong").await;
+    let nobody = server.http.patch(format!("{}/api/v1{path}", server.url));
+    assert_eq!(ApiResponse::of(nobody.json(&change)).await.status, 401);
+    let wrong = attempt(&server, "ada@example.com", "wrong").await;
     assert_eq!(wrong.status, 401);
     let adas = done(&lines(&ada, "?route=/api/v1/vessels/{id}").await);
     assert_eq!(adas, ["PATCH /vessels/{id} 403"]);
     let eves = done(&lines(&eve, "?route=/api/v1/vessels/{id}").await);
     assert_eq!(eves, ["PATCH /vessels/{id} 404"]);
     assert_eq!(lines(&ada, "?route=/api/v1/session").await.len(), 2);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn there_is_no_change_without_its_line(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    shore
+async fn there_is_no_change_without_its_line(server: TestServer) {
+    let ada = server.admin("ada").await;
+    server
         .sql("ALTER TABLE audit_lines RENAME TO elsewhere")
         .await;
     let failed = ada.post("/vessels", &json!({ "name": "Nao" })).await;
     assert_eq!(failed.problem(), "internal");
-    shore
+    server
         .sql("ALTER TABLE elsewhere RENAME TO audit_lines")
         .await;
     assert_eq!(ada.get("/vessels").await.good()["items"], json!([]));
     ada.create_vessel("Nao").await;
     let found = lines(&ada, "?route=/api/v1/vessels").await;
     assert_eq!(done(&found), ["POST /vessels 201"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_firm_reads_nothing_without_its_line(shore: Shore) {
-    let trade = Trade::offered(&shore, 1).await;
-    let rosa = &trade.firms[0].1;
-    shore
+async fn a_firm_reads_nothing_without_its_line(server: TestServer) {
+    let parties = OfferParties::offered(&server, 1).await;
+    let rosa = &parties.firms[0].1;
+    server
         .sql("ALTER TABLE audit_lines RENAME TO elsewhere")
         .await;
-    let failed = rosa.get(&trade.path("")).await;
+    let failed = rosa.get(&parties.path("")).await;
     assert_eq!(failed.problem(), "internal");
-    assert_eq!(trade.seen().await["state"], "offered");
-    shore
+    assert_eq!(parties.view_order().await["state"], "offered");
+    server
         .sql("ALTER TABLE elsewhere RENAME TO audit_lines")
         .await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_a_firm_does_and_reads_is_seen_by_the_vessels_operator_alone(shore: Shore) {
-    let trade = Trade::offered(&shore, 1).await;
-    let (firm, rosa) = &trade.firms[0];
-    let eve = shore.admin("eve").await;
-    let (_, other) = eve.adjuster(&shore, "other").await;
+async fn what_a_firm_does_and_reads_is_seen_by_the_vessels_operator_alone(server: TestServer) {
+    let parties = OfferParties::offered(&server, 1).await;
+    let (firm, rosa) = &parties.firms[0];
+    let eve = server.admin("eve").await;
+    let (_, other) = eve.adjuster(&server, "other").await;
     let kept = format!(
         "/vessels/{}/compasses/{}/binnacle",
-        trade.vessel, trade.compass
+        parties.vessel, parties.compass
     );
-    put(&trade.ada, &kept, &binnacle()).await.good();
-    rosa.get(&trade.path("/binnacle")).await.good();
-    rosa.get(&trade.path("/model")).await.problem();
-    trade.post(rosa, "/accept", &json!({})).await.good();
+    put(&parties.ada, &kept, &binnacle()).await.good();
+    rosa.get(&parties.path("/binnacle")).await.good();
+    rosa.get(&parties.path("/model")).await.problem();
+    parties.post(rosa, "/accept", &json!({})).await.good();
     assert_eq!(
-        other.get(&trade.path("/binnacle")).await.problem(),
+        other.get(&parties.path("/binnacle")).await.problem(),
         "not-found"
     );
-    let stolen = trade.post(&other, "/accept", &json!({})).await;
+    let stolen = parties.post(&other, "/accept", &json!({})).await;
     assert_eq!(stolen.problem(), "not-found");
 
-    let of_order = format!("?order={}", trade.order);
-    let theirs: Vec<Value> = lines(&trade.ada, &of_order).await;
+    let of_order = format!("?order={}", parties.order);
+    let theirs: Vec<Value> = lines(&parties.ada, &of_order).await;
     let by_rosa = |line: &&Value| line["actor_name"] == rosa.email.as_str();
     let hers: Vec<Value> = theirs.iter().filter(by_rosa).cloned().collect();
     assert_eq!(
@@ -163,7 +163,7 @@ async fn what_a_firm_does_and_reads_is_seen_by_the_vessels_operator_alone(shore:
     );
     for line in &hers {
         assert_eq!(line["firm_id"], firm.to_string());
-        assert_eq!(line["vessel_id"], trade.vessel.as_str());
+        assert_eq!(line["vessel_id"], parties.vessel.as_str());
     }
     let first = theirs.last().unwrap();
     assert_eq!(
@@ -181,18 +181,18 @@ async fn what_a_firm_does_and_reads_is_seen_by_the_vessels_operator_alone(shore:
     assert_eq!(tried[0]["vessel_id"], Value::Null);
     assert_eq!(tried[0]["operator_id"], Value::Null);
     assert!(!theirs.iter().any(|line| line["id"] == tried[0]["id"]));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn each_sees_their_own_part_and_a_viewer_none(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let viewer = ada.viewer(&shore).await;
-    let eve = shore.admin("eve").await;
-    let (firm, rosa) = ada.adjuster(&shore, "rosa").await;
-    let root = ada.platform_admin(&shore).await;
+async fn each_sees_their_own_part_and_a_viewer_none(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let viewer = ada.viewer(&server).await;
+    let eve = server.admin("eve").await;
+    let (firm, rosa) = ada.adjuster(&server, "rosa").await;
+    let root = ada.platform_admin(&server).await;
     ada.create_vessel("Nao").await;
     let engage = format!("/operators/{}/firms/{firm}", eve.operator);
-    let engaged = Answer::of(root.request(Method::PUT, &engage)).await;
+    let engaged = ApiResponse::of(root.request(Method::PUT, &engage)).await;
     assert_eq!(engaged.status, 204);
     for path in ["/audit", "/audit.csv"] {
         assert_eq!(viewer.get(path).await.problem(), "forbidden");
@@ -213,12 +213,12 @@ async fn each_sees_their_own_part_and_a_viewer_none(shore: Shore) {
         ["POST /session 200", "PUT /operators/{id}/firms/{firm} 204"]
     );
     assert_eq!(lines(&root, "").await.len(), 7);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_agents_enrolment_has_its_line(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let ship = shore.ship(&ada, "Nao").await;
+async fn an_agents_enrolment_has_its_line(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let ship = server.ship(&ada, "Nao").await;
     ship.put(
         1,
         &binnacle_server_testing::passage("2026-11-20T00:00:00Z", 3),
@@ -236,46 +236,46 @@ async fn an_agents_enrolment_has_its_line(shore: Shore) {
     );
     assert_eq!(found[0]["actor_kind"], "agent");
     assert_eq!(found[0]["actor_name"], "Nao");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_invitation_that_is_taken_has_its_line(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn an_invitation_that_is_taken_has_its_line(server: TestServer) {
+    let ada = server.admin("ada").await;
     let bob = json!({ "email": "bob@example.com", "name": "Bob", "role": "viewer" });
     let bob = ada.post("/users", &bob).await.good();
     let code = &bob["invitation"]["code"];
     let taken = json!({ "code": code, "password": "a lantern astern at midnight" });
-    let accept = format!("{}/api/v1/invitations/accept", shore.url);
-    Answer::of(shore.http.post(accept).json(&taken))
+    let accept = format!("{}/api/v1/invitations/accept", server.url);
+    ApiResponse::of(server.http.post(accept).json(&taken))
         .await
         .good();
     let found = lines(&ada, "?route=/api/v1/invitations/accept").await;
     assert_eq!(done(&found), ["POST /invitations/accept 200"]);
     assert_eq!(found[0]["actor_name"], "Bob");
     assert_eq!(found[0]["actor_id"], bob["user"]["id"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn nothing_secret_is_in_it(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn nothing_secret_is_in_it(server: TestServer) {
+    let ada = server.admin("ada").await;
     let made = ada
         .post("/tokens", &json!({ "name": "ERP", "scope": "write" }))
         .await
         .good();
     let token = made["token"].as_str().unwrap();
-    let vessels = format!("{}/api/v1/vessels", shore.url);
-    let request = shore.http.post(vessels).bearer_auth(token);
-    Answer::of(request.json(&json!({ "name": "Nao" })))
+    let vessels = format!("{}/api/v1/vessels", server.url);
+    let request = server.http.post(vessels).bearer_auth(token);
+    ApiResponse::of(request.json(&json!({ "name": "Nao" })))
         .await
         .good();
     let hook = json!({ "url": "https://example.com/?key=hidden", "kinds": ["alert.raised"] });
     let hook = ada.post("/webhooks", &hook).await.good();
     // A secret where an id belongs.
-    let slip = Answer::of(ada.request(Method::DELETE, &format!("/tokens/{token}"))).await;
+    let slip = ApiResponse::of(ada.request(Method::DELETE, &format!("/tokens/{token}"))).await;
     assert_eq!(slip.status, 404);
     let changed = json!({ "current": PASSWORD, "new": "a lantern astern at midnight" });
     let changed = ada.request(Method::PUT, "/me/password").json(&changed);
-    assert_eq!(Answer::of(changed).await.status, 204);
+    assert_eq!(ApiResponse::of(changed).await.status, 204);
     let file = ada.get("/audit.csv").await.text;
     assert!(file.contains("/api/v1/tokens/*"), "{file}");
     let by_token = lines(&ada, "?route=/api/v1/vessels").await;
@@ -293,13 +293,13 @@ async fn nothing_secret_is_in_it(shore: Shore) {
     ] {
         assert!(!file.contains(hidden), "{hidden} is in {file}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn it_is_searched_and_comes_in_pages_and_as_a_file(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn it_is_searched_and_comes_in_pages_and_as_a_file(server: TestServer) {
+    let ada = server.admin("ada").await;
     for name in ["=1+1", "Pinta", "Niña"] {
-        shore.advance(60.0);
+        server.advance(60.0);
         ada.create_vessel(name).await;
     }
     let first = ada.get("/audit?limit=3").await.good();
@@ -324,21 +324,21 @@ async fn it_is_searched_and_comes_in_pages_and_as_a_file(shore: Shore) {
     assert_eq!(file.headers["content-type"], "text/csv; charset=utf-8");
     assert_eq!(file.text.lines().count(), 4, "{}", file.text);
     assert!(file.text.starts_with("id,at,actor_kind"));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn lines_go_when_they_are_old(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn lines_go_when_they_are_old(server: TestServer) {
+    let ada = server.admin("ada").await;
     ada.create_vessel("Nao").await;
-    shore.advance(1094.0 * DAY_S);
-    assert_eq!(forget(&shore.app).await.unwrap(), 0);
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
-    shore.advance(1.5 * DAY_S);
-    assert_eq!(forget(&shore.app).await.unwrap(), 2);
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    server.advance(1094.0 * DAY_S);
+    assert_eq!(forget(&server.app).await.unwrap(), 0);
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
+    server.advance(1.5 * DAY_S);
+    assert_eq!(forget(&server.app).await.unwrap(), 2);
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     let left = done(&lines(&ada, "").await);
     assert_eq!(left, ["POST /session 200", "POST /session 200"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// Source files below a folder.
@@ -384,11 +384,11 @@ fn no_handler_begins_a_transaction_without_its_request() {
 
 #[tokio::test]
 async fn what_the_command_line_changes_has_its_line() {
-    let shore = Shore::start(Engine::Sqlite).await;
-    let ada = shore.admin("ada").await;
-    let url = shore.app.config.database.database_url.clone();
+    let server = TestServer::start(Engine::Sqlite).await;
+    let ada = server.admin("ada").await;
+    let url = server.app.config.database.database_url.clone();
     let folder = tempfile::tempdir().unwrap();
-    let email = ada.viewer(&shore).await.email;
+    let email = ada.viewer(&server).await.email;
     let reset = ["admin", "--database-url", &url, "reset-user", "--email"];
     let reset: Vec<&str> = reset.into_iter().chain([email.as_str()]).collect();
     good(&run(folder.path(), &reset));
@@ -396,5 +396,5 @@ async fn what_the_command_line_changes_has_its_line() {
     assert_eq!(done(&found)[2..], [" admin reset-user null"]);
     assert_eq!(found[0]["actor_kind"], "command");
     assert_eq!(found[0]["operator_id"], ada.operator.to_string());
-    shore.finish().await;
+    server.finish().await;
 }

@@ -3,7 +3,7 @@
 use binnacle_platform::db::Pools;
 use binnacle_platform::events;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Engine, Person, Shore, passage};
+use binnacle_server_testing::{ApiResponse, Engine, Person, TestServer, passage};
 use futures_util::StreamExt;
 use reqwest::Method;
 use serde_json::json;
@@ -22,11 +22,11 @@ on_both!(
 
 #[tokio::test]
 async fn a_broken_line_to_postgres_is_mended_and_what_was_missed_is_told() {
-    let shore = Shore::start(Engine::Postgres).await;
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+    let server = TestServer::start(Engine::Postgres).await;
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let mut source = Source::open(&ada, None).await;
-    let Pools::Postgres(pool) = shore.app.db.pools() else {
+    let Pools::Postgres(pool) = server.app.db.pools() else {
         unreachable!("PostgreSQL was asked for");
     };
     let broken: Vec<bool> = sqlx::query_scalar(
@@ -40,7 +40,7 @@ async fn a_broken_line_to_postgres_is_mended_and_what_was_missed_is_told() {
     nao.put(1, &passage(DAY, 3)).await.good();
     let (_, batch) = source.next().await.unwrap();
     assert!(batch.contains(&nao.id), "{batch}");
-    shore.finish().await;
+    server.finish().await;
 }
 
 const DAY: &str = "2026-11-15T00:00:00Z";
@@ -100,9 +100,9 @@ impl Source {
     }
 }
 
-async fn a_dashboard_hears_of_a_batch_and_a_model(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_dashboard_hears_of_a_batch_and_a_model(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let mut source = Source::open(&ada, None).await;
     nao.put(1, &passage(DAY, 300)).await.good();
     let (_, batch) = source.next().await.unwrap();
@@ -110,60 +110,60 @@ async fn a_dashboard_hears_of_a_batch_and_a_model(shore: Shore) {
         batch,
         format!("{{\"vessel_id\":\"{}\",\"kind\":\"batch\"}}", nao.id)
     );
-    shore.advance(10.0);
-    shore.work().await;
+    server.advance(10.0);
+    server.work().await;
     let (_, model) = source.next().await.unwrap();
     assert!(model.contains("\"kind\":\"model\""), "{model}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_dashboard_hears_of_a_report(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_dashboard_hears_of_a_report(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let mut source = Source::open(&ada, None).await;
     let lightning = json!({ "kind": "lightning", "from": DAY });
     ada.post(&nao.path("/logbook"), &lightning).await.good();
     let (_, heard) = source.next().await.unwrap();
     assert!(heard.contains("\"kind\":\"logbook\""), "{heard}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_dashboard_that_comes_back_gets_what_it_missed(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_dashboard_that_comes_back_gets_what_it_missed(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let mut source = Source::open(&ada, None).await;
     nao.put(1, &passage(DAY, 300)).await.good();
     let (seen, _) = source.next().await.unwrap();
     drop(source);
-    shore.advance(10.0);
-    shore.work().await;
+    server.advance(10.0);
+    server.work().await;
     let mut source = Source::open(&ada, Some(&seen)).await;
     let (_, missed) = source.next().await.unwrap();
     assert!(missed.contains("\"kind\":\"model\""), "{missed}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn nobody_hears_of_another_operators_fleet(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let kogge = shore.ship(&eve, "Kogge").await;
+async fn nobody_hears_of_another_operators_fleet(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let kogge = server.ship(&eve, "Kogge").await;
     let mut source = Source::open(&eve, None).await;
     nao.put(1, &passage(DAY, 3)).await.good();
     kogge.put(1, &passage(DAY, 3)).await.good();
     let (_, first) = source.next().await.unwrap();
     assert!(first.contains(&kogge.id), "{first}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_revoked_token_and_an_ended_session_hear_no_more(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let grace = ada.viewer(&shore).await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_revoked_token_and_an_ended_session_hear_no_more(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let grace = ada.viewer(&server).await;
+    let nao = server.ship(&ada, "Nao").await;
     let token = json!({ "name": "ERP", "scope": "read" });
     let made = ada.post("/tokens", &token).await.good();
-    let url = format!("{}/api/v1/events", shore.url);
-    let request = shore.http.get(url);
+    let url = format!("{}/api/v1/events", server.url);
+    let request = server.http.get(url);
     let mut by_token = Source::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
     let mut by_session = Source::open(&grace, None).await;
     let mut kept = Source::open(&ada, None).await;
@@ -176,50 +176,50 @@ async fn a_revoked_token_and_an_ended_session_hear_no_more(shore: Shore) {
         ada.request(Method::DELETE, &path),
         grace.request(Method::DELETE, "/session"),
     ] {
-        assert_eq!(Answer::of(ended).await.status, 204);
+        assert_eq!(ApiResponse::of(ended).await.status, 204);
     }
     nao.put(2, &passage("2026-11-16T00:00:00Z", 3)).await.good();
     assert!(kept.next().await.is_some());
     assert_eq!(by_token.next().await, None);
     assert_eq!(by_session.next().await, None);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_stopping_server_lets_its_dashboards_go(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_stopping_server_lets_its_dashboards_go(server: TestServer) {
+    let ada = server.admin("ada").await;
     let mut source = Source::open(&ada, None).await;
-    shore.app.stopping.cancel();
+    server.app.stopping.cancel();
     assert_eq!(source.next().await, None);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn left(shore: &Shore) -> (i64,) {
+async fn left(server: &TestServer) -> (i64,) {
     let sql = "SELECT COUNT(*) FROM events";
-    match shore.app.db.pools() {
+    match server.app.db.pools() {
         Pools::Sqlite { readers, .. } => sqlx::query_as(sql).fetch_one(readers).await,
         Pools::Postgres(pool) => sqlx::query_as(sql).fetch_one(pool).await,
     }
     .unwrap()
 }
 
-async fn events_are_forgotten_after_a_day(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn events_are_forgotten_after_a_day(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let mut source = Source::open(&ada, None).await;
     nao.put(1, &passage(DAY, 3)).await.good();
     nao.put(2, &passage(DAY, 3)).await.good();
     let (seen, _) = source.next().await.unwrap();
-    shore.advance(86_401.0);
-    events::prune(&shore.app.db, shore.app.clock.now().into())
+    server.advance(86_401.0);
+    events::prune(&server.app.db, server.app.clock.now().into())
         .await
         .unwrap();
     nao.put(3, &passage(DAY, 3)).await.good();
     // No session lasts so long.
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     let mut source = Source::open(&ada, Some(&seen)).await;
     let (third, _) = source.next().await.unwrap();
     // Were the second still there, it would have come before.
-    let (listed,) = left(&shore).await;
+    let (listed,) = left(&server).await;
     assert_eq!(listed, 1, "after {third}");
-    shore.finish().await;
+    server.finish().await;
 }

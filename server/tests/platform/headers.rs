@@ -1,16 +1,16 @@
 //! What surrounds every answer, and how large and from where a request may be.
 
 use binnacle_server::routes::openapi;
-use binnacle_server_testing::{Answer, Engine, PASSWORD, Shore};
+use binnacle_server_testing::{ApiResponse, Engine, PASSWORD, TestServer};
 use reqwest::Method;
 use serde_json::json;
 
 #[tokio::test]
 async fn every_answer_to_people_says_what_a_browser_may_do() {
-    let shore = Shore::start(Engine::Sqlite).await;
+    let server = TestServer::start(Engine::Sqlite).await;
     for path in ["/", "/api/docs", "/api/v1/vessels", "/api/none", "/healthz"] {
-        let answer = Answer::of(shore.http.get(format!("{}{path}", shore.url))).await;
-        let said = |name: &str| answer.headers[name].to_str().unwrap().to_owned();
+        let response = ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await;
+        let said = |name: &str| response.headers[name].to_str().unwrap().to_owned();
         assert_eq!(said("x-content-type-options"), "nosniff", "{path}");
         assert_eq!(said("x-frame-options"), "DENY");
         assert_eq!(said("referrer-policy"), "same-origin");
@@ -31,22 +31,22 @@ async fn every_answer_to_people_says_what_a_browser_may_do() {
         // The tests' server is told that people reach it by https.
         assert_eq!(said("strict-transport-security"), "max-age=31536000");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
 #[tokio::test]
 async fn only_a_server_on_https_says_that_nothing_else_will_do() {
     let plain = ["--public-url", "http://binnacle.example"];
-    let shore = Shore::start_with(Engine::Sqlite, &plain).await;
-    let answer = Answer::of(shore.http.get(format!("{}/", shore.url))).await;
-    assert_eq!(answer.headers.get("strict-transport-security"), None);
-    shore.finish().await;
+    let server = TestServer::start_with(Engine::Sqlite, &plain).await;
+    let response = ApiResponse::of(server.http.get(format!("{}/", server.url))).await;
+    assert_eq!(response.headers.get("strict-transport-security"), None);
+    server.finish().await;
 }
 
 #[tokio::test]
 async fn another_sites_page_changes_nothing_and_signs_nobody_in() {
-    let shore = Shore::start(Engine::Sqlite).await;
-    let ada = shore.admin("ada").await;
+    let server = TestServer::start(Engine::Sqlite).await;
+    let ada = server.admin("ada").await;
     let vessel = json!({ "name": "Nao" });
     for (name, value) in [
         ("origin", "https://evil.example"),
@@ -56,34 +56,34 @@ async fn another_sites_page_changes_nothing_and_signs_nobody_in() {
     ] {
         // Even with the cookie and the header of our own pages.
         let asked = ada.request(Method::POST, "/vessels").json(&vessel);
-        let refused = Answer::of(asked.header(name, value)).await;
+        let refused = ApiResponse::of(asked.header(name, value)).await;
         assert_eq!(refused.problem(), "forbidden", "{name}: {value}");
         let who = json!({ "email": "ada@example.com", "password": PASSWORD });
-        let sign_in = shore.http.post(format!("{}/api/v1/session", shore.url));
-        let refused = Answer::of(sign_in.json(&who).header(name, value)).await;
+        let sign_in = server.http.post(format!("{}/api/v1/session", server.url));
+        let refused = ApiResponse::of(sign_in.json(&who).header(name, value)).await;
         assert_eq!(refused.problem(), "forbidden", "{name}: {value}");
         assert_eq!(refused.headers.get("set-cookie"), None);
     }
     assert_eq!(ada.get("/vessels").await.good()["items"], json!([]));
     for (name, value) in [
-        ("origin", shore.url.as_str()),
+        ("origin", server.url.as_str()),
         ("origin", "https://binnacle.example"),
         ("sec-fetch-site", "same-origin"),
     ] {
         let asked = ada.request(Method::POST, "/vessels").json(&vessel);
-        let made = Answer::of(asked.header(name, value)).await;
+        let made = ApiResponse::of(asked.header(name, value)).await;
         assert_eq!(made.status, 201, "{name}: {value}: {made:?}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
 #[tokio::test]
 async fn a_body_that_is_too_large_is_refused_in_words_wherever_json_is_taken() {
-    let shore = Shore::start(Engine::Sqlite).await;
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let (_, rosa) = ada.adjuster(&shore, "rosa").await;
-    let root = ada.platform_admin(&shore).await;
+    let server = TestServer::start(Engine::Sqlite).await;
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let (_, rosa) = ada.adjuster(&server, "rosa").await;
+    let root = ada.platform_admin(&server).await;
     let body = json!({ "text": "x".repeat(70_000) }).to_string();
     let document = serde_json::to_value(openapi()).unwrap();
     let mut tried = 0;
@@ -114,31 +114,31 @@ async fn a_body_that_is_too_large_is_refused_in_words_wherever_json_is_taken() {
                 _ => ada.request(method, &filled),
             };
             let asked = asked.header("content-type", "application/json");
-            let refused = Answer::of(asked.body(body.clone())).await;
+            let refused = ApiResponse::of(asked.body(body.clone())).await;
             assert_eq!(refused.problem(), "too-large", "{path}: {refused:?}");
             assert_eq!(refused.status, 413);
             tried += 1;
         }
     }
     assert!(tried > 40, "{tried}");
-    shore.finish().await;
+    server.finish().await;
 }
 
 #[tokio::test]
 async fn headers_without_end_are_refused_and_others_still_served() {
-    let shore = Shore::start(Engine::Sqlite).await;
-    let page = format!("{}/healthz", shore.url);
-    let long = shore.http.get(&page).header("x-long", "x".repeat(600_000));
+    let server = TestServer::start(Engine::Sqlite).await;
+    let page = format!("{}/healthz", server.url);
+    let long = server.http.get(&page).header("x-long", "x".repeat(600_000));
     match long.send().await {
-        Ok(answer) => assert_eq!(answer.status(), 431),
+        Ok(response) => assert_eq!(response.status(), 431),
         // The connection may be closed before the client has sent it all.
         Err(error) => assert!(error.is_request(), "{error:?}"),
     }
-    let mut many = shore.http.get(&page);
+    let mut many = server.http.get(&page);
     for index in 0..200 {
         many = many.header(format!("x-{index}"), "y");
     }
-    assert_eq!(Answer::of(many).await.status, 431);
-    assert_eq!(Answer::of(shore.http.get(&page)).await.status, 200);
-    shore.finish().await;
+    assert_eq!(ApiResponse::of(many).await.status, 431);
+    assert_eq!(ApiResponse::of(server.http.get(&page)).await.status, 200);
+    server.finish().await;
 }

@@ -1,7 +1,7 @@
 //! An operator's people: invited, changed, shut out, removed.
 
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, PASSWORD, Person, Shore, attempt};
+use binnacle_server_testing::{ApiResponse, PASSWORD, Person, TestServer, attempt};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -25,29 +25,29 @@ const GOOD: &str = "seven gulls over the quay";
 
 async fn invite(admin: &Person, email: &str, role: &str) -> Value {
     let new = json!({ "email": email, "name": "Grace Hopper", "role": role });
-    let answer = admin.post("/users", &new).await;
-    assert_eq!(answer.status, 201, "{answer:?}");
-    answer.json()
+    let response = admin.post("/users", &new).await;
+    assert_eq!(response.status, 201, "{response:?}");
+    response.json()
 }
 
-async fn accept(shore: &Shore, code: &str, password: &str) -> Answer {
-    let url = format!("{}/api/v1/invitations/accept", shore.url);
+async fn accept(server: &TestServer, code: &str, password: &str) -> ApiResponse {
+    let url = format!("{}/api/v1/invitations/accept", server.url);
     let body = json!({ "code": code, "password": password });
-    Answer::of(shore.http.post(url).json(&body)).await
+    ApiResponse::of(server.http.post(url).json(&body)).await
 }
 
-async fn change(admin: &Person, id: &Value, body: Value) -> Answer {
+async fn change(admin: &Person, id: &Value, body: Value) -> ApiResponse {
     let path = format!("/users/{}", id.as_str().unwrap());
-    Answer::of(admin.request(Method::PATCH, &path).json(&body)).await
+    ApiResponse::of(admin.request(Method::PATCH, &path).json(&body)).await
 }
 
-async fn remove(admin: &Person, id: &Value) -> Answer {
+async fn remove(admin: &Person, id: &Value) -> ApiResponse {
     let path = format!("/users/{}", id.as_str().unwrap());
-    Answer::of(admin.request(Method::DELETE, &path)).await
+    ApiResponse::of(admin.request(Method::DELETE, &path)).await
 }
 
-async fn who_is_invited_sets_a_password_and_signs_in(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn who_is_invited_sets_a_password_and_signs_in(server: TestServer) {
+    let ada = server.admin("ada").await;
     let invited = invite(&ada, " Grace@Example.com ", "viewer").await;
     let code = invited["invitation"]["code"].as_str().unwrap();
     let link = format!("https://binnacle.example/invitation#{code}");
@@ -56,39 +56,39 @@ async fn who_is_invited_sets_a_password_and_signs_in(shore: Shore) {
     assert_eq!(invited["user"]["email"], "grace@example.com");
     // Not even with the empty password that is stored.
     for guess in ["", code] {
-        let early = attempt(&shore, "grace@example.com", guess).await;
+        let early = attempt(&server, "grace@example.com", guess).await;
         assert_eq!(early.problem(), "wrong-password");
     }
-    let accepted = accept(&shore, &code.to_lowercase(), GOOD).await.good();
+    let accepted = accept(&server, &code.to_lowercase(), GOOD).await.good();
     assert_eq!(accepted["email"], "grace@example.com");
-    let signed_in = attempt(&shore, "grace@example.com", GOOD).await;
+    let signed_in = attempt(&server, "grace@example.com", GOOD).await;
     assert_eq!(signed_in.good()["role"], "viewer");
     let listed = ada.get("/users").await.good();
     assert_eq!(listed["items"][1]["state"], "active");
     assert_eq!(listed["items"][1]["invitation_expires_at"], json!(null));
     assert_eq!(listed["items"][0]["last_seen_at"], "2026-11-21T07:00:00Z");
     assert!(!ada.get("/users").await.text.contains("argon2"));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_code_works_once_and_for_a_week(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_code_works_once_and_for_a_week(server: TestServer) {
+    let ada = server.admin("ada").await;
     let invited = invite(&ada, "grace@example.com", "viewer").await;
     let code = invited["invitation"]["code"].as_str().unwrap().to_owned();
-    accept(&shore, &code, GOOD).await.good();
-    let again = accept(&shore, &code, "another good long one").await;
+    accept(&server, &code, GOOD).await.good();
+    let again = accept(&server, &code, "another good long one").await;
     assert_eq!(again.problem(), "not-found");
-    let wrong = accept(&shore, "AAAA-AAAA-AAAA-AAAA", GOOD).await;
+    let wrong = accept(&server, "AAAA-AAAA-AAAA-AAAA", GOOD).await;
     assert_eq!(wrong.problem(), "not-found");
     let other = invite(&ada, "mary@example.com", "viewer").await;
-    shore.advance(7.0 * 86_400.0);
-    let late = accept(&shore, other["invitation"]["code"].as_str().unwrap(), GOOD).await;
+    server.advance(7.0 * 86_400.0);
+    let late = accept(&server, other["invitation"]["code"].as_str().unwrap(), GOOD).await;
     assert_eq!(late.problem(), "gone");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_weak_password_is_refused_and_the_code_stays_good(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_weak_password_is_refused_and_the_code_stays_good(server: TestServer) {
+    let ada = server.admin("ada").await;
     let invited = invite(&ada, "grace@example.com", "viewer").await;
     let code = invited["invitation"]["code"].as_str().unwrap();
     for weak in [
@@ -97,7 +97,7 @@ async fn a_weak_password_is_refused_and_the_code_stays_good(shore: Shore) {
         "grace@example.com",
         "GraceHopper12",
     ] {
-        let refused = accept(&shore, code, weak).await;
+        let refused = accept(&server, code, weak).await;
         assert_eq!(refused.problem(), "invalid", "{weak}");
         assert!(
             refused.json()["detail"]
@@ -106,12 +106,12 @@ async fn a_weak_password_is_refused_and_the_code_stays_good(shore: Shore) {
                 .starts_with("password: ")
         );
     }
-    accept(&shore, code, GOOD).await.good();
-    shore.finish().await;
+    accept(&server, code, GOOD).await.good();
+    server.finish().await;
 }
 
-async fn an_e_mail_has_one_account(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn an_e_mail_has_one_account(server: TestServer) {
+    let ada = server.admin("ada").await;
     let new = json!({ "email": "ADA@example.com", "name": "Ada", "role": "viewer" });
     assert_eq!(ada.post("/users", &new).await.problem(), "wrong-state");
     for bad in ["", "ada", "a b@example.com", "=x|y", "ada@exämple.com"] {
@@ -120,17 +120,17 @@ async fn an_e_mail_has_one_account(shore: Shore) {
     }
     let root = json!({ "email": "r@example.com", "name": "R", "role": "platform_admin" });
     assert_eq!(ada.post("/users", &root).await.problem(), "invalid");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn who_is_shut_out_is_out_at_once(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let viewer = ada.viewer(&shore).await;
+async fn who_is_shut_out_is_out_at_once(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let viewer = ada.viewer(&server).await;
     let token = json!({ "name": "ERP", "scope": "read" });
     let token = viewer.post("/tokens", &token).await.good()["token"].clone();
     let by_token = || {
-        let request = shore.http.get(format!("{}/api/v1/vessels", shore.url));
-        Answer::of(request.bearer_auth(token.as_str().unwrap()))
+        let request = server.http.get(format!("{}/api/v1/vessels", server.url));
+        ApiResponse::of(request.bearer_auth(token.as_str().unwrap()))
     };
     assert_eq!(by_token().await.status, 200);
     let id = viewer.get("/me").await.good()["user_id"].clone();
@@ -138,40 +138,40 @@ async fn who_is_shut_out_is_out_at_once(shore: Shore) {
     assert_eq!(disabled["state"], "disabled");
     assert_eq!(viewer.get("/me").await.problem(), "unauthenticated");
     assert_eq!(by_token().await.problem(), "unauthenticated");
-    let refused = attempt(&shore, &viewer.email, PASSWORD).await;
+    let refused = attempt(&server, &viewer.email, PASSWORD).await;
     assert_eq!(refused.problem(), "wrong-password");
     let path = format!("/users/{}/invitation", id.as_str().unwrap());
     assert_eq!(ada.post(&path, &json!({})).await.problem(), "wrong-state");
 
     change(&ada, &id, json!({ "disabled": false })).await.good();
-    assert_eq!(attempt(&shore, &viewer.email, PASSWORD).await.status, 200);
-    shore.finish().await;
+    assert_eq!(attempt(&server, &viewer.email, PASSWORD).await.status, 200);
+    server.finish().await;
 }
 
-async fn who_forgot_the_password_gets_another_code(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let viewer = ada.viewer(&shore).await;
+async fn who_forgot_the_password_gets_another_code(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let viewer = ada.viewer(&server).await;
     let id = viewer.get("/me").await.good()["user_id"].clone();
     let path = format!("/users/{}/invitation", id.as_str().unwrap());
     let first = ada.post(&path, &json!({})).await.good();
     let second = ada.post(&path, &json!({})).await.good();
     // Until it is used nothing is otherwise.
     assert_eq!(viewer.get("/me").await.status, 200);
-    let old = accept(&shore, first["code"].as_str().unwrap(), GOOD).await;
+    let old = accept(&server, first["code"].as_str().unwrap(), GOOD).await;
     assert_eq!(old.problem(), "not-found");
-    accept(&shore, second["code"].as_str().unwrap(), GOOD)
+    accept(&server, second["code"].as_str().unwrap(), GOOD)
         .await
         .good();
     assert_eq!(viewer.get("/me").await.problem(), "unauthenticated");
-    let before = attempt(&shore, &viewer.email, PASSWORD).await;
+    let before = attempt(&server, &viewer.email, PASSWORD).await;
     assert_eq!(before.problem(), "wrong-password");
-    assert_eq!(attempt(&shore, &viewer.email, GOOD).await.status, 200);
-    shore.finish().await;
+    assert_eq!(attempt(&server, &viewer.email, GOOD).await.status, 200);
+    server.finish().await;
 }
 
-async fn who_is_removed_is_gone_with_their_tokens(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let viewer = ada.viewer(&shore).await;
+async fn who_is_removed_is_gone_with_their_tokens(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let viewer = ada.viewer(&server).await;
     let token = json!({ "name": "ERP", "scope": "read" });
     let made = viewer.post("/tokens", &token).await.good();
     let id = viewer.get("/me").await.good()["user_id"].clone();
@@ -179,16 +179,16 @@ async fn who_is_removed_is_gone_with_their_tokens(shore: Shore) {
     assert_eq!(remove(&ada, &id).await.status, 204);
     assert_eq!(remove(&ada, &id).await.problem(), "not-found");
     assert_eq!(viewer.get("/me").await.problem(), "unauthenticated");
-    let request = shore.http.get(format!("{}/api/v1/me", shore.url));
-    let by_token = Answer::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
+    let request = server.http.get(format!("{}/api/v1/me", server.url));
+    let by_token = ApiResponse::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
     assert_eq!(by_token.problem(), "unauthenticated");
     // The e-mail is free again.
     invite(&ada, &viewer.email, "viewer").await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_operator_keeps_an_admin(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn an_operator_keeps_an_admin(server: TestServer) {
+    let ada = server.admin("ada").await;
     let id = ada.get("/me").await.good()["user_id"].clone();
     // Who was only invited cannot take the admin's place.
     invite(&ada, "grace@example.com", "admin").await;
@@ -199,7 +199,7 @@ async fn an_operator_keeps_an_admin(shore: Shore) {
     assert_eq!(remove(&ada, &id).await.problem(), "wrong-state");
     assert_eq!(ada.get("/me").await.good()["role"], "admin");
 
-    let viewer = ada.viewer(&shore).await;
+    let viewer = ada.viewer(&server).await;
     let other = viewer.get("/me").await.good()["user_id"].clone();
     change(&ada, &other, json!({ "role": "admin" }))
         .await
@@ -211,12 +211,12 @@ async fn an_operator_keeps_an_admin(shore: Shore) {
     );
     assert_eq!(ada.get("/users").await.problem(), "forbidden");
     assert_eq!(viewer.get("/users").await.status, 200);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn two_admins_cannot_remove_each_other(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let grace = ada.viewer(&shore).await;
+async fn two_admins_cannot_remove_each_other(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let grace = ada.viewer(&server).await;
     let ids = [
         ada.get("/me").await.good()["user_id"].clone(),
         grace.get("/me").await.good()["user_id"].clone(),
@@ -227,15 +227,15 @@ async fn two_admins_cannot_remove_each_other(shore: Shore) {
     let (one, other) = tokio::join!(remove(&ada, &ids[1]), remove(&grace, &ids[0]));
     let gone = [&one, &other]
         .iter()
-        .filter(|answer| answer.status == 204)
+        .filter(|response| response.status == 204)
         .count();
     assert_eq!(gone, 1, "{one:?} {other:?}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn nobody_sees_another_operators_people(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn nobody_sees_another_operators_people(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     let id = ada.get("/me").await.good()["user_id"].clone();
     let listed = eve.get("/users").await.good();
     assert_eq!(listed["items"].as_array().unwrap().len(), 1);
@@ -245,11 +245,11 @@ async fn nobody_sees_another_operators_people(shore: Shore) {
         remove(&eve, &id).await,
         eve.post(&path, &json!({})).await,
     ];
-    for answer in answers {
-        assert_eq!(answer.problem(), "not-found");
+    for response in answers {
+        assert_eq!(response.problem(), "not-found");
     }
     assert_eq!(ada.get("/me").await.status, 200);
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// Asks with a token of someone's.
@@ -260,29 +260,29 @@ struct Program {
 }
 
 impl Program {
-    async fn of(shore: &Shore, person: &Person) -> Program {
+    async fn of(server: &TestServer, person: &Person) -> Program {
         let new = json!({ "name": "ERP", "scope": "write" });
         let made = person.post("/tokens", &new).await.good();
         Program {
-            http: shore.http.clone(),
-            url: format!("{}/api/v1", shore.url),
+            http: server.http.clone(),
+            url: format!("{}/api/v1", server.url),
             token: made["token"].as_str().unwrap().to_owned(),
         }
     }
 
-    async fn ask(&self, method: Method, path: &str, body: &Value) -> Answer {
+    async fn ask(&self, method: Method, path: &str, body: &Value) -> ApiResponse {
         let request = self.http.request(method, format!("{}{path}", self.url));
-        Answer::of(request.bearer_auth(&self.token).json(body)).await
+        ApiResponse::of(request.bearer_auth(&self.token).json(body)).await
     }
 }
 
-async fn an_admins_token_makes_nobody_and_becomes_nobody(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let viewer = ada.viewer(&shore).await;
+async fn an_admins_token_makes_nobody_and_becomes_nobody(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let viewer = ada.viewer(&server).await;
     let other = viewer.get("/me").await.good()["user_id"].clone();
     let other = other.as_str().unwrap();
     let own = ada.get("/me").await.good()["user_id"].clone();
-    let program = Program::of(&shore, &ada).await;
+    let program = Program::of(&server, &ada).await;
     let new = json!({ "email": "eve@example.com", "name": "Eve", "role": "admin" });
     let tried = [
         (Method::POST, "/users".to_owned(), new),
@@ -324,27 +324,27 @@ async fn an_admins_token_makes_nobody_and_becomes_nobody(shore: Shore) {
     );
     let listed = ada.get("/users").await.good();
     assert_eq!(listed["items"].as_array().unwrap().len(), 2);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn calendar(shore: &Shore, person: &Person) -> String {
+async fn calendar(server: &TestServer, person: &Person) -> String {
     let made = person
         .post("/calendar-feeds", &json!({ "name": "Fleet" }))
         .await
         .good();
     let url = made["url"].as_str().unwrap();
-    url.replace("https://binnacle.example", &shore.url)
+    url.replace("https://binnacle.example", &server.url)
 }
 
-async fn another_code_ends_tokens_and_calendars(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let grace = ada.viewer(&shore).await;
+async fn another_code_ends_tokens_and_calendars(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let grace = ada.viewer(&server).await;
     let id = grace.get("/me").await.good()["user_id"].clone();
     change(&ada, &id, json!({ "role": "admin" })).await.good();
-    let program = Program::of(&shore, &grace).await;
-    let address = calendar(&shore, &grace).await;
-    let http = shore.http.clone();
-    let reads = || Answer::of(http.get(&address));
+    let program = Program::of(&server, &grace).await;
+    let address = calendar(&server, &grace).await;
+    let http = server.http.clone();
+    let reads = || ApiResponse::of(http.get(&address));
     assert_eq!(reads().await.status, 200);
     let path = format!("/users/{}/invitation", id.as_str().unwrap());
     let code = ada.post(&path, &json!({})).await.good()["code"].clone();
@@ -353,21 +353,24 @@ async fn another_code_ends_tokens_and_calendars(shore: Shore) {
         program.ask(Method::GET, "/me", &json!({})).await.status,
         200
     );
-    accept(&shore, code.as_str().unwrap(), GOOD).await.good();
+    accept(&server, code.as_str().unwrap(), GOOD).await.good();
     let by_token = program.ask(Method::GET, "/me", &json!({})).await;
     assert_eq!(by_token.problem(), "unauthenticated");
     assert_eq!(reads().await.problem(), "unauthenticated");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_calendar_ends_with_who_made_it(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let grace = ada.viewer(&shore).await;
+async fn a_calendar_ends_with_who_made_it(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let grace = ada.viewer(&server).await;
     let id = grace.get("/me").await.good()["user_id"].clone();
     change(&ada, &id, json!({ "role": "admin" })).await.good();
-    let (hers, adas) = (calendar(&shore, &grace).await, calendar(&shore, &ada).await);
-    let http = shore.http.clone();
-    let reads = |address: &str| Answer::of(http.get(address));
+    let (hers, adas) = (
+        calendar(&server, &grace).await,
+        calendar(&server, &ada).await,
+    );
+    let http = server.http.clone();
+    let reads = |address: &str| ApiResponse::of(http.get(address));
     change(&ada, &id, json!({ "disabled": true })).await.good();
     assert_eq!(reads(&hers).await.problem(), "unauthenticated");
     change(&ada, &id, json!({ "disabled": false })).await.good();
@@ -375,5 +378,5 @@ async fn a_calendar_ends_with_who_made_it(shore: Shore) {
     assert_eq!(remove(&ada, &id).await.status, 204);
     assert_eq!(reads(&hers).await.problem(), "unauthenticated");
     assert_eq!(reads(&adas).await.status, 200);
-    shore.finish().await;
+    server.finish().await;
 }

@@ -2,7 +2,7 @@
 //! everyone needs one.
 
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, PASSWORD, Person, Shore, attempt};
+use binnacle_server_testing::{ApiResponse, PASSWORD, Person, TestServer, attempt};
 use reqwest::Method;
 use ring::hmac;
 use serde_json::{Value, json};
@@ -40,8 +40,8 @@ pub(crate) fn app_code(secret: &str, unix_s: i64) -> String {
     )
 }
 
-pub(crate) fn now_s(shore: &Shore) -> i64 {
-    shore.app.clock.now().micros() / 1_000_000
+pub(crate) fn now_s(server: &TestServer) -> i64 {
+    server.app.clock.now().micros() / 1_000_000
 }
 
 fn password() -> Value {
@@ -50,25 +50,25 @@ fn password() -> Value {
 
 /// Sets a factor up and gives its secret and recovery codes; the clock goes on, so that
 /// the next code is another.
-pub(crate) async fn set_up(shore: &Shore, person: &Person) -> (String, Vec<String>) {
+pub(crate) async fn set_up(server: &TestServer, person: &Person) -> (String, Vec<String>) {
     let begun = person.post("/me/second-factor", &password()).await.good();
     let secret = begun["secret"].as_str().unwrap().to_owned();
     assert!(begun["uri"].as_str().unwrap().contains(&secret));
-    let code = json!({ "code": app_code(&secret, now_s(shore)) });
+    let code = json!({ "code": app_code(&secret, now_s(server)) });
     let confirmed = person.post("/me/second-factor/confirm", &code).await.good();
-    shore.advance(60.0);
+    server.advance(60.0);
     let codes = serde_json::from_value(confirmed["recovery_codes"].clone()).unwrap();
     (secret, codes)
 }
 
-pub(crate) async fn sign_in(shore: &Shore, email: &str, code: &str) -> Answer {
+pub(crate) async fn sign_in(server: &TestServer, email: &str, code: &str) -> ApiResponse {
     let body = json!({ "email": email, "password": PASSWORD, "code": code });
-    let url = format!("{}/api/v1/session", shore.url);
-    Answer::of(shore.http.post(url).json(&body)).await
+    let url = format!("{}/api/v1/session", server.url);
+    ApiResponse::of(server.http.post(url).json(&body)).await
 }
 
-async fn a_code_is_asked_for_once_the_factor_is_confirmed(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_code_is_asked_for_once_the_factor_is_confirmed(server: TestServer) {
+    let ada = server.admin("ada").await;
     let wrong = json!({ "password": "not the password" });
     let refused = ada.post("/me/second-factor", &wrong).await;
     assert_eq!(refused.problem(), "wrong-password");
@@ -77,114 +77,118 @@ async fn a_code_is_asked_for_once_the_factor_is_confirmed(shore: Shore) {
     let none = json!({ "code": "000000" });
     let refused = ada.post("/me/second-factor/confirm", &none).await;
     assert_eq!(refused.problem(), "invalid");
-    assert_eq!(attempt(&shore, &ada.email, PASSWORD).await.status, 200);
+    assert_eq!(attempt(&server, &ada.email, PASSWORD).await.status, 200);
 
-    let other = Person::sign_in(&shore, ada.operator, &ada.email).await;
-    let (secret, _) = set_up(&shore, &ada).await;
+    let other = Person::sign_in(&server, ada.operator, &ada.email).await;
+    let (secret, _) = set_up(&server, &ada).await;
     assert_eq!(other.get("/me").await.problem(), "unauthenticated");
     assert_eq!(ada.get("/me").await.good()["second_factor"], true);
-    let asked = attempt(&shore, &ada.email, PASSWORD).await;
+    let asked = attempt(&server, &ada.email, PASSWORD).await;
     assert_eq!(asked.problem(), "second-factor-needed");
     assert!(asked.headers.get("set-cookie").is_none());
     assert_eq!(
-        attempt(&shore, &ada.email, "wrong").await.problem(),
+        attempt(&server, &ada.email, "wrong").await.problem(),
         "wrong-password"
     );
-    let code = app_code(&secret, now_s(&shore));
-    assert_eq!(sign_in(&shore, &ada.email, &code).await.status, 200);
+    let code = app_code(&secret, now_s(&server));
+    assert_eq!(sign_in(&server, &ada.email, &code).await.status, 200);
     let again = ada.post("/me/second-factor", &password()).await;
     assert_eq!(again.problem(), "wrong-state");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_code_works_once_also_when_it_comes_twice_at_once(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let (secret, _) = set_up(&shore, &ada).await;
-    let code = app_code(&secret, now_s(&shore));
-    let tries = (0..4).map(|_| sign_in(&shore, &ada.email, &code));
+async fn a_code_works_once_also_when_it_comes_twice_at_once(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let (secret, _) = set_up(&server, &ada).await;
+    let code = app_code(&secret, now_s(&server));
+    let tries = (0..4).map(|_| sign_in(&server, &ada.email, &code));
     let answers = futures_util::future::join_all(tries).await;
-    let mut statuses: Vec<u16> = answers.iter().map(|answer| answer.status).collect();
+    let mut statuses: Vec<u16> = answers.iter().map(|response| response.status).collect();
     statuses.sort_unstable();
     assert_eq!(statuses, [200, 401, 401, 401]);
-    let seen = answers.iter().find(|answer| answer.status == 401).unwrap();
+    let seen = answers
+        .iter()
+        .find(|response| response.status == 401)
+        .unwrap();
     assert_eq!(seen.problem(), "wrong-code");
     // Nor does the one before it, which the clock's tolerance would let pass.
-    let before = app_code(&secret, now_s(&shore) - 30);
-    let late = sign_in(&shore, &ada.email, &before).await;
+    let before = app_code(&secret, now_s(&server) - 30);
+    let late = sign_in(&server, &ada.email, &before).await;
     assert_eq!(late.problem(), "wrong-code");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn guessing_codes_is_slowed_down_like_guessing_passwords(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let (secret, _) = set_up(&shore, &ada).await;
-    let right = app_code(&secret, now_s(&shore));
+async fn guessing_codes_is_slowed_down_like_guessing_passwords(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let (secret, _) = set_up(&server, &ada).await;
+    let right = app_code(&secret, now_s(&server));
     let wrong = if right == "000000" {
         "000001"
     } else {
         "000000"
     };
     for _ in 0..5 {
-        let refused = sign_in(&shore, &ada.email, wrong).await;
+        let refused = sign_in(&server, &ada.email, wrong).await;
         assert_eq!(refused.problem(), "wrong-code");
     }
-    let slowed = sign_in(&shore, &ada.email, &right).await;
+    let slowed = sign_in(&server, &ada.email, &right).await;
     assert_eq!(slowed.problem(), "throttled");
-    shore.advance(1.0);
-    assert_eq!(sign_in(&shore, &ada.email, &right).await.status, 200);
-    shore.finish().await;
+    server.advance(1.0);
+    assert_eq!(sign_in(&server, &ada.email, &right).await.status, 200);
+    server.finish().await;
 }
 
-async fn each_recovery_code_signs_in_once(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let (_, codes) = set_up(&shore, &ada).await;
+async fn each_recovery_code_signs_in_once(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let (_, codes) = set_up(&server, &ada).await;
     assert_eq!(codes.len(), 10);
     let typed = codes[0].to_lowercase().replace('-', " ");
-    assert_eq!(sign_in(&shore, &ada.email, &typed).await.status, 200);
-    let again = sign_in(&shore, &ada.email, &typed).await;
+    assert_eq!(sign_in(&server, &ada.email, &typed).await.status, 200);
+    let again = sign_in(&server, &ada.email, &typed).await;
     assert_eq!(again.problem(), "wrong-code");
     let path = "/me/second-factor/recovery-codes";
     let renewed = ada.post(path, &password()).await.good();
-    let old = sign_in(&shore, &ada.email, &codes[1]).await;
+    let old = sign_in(&server, &ada.email, &codes[1]).await;
     assert_eq!(old.problem(), "wrong-code");
     let new = renewed["recovery_codes"][0].as_str().unwrap();
-    assert_eq!(sign_in(&shore, &ada.email, new).await.status, 200);
-    shore.finish().await;
+    assert_eq!(sign_in(&server, &ada.email, new).await.status, 200);
+    server.finish().await;
 }
 
-async fn a_factor_is_removed_with_the_password_or_by_an_admin(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let viewer = ada.viewer(&shore).await;
-    set_up(&shore, &ada).await;
+async fn a_factor_is_removed_with_the_password_or_by_an_admin(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let viewer = ada.viewer(&server).await;
+    set_up(&server, &ada).await;
     let removed = ada.post("/me/second-factor/remove", &password()).await;
     assert_eq!(removed.status, 204);
-    assert_eq!(attempt(&shore, &ada.email, PASSWORD).await.status, 200);
+    assert_eq!(attempt(&server, &ada.email, PASSWORD).await.status, 200);
 
-    set_up(&shore, &viewer).await;
+    set_up(&server, &viewer).await;
     let id = viewer.get("/me").await.good()["user_id"].clone();
     let path = format!("/users/{}/second-factor", id.as_str().unwrap());
-    let theirs = Answer::of(viewer.request(Method::DELETE, &path)).await;
+    let theirs = ApiResponse::of(viewer.request(Method::DELETE, &path)).await;
     assert_eq!(theirs.problem(), "forbidden");
-    let eve = shore.admin("eve").await;
-    let foreign = Answer::of(eve.request(Method::DELETE, &path)).await;
+    let eve = server.admin("eve").await;
+    let foreign = ApiResponse::of(eve.request(Method::DELETE, &path)).await;
     assert_eq!(foreign.problem(), "not-found");
-    let reset = Answer::of(ada.request(Method::DELETE, &path)).await;
+    let reset = ApiResponse::of(ada.request(Method::DELETE, &path)).await;
     assert_eq!(reset.status, 204);
-    assert_eq!(attempt(&shore, &viewer.email, PASSWORD).await.status, 200);
-    shore.finish().await;
+    assert_eq!(attempt(&server, &viewer.email, PASSWORD).await.status, 200);
+    server.finish().await;
 }
 
-async fn an_operator_may_want_a_factor_of_everyone(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let viewer = ada.viewer(&shore).await;
+async fn an_operator_may_want_a_factor_of_everyone(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let viewer = ada.viewer(&server).await;
     let token = json!({ "name": "ERP", "scope": "read" });
     let token = viewer.post("/tokens", &token).await.good()["token"].clone();
     let rule = json!({ "second_factor_required": true });
-    let put =
-        |person: &Person| Answer::of(person.request(Method::PUT, "/sign-in-rules").json(&rule));
+    let put = |person: &Person| {
+        ApiResponse::of(person.request(Method::PUT, "/sign-in-rules").json(&rule))
+    };
     // Not before the admin has one.
     assert_eq!(put(&ada).await.problem(), "wrong-state");
-    set_up(&shore, &ada).await;
+    set_up(&server, &ada).await;
     assert_eq!(put(&viewer).await.problem(), "forbidden");
     put(&ada).await.good();
     assert_eq!(ada.get("/vessels").await.status, 200);
@@ -194,28 +198,28 @@ async fn an_operator_may_want_a_factor_of_everyone(shore: Shore) {
         assert_eq!(refused.problem(), "second-factor-required", "{path}");
         assert_eq!(refused.status, 403);
     }
-    let by_token = shore.http.get(format!("{}/api/v1/vessels", shore.url));
-    let by_token = Answer::of(by_token.bearer_auth(token.as_str().unwrap())).await;
+    let by_token = server.http.get(format!("{}/api/v1/vessels", server.url));
+    let by_token = ApiResponse::of(by_token.bearer_auth(token.as_str().unwrap())).await;
     assert_eq!(by_token.problem(), "second-factor-required");
     let more = json!({ "name": "x", "scope": "read" });
     let more = viewer.post("/tokens", &more).await;
     assert_eq!(more.problem(), "second-factor-required");
     let me = viewer.get("/me").await.good();
     assert_eq!(me["second_factor_required"], true);
-    set_up(&shore, &viewer).await;
+    set_up(&server, &viewer).await;
     assert_eq!(viewer.get("/vessels").await.status, 200);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_token_cannot_touch_a_factor(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_token_cannot_touch_a_factor(server: TestServer) {
+    let ada = server.admin("ada").await;
     let token = json!({ "name": "ERP", "scope": "write" });
     let made = ada.post("/tokens", &token).await.good();
     for path in ["", "/remove", "/recovery-codes"] {
-        let url = format!("{}/api/v1/me/second-factor{path}", shore.url);
-        let request = shore.http.post(url).json(&password());
-        let answer = Answer::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
-        assert_eq!(answer.problem(), "forbidden", "{path}");
+        let url = format!("{}/api/v1/me/second-factor{path}", server.url);
+        let request = server.http.post(url).json(&password());
+        let response = ApiResponse::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
+        assert_eq!(response.problem(), "forbidden", "{path}");
     }
-    shore.finish().await;
+    server.finish().await;
 }

@@ -111,11 +111,11 @@ impl Drive {
     async fn follow(&mut self, path: &str, cookie: &str) -> String {
         let url = format!("{}{path}", self.url);
         let asked = self.http.get(url).header("cookie", cookie);
-        let answer = asked.send().await.unwrap();
-        let set = answer.headers()["set-cookie"].to_str().unwrap();
+        let response = asked.send().await.unwrap();
+        let set = response.headers()["set-cookie"].to_str().unwrap();
         let (_, value) = set.split(';').next().unwrap().split_once('=').unwrap();
         self.secrets.push(value.to_owned());
-        answer.headers()["location"].to_str().unwrap().to_owned()
+        response.headers()["location"].to_str().unwrap().to_owned()
     }
 
     async fn ask(&self, key: &str, method: &str, path: &str, body: Value) -> (String, Value) {
@@ -129,11 +129,11 @@ impl Drive {
         } else {
             asked.bearer_auth(key)
         };
-        let answer = asked.send().await.unwrap();
-        let cookie = answer.headers().get("set-cookie");
+        let response = asked.send().await.unwrap();
+        let cookie = response.headers().get("set-cookie");
         let cookie = cookie.map_or("", |cookie| cookie.to_str().unwrap());
         let cookie = cookie.split(';').next().unwrap().to_owned();
-        let bytes = answer.bytes().await.unwrap();
+        let bytes = response.bytes().await.unwrap();
         (cookie, serde_json::from_slice(&bytes).unwrap_or_default())
     }
 }

@@ -4,7 +4,7 @@ use binnacle_server::routes::openapi;
 use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::port_calls::{call, path as calls_of};
-use binnacle_server_testing::{Answer, Shore};
+use binnacle_server_testing::{ApiResponse, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -57,10 +57,10 @@ fn settings() -> Value {
     })
 }
 
-async fn every_vessel_route_is_blank_to_another_operator(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
-    let id = shore.ship(&ada, "Nao").await.id;
+async fn every_vessel_route_is_blank_to_another_operator(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
+    let id = server.ship(&ada, "Nao").await.id;
     let agents = ada.get(&format!("/vessels/{id}/agents")).await.good();
     let agent = agents["items"][0]["agent_id"].as_str().unwrap();
     let compasses = ada.get(&format!("/vessels/{id}/compasses")).await.good();
@@ -80,9 +80,9 @@ async fn every_vessel_route_is_blank_to_another_operator(shore: Shore) {
         let path = path.replace("{call}", port_call.as_str().unwrap());
         let path = path.replace("{agent}", agent);
         let path = path.replace("{compass}", compass);
-        let theirs = Answer::of(eve.request(method.clone(), &path).json(&body)).await;
+        let theirs = ApiResponse::of(eve.request(method.clone(), &path).json(&body)).await;
         assert_eq!(theirs.problem(), "not-found", "{method} {path}");
-        let ours = Answer::of(ada.request(method.clone(), &path).json(&body)).await;
+        let ours = ApiResponse::of(ada.request(method.clone(), &path).json(&body)).await;
         // A file is no JSON.
         let file = path.contains("/port-calls.");
         let known = ours.status < 300
@@ -90,11 +90,11 @@ async fn every_vessel_route_is_blank_to_another_operator(shore: Shore) {
             || (file && ours.problem() == "invalid");
         assert!(known, "{method} {path}: {ours:?}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn every_route_wants_to_know_who_asks(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn every_route_wants_to_know_who_asks(server: TestServer) {
+    let ada = server.admin("ada").await;
     let id = ada.create_vessel("Nao").await["id"]
         .as_str()
         .unwrap()
@@ -114,39 +114,39 @@ async fn every_route_wants_to_know_who_asks(shore: Shore) {
             .replace("{compass}", &id)
             .replace("{stream}", &id)
             .replace("{seq}", "1");
-        let url = format!("{}/api/v1{path}", shore.url);
+        let url = format!("{}/api/v1{path}", server.url);
         for token in ["", "bna_wrong", "wrong", &"A".repeat(43)] {
-            let request = shore.http.request(method.clone(), &url).json(&body);
-            let answer = Answer::of(request.bearer_auth(token)).await;
+            let request = server.http.request(method.clone(), &url).json(&body);
+            let response = ApiResponse::of(request.bearer_auth(token)).await;
             assert_eq!(
-                answer.problem(),
+                response.problem(),
                 "unauthenticated",
                 "{method} {path} {token}"
             );
         }
-        let request = shore.http.request(method.clone(), &url).json(&body);
-        let answer = Answer::of(request.header("cookie", "binnacle_session=x")).await;
-        assert_eq!(answer.problem(), "unauthenticated", "{method} {path}");
+        let request = server.http.request(method.clone(), &url).json(&body);
+        let response = ApiResponse::of(request.header("cookie", "binnacle_session=x")).await;
+        assert_eq!(response.problem(), "unauthenticated", "{method} {path}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn another_operators_lists_are_empty(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn another_operators_lists_are_empty(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     ada.create_vessel("Nao").await;
     let token = json!({ "name": "ERP", "scope": "read" });
     let made = ada.post("/tokens", &token).await.good();
     assert_eq!(eve.get("/vessels").await.good()["items"], json!([]));
     assert_eq!(eve.get("/tokens").await.good()["items"], json!([]));
     let path = format!("/tokens/{}", made["id"].as_str().unwrap());
-    let theirs = Answer::of(eve.request(Method::DELETE, &path)).await;
+    let theirs = ApiResponse::of(eve.request(Method::DELETE, &path)).await;
     assert_eq!(theirs.problem(), "not-found");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_id_that_is_none_is_not_found(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn an_id_that_is_none_is_not_found(server: TestServer) {
+    let ada = server.admin("ada").await;
     for path in [
         "/vessels/1",
         "/vessels/00000000-0000-0000-0000-000000000000",
@@ -154,14 +154,14 @@ async fn an_id_that_is_none_is_not_found(shore: Shore) {
     ] {
         assert_eq!(ada.get(path).await.problem(), "not-found", "{path}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_method_that_a_path_does_not_know_is_refused_in_words(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_method_that_a_path_does_not_know_is_refused_in_words(server: TestServer) {
+    let ada = server.admin("ada").await;
     for path in ["/vessels", "/agents/enrol", "/streams"] {
-        let answer = Answer::of(ada.request(Method::PATCH, path)).await;
-        assert_eq!(answer.problem(), "method-not-allowed", "{path}");
+        let response = ApiResponse::of(ada.request(Method::PATCH, path)).await;
+        assert_eq!(response.problem(), "method-not-allowed", "{path}");
     }
-    shore.finish().await;
+    server.finish().await;
 }

@@ -1,13 +1,13 @@
 //! The dashboard's host, and what surrounds every answer.
 
-use binnacle_server_testing::{Answer, Engine, Shore};
+use binnacle_server_testing::{ApiResponse, Engine, TestServer};
 use reqwest::header::HeaderName;
 
 #[tokio::test]
 async fn any_path_but_the_apis_answers_with_a_page() {
-    let shore = Shore::start(Engine::Sqlite).await;
+    let server = TestServer::start(Engine::Sqlite).await;
     for path in ["/", "/vessels/1", "/index.html"] {
-        let page = Answer::of(shore.http.get(format!("{}{path}", shore.url))).await;
+        let page = ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await;
         assert_eq!(page.status, 200);
         assert!(
             page.headers["content-type"]
@@ -22,70 +22,72 @@ async fn any_path_but_the_apis_answers_with_a_page() {
         );
         assert_eq!(page.headers["x-content-type-options"], "nosniff");
     }
-    let missing = shore.http.get(format!("{}/assets/none.js", shore.url));
-    assert_eq!(Answer::of(missing).await.status, 404);
+    let missing = server.http.get(format!("{}/assets/none.js", server.url));
+    assert_eq!(ApiResponse::of(missing).await.status, 404);
     for path in ["/api/none", "/api/v1/none", "/api/v2/vessels"] {
-        let answer = Answer::of(shore.http.get(format!("{}{path}", shore.url))).await;
-        assert_eq!(answer.problem(), "not-found", "{path}");
+        let response = ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await;
+        assert_eq!(response.problem(), "not-found", "{path}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
 #[tokio::test]
 async fn the_operations_routes_tell_how_the_server_is() {
-    let shore = Shore::start(Engine::Sqlite).await;
+    let server = TestServer::start(Engine::Sqlite).await;
     for (path, text) in [("/healthz", "ok"), ("/readyz", "ready")] {
-        let answer = Answer::of(shore.http.get(format!("{}{path}", shore.url))).await;
-        assert_eq!((answer.status, answer.text.as_str()), (200, text));
+        let response = ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await;
+        assert_eq!((response.status, response.text.as_str()), (200, text));
     }
-    let metrics = Answer::of(shore.http.get(format!("{}/metrics", shore.url))).await;
+    let metrics = ApiResponse::of(server.http.get(format!("{}/metrics", server.url))).await;
     assert!(
         metrics.text.contains("binnacle_http_requests_total"),
         "{metrics:?}"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
 #[tokio::test]
 async fn metrics_are_read_on_the_same_machine_or_with_their_token() {
-    let read = async |shore: &Shore, header: (&str, &str)| {
-        let asked = shore.http.get(format!("{}/metrics", shore.url));
-        Answer::of(asked.header(header.0, header.1)).await.status
+    let read = async |server: &TestServer, header: (&str, &str)| {
+        let asked = server.http.get(format!("{}/metrics", server.url));
+        ApiResponse::of(asked.header(header.0, header.1))
+            .await
+            .status
     };
-    let shore = Shore::start(Engine::Sqlite).await;
-    assert_eq!(read(&shore, ("accept", "text/plain")).await, 200);
+    let server = TestServer::start(Engine::Sqlite).await;
+    assert_eq!(read(&server, ("accept", "text/plain")).await, 200);
     // Whom a proxy that the server was not told of lets in may be anybody.
     for by in ["x-forwarded-for", "forwarded"] {
-        assert_eq!(read(&shore, (by, "127.0.0.1")).await, 401, "{by}");
+        assert_eq!(read(&server, (by, "127.0.0.1")).await, 401, "{by}");
     }
-    shore.finish().await;
-    let proxied = Shore::start_with(Engine::Sqlite, &["--proxies", "1"]).await;
+    server.finish().await;
+    let proxied = TestServer::start_with(Engine::Sqlite, &["--proxies", "1"]).await;
     assert_eq!(read(&proxied, ("x-forwarded-for", "192.0.2.7")).await, 401);
     proxied.finish().await;
 
     let token = "a-token-of-the-scraper";
-    let shore = Shore::start_with(Engine::Sqlite, &["--metrics-token", token]).await;
+    let server = TestServer::start_with(Engine::Sqlite, &["--metrics-token", token]).await;
     for (sent, status) in [
         (format!("Bearer {token}"), 200),
         (format!("Bearer {token}s"), 401),
         (token.to_owned(), 401),
         (String::new(), 401),
     ] {
-        let answered = read(&shore, ("authorization", &sent)).await;
+        let answered = read(&server, ("authorization", &sent)).await;
         assert_eq!(answered, status, "{sent}");
     }
-    assert_eq!(read(&shore, ("accept", "text/plain")).await, 401);
-    shore.finish().await;
+    assert_eq!(read(&server, ("accept", "text/plain")).await, 401);
+    server.finish().await;
 }
 
 #[tokio::test]
 async fn an_agents_answer_carries_no_header_that_it_does_not_need() {
-    let shore = Shore::start(Engine::Sqlite).await;
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let answer = nao.put(1, &[]).await;
-    let mut names: Vec<&str> = answer.headers.keys().map(HeaderName::as_str).collect();
+    let server = TestServer::start(Engine::Sqlite).await;
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let response = nao.put(1, &[]).await;
+    let mut names: Vec<&str> = response.headers.keys().map(HeaderName::as_str).collect();
     names.sort_unstable();
     assert_eq!(names, ["content-length", "content-type", "date"]);
-    shore.finish().await;
+    server.finish().await;
 }

@@ -1,7 +1,7 @@
 //! The API's document.
 
 use binnacle_server::routes::openapi;
-use binnacle_server_testing::{Answer, Engine, Shore};
+use binnacle_server_testing::{ApiResponse, Engine, TestServer};
 use serde_json::Value;
 
 #[test]
@@ -19,10 +19,10 @@ fn every_answer_is_described_and_every_problem_is_one() {
     let document = serde_json::to_value(openapi()).unwrap();
     for (path, operations) in document["paths"].as_object().unwrap() {
         for (method, operation) in operations.as_object().unwrap() {
-            for (status, answer) in operation["responses"].as_object().unwrap() {
+            for (status, response) in operation["responses"].as_object().unwrap() {
                 let place = format!("{method} {path} {status}");
-                assert!(answer["description"].is_string(), "{place}");
-                let problem = answer["content"].get("application/problem+json");
+                assert!(response["description"].is_string(), "{place}");
+                let problem = response["content"].get("application/problem+json");
                 assert_eq!(problem.is_some(), status.starts_with('4'), "{place}");
             }
         }
@@ -31,10 +31,11 @@ fn every_answer_is_described_and_every_problem_is_one() {
 
 #[tokio::test]
 async fn the_document_and_its_page_are_served_to_anyone() {
-    let shore = Shore::start(Engine::Sqlite).await;
-    let document = Answer::of(shore.http.get(format!("{}/api/openapi.json", shore.url))).await;
+    let server = TestServer::start(Engine::Sqlite).await;
+    let document =
+        ApiResponse::of(server.http.get(format!("{}/api/openapi.json", server.url))).await;
     assert_eq!(document.good()["openapi"], "3.1.0");
-    let page = Answer::of(shore.http.get(format!("{}/api/docs", shore.url))).await;
+    let page = ApiResponse::of(server.http.get(format!("{}/api/docs", server.url))).await;
     let paths: Value = document.json()["paths"].take();
     for path in paths.as_object().unwrap().keys() {
         assert!(
@@ -43,5 +44,5 @@ async fn the_document_and_its_page_are_served_to_anyone() {
         );
     }
     assert!(!page.text.contains("<script"), "the page needs no script");
-    shore.finish().await;
+    server.finish().await;
 }

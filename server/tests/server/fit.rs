@@ -5,7 +5,7 @@ use binnacle_compass::angle::MagneticHeading;
 use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
 use binnacle_server_testing::program::{assert_refused, good, samples_csv};
-use binnacle_server_testing::truth;
+use binnacle_server_testing::true_model;
 use std::fmt::Write;
 
 const METHODS: [&str; 3] = ["paper", "ols", "robust"];
@@ -16,7 +16,7 @@ fn two_latitudes() -> String {
     for (h_nt, z_nt) in [(24_000.0, 38_500.0), (27_000.0, -15_000.0)] {
         for step in 0..36 {
             let magnetic = MagneticHeading::new(f64::from(step) * 10.0).unwrap();
-            let compass = truth()
+            let compass = true_model()
                 .compass(magnetic, EarthField { h_nt, z_nt })
                 .unwrap()
                 .degrees();
@@ -40,7 +40,7 @@ fn every_method_finds_the_ship_of_a_perfect_swing() {
             let earth = EarthField { h_nt, z_nt };
             for step in 0..24 {
                 let magnetic = MagneticHeading::new(f64::from(step) * 15.0).unwrap();
-                let compass = truth().compass(magnetic, earth).unwrap();
+                let compass = true_model().compass(magnetic, earth).unwrap();
                 let found = model.deviation(compass, earth).unwrap().deviation;
                 let off = magnetic.degrees() - compass.degrees() - found.degrees_east();
                 let off = (off + 540.0) % 360.0 - 180.0;

@@ -2,7 +2,7 @@
 
 use binnacle_platform::db::{Connection, Db, Pools, Tx};
 use binnacle_platform::secret;
-use binnacle_server_testing::{Answer, Engine, Shore, attempt, password_hash};
+use binnacle_server_testing::{ApiResponse, Engine, TestServer, attempt, password_hash};
 use reqwest::Method;
 use serde_json::json;
 use sqlx::SqlSafeStr;
@@ -47,7 +47,7 @@ async fn on_postgres_a_database_of_another_version_is_refused() {
 /// Refuses an applied migration that is unknown, and one whose text differs.
 async fn another_version_is_refused(engine: Engine) {
     for number in [1, 63] {
-        let bare = Shore::bare(engine).await;
+        let bare = TestServer::bare(engine).await;
         let other = Migration::new(
             number,
             "other".into(),
@@ -75,49 +75,54 @@ async fn another_version_is_refused(engine: Engine) {
 }
 
 async fn nothing_is_lost(engine: Engine) {
-    let prepared = Shore::prepared(engine).await;
+    let prepared = TestServer::prepared(engine).await;
     let operator = Uuid::now_v7();
     fill(&prepared.db, operator).await;
-    let shore = prepared.open().await;
+    let server = prepared.open().await;
     for number in 0..PEOPLE {
         let role = ["admin", "viewer", "platform_admin"][number];
-        let url = format!("{}/api/v1/me", shore.url);
+        let url = format!("{}/api/v1/me", server.url);
         let cookie = format!("binnacle_session=session{number}");
-        let by_cookie = Answer::of(shore.http.get(&url).header("cookie", cookie)).await;
+        let by_cookie = ApiResponse::of(server.http.get(&url).header("cookie", cookie)).await;
         assert_eq!(by_cookie.good()["role"], role);
-        let token = shore
+        let token = server
             .http
             .get(&url)
             .bearer_auth(format!("bna_token{number}"));
-        assert_eq!(Answer::of(token).await.good()["role"], role);
+        assert_eq!(ApiResponse::of(token).await.good()["role"], role);
         let signed_in = attempt(
-            &shore,
+            &server,
             &format!("{number}@example.com"),
             binnacle_server_testing::PASSWORD,
         )
         .await;
         assert_eq!(signed_in.good()["role"], role);
     }
-    let url = |path: &str| format!("{}/api/v1{path}", shore.url);
+    let url = |path: &str| format!("{}/api/v1{path}", server.url);
     let request = |method, path: &str| {
-        shore
+        server
             .http
             .request(method, url(path))
             .bearer_auth("bna_token0")
     };
-    let webhooks = Answer::of(request(Method::GET, "/webhooks")).await.good();
+    let webhooks = ApiResponse::of(request(Method::GET, "/webhooks"))
+        .await
+        .good();
     assert_eq!(webhooks["items"][0]["url"], "https://example.com/hook");
     // The stored key still finds what it made.
     let vessel = request(Method::POST, "/vessels").json(&json!({ "name": "Other" }));
     let vessel = vessel.header("Idempotency-Key", "old");
-    assert_eq!(Answer::of(vessel).await.problem(), "idempotency-key-reused");
+    assert_eq!(
+        ApiResponse::of(vessel).await.problem(),
+        "idempotency-key-reused"
+    );
     // Sessions and tokens refer to their user: who is removed is signed out.
-    shore.sql("DELETE FROM users WHERE role = 'viewer'").await;
-    let gone = shore.http.get(url("/me")).bearer_auth("bna_token1");
-    assert_eq!(Answer::of(gone).await.problem(), "unauthenticated");
-    let left = Answer::of(request(Method::GET, "/me")).await;
+    server.sql("DELETE FROM users WHERE role = 'viewer'").await;
+    let gone = server.http.get(url("/me")).bearer_auth("bna_token1");
+    assert_eq!(ApiResponse::of(gone).await.problem(), "unauthenticated");
+    let left = ApiResponse::of(request(Method::GET, "/me")).await;
     assert_eq!(left.status, 200);
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// Fills in people of each role, a webhook and an idempotency key.

@@ -4,7 +4,7 @@ use super::{A_WHILE_S, DAY};
 use binnacle_fleet::analysis;
 use binnacle_server::worker::{self, Worked};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Shore, passage};
+use binnacle_server_testing::{TestServer, passage};
 use serde_json::json;
 
 on_both!(
@@ -17,36 +17,36 @@ on_both!(
 );
 
 /// Takes a job as a worker does that then dies.
-async fn claim(shore: &Shore) -> bool {
-    let now = shore.app.clock.now().into();
-    let job = analysis::claim(&shore.app.db, now).await.unwrap();
+async fn claim(server: &TestServer) -> bool {
+    let now = server.app.clock.now().into();
+    let job = analysis::claim(&server.app.db, now).await.unwrap();
     job.is_some()
 }
 
-async fn many_batches_make_one_job_that_waits_for_more(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn many_batches_make_one_job_that_waits_for_more(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     for seq in 1..=10 {
         nao.put(seq, &passage(DAY, 4)).await.good();
     }
-    assert_eq!(shore.work().await, [], "before the delay is over");
-    shore.advance(A_WHILE_S);
-    assert_eq!(shore.work().await.len(), 1);
-    assert_eq!(shore.work().await, []);
-    shore.finish().await;
+    assert_eq!(server.work().await, [], "before the delay is over");
+    server.advance(A_WHILE_S);
+    assert_eq!(server.work().await.len(), 1);
+    assert_eq!(server.work().await, []);
+    server.finish().await;
 }
 
-async fn the_same_input_makes_no_second_version(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn the_same_input_makes_no_second_version(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let samples = passage(DAY, 300);
     nao.put(1, &samples).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     // The same samples come again in a batch of their own.
     nao.put(2, &samples).await.good();
-    shore.advance(A_WHILE_S);
-    let worked = shore.work().await;
+    server.advance(A_WHILE_S);
+    let worked = server.work().await;
     assert!(matches!(worked[..], [Worked::Analysed(_, 0)]), "{worked:?}");
     let versions = ada.get(&nao.path("/models")).await.good();
     assert_eq!(versions["items"].as_array().unwrap().len(), 1);
@@ -54,24 +54,24 @@ async fn the_same_input_makes_no_second_version(shore: Shore) {
     nao.put(3, &passage("2026-11-20T00:00:00Z", 10))
         .await
         .good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let versions = ada.get(&nao.path("/models?limit=1")).await.good();
     assert_eq!(versions["items"][0]["version"], 2);
     let rest = format!("/models?after={}", versions["next"].as_str().unwrap());
     let older = ada.get(&nao.path(&rest)).await.good();
     assert_eq!(older["items"][0]["version"], 1);
     assert_eq!(older["next"], json!(null));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn another_estimator_analyses_every_vessel_again_at_the_start(shore: Shore) {
+async fn another_estimator_analyses_every_vessel_again_at_the_start(server: TestServer) {
     // It has started once it answers.
-    async fn restart(shore: Shore) -> Shore {
-        let shore = shore.restart().await;
-        let health = format!("{}/healthz", shore.url);
+    async fn restart(server: TestServer) -> TestServer {
+        let server = server.restart().await;
+        let health = format!("{}/healthz", server.url);
         assert!(
-            shore
+            server
                 .http
                 .get(health)
                 .send()
@@ -80,95 +80,95 @@ async fn another_estimator_analyses_every_vessel_again_at_the_start(shore: Shore
                 .status()
                 .is_success()
         );
-        shore
+        server
     }
-    let ada = shore.admin("ada").await;
-    let mut nao = shore.ship(&ada, "Nao").await;
-    let gaviota = shore.ship(&ada, "Gaviota").await;
+    let ada = server.admin("ada").await;
+    let mut nao = server.ship(&ada, "Nao").await;
+    let gaviota = server.ship(&ada, "Gaviota").await;
     nao.put(1, &passage(DAY, 30)).await.good();
     gaviota.put(1, &passage(DAY, 30)).await.good();
-    shore.advance(A_WHILE_S);
-    assert_eq!(shore.work().await.len(), 2);
-    let shore = restart(shore).await;
-    assert_eq!(shore.work().await, [], "the estimator is the same");
+    server.advance(A_WHILE_S);
+    assert_eq!(server.work().await.len(), 2);
+    let server = restart(server).await;
+    assert_eq!(server.work().await, [], "the estimator is the same");
 
     // As an earlier version left it; for one of the two a job waits already.
-    shore
+    server
         .sql("UPDATE analyses SET estimator = 'older', input_hash = 'older'")
         .await;
-    nao.at(&shore);
+    nao.at(&server);
     nao.put(2, &passage("2026-11-20T00:00:00Z", 3)).await.good();
-    let shore = restart(shore).await;
-    let worked = shore.work().await;
+    let server = restart(server).await;
+    let worked = server.work().await;
     let [Worked::Analysed(first, 1), Worked::Analysed(second, 1)] = worked[..] else {
         panic!("{worked:?}");
     };
     assert_ne!(first, second);
-    let shore = restart(shore).await;
-    assert_eq!(shore.work().await, []);
-    shore.finish().await;
+    let server = restart(server).await;
+    assert_eq!(server.work().await, []);
+    server.finish().await;
 }
 
-async fn a_lease_that_ended_goes_to_another_worker(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_lease_that_ended_goes_to_another_worker(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 300)).await.good();
-    shore.advance(A_WHILE_S);
+    server.advance(A_WHILE_S);
     // A worker takes the job and is never heard of again.
-    assert!(claim(&shore).await);
-    assert_eq!(shore.work().await, []);
+    assert!(claim(&server).await);
+    assert_eq!(server.work().await, []);
     // A batch that comes meanwhile waits: a vessel is analysed by one at a time.
     nao.put(2, &passage("2026-11-20T00:00:00Z", 3)).await.good();
-    shore.advance(A_WHILE_S);
-    assert_eq!(shore.work().await, []);
-    shore.advance(600.0);
-    let other = shore.second().await;
+    server.advance(A_WHILE_S);
+    assert_eq!(server.work().await, []);
+    server.advance(600.0);
+    let other = server.second().await;
     let worked = worker::step(&other).await.unwrap();
     assert!(matches!(worked, Some(Worked::Analysed(_, 1))), "{worked:?}");
     assert_eq!(ada.get(&nao.path("/model")).await.status, 200);
     other.db.close().await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_lease_that_is_renewed_is_not_taken(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_lease_that_is_renewed_is_not_taken(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 30)).await.good();
-    shore.advance(A_WHILE_S);
-    let now = || shore.app.clock.now().into();
-    let job = analysis::claim(&shore.app.db, now())
+    server.advance(A_WHILE_S);
+    let now = || server.app.clock.now().into();
+    let job = analysis::claim(&server.app.db, now())
         .await
         .unwrap()
         .unwrap();
     for _ in 0..3 {
-        shore.advance(50.0);
-        analysis::renew(&shore.app.db, job, now()).await.unwrap();
+        server.advance(50.0);
+        analysis::renew(&server.app.db, job, now()).await.unwrap();
     }
-    assert_eq!(shore.work().await, []);
+    assert_eq!(server.work().await, []);
     // The worker was killed: within a minute another takes its job.
-    shore.advance(60.0);
-    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
+    server.advance(60.0);
+    assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
     // Whoever comes back late renews nothing.
-    analysis::renew(&shore.app.db, job, now()).await.unwrap();
-    let left = analysis::count_jobs(&shore.app.db).await.unwrap();
+    analysis::renew(&server.app.db, job, now()).await.unwrap();
+    let left = analysis::count_jobs(&server.app.db).await.unwrap();
     assert_eq!(left, [("queued", 0), ("running", 0), ("dead", 0)]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_job_that_fails_is_tried_again_and_then_given_up(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_job_that_fails_is_tried_again_and_then_given_up(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 30)).await.good();
     for _ in 0..6 {
-        shore.advance(1000.0);
-        claim(&shore).await;
+        server.advance(1000.0);
+        claim(&server).await;
     }
-    shore.advance(1000.0);
-    let worked = shore.work().await;
+    server.advance(1000.0);
+    let worked = server.work().await;
     assert!(matches!(worked[..], [Worked::Failed(_)]), "{worked:?}");
-    let metrics = shore
+    let metrics = server
         .http
-        .get(format!("{}/metrics", shore.url))
+        .get(format!("{}/metrics", server.url))
         .send()
         .await
         .unwrap();
@@ -181,9 +181,9 @@ async fn a_job_that_fails_is_tried_again_and_then_given_up(shore: Shore) {
     );
     // A later batch starts afresh, and its success clears the dead one away.
     nao.put(2, &passage("2026-11-20T00:00:00Z", 3)).await.good();
-    shore.advance(A_WHILE_S);
-    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
-    let left = analysis::count_jobs(&shore.app.db).await.unwrap();
+    server.advance(A_WHILE_S);
+    assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
+    let left = analysis::count_jobs(&server.app.db).await.unwrap();
     assert_eq!(left, [("queued", 0), ("running", 0), ("dead", 0)]);
-    shore.finish().await;
+    server.finish().await;
 }

@@ -7,7 +7,7 @@ use binnacle_compass::angle::{CompassHeading, TrueHeading};
 use binnacle_compass::ship::EarthField;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::program::good;
-use binnacle_server_testing::{Shore, passage};
+use binnacle_server_testing::{TestServer, passage};
 use serde_json::{Value, json};
 
 on_both!(
@@ -27,13 +27,13 @@ pub(crate) const DAY: &str = "2026-11-15T00:00:00Z";
 /// Longer than the delay before an analysis.
 pub(crate) const A_WHILE_S: f64 = 10.0;
 
-async fn a_passage_becomes_a_model_that_foretells_the_deviation(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_passage_becomes_a_model_that_foretells_the_deviation(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     assert_eq!(ada.get(&nao.path("/model")).await.problem(), "no-model-yet");
     nao.put(1, &passage(DAY, 300)).await.good();
-    shore.advance(A_WHILE_S);
-    assert_eq!(shore.work().await.len(), 1);
+    server.advance(A_WHILE_S);
+    assert_eq!(server.work().await.len(), 1);
 
     let model = ada.get(&nao.path("/model")).await.good();
     assert_eq!(model["version"], 1);
@@ -91,21 +91,21 @@ async fn a_passage_becomes_a_model_that_foretells_the_deviation(shore: Shore) {
         (compact.contiguous_seq, None)
     );
     assert!(octets < 20, "{octets}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn without_enough_headings_the_answer_says_what_is_missing(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn without_enough_headings_the_answer_says_what_is_missing(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 3)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     for path in ["/model", "/deviation"] {
-        let answer = ada.get(&nao.path(path)).await;
-        assert_eq!(answer.problem(), "no-model-yet");
-        let detail = answer.json()["detail"].as_str().unwrap().to_owned();
+        let response = ada.get(&nao.path(path)).await;
+        assert_eq!(response.problem(), "no-model-yet");
+        let detail = response.json()["detail"].as_str().unwrap().to_owned();
         assert!(detail.contains("needed"), "{detail}");
-        let refusal = &answer.json()["refusal"];
+        let refusal = &response.json()["refusal"];
         assert_eq!(refusal["reason"], "too_few_samples");
         assert_eq!(refusal["found"], 3);
         let needed = refusal["needed"].as_u64().unwrap();
@@ -113,13 +113,15 @@ async fn without_enough_headings_the_answer_says_what_is_missing(shore: Shore) {
     }
     let listed = ada.get(&nao.path("/samples")).await.good();
     assert_eq!(listed["items"].as_array().unwrap().len(), 3);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn gyro_and_satellite_compass_are_compared_and_their_quarrel_is_a_refusal(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn gyro_and_satellite_compass_are_compared_and_their_quarrel_is_a_refusal(
+    server: TestServer,
+) {
+    let ada = server.admin("ada").await;
     for (satellite_behind_deg, refused) in [(0.4, false), (12.0, true)] {
-        let nao = shore.ship(&ada, "Nao").await;
+        let nao = server.ship(&ada, "Nao").await;
         let none = ada.get(&nao.path("/coverage")).await.good();
         assert_eq!(none["references"], json!(null));
         let before = ada.get(&nao.path("/model")).await;
@@ -136,8 +138,8 @@ async fn gyro_and_satellite_compass_are_compared_and_their_quarrel_is_a_refusal(
             sample.gyro = TrueHeading::new(gyro_deg + 20.0);
         }
         nao.put(1, &samples).await.good();
-        shore.advance(A_WHILE_S);
-        shore.work().await;
+        server.advance(A_WHILE_S);
+        server.work().await;
         let references = ada.get(&nao.path("/coverage")).await.good()["references"].take();
         let model = ada.get(&nao.path("/model")).await;
         if refused {
@@ -154,38 +156,38 @@ async fn gyro_and_satellite_compass_are_compared_and_their_quarrel_is_a_refusal(
             assert_eq!(references["satellite_dropped"], 0);
         }
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn the_order_of_batches_does_not_change_the_model(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn the_order_of_batches_does_not_change_the_model(server: TestServer) {
+    let ada = server.admin("ada").await;
     let samples = passage(DAY, 300);
     let halves = [&samples[..150], &samples[150..]];
     let mut models: Vec<Value> = Vec::new();
     for order in [[0, 1], [1, 0]] {
-        let ship = shore.ship(&ada, "Nao").await;
+        let ship = server.ship(&ada, "Nao").await;
         for half in order {
             ship.put(half as u64 + 1, halves[half]).await.good();
-            shore.advance(A_WHILE_S);
-            shore.work().await;
+            server.advance(A_WHILE_S);
+            server.work().await;
         }
         models.push(ada.get(&ship.path("/model")).await.good());
     }
     assert_eq!(models[0]["input_hash"], models[1]["input_hash"]);
     assert_eq!(models[0]["model"], models[1]["model"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn samples_of_one_instant_are_all_listed(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn samples_of_one_instant_are_all_listed(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let mut samples = passage(DAY, 7);
     for index in 1..6 {
         samples[index].time = samples[1].time;
     }
     nao.put(1, &samples).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let all = ada.get(&nao.path("/samples")).await.good()["items"].clone();
     let mut listed = Vec::new();
     let mut after = String::new();
@@ -199,27 +201,27 @@ async fn samples_of_one_instant_are_all_listed(shore: Shore) {
         after = format!("&after={next}");
     }
     assert_eq!((listed.len(), Value::Array(listed)), (7, all));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_change_of_settings_makes_a_new_version_and_reaches_the_ship(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_change_of_settings_makes_a_new_version_and_reaches_the_ship(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 300)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let mut settings = ada.get(&nao.path("/settings")).await.good();
     assert_eq!(settings["agent"]["version"], 0);
     settings["agent"]["min_sog_kn"] = json!(6.0);
     settings["analysis"]["gyro_speed_error"] = json!("uncorrected");
     let put = |body: Value| {
         let request = ada.request(reqwest::Method::PUT, &nao.path("/settings"));
-        binnacle_server_testing::Answer::of(request.json(&body))
+        binnacle_server_testing::ApiResponse::of(request.json(&body))
     };
     assert_eq!(put(settings.clone()).await.good()["agent"]["version"], 1);
     assert_eq!(nao.downlink("").await["settings"]["min_sog_kn"], 6.0);
     assert!(nao.downlink("?settings=1").await.get("settings").is_none());
-    shore.work().await;
+    server.work().await;
     assert_eq!(ada.get(&nao.path("/model")).await.good()["version"], 2);
 
     settings["agent"]["min_sog_kn"] = json!(-1.0);
@@ -227,15 +229,15 @@ async fn a_change_of_settings_makes_a_new_version_and_reaches_the_ship(shore: Sh
     settings["agent"]["min_sog_kn"] = json!(6.0);
     settings["analysis"]["reference_constant_sd_deg"] = json!(-1.0);
     assert_eq!(put(settings).await.problem(), "invalid");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_picture_of_samples_says_what_their_list_says(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_picture_of_samples_says_what_their_list_says(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 300)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let listed = ada.get(&nao.path("/samples?limit=300")).await.good();
     let listed = listed["items"].as_array().unwrap();
     let picture = ada.get(&nao.path("/samples/picture")).await.good();
@@ -267,15 +269,15 @@ async fn a_picture_of_samples_says_what_their_list_says(shore: Shore) {
         (&none["samples"], &none["rms_deg"]),
         (&json!(0), &json!(null))
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn samples_page_and_filter_and_come_as_files(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn samples_page_and_filter_and_come_as_files(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 100)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let first = ada.get(&nao.path("/samples?limit=60")).await.good();
     assert_eq!(first["items"].as_array().unwrap().len(), 60);
     let next = format!(
@@ -319,20 +321,20 @@ async fn samples_page_and_filter_and_come_as_files(shore: Shore) {
         "?at=1850-01-01T00:00:00Z",
         "?step_deg=0",
     ] {
-        let answer = ada.get(&nao.path(&format!("/deviation{wrong}"))).await;
-        assert_eq!(answer.problem(), "invalid", "{wrong}");
+        let response = ada.get(&nao.path(&format!("/deviation{wrong}"))).await;
+        assert_eq!(response.problem(), "invalid", "{wrong}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn coverage_tells_what_to_sail_next_once_there_is_a_model(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn coverage_tells_what_to_sail_next_once_there_is_a_model(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let before = ada.get(&nao.path("/coverage")).await.good();
     assert_eq!(before["sail_next"], json!(null));
     nao.put(1, &passage(DAY, 300)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let coverage = ada.get(&nao.path("/coverage")).await.good();
     assert_eq!(coverage["cells"].as_array().unwrap().len(), 24);
     let next = &coverage["sail_next"];
@@ -358,19 +360,19 @@ async fn coverage_tells_what_to_sail_next_once_there_is_a_model(shore: Shore) {
         band(&best["after_one"]) < band(&elsewhere["band"]),
         "{best}"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn fit_reads_the_exported_samples_and_weights_them_once(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn fit_reads_the_exported_samples_and_weights_them_once(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let mut samples = passage(DAY, 300);
     // One that the analysis gives no full weight.
     let gyro_deg = samples[150].gyro.unwrap().degrees();
     samples[150].gyro = Some(TrueHeading::new(gyro_deg + 3.0).unwrap());
     nao.put(1, &samples).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let exported = ada.get(&nao.path("/samples.csv")).await.text;
     let table: Vec<Vec<&str>> = exported.lines().map(|l| l.split(',').collect()).collect();
     let column = table[0].iter().position(|name| *name == "robust_weight");
@@ -391,5 +393,5 @@ async fn fit_reads_the_exported_samples_and_weights_them_once(shore: Shore) {
     std::fs::write(folder.path().join("unweighted.csv"), unweighted).unwrap();
     let fit = |file| good(&run(folder.path(), &["fit", file, "--json"]));
     assert_eq!(fit("exported.csv"), fit("unweighted.csv"));
-    shore.finish().await;
+    server.finish().await;
 }

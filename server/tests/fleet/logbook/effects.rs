@@ -4,7 +4,7 @@ use super::{A_WHILE_S, DAY};
 use binnacle_server::worker::Worked;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::patch;
-use binnacle_server_testing::{Person, Ship, Shore, passage};
+use binnacle_server_testing::{Person, Ship, TestServer, passage};
 use serde_json::{Value, json};
 
 on_both!(
@@ -47,17 +47,19 @@ async fn sound_epochs(person: &Person, ship: &Ship) -> Vec<Value> {
     epochs
 }
 
-async fn samples_with_magnetic_cargo_are_left_out_until_the_report_is_withdrawn(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn samples_with_magnetic_cargo_are_left_out_until_the_report_is_withdrawn(
+    server: TestServer,
+) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 90)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let scrap = json!({
         "kind": "magnetic_cargo", "from": "2026-11-15T05:00:00Z", "cargo": "scrap", "hatch": "2",
     });
     let entry = nao.report(&ada, &scrap).await;
-    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
+    assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
     assert_eq!(left_out(&ada, &nao, "magnetic_cargo").await, 60);
     assert_eq!(ada.get(&nao.path("/model")).await.good()["version"], 2);
 
@@ -68,7 +70,7 @@ async fn samples_with_magnetic_cargo_are_left_out_until_the_report_is_withdrawn(
         "2",
         "what was not named is as it was"
     );
-    shore.work().await;
+    server.work().await;
     assert_eq!(left_out(&ada, &nao, "magnetic_cargo").await, 13);
 
     let berth = json!({ "kind": "berth", "from": DAY, "to": "2026-11-15T00:50:00Z" });
@@ -76,85 +78,85 @@ async fn samples_with_magnetic_cargo_are_left_out_until_the_report_is_withdrawn(
     ada.post(&format!("{path}/withdraw"), &json!({}))
         .await
         .good();
-    assert_eq!(shore.work().await.len(), 1, "one job for both");
+    assert_eq!(server.work().await.len(), 1, "one job for both");
     assert_eq!(left_out(&ada, &nao, "magnetic_cargo").await, 0);
     assert_eq!(left_out(&ada, &nao, "berth").await, 6);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_adjustment_opens_an_epoch_of_its_own_compass(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn an_adjustment_opens_an_epoch_of_its_own_compass(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let aft = json!({ "name": "Aft", "role": "steering" });
     let aft = ada.post(&nao.path("/compasses"), &aft).await.good();
     nao.put(1, &passage(DAY, 200)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let mut adjusted = json!({ "kind": "adjustment", "from": "2026-11-15T12:00:00Z" });
     adjusted["compass_id"] = aft["id"].clone();
     nao.report(&ada, &adjusted).await;
-    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 0)]));
+    assert!(matches!(server.work().await[..], [Worked::Analysed(_, 0)]));
     adjusted["compass_id"] = json!(null);
     nao.report(&ada, &adjusted).await;
-    shore.work().await;
+    server.work().await;
     let model = ada.get(&nao.path("/model")).await.good();
     assert_eq!(model["version"], 2);
     assert_eq!(model["epoch_from"], "2026-11-15T12:00:00Z");
     assert_eq!(model["data_from"], "2026-11-15T12:00:00Z");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_adjustment_that_is_planned_withdraws_the_card_when_it_comes(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn an_adjustment_that_is_planned_withdraws_the_card_when_it_comes(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 200)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
-    let at = shore.app.clock.now().plus_seconds(7200.0);
+    server.advance(A_WHILE_S);
+    server.work().await;
+    let at = server.app.clock.now().plus_seconds(7200.0);
     let planned = json!({ "kind": "adjustment", "from": at.to_string() });
     nao.report(&ada, &planned).await;
-    shore.work().await;
+    server.work().await;
     let model = ada.get(&nao.path("/model")).await.good();
     assert_eq!(model["version"], 1, "the card holds until then");
-    assert!(shore.work().await.is_empty(), "nothing is due before");
-    shore.advance(7201.0);
-    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
+    assert!(server.work().await.is_empty(), "nothing is due before");
+    server.advance(7201.0);
+    assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
     let withdrawn = ada.get(&nao.path("/model")).await;
     assert_eq!(withdrawn.status, 404);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn words_alone_make_no_new_model(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn words_alone_make_no_new_model(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 90)).await.good();
     let entry = nao
         .report(&ada, &json!({ "kind": "lightning", "from": DAY }))
         .await;
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let path = nao.path(&format!("/logbook/{}", entry["id"].as_str().unwrap()));
     let words = json!({ "note": "on the foremast", "port": "off Ushant" });
     patch(&ada, &path, &words).await.good();
     nao.report(&ada, &json!({ "kind": "note", "from": DAY }))
         .await;
-    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 0)]));
+    assert!(matches!(server.work().await[..], [Worked::Analysed(_, 0)]));
     assert_eq!(ada.get(&nao.path("/model")).await.good()["version"], 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn without_a_model_it_is_said_what_the_logbook_leaves_out(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn without_a_model_it_is_said_what_the_logbook_leaves_out(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     // Loaded, and nobody wrote down that she was discharged.
     let cargo = json!({ "kind": "magnetic_cargo", "from": "2026-11-14T00:00:00Z" });
     nao.report(&ada, &cargo).await;
     nao.put(1, &passage(DAY, 60)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
-    let answer = ada.get(&nao.path("/model")).await;
-    assert_eq!(answer.problem(), "no-model-yet");
-    let problem = answer.json();
+    server.advance(A_WHILE_S);
+    server.work().await;
+    let response = ada.get(&nao.path("/model")).await;
+    assert_eq!(response.problem(), "no-model-yet");
+    let problem = response.json();
     assert_eq!(problem["refusal"]["found"], 0, "{problem}");
     assert_eq!(
         problem["left_out"],
@@ -165,12 +167,14 @@ async fn without_a_model_it_is_said_what_the_logbook_leaves_out(shore: Shore) {
         detail.ends_with("samples are left out: 60 for magnetic cargo"),
         "{detail}"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline(
+    server: TestServer,
+) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     for entry in [
         // Long before the first sample, and twice the same,
         json!({ "kind": "adjustment", "from": "1987-03-01T00:00:00Z" }),
@@ -187,8 +191,8 @@ async fn entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline(
         nao.report(&ada, &entry).await;
     }
     nao.put(1, &passage(DAY, 300)).await.good();
-    shore.advance(A_WHILE_S);
-    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
+    server.advance(A_WHILE_S);
+    assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
     let epochs = sound_epochs(&ada, &nao).await;
     assert_eq!(begun_by(&epochs), [&Value::Null, &json!("adjustment")]);
     assert_eq!(epochs[0]["refusal"]["reason"], "too_few_samples");
@@ -202,23 +206,23 @@ async fn entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline(
     assert_eq!(out, 36);
 
     // The work begins at noon.
-    shore.advance(5.0 * 3600.0);
-    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
+    server.advance(5.0 * 3600.0);
+    assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
     let epochs = sound_epochs(&ada, &nao).await;
     assert_eq!(
         begun_by(&epochs),
         [&Value::Null, &json!("adjustment"), &json!("dry_docking")]
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
 fn begun_by(epochs: &[Value]) -> Vec<&Value> {
     epochs.iter().map(|epoch| &epoch["begun_by"]).collect()
 }
 
-async fn a_thousand_entries_are_one_analysis(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_thousand_entries_are_one_analysis(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 300)).await.good();
     for minute in 0..1000 {
         let from = format!("2026-11-15T{:02}:{:02}:00Z", minute / 60, minute % 60);
@@ -226,9 +230,9 @@ async fn a_thousand_entries_are_one_analysis(shore: Shore) {
         nao.report(&ada, &json!({ "kind": kind, "from": from, "to": from }))
             .await;
     }
-    shore.advance(A_WHILE_S);
-    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
+    server.advance(A_WHILE_S);
+    assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
     assert_eq!(sound_epochs(&ada, &nao).await.len(), 501);
     assert_eq!(ada.get(&nao.path("/model")).await.good()["version"], 1);
-    shore.finish().await;
+    server.finish().await;
 }

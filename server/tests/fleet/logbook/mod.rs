@@ -5,7 +5,7 @@ mod effects;
 
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::patch;
-use binnacle_server_testing::{Answer, Person, Ship, Shore};
+use binnacle_server_testing::{ApiResponse, Person, Ship, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -37,9 +37,9 @@ fn notes(entries: &[Value]) -> Vec<&str> {
         .collect()
 }
 
-async fn what_happened_last_comes_first_on_every_page(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn what_happened_last_comes_first_on_every_page(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     for (note, from) in [
         ("b", "2026-11-02T00:00:00Z"),
         ("c", "2026-11-03T00:00:00+02:00"),
@@ -63,12 +63,12 @@ async fn what_happened_last_comes_first_on_every_page(shore: Shore) {
     assert_eq!(found[0]["from"], "2026-11-02T22:00:00Z");
     let wrong = ada.get(&nao.path("/logbook?after=1.x")).await;
     assert_eq!(wrong.problem(), "bad-request");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_logbook_is_searched_by_kind_and_time(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_logbook_is_searched_by_kind_and_time(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     for (kind, from, to) in [
         ("lightning", "2026-11-01T00:00:00Z", json!(null)),
         ("magnetic_cargo", "2026-11-02T00:00:00Z", json!(null)),
@@ -102,13 +102,13 @@ async fn a_logbook_is_searched_by_kind_and_time(shore: Shore) {
     assert_eq!(wrong.problem(), "invalid");
     let wrong = ada.get(&nao.path("/logbook?kind=ufo")).await;
     assert_eq!(wrong.problem(), "bad-request");
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// How many samples were left out for a reason.
-async fn an_amendment_keeps_what_was_written_before(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn an_amendment_keeps_what_was_written_before(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let cargo = json!({
         "kind": "magnetic_cargo", "from": DAY, "cargo": "steel", "hatch": "1", "port": "Bilbao",
     });
@@ -123,7 +123,7 @@ async fn an_amendment_keeps_what_was_written_before(shore: Shore) {
         .await
         .good();
     assert_eq!(same["revision"], 1, "nothing was changed");
-    shore.advance(5.0);
+    server.advance(5.0);
     let change = json!({ "port": null, "cargo": "scrap", "note": "rails" });
     let amended = patch(&ada, &path, &change).await.good();
     assert_eq!(amended["port"], json!(null));
@@ -147,12 +147,12 @@ async fn an_amendment_keeps_what_was_written_before(shore: Shore) {
     let misspelt = json!({ "till": "2026-11-16T00:00:00Z" });
     assert_eq!(patch(&ada, &path, &misspelt).await.problem(), "invalid");
     assert_eq!(ada.get(&path).await.good(), found);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_withdrawn_entry_stays_and_is_changed_no_more(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_withdrawn_entry_stays_and_is_changed_no_more(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let entry = nao
         .report(&ada, &json!({ "kind": "lightning", "from": DAY }))
         .await;
@@ -163,7 +163,7 @@ async fn a_withdrawn_entry_stays_and_is_changed_no_more(shore: Shore) {
     assert_eq!(withdrawn["withdrawn_at"], "2026-11-21T07:00:00Z");
     assert_eq!(withdrawn["withdrawn_by"], "ada@example.com");
     assert_eq!(withdrawn["withdrawal_reason"], "another ship");
-    shore.advance(5.0);
+    server.advance(5.0);
     let again = ada.post(&withdraw, &json!({ "reason": "no" })).await.good();
     assert_eq!(again, withdrawn);
     assert_eq!(
@@ -172,13 +172,13 @@ async fn a_withdrawn_entry_stays_and_is_changed_no_more(shore: Shore) {
     );
     assert_eq!(listed(&ada, &nao, "").await, [withdrawn]);
     assert!(listed(&ada, &nao, "?withdrawn=false").await.is_empty());
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_is_no_entry_is_refused_by_its_field_and_leaves_nothing(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let kogge = shore.ship(&ada, "Kogge").await;
+async fn what_is_no_entry_is_refused_by_its_field_and_leaves_nothing(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let kogge = server.ship(&ada, "Kogge").await;
     let other = ada.get(&kogge.path("/compasses")).await.good();
     let other = &other["items"][0]["id"];
     for (field, body) in [
@@ -219,56 +219,56 @@ async fn what_is_no_entry_is_refused_by_its_field_and_leaves_nothing(shore: Shor
             json!({ "kind": "adjustment", "from": DAY, "compass_id": other }),
         ),
     ] {
-        let answer = ada.post(&nao.path("/logbook"), &body).await;
-        assert_eq!(answer.problem(), "invalid", "{body}");
-        let detail = answer.json()["detail"].as_str().unwrap().to_owned();
+        let response = ada.post(&nao.path("/logbook"), &body).await;
+        assert_eq!(response.problem(), "invalid", "{body}");
+        let detail = response.json()["detail"].as_str().unwrap().to_owned();
         assert!(detail.contains(field), "{body}: {detail}");
     }
     assert!(listed(&ada, &nao, "").await.is_empty());
-    assert_eq!(shore.work().await, []);
-    shore.finish().await;
+    assert_eq!(server.work().await, []);
+    server.finish().await;
 }
 
-async fn a_report_sent_again_under_its_key_is_one_entry(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_report_sent_again_under_its_key_is_one_entry(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let report = async |note: &str| {
         let request = ada.request(Method::POST, &nao.path("/logbook"));
         let body = json!({ "kind": "shock", "from": DAY, "note": note });
-        Answer::of(request.header("idempotency-key", "k").json(&body)).await
+        ApiResponse::of(request.header("idempotency-key", "k").json(&body)).await
     };
     let (first, again) = (report("aground").await, report("aground").await);
     assert_eq!((first.status, again.status), (201, 201));
     assert_eq!(first.json(), again.json());
     assert_eq!(report("afloat").await.problem(), "idempotency-key-reused");
     assert_eq!(listed(&ada, &nao, "").await.len(), 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_viewer_reads_and_does_not_write(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_viewer_reads_and_does_not_write(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let entry = json!({ "kind": "welding", "from": DAY });
     let id = nao.report(&ada, &entry).await["id"].clone();
     let path = nao.path(&format!("/logbook/{}", id.as_str().unwrap()));
-    let viewer = ada.viewer(&shore).await;
+    let viewer = ada.viewer(&server).await;
     assert_eq!(listed(&viewer, &nao, "").await.len(), 1);
     let written = [
         viewer.post(&nao.path("/logbook"), &entry).await,
         patch(&viewer, &path, &json!({ "note": "x" })).await,
         viewer.post(&format!("{path}/withdraw"), &json!({})).await,
     ];
-    for answer in written {
-        assert_eq!(answer.problem(), "forbidden");
+    for response in written {
+        assert_eq!(response.problem(), "forbidden");
     }
     assert_eq!(listed(&ada, &nao, "").await[0]["revision"], 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_entry_is_found_with_its_own_vessel_only(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let kogge = shore.ship(&ada, "Kogge").await;
+async fn an_entry_is_found_with_its_own_vessel_only(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let kogge = server.ship(&ada, "Kogge").await;
     let entry = nao
         .report(&ada, &json!({ "kind": "welding", "from": DAY }))
         .await;
@@ -278,16 +278,16 @@ async fn an_entry_is_found_with_its_own_vessel_only(shore: Shore) {
         patch(&ada, &path, &json!({})).await,
         ada.post(&format!("{path}/withdraw"), &json!({})).await,
     ];
-    for answer in found {
-        assert_eq!(answer.problem(), "not-found");
+    for response in found {
+        assert_eq!(response.problem(), "not-found");
     }
     assert!(listed(&ada, &kogge, "").await.is_empty());
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_report_from_on_board_counts_once_however_often_it_comes(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
+async fn a_report_from_on_board_counts_once_however_often_it_comes(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
     let id = "01934f2a-7c00-7000-8000-0000000000b1";
     let mut report = json!({
         "revision": 1, "reporter": "Li", "kind": "magnetic_cargo", "from": DAY, "cargo": "steel",
@@ -329,21 +329,21 @@ async fn a_report_from_on_board_counts_once_however_often_it_comes(shore: Shore)
     report["withdrawn"] = json!(true);
     assert_eq!(nao.put_report(id, &report).await.good()["withdrawn"], true);
     assert_eq!(listed(&ada, &nao, "?withdrawn=false").await.len(), 0);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_ship_reaches_only_what_she_reported_herself(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let kogge = shore.ship(&ada, "Kogge").await;
+async fn a_ship_reaches_only_what_she_reported_herself(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let nao = server.ship(&ada, "Nao").await;
+    let kogge = server.ship(&ada, "Kogge").await;
     let ashore = nao
         .report(&ada, &json!({ "kind": "note", "from": DAY }))
         .await;
     let report = json!({ "revision": 9, "kind": "shock", "from": DAY, "note": "hers" });
-    let answer = nao
+    let response = nao
         .put_report(ashore["id"].as_str().unwrap(), &report)
         .await;
-    assert_eq!(answer.problem(), "not-found");
+    assert_eq!(response.problem(), "not-found");
     // The same id on another ship is another entry.
     let id = "01934f2a-7c00-7000-8000-0000000000b1";
     nao.put_report(id, &report).await.good();
@@ -358,5 +358,5 @@ async fn a_ship_reaches_only_what_she_reported_herself(shore: Shore) {
     wrong["revision"] = json!(0);
     assert_eq!(nao.put_report(id, &wrong).await.problem(), "invalid");
     assert_eq!(nao.put_report("x", &report).await.problem(), "not-found");
-    shore.finish().await;
+    server.finish().await;
 }

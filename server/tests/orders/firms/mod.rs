@@ -2,10 +2,10 @@
 
 use crate::run;
 use binnacle_platform::ids::FirmId;
-use binnacle_server_testing::offers::Trade;
+use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::program::{assert_refused, good};
-use binnacle_server_testing::{Answer, Shore};
+use binnacle_server_testing::{ApiResponse, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -28,9 +28,9 @@ fn names(list: &Value) -> Vec<&str> {
         .collect()
 }
 
-async fn a_platform_admin_brings_an_operator_and_a_firm_together(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let root = ada.platform_admin(&shore).await;
+async fn a_platform_admin_brings_an_operator_and_a_firm_together(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let root = ada.platform_admin(&server).await;
     let operators = root.get("/operators").await.good();
     assert_eq!(names(&operators), ["ada"]);
     let operator = operators["items"][0]["id"].as_str().unwrap();
@@ -45,26 +45,26 @@ async fn a_platform_admin_brings_an_operator_and_a_firm_together(shore: Shore) {
         firm["id"].as_str().unwrap()
     );
     for _ in 0..2 {
-        let engaged = Answer::of(root.request(Method::PUT, &between)).await;
+        let engaged = ApiResponse::of(root.request(Method::PUT, &between)).await;
         assert_eq!(engaged.status, 204, "{engaged:?}");
     }
     assert_eq!(names(&ada.get("/firms").await.good()), ["Nervión Compass"]);
-    let dismissed = Answer::of(root.request(Method::DELETE, &between)).await;
+    let dismissed = ApiResponse::of(root.request(Method::DELETE, &between)).await;
     assert_eq!(dismissed.status, 204, "{dismissed:?}");
     assert_eq!(names(&ada.get("/firms").await.good()), [""; 0]);
-    let again = Answer::of(root.request(Method::DELETE, &between)).await;
+    let again = ApiResponse::of(root.request(Method::DELETE, &between)).await;
     assert_eq!(again.problem(), "not-found");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_firm_that_has_an_order_is_not_parted_with(shore: Shore) {
-    let trade = Trade::offered(&shore, 2).await;
-    let root = trade.ada.platform_admin(&shore).await;
+async fn a_firm_that_has_an_order_is_not_parted_with(server: TestServer) {
+    let parties = OfferParties::offered(&server, 2).await;
+    let root = parties.ada.platform_admin(&server).await;
     let part = async |firm: FirmId| {
-        let between = format!("/operators/{}/firms/{firm}", trade.ada.operator);
-        Answer::of(root.request(Method::DELETE, &between)).await
+        let between = format!("/operators/{}/firms/{firm}", parties.ada.operator);
+        ApiResponse::of(root.request(Method::DELETE, &between)).await
     };
-    let [(asked, rosa), (waits, _)] = &trade.firms[..] else {
+    let [(asked, rosa), (waits, _)] = &parties.firms[..] else {
         unreachable!("there are two")
     };
     for firm in [asked, waits] {
@@ -72,21 +72,21 @@ async fn a_firm_that_has_an_order_is_not_parted_with(shore: Shore) {
         assert_eq!(refused.problem(), "wrong-state");
         assert!(refused.text.contains("asked for one order"), "{refused:?}");
     }
-    trade.post(rosa, "/accept", &json!({})).await.good();
+    parties.post(rosa, "/accept", &json!({})).await.good();
     // Who waits is asked when who has it gives it back.
     for firm in [asked, waits] {
         assert_eq!(part(*firm).await.problem(), "wrong-state");
     }
     let sold = json!({ "text": "sold" });
-    trade.post(&trade.ada, "/cancel", &sold).await.good();
+    parties.post(&parties.ada, "/cancel", &sold).await.good();
     for firm in [asked, waits] {
         assert_eq!(part(*firm).await.status, 204);
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_name_is_what_it_shows(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_name_is_what_it_shows(server: TestServer) {
+    let ada = server.admin("ada").await;
     for turned in [
         "Nao \u{202e}tsoC",
         "\u{2066}Nao",
@@ -102,28 +102,28 @@ async fn a_name_is_what_it_shows(shore: Shore) {
         let made = ada.post("/vessels", &json!({ "name": name })).await;
         assert_eq!(made.good()["name"], name);
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn only_a_platform_admin_manages_operators_and_firms(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let (firm, rosa) = ada.adjuster(&shore, "rosa").await;
+async fn only_a_platform_admin_manages_operators_and_firms(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let (firm, rosa) = ada.adjuster(&server, "rosa").await;
     let new = json!({ "name": "Other" });
-    for person in [&ada, &rosa, &ada.viewer(&shore).await] {
+    for person in [&ada, &rosa, &ada.viewer(&server).await] {
         let between = format!("/operators/{}/firms/{firm}", ada.operator);
         let refused = [
             person.get("/operators").await,
             person.get(&format!("/operators/{}", ada.operator)).await,
             person.post("/operators", &new).await,
             person.post("/firms", &new).await,
-            Answer::of(person.request(Method::PUT, &between)).await,
-            Answer::of(person.request(Method::DELETE, &between)).await,
+            ApiResponse::of(person.request(Method::PUT, &between)).await,
+            ApiResponse::of(person.request(Method::DELETE, &between)).await,
         ];
-        for answer in refused {
-            assert_eq!(answer.problem(), "forbidden");
+        for response in refused {
+            assert_eq!(response.problem(), "forbidden");
         }
     }
-    let root = ada.platform_admin(&shore).await;
+    let root = ada.platform_admin(&server).await;
     assert_eq!(root.post("/operators", &new).await.status, 201);
     let blank = json!({ "name": "  " });
     assert_eq!(root.post("/firms", &blank).await.problem(), "invalid");
@@ -131,48 +131,48 @@ async fn only_a_platform_admin_manages_operators_and_firms(shore: Shore) {
         format!("/operators/{firm}/firms/{firm}"),
         format!("/operators/{0}/firms/{0}", ada.operator),
     ] {
-        let answer = Answer::of(root.request(Method::PUT, &nobody)).await;
-        assert_eq!(answer.problem(), "not-found", "{nobody}");
+        let response = ApiResponse::of(root.request(Method::PUT, &nobody)).await;
+        assert_eq!(response.problem(), "not-found", "{nobody}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_operator_sees_the_firms_that_it_works_with(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
-    let (firm, rosa) = ada.adjuster(&shore, "rosa").await;
-    let (other, _) = eve.adjuster(&shore, "other").await;
+async fn an_operator_sees_the_firms_that_it_works_with(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
+    let (firm, rosa) = ada.adjuster(&server, "rosa").await;
+    let (other, _) = eve.adjuster(&server, "other").await;
     assert_eq!(names(&ada.get("/firms").await.good()), ["rosa"]);
     assert_eq!(names(&eve.get("/firms").await.good()), ["other"]);
     assert_eq!(names(&rosa.get("/firms").await.good()), ["rosa"]);
-    let all = ada.platform_admin(&shore).await.get("/firms").await.good();
+    let all = ada.platform_admin(&server).await.get("/firms").await.good();
     assert_eq!(names(&all), ["rosa", "other"]);
     let (path, other) = (format!("/firms/{firm}"), format!("/firms/{other}"));
     assert_eq!(ada.get(&path).await.good()["name"], "rosa");
     assert_eq!(rosa.get(&path).await.good()["name"], "rosa");
     assert_eq!(eve.get(&path).await.problem(), "not-found");
     assert_eq!(rosa.get(&other).await.problem(), "not-found");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_firm_that_is_entered_twice_under_one_key_is_one(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let root = ada.platform_admin(&shore).await;
+async fn a_firm_that_is_entered_twice_under_one_key_is_one(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let root = ada.platform_admin(&server).await;
     let new = json!({ "name": "Nervión Compass" });
     let mut ids = Vec::new();
     for _ in 0..2 {
         let request = root.request(Method::POST, "/firms").json(&new);
-        let made = Answer::of(request.header("Idempotency-Key", "1")).await;
+        let made = ApiResponse::of(request.header("Idempotency-Key", "1")).await;
         ids.push(made.good()["id"].clone());
     }
     assert_eq!(ids[0], ids[1]);
     assert_eq!(names(&root.get("/firms").await.good()).len(), 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_adjuster_has_no_fleet(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let (firm, rosa) = ada.adjuster(&shore, "rosa").await;
+async fn an_adjuster_has_no_fleet(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let (firm, rosa) = ada.adjuster(&server, "rosa").await;
     let me = rosa.get("/me").await.good();
     assert_eq!(me["role"], "adjuster");
     assert_eq!(me["firm_id"], firm.to_string());
@@ -185,23 +185,23 @@ async fn an_adjuster_has_no_fleet(shore: Shore) {
     }
     let made = rosa.post("/vessels", &json!({ "name": "Other" })).await;
     assert_eq!(made.problem(), "forbidden");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_token_that_only_reads_enters_no_firm(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let root = ada.platform_admin(&shore).await;
+async fn a_token_that_only_reads_enters_no_firm(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let root = ada.platform_admin(&server).await;
     let token = json!({ "name": "ERP", "scope": "read" });
     let token = root.post("/tokens", &token).await.good()["token"].clone();
-    let url = format!("{}/api/v1/firms", shore.url);
+    let url = format!("{}/api/v1/firms", server.url);
     let request = |method| {
-        let request = shore.http.request(method, &url);
+        let request = server.http.request(method, &url);
         request.bearer_auth(token.as_str().unwrap())
     };
-    assert_eq!(Answer::of(request(Method::GET)).await.status, 200);
+    assert_eq!(ApiResponse::of(request(Method::GET)).await.status, 200);
     let new = request(Method::POST).json(&json!({ "name": "Other" }));
-    assert_eq!(Answer::of(new).await.problem(), "forbidden");
-    shore.finish().await;
+    assert_eq!(ApiResponse::of(new).await.problem(), "forbidden");
+    server.finish().await;
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! What cannot be done to an order in its state, by the one side and by the other.
 
-use binnacle_server_testing::offers::{Trade, proposal};
+use binnacle_server_testing::offers::{OfferParties, proposal};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Person, Shore};
+use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -62,14 +62,14 @@ const FIRM: [(&str, &[&str]); 9] = [
 ];
 
 /// Brings an order, offered to one firm, to a state.
-async fn bring_to(trade: &mut Trade, state: &str) {
-    let mut new = trade.new_order();
+async fn bring_to(parties: &mut OfferParties, state: &str) {
+    let mut new = parties.new_order();
     if state != "planned" {
-        new["offer"] = trade.offer();
+        new["offer"] = parties.offer();
     }
-    let made = trade.ada.post("/work-orders", &new).await.good();
-    made["id"].as_str().unwrap().clone_into(&mut trade.order);
-    let rosa = &trade.firms[0].1;
+    let made = parties.ada.post("/work-orders", &new).await.good();
+    made["id"].as_str().unwrap().clone_into(&mut parties.order);
+    let rosa = &parties.firms[0].1;
     let ways: &[(&str, Value)] = match state {
         "planned" | "offered" => &[],
         "proposed" => &[("/propose", proposal())],
@@ -77,9 +77,9 @@ async fn bring_to(trade: &mut Trade, state: &str) {
         "accepted" => &[("/accept", json!({}))],
         "on_board" => &[("/accept", json!({})), ("/on-board", json!({}))],
         "cancelled" => {
-            trade.post(rosa, "/accept", &json!({})).await.good();
-            trade
-                .post(&trade.ada, "/cancel", &json!({ "text": "x" }))
+            parties.post(rosa, "/accept", &json!({})).await.good();
+            parties
+                .post(&parties.ada, "/cancel", &json!({ "text": "x" }))
                 .await
                 .good();
             &[]
@@ -87,15 +87,15 @@ async fn bring_to(trade: &mut Trade, state: &str) {
         _ => unreachable!("{state} is none of them"),
     };
     for (rest, body) in ways {
-        let done = trade.post(rosa, rest, body).await;
+        let done = parties.post(rosa, rest, body).await;
         assert!(done.status < 300, "{rest}: {done:?}");
     }
-    assert_eq!(trade.seen().await["state"], state);
+    assert_eq!(parties.view_order().await["state"], state);
 }
 
-fn body(trade: &Trade, rest: &str) -> Value {
+fn body(parties: &OfferParties, rest: &str) -> Value {
     match rest {
-        "/offer" => trade.offer(),
+        "/offer" => parties.offer(),
         "/propose" => proposal(),
         "/messages" | "/cancel" | "/close" | "/remarks" => json!({ "text": "x" }),
         "/complete" => json!({
@@ -106,73 +106,77 @@ fn body(trade: &Trade, rest: &str) -> Value {
     }
 }
 
-async fn what_a_state_forbids_is_refused_and_writes_nothing(shore: Shore) {
-    let mut trade = Trade::planned(&shore, 1).await;
+async fn what_a_state_forbids_is_refused_and_writes_nothing(server: TestServer) {
+    let mut parties = OfferParties::planned(&server, 1).await;
     let cancel = json!({ "text": "x" });
-    trade.post(&trade.ada, "/cancel", &cancel).await.good();
+    parties.post(&parties.ada, "/cancel", &cancel).await.good();
     for state in STATES {
         for (side, table) in [(0, OPERATOR), (1, FIRM)] {
-            bring_to(&mut trade, state).await;
-            let who = [&trade.ada, &trade.firms[0].1][side].clone();
+            bring_to(&mut parties, state).await;
+            let who = [&parties.ada, &parties.firms[0].1][side].clone();
             // What may be done is done last, on an order of its own.
             for (rest, allowed) in table
                 .iter()
                 .filter(|(_, allowed)| !allowed.contains(&state))
             {
-                let seq = trade.seen().await["last_seq"].clone();
-                let refused = trade.post(&who, rest, &body(&trade, rest)).await;
+                let seq = parties.view_order().await["last_seq"].clone();
+                let refused = parties.post(&who, rest, &body(&parties, rest)).await;
                 let known = ["wrong-state", "not-found"].contains(&refused.problem().as_str());
                 assert!(known, "{state} {side} {rest} {allowed:?}: {refused:?}");
-                assert_eq!(trade.seen().await["last_seq"], seq, "{state} {rest}");
+                assert_eq!(
+                    parties.view_order().await["last_seq"],
+                    seq,
+                    "{state} {rest}"
+                );
             }
-            cancel_if_open(&trade, state).await;
+            cancel_if_open(&parties, state).await;
             for (rest, _) in table.iter().filter(|(_, allowed)| allowed.contains(&state)) {
-                bring_to(&mut trade, state).await;
-                let done = trade.post(&who, rest, &body(&trade, rest)).await;
+                bring_to(&mut parties, state).await;
+                let done = parties.post(&who, rest, &body(&parties, rest)).await;
                 assert!(done.status < 300, "{state} {side} {rest}: {done:?}");
-                cancel_if_open(&trade, "").await;
+                cancel_if_open(&parties, "").await;
             }
         }
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// A compass has one order under way.
-async fn cancel_if_open(trade: &Trade, state: &str) {
-    if state != "cancelled" && trade.seen().await["state"] != "cancelled" {
+async fn cancel_if_open(parties: &OfferParties, state: &str) {
+    if state != "cancelled" && parties.view_order().await["state"] != "cancelled" {
         let cancel = json!({ "text": "x" });
-        trade.post(&trade.ada, "/cancel", &cancel).await.good();
+        parties.post(&parties.ada, "/cancel", &cancel).await.good();
     }
 }
 
-async fn a_firm_does_not_do_what_is_the_operators(shore: Shore) {
-    let trade = Trade::offered(&shore, 1).await;
-    let rosa = &trade.firms[0].1;
+async fn a_firm_does_not_do_what_is_the_operators(server: TestServer) {
+    let parties = OfferParties::offered(&server, 1).await;
+    let rosa = &parties.firms[0].1;
     for rest in ["/offer", "/cancel", "/close"] {
-        let refused = trade.post(rosa, rest, &body(&trade, rest)).await;
+        let refused = parties.post(rosa, rest, &body(&parties, rest)).await;
         assert_eq!(refused.problem(), "forbidden", "{rest}");
     }
-    let made = rosa.post("/work-orders", &trade.new_order()).await;
+    let made = rosa.post("/work-orders", &parties.new_order()).await;
     assert_eq!(made.problem(), "forbidden");
-    let proposed = trade.post(&trade.ada, "/propose", &proposal()).await;
+    let proposed = parties.post(&parties.ada, "/propose", &proposal()).await;
     assert_eq!(proposed.problem(), "forbidden");
-    let viewer: Person = trade.ada.viewer(&shore).await;
-    let refused = trade.post(&viewer, "/accept", &json!({})).await;
+    let viewer: Person = parties.ada.viewer(&server).await;
+    let refused = parties.post(&viewer, "/accept", &json!({})).await;
     assert_eq!(refused.problem(), "forbidden");
-    assert_eq!(trade.kinds(&trade.ada).await.len(), 3);
-    shore.finish().await;
+    assert_eq!(parties.kinds(&parties.ada).await.len(), 3);
+    server.finish().await;
 }
 
-async fn a_token_that_only_reads_answers_no_offer(shore: Shore) {
-    let trade = Trade::offered(&shore, 1).await;
-    let rosa = &trade.firms[0].1;
+async fn a_token_that_only_reads_answers_no_offer(server: TestServer) {
+    let parties = OfferParties::offered(&server, 1).await;
+    let rosa = &parties.firms[0].1;
     let token = |scope: &str| json!({ "name": "ERP", "scope": scope });
     let read = rosa.post("/tokens", &token("read")).await.good()["token"].clone();
     let write = rosa.post("/tokens", &token("write")).await.good()["token"].clone();
     let request = |token: &Value, method: Method, rest: &str| {
-        let url = format!("{}/api/v1{}", shore.url, trade.path(rest));
-        let request = shore.http.request(method, url);
-        Answer::of(request.bearer_auth(token.as_str().unwrap()))
+        let url = format!("{}/api/v1{}", server.url, parties.path(rest));
+        let request = server.http.request(method, url);
+        ApiResponse::of(request.bearer_auth(token.as_str().unwrap()))
     };
     assert_eq!(
         request(&read, Method::GET, "").await.good()["state"],
@@ -182,5 +186,5 @@ async fn a_token_that_only_reads_answers_no_offer(shore: Shore) {
     assert_eq!(refused.problem(), "forbidden");
     let accepted = request(&write, Method::POST, "/accept").await;
     assert_eq!(accepted.good()["state"], "accepted");
-    shore.finish().await;
+    server.finish().await;
 }

@@ -5,10 +5,10 @@ use binnacle_orders::dispatch::lapse;
 use binnacle_platform::outbox::Sent;
 use binnacle_server_testing::DAY_S;
 use binnacle_server_testing::HOUR_S;
-use binnacle_server_testing::Shore;
-use binnacle_server_testing::offers::{Trade, proposal};
+use binnacle_server_testing::TestServer;
+use binnacle_server_testing::offers::{OfferParties, proposal};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::webhooks::{Receiver, deliver, example_says, make, path};
+use binnacle_server_testing::webhooks::{Receiver, deliver, example_accepts, make, path};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -35,57 +35,57 @@ const ALL: [&str; 11] = [
     "order.cancelled",
 ];
 
-async fn a_firms_webhook_hears_of_its_orders_signed_and_in_order(shore: Shore) {
-    let trade = Trade::planned(&shore, 2).await;
-    let [(_, rosa), (_, juan)] = &trade.firms[..] else {
+async fn a_firms_webhook_hears_of_its_orders_signed_and_in_order(server: TestServer) {
+    let parties = OfferParties::planned(&server, 2).await;
+    let [(_, rosa), (_, juan)] = &parties.firms[..] else {
         unreachable!("there are two")
     };
     let (receiver, url) = Receiver::start().await;
     let webhook = make(rosa, &url, &ALL).await;
-    let mut offer = trade.offer();
+    let mut offer = parties.offer();
     offer["at_once"] = json!(true);
-    trade.post(&trade.ada, "/offer", &offer).await.good();
-    trade.post(rosa, "/propose", &proposal()).await.good();
-    let asked = json!({ "firm_id": trade.firms[1].0, "text": "And you?" });
-    trade.post(&trade.ada, "/messages", &asked).await;
-    trade.post(juan, "/accept", &json!({})).await.good();
-    trade.post(juan, "/on-board", &json!({})).await.good();
-    deliver(&shore).await;
+    parties.post(&parties.ada, "/offer", &offer).await.good();
+    parties.post(rosa, "/propose", &proposal()).await.good();
+    let asked = json!({ "firm_id": parties.firms[1].0, "text": "And you?" });
+    parties.post(&parties.ada, "/messages", &asked).await;
+    parties.post(juan, "/accept", &json!({})).await.good();
+    parties.post(juan, "/on-board", &json!({})).await.good();
+    deliver(&server).await;
     assert_eq!(
         receiver.kinds(),
         ["order.offered", "order.answered", "order.withdrawn"]
     );
     let secret = webhook["secret"].as_str().unwrap();
-    for (signature, body) in receiver.got() {
-        let now_s = shore.app.clock.now().micros() / 1_000_000;
-        assert!(example_says(secret, &signature, &body, now_s), "{body}");
-        assert!(!example_says("bns_other", &signature, &body, now_s));
+    for (signature, body) in receiver.received() {
+        let now_s = server.app.clock.now().micros() / 1_000_000;
+        assert!(example_accepts(secret, &signature, &body, now_s), "{body}");
+        assert!(!example_accepts("bns_other", &signature, &body, now_s));
     }
-    let (_, last) = receiver.got().pop().unwrap();
+    let (_, last) = receiver.received().pop().unwrap();
     let last: Value = serde_json::from_str(&last).unwrap();
-    assert_eq!(last["work_order"]["id"], trade.order.as_str());
+    assert_eq!(last["work_order"]["id"], parties.order.as_str());
     assert_eq!(last["work_order"]["state"], "cancelled");
     assert!(!last.to_string().contains("juan"), "{last}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn the_operators_webhook_hears_of_every_answer(shore: Shore) {
-    let trade = Trade::planned(&shore, 2).await;
+async fn the_operators_webhook_hears_of_every_answer(server: TestServer) {
+    let parties = OfferParties::planned(&server, 2).await;
     let (receiver, url) = Receiver::start().await;
-    make(&trade.ada, &url, &ALL).await;
-    trade
-        .post(&trade.ada, "/offer", &trade.offer())
+    make(&parties.ada, &url, &ALL).await;
+    parties
+        .post(&parties.ada, "/offer", &parties.offer())
         .await
         .good();
-    shore.advance(HOUR_S + 1.0);
-    lapse(&shore.app).await.unwrap();
-    let juan = &trade.firms[1].1;
-    trade.post(juan, "/accept", &json!({})).await.good();
-    trade
-        .post(&trade.ada, "/cancel", &json!({ "text": "sold" }))
+    server.advance(HOUR_S + 1.0);
+    lapse(&server.app).await.unwrap();
+    let juan = &parties.firms[1].1;
+    parties.post(juan, "/accept", &json!({})).await.good();
+    parties
+        .post(&parties.ada, "/cancel", &json!({ "text": "sold" }))
         .await
         .good();
-    deliver(&shore).await;
+    deliver(&server).await;
     let told = [
         "order.offered",
         "order.lapsed",
@@ -94,72 +94,75 @@ async fn the_operators_webhook_hears_of_every_answer(shore: Shore) {
         "order.cancelled",
     ];
     assert_eq!(receiver.kinds(), told);
-    let (_, answered) = receiver.got()[3].clone();
+    let (_, answered) = receiver.received()[3].clone();
     let answered: Value = serde_json::from_str(&answered).unwrap();
     assert_eq!(answered["entry"]["kind"], "accepted");
-    assert_eq!(answered["entry"]["firm_id"], trade.firms[1].0.to_string());
+    assert_eq!(answered["entry"]["firm_id"], parties.firms[1].0.to_string());
     assert_eq!(answered["work_order"]["state"], "accepted");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_message_that_is_not_taken_holds_up_its_own_order_only(shore: Shore) {
-    let mut trade = Trade::planned(&shore, 1).await;
-    let rosa = trade.firms[0].1.clone();
+async fn a_message_that_is_not_taken_holds_up_its_own_order_only(server: TestServer) {
+    let mut parties = OfferParties::planned(&server, 1).await;
+    let rosa = parties.firms[0].1.clone();
     let (receiver, url) = Receiver::start().await;
     make(&rosa, &url, &["order.offered", "order.message"]).await;
-    let ask = json!({ "firm_id": trade.firms[0].0, "text": "Which gate?" });
-    let offer_and_ask = async |trade: &Trade| {
-        let offered = trade.post(&trade.ada, "/offer", &trade.offer()).await;
+    let ask = json!({ "firm_id": parties.firms[0].0, "text": "Which gate?" });
+    let offer_and_ask = async |parties: &OfferParties| {
+        let offered = parties.post(&parties.ada, "/offer", &parties.offer()).await;
         offered.good();
-        let asked = trade.post(&trade.ada, "/messages", &ask).await;
+        let asked = parties.post(&parties.ada, "/messages", &ask).await;
         assert_eq!(asked.status, 204, "{asked:?}");
     };
-    offer_and_ask(&trade).await;
-    let first = trade.order.clone();
-    let pinta = trade.ada.create_vessel("Pinta").await;
-    pinta["id"].as_str().unwrap().clone_into(&mut trade.vessel);
-    let path = format!("/vessels/{}/compasses", trade.vessel);
-    let compasses = trade.ada.get(&path).await.good();
+    offer_and_ask(&parties).await;
+    let first = parties.order.clone();
+    let pinta = parties.ada.create_vessel("Pinta").await;
+    pinta["id"]
+        .as_str()
+        .unwrap()
+        .clone_into(&mut parties.vessel);
+    let path = format!("/vessels/{}/compasses", parties.vessel);
+    let compasses = parties.ada.get(&path).await.good();
     let compass = compasses["items"][0]["id"].as_str().unwrap();
-    compass.clone_into(&mut trade.compass);
-    let new = trade.new_order();
-    let made = trade.ada.post("/work-orders", &new).await.good();
-    made["id"].as_str().unwrap().clone_into(&mut trade.order);
-    offer_and_ask(&trade).await;
+    compass.clone_into(&mut parties.compass);
+    let new = parties.new_order();
+    let made = parties.ada.post("/work-orders", &new).await.good();
+    made["id"].as_str().unwrap().clone_into(&mut parties.order);
+    offer_and_ask(&parties).await;
 
-    receiver.answer(StatusCode::INTERNAL_SERVER_ERROR);
-    let done = deliver(&shore).await;
+    receiver.respond_next(StatusCode::INTERNAL_SERVER_ERROR);
+    let done = deliver(&server).await;
     assert_eq!(done, [Sent::Failed, Sent::Delivered, Sent::Delivered]);
     let told = || {
-        let got = receiver.got().into_iter().skip(1);
+        let got = receiver.received().into_iter().skip(1);
         let read = got.map(|(_, body)| serde_json::from_str::<Value>(&body).unwrap());
         let of = |body: Value| (body["work_order"]["id"].clone(), body["kind"].clone());
         read.map(of).collect::<Vec<_>>()
     };
     let both =
         |order: &str| ["order.offered", "order.message"].map(|kind| (json!(order), json!(kind)));
-    assert_eq!(told(), both(&trade.order));
-    shore.advance(13.0);
-    assert_eq!(deliver(&shore).await, [Sent::Delivered; 2]);
+    assert_eq!(told(), both(&parties.order));
+    server.advance(13.0);
+    assert_eq!(deliver(&server).await, [Sent::Delivered; 2]);
     assert_eq!(told()[2..], both(&first));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_dead_letter_of_a_firms_is_sent_again(shore: Shore) {
-    let trade = Trade::planned(&shore, 1).await;
-    let rosa = trade.firms[0].1.clone();
+async fn a_dead_letter_of_a_firms_is_sent_again(server: TestServer) {
+    let parties = OfferParties::planned(&server, 1).await;
+    let rosa = parties.firms[0].1.clone();
     let (receiver, url) = Receiver::start().await;
     let webhook = make(&rosa, &url, &["order.offered"]).await;
-    trade
-        .post(&trade.ada, "/offer", &trade.offer())
+    parties
+        .post(&parties.ada, "/offer", &parties.offer())
         .await
         .good();
-    receiver.answer(StatusCode::SERVICE_UNAVAILABLE);
-    receiver.answer(StatusCode::SERVICE_UNAVAILABLE);
-    assert_eq!(deliver(&shore).await, [Sent::Failed]);
-    shore.advance(DAY_S + 1.0);
-    assert_eq!(deliver(&shore).await, [Sent::Dead]);
-    let rosa = binnacle_server_testing::Person::sign_in(&shore, rosa.operator, &rosa.email).await;
+    receiver.respond_next(StatusCode::SERVICE_UNAVAILABLE);
+    receiver.respond_next(StatusCode::SERVICE_UNAVAILABLE);
+    assert_eq!(deliver(&server).await, [Sent::Failed]);
+    server.advance(DAY_S + 1.0);
+    assert_eq!(deliver(&server).await, [Sent::Dead]);
+    let rosa = binnacle_server_testing::Person::sign_in(&server, rosa.operator, &rosa.email).await;
     let dead = rosa
         .get(&path(&webhook, "/deliveries?state=dead"))
         .await
@@ -167,32 +170,32 @@ async fn a_dead_letter_of_a_firms_is_sent_again(shore: Shore) {
     let id = dead["items"][0]["id"].as_str().unwrap().to_owned();
     let again = path(&webhook, &format!("/deliveries/{id}/resend"));
     assert_eq!(rosa.post(&again, &json!({})).await.status, 202);
-    assert_eq!(deliver(&shore).await, [Sent::Delivered]);
+    assert_eq!(deliver(&server).await, [Sent::Delivered]);
     assert_eq!(receiver.kinds().len(), 3);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_firm_has_no_webhook_for_alerts_and_sees_only_its_own(shore: Shore) {
-    let trade = Trade::planned(&shore, 2).await;
-    let [(_, rosa), (_, juan)] = &trade.firms[..] else {
+async fn a_firm_has_no_webhook_for_alerts_and_sees_only_its_own(server: TestServer) {
+    let parties = OfferParties::planned(&server, 2).await;
+    let [(_, rosa), (_, juan)] = &parties.firms[..] else {
         unreachable!("there are two")
     };
     let url = "http://127.0.0.1:9/hook";
     let new = json!({ "url": url, "kinds": ["alert.raised", "order.offered"] });
     assert_eq!(rosa.post("/webhooks", &new).await.problem(), "invalid");
     let webhook = make(rosa, url, &["order.offered"]).await;
-    for other in [&trade.ada, juan] {
+    for other in [&parties.ada, juan] {
         assert_eq!(other.get("/webhooks").await.good()["items"], json!([]));
         let found = other.get(&path(&webhook, "")).await;
         assert_eq!(found.problem(), "not-found");
     }
     assert_eq!(rosa.get(&path(&webhook, "")).await.status, 200);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_firm_follows_its_own_orders_live(shore: Shore) {
-    let trade = Trade::offered(&shore, 2).await;
-    let [(_, rosa), (_, juan)] = &trade.firms[..] else {
+async fn a_firm_follows_its_own_orders_live(server: TestServer) {
+    let parties = OfferParties::offered(&server, 2).await;
+    let [(_, rosa), (_, juan)] = &parties.firms[..] else {
         unreachable!("there are two")
     };
     let mut heard = Vec::new();
@@ -208,15 +211,15 @@ async fn a_firm_follows_its_own_orders_live(shore: Shore) {
             heard.push(String::from_utf8(chunk.to_vec()).unwrap());
         } else {
             // Nothing was missed: the first to come is of the offer that is made now.
-            trade.post(rosa, "/decline", &json!({})).await;
+            parties.post(rosa, "/decline", &json!({})).await;
             let chunk = response.chunk().await.unwrap().unwrap();
             heard.push(String::from_utf8(chunk.to_vec()).unwrap());
         }
     }
     for text in &heard {
         assert!(text.contains("work_order"), "{text}");
-        assert!(text.contains(&trade.order), "{text}");
+        assert!(text.contains(&parties.order), "{text}");
         assert_eq!(text.matches("event: vessel").count(), 1, "{text}");
     }
-    shore.finish().await;
+    server.finish().await;
 }

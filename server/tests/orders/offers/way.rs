@@ -1,11 +1,11 @@
 //! A firm's whole way through an order, by the example program of the documentation.
 
 use binnacle_orders::evidence;
-use binnacle_server_testing::offers::Trade;
+use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::webhooks::{Receiver, deliver, make};
 use binnacle_server_testing::work_orders::{Job, reading};
-use binnacle_server_testing::{Answer, Person, Shore};
+use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -33,12 +33,12 @@ struct Client<'a> {
 }
 
 impl<'a> Client<'a> {
-    async fn of(shore: &Shore, person: &Person, folder: &'a Path) -> Client<'a> {
+    async fn of(server: &TestServer, person: &Person, folder: &'a Path) -> Client<'a> {
         let token = json!({ "name": "office", "scope": "write" });
         let made = person.post("/tokens", &token).await.good();
         Client {
             folder,
-            server: shore.url.clone(),
+            server: server.url.clone(),
             token: made["token"].as_str().unwrap().to_owned(),
         }
     }
@@ -70,10 +70,10 @@ impl<'a> Client<'a> {
     }
 }
 
-async fn the_example_client_asks_what_the_compass_reads_before_the_first_step(shore: Shore) {
-    let (job, rosa) = offered(&shore).await;
+async fn the_example_client_asks_what_the_compass_reads_before_the_first_step(server: TestServer) {
+    let (job, rosa) = offered(&server).await;
     let folder = tempfile::tempdir().unwrap();
-    let client = Client::of(&shore, &rosa, folder.path()).await;
+    let client = Client::of(&server, &rosa, folder.path()).await;
     let order = job.order.as_str();
     client.good(&[&["accept", order], &WHO[..]].concat()).await;
     client.good(&["on-board", order]).await;
@@ -89,8 +89,8 @@ async fn the_example_client_asks_what_the_compass_reads_before_the_first_step(sh
     );
     let adjusted = client.good(&["adjust", order, "--as-foretold"]).await;
     assert!(adjusted.contains("adjusting"), "{adjusted}");
-    assert_eq!(job.seen().await["next_step"], json!(null));
-    shore.finish().await;
+    assert_eq!(job.view_order().await["next_step"], json!(null));
+    server.finish().await;
 }
 
 async fn openssl(folder: &Path, arguments: &[&str]) -> Vec<u8> {
@@ -106,19 +106,19 @@ async fn openssl(folder: &Path, arguments: &[&str]) -> Vec<u8> {
 }
 
 /// An order offered to a firm of its own, and the firm's adjuster.
-async fn offered(shore: &Shore) -> (Job, Person) {
-    let job = Job::begin(shore).await;
-    let (firm, rosa) = job.person.adjuster(shore, "rosa").await;
+async fn offered(server: &TestServer) -> (Job, Person) {
+    let job = Job::begin(server).await;
+    let (firm, rosa) = job.person.adjuster(server, "rosa").await;
     let offer = json!({ "firms": [firm] });
     job.post("/offer", &offer).await.good();
     (job, rosa)
 }
 
-async fn the_example_client_carries_an_order_to_its_end(shore: Shore) {
-    let (job, rosa) = offered(&shore).await;
+async fn the_example_client_carries_an_order_to_its_end(server: TestServer) {
+    let (job, rosa) = offered(&server).await;
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let client = Client::of(&shore, &rosa, folder).await;
+    let client = Client::of(&server, &rosa, folder).await;
     let (receiver, url) = Receiver::start().await;
     let webhook = make(&rosa, &url, &["order.completed"]).await;
     let order = job.order.as_str();
@@ -176,13 +176,13 @@ async fn the_example_client_carries_an_order_to_its_end(shore: Shore) {
     let ours = evidence::verify(&job.evidence().await);
     assert!(ours.problems.is_empty(), "{ours:?}");
     assert!(!ours.facts.join("\n").contains("withheld"), "{ours:?}");
-    let seen = job.seen().await;
+    let seen = job.view_order().await;
     assert_eq!(seen["completion"]["firm"], "rosa");
     assert_eq!(seen["signatures"][1]["key"]["firm_name"], "rosa");
 
-    deliver(&shore).await;
-    let (header, body) = receiver.got().pop().unwrap();
-    let now_s = shore.app.clock.now().micros() / 1_000_000;
+    deliver(&server).await;
+    let (header, body) = receiver.received().pop().unwrap();
+    let now_s = server.app.clock.now().micros() / 1_000_000;
     let (secret, now_s) = (webhook["secret"].as_str().unwrap(), now_s.to_string());
     let check = [
         "check-webhook",
@@ -197,23 +197,23 @@ async fn the_example_client_carries_an_order_to_its_end(shore: Shore) {
     assert_eq!((code, said.trim()), (Some(0), "from Binnacle"));
     let forged = body.replace("adjusted", "verified");
     assert_eq!(client.run(&check, forged.as_bytes()).await.0, Some(1));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn the_example_client_bargains_writes_and_listens(shore: Shore) {
-    let trade = Trade::planned(&shore, 1).await;
-    let (firm, rosa) = &trade.firms[0];
+async fn the_example_client_bargains_writes_and_listens(server: TestServer) {
+    let parties = OfferParties::planned(&server, 1).await;
+    let (firm, rosa) = &parties.firms[0];
     let terms = json!({ "fee_eur": 1800, "working_days": ["Sun"] });
     let path = format!("/firms/{firm}/terms");
-    let put = trade.ada.request(Method::PUT, &path).json(&terms);
-    Answer::of(put).await.good();
-    trade
-        .post(&trade.ada, "/offer", &trade.offer())
+    let put = parties.ada.request(Method::PUT, &path).json(&terms);
+    ApiResponse::of(put).await.good();
+    parties
+        .post(&parties.ada, "/offer", &parties.offer())
         .await
         .good();
     let folder = tempfile::tempdir().unwrap();
-    let client = Client::of(&shore, rosa, folder.path()).await;
-    let order = trade.order.as_str();
+    let client = Client::of(&server, rosa, folder.path()).await;
+    let order = parties.order.as_str();
     let offered = client.good(&["order", order]).await;
     assert!(offered.contains("offered at 1800.00 euros"), "{offered}");
     let (code, said) = client.run(&["propose", order], b"").await;
@@ -224,11 +224,14 @@ async fn the_example_client_bargains_writes_and_listens(shore: Shore) {
         .good(&["say", order, "--text", "Is there a crane?"])
         .await;
     let yes = json!({ "text": "Done." });
-    trade.post(&trade.ada, "/messages", &yes).await;
+    parties.post(&parties.ada, "/messages", &yes).await;
     let read = client.good(&["messages", order]).await;
     assert!(read.contains("Is there a crane?"), "{read}");
     assert!(read.contains("Done."), "{read}");
-    trade.post(&trade.ada, "/accept", &json!({})).await.good();
+    parties
+        .post(&parties.ada, "/accept", &json!({}))
+        .await
+        .good();
     let agreed = client.good(&["order", order]).await;
     assert!(agreed.contains("agreed at 2100.00 euros"), "{agreed}");
     // All that there was since before the first: offer, proposal, both messages, agreement.
@@ -238,12 +241,12 @@ async fn the_example_client_bargains_writes_and_listens(shore: Shore) {
         .await;
     let of_order = format!("work_order  order {order}");
     assert_eq!(heard.matches(&of_order).count(), 5, "{heard}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_firm_reads_of_the_ship_only_while_the_order_is_open(shore: Shore) {
-    let (job, rosa) = offered(&shore).await;
-    let (_, other) = job.person.adjuster(&shore, "other").await;
+async fn a_firm_reads_of_the_ship_only_while_the_order_is_open(server: TestServer) {
+    let (job, rosa) = offered(&server).await;
+    let (_, other) = job.person.adjuster(&server, "other").await;
     let paths = ["/model", "/binnacle"].map(|rest| job.path(rest));
     let vessel = [
         job.ship.path("/model"),
@@ -257,7 +260,7 @@ async fn a_firm_reads_of_the_ship_only_while_the_order_is_open(shore: Shore) {
     }
     let post = |rest: &str, body: Value| {
         let request = rosa.request(Method::POST, &job.path(rest)).json(&body);
-        Answer::of(request)
+        ApiResponse::of(request)
     };
     let early = post("/berth-reading", reading()).await;
     assert_eq!(early.problem(), "wrong-state");
@@ -279,14 +282,14 @@ async fn a_firm_reads_of_the_ship_only_while_the_order_is_open(shore: Shore) {
         (&order["state"], &order["plan"]),
         (&json!("cancelled"), &Value::Null)
     );
-    assert!(job.seen().await["plan"].is_object());
-    shore.finish().await;
+    assert!(job.view_order().await["plan"].is_object());
+    server.finish().await;
 }
 
-async fn a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let (firm, rosa) = ada.adjuster(&shore, "rosa").await;
-    let (others, other) = ada.adjuster(&shore, "other").await;
+async fn a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let (firm, rosa) = ada.adjuster(&server, "rosa").await;
+    let (others, other) = ada.adjuster(&server, "other").await;
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     openssl(
@@ -343,16 +346,16 @@ async fn a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked(sho
     assert_eq!(seen["items"][0]["public_key"], public_key.as_str());
     let id = made.good()["id"].clone();
     let revoke = format!("{path}/{}", id.as_str().unwrap());
-    let foreign = Answer::of(other.request(Method::DELETE, &revoke)).await;
+    let foreign = ApiResponse::of(other.request(Method::DELETE, &revoke)).await;
     assert_eq!(foreign.problem(), "not-found");
     assert_eq!(
-        Answer::of(rosa.request(Method::DELETE, &revoke))
+        ApiResponse::of(rosa.request(Method::DELETE, &revoke))
             .await
             .status,
         204
     );
     assert_eq!(
-        Answer::of(rosa.request(Method::DELETE, &revoke))
+        ApiResponse::of(rosa.request(Method::DELETE, &revoke))
             .await
             .status,
         404
@@ -360,5 +363,5 @@ async fn a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked(sho
     let seen = rosa.get(&path).await.good();
     assert!(seen["items"][0]["revoked_at"].is_string(), "{seen}");
     assert_eq!(rosa.post(&path, &new(&public_key, &mine)).await.status, 201);
-    shore.finish().await;
+    server.finish().await;
 }

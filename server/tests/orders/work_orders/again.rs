@@ -1,10 +1,10 @@
 //! The magnetometer read once more, after the steps.
 
-use binnacle_server_testing::Shore;
+use binnacle_server_testing::TestServer;
 use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::work_orders::{
-    AT, Job, at_berth, read_again, read_again_after, reading, word,
+    AT, Job, at_berth, completion_details, reading, second_reading, second_reading_after,
 };
 use serde_json::{Value, json};
 
@@ -25,23 +25,23 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-async fn the_magnetometer_read_again_confirms_an_adjustment(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn the_magnetometer_read_again_confirms_an_adjustment(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let order = job.post("/plan", &json!({})).await.good();
     let setting = &order["plan"]["plan"]["setting"];
-    let early = job.post("/second-reading", &read_again(setting)).await;
+    let early = job.post("/second-reading", &second_reading(setting)).await;
     assert_eq!(early.problem(), "wrong-state");
     let order = job.adjust().await;
     let plan = &order["plan"]["plan"];
     let order = job
-        .post("/second-reading", &read_again(&plan["setting"]))
+        .post("/second-reading", &second_reading(&plan["setting"]))
         .await;
     let order = order.good();
     let said = &order["second_reading"];
     assert_eq!(said["verdict"], "as_planned", "{said}");
     assert_eq!(said["parts"].as_array().unwrap().len(), 2);
-    let done = job.post("/complete", &word()).await.good();
+    let done = job.post("/complete", &completion_details()).await.good();
     assert_ne!(
         done["completion"]["model"]["covariance"],
         plan["model_after"]["covariance"]
@@ -56,11 +56,11 @@ async fn the_magnetometer_read_again_confirms_an_adjustment(shore: Shore) {
     let bx_nt = |model: &Value| model["parameters_over_lambda"]["bx_nt"].as_f64().unwrap();
     let [kept, given] = [&record["model_after"], &done["completion"]["model"]].map(bx_nt);
     assert!((kept - given).abs() < 1e-6, "{kept} {given}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_second_reading_that_does_not_fit_holds_back_the_completion(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_second_reading_that_does_not_fit_holds_back_the_completion(server: TestServer) {
+    let job = Job::begin(&server).await;
     let order = job.adjust().await;
     let setting = &order["plan"]["plan"]["setting"];
     let mut wrong = setting.clone();
@@ -76,34 +76,34 @@ async fn a_second_reading_that_does_not_fit_holds_back_the_completion(shore: Sho
         }
     }
     let order = job
-        .post("/second-reading", &read_again(&wrong))
+        .post("/second-reading", &second_reading(&wrong))
         .await
         .good();
     let verdict = order["second_reading"]["verdict"].clone();
     assert!(verdict == "unexplained" || verdict == "slip", "{verdict}");
-    let held = job.post("/complete", &word()).await;
+    let held = job.post("/complete", &completion_details()).await;
     assert_eq!(held.problem(), "wrong-state");
     // Neither the same plan once more nor a word that they stand so undoes what was read.
     job.post("/plan", &json!({})).await.good();
     let stand = json!({ "setting": setting });
     let order = job.post("/corrector-settings", &stand).await.good();
     assert_eq!(order["second_reading"]["verdict"], verdict);
-    let held = job.post("/complete", &word()).await;
+    let held = job.post("/complete", &completion_details()).await;
     assert_eq!(held.problem(), "wrong-state");
     // They were put right, and the field says so.
-    let order = job.post("/second-reading", &read_again(setting)).await;
+    let order = job.post("/second-reading", &second_reading(setting)).await;
     let order = order.good();
     assert_eq!(order["second_reading"]["verdict"], "as_planned", "{order}");
-    let done = job.post("/complete", &word()).await.good();
+    let done = job.post("/complete", &completion_details()).await.good();
     assert_eq!(done["state"], "adjusted");
     let record = job.person.get(&job.path("/record.json")).await.good();
     assert_eq!(record["second_readings"].as_array().unwrap().len(), 2);
     assert_eq!(record["second_readings"][0]["said"]["verdict"], verdict);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn correctors_found_to_stand_otherwise_explain_a_second_reading(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn correctors_found_to_stand_otherwise_explain_a_second_reading(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.adjust().await;
     let nothing_done = json!({ "at": AT, "unit": "microtesla",
         "forward": reading()["forward"], "starboard": reading()["starboard"] });
@@ -118,24 +118,26 @@ async fn correctors_found_to_stand_otherwise_explain_a_second_reading(shore: Sho
     assert_eq!(order["state"], "measured");
     let again = job.post("/second-reading", &nothing_done).await;
     assert_eq!(again.problem(), "wrong-state");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_is_left_beyond_the_limits_is_planned_anew_from_the_second_reading(shore: Shore) {
-    let mut job = Job::begin(&shore).await;
+async fn what_is_left_beyond_the_limits_is_planned_anew_from_the_second_reading(
+    server: TestServer,
+) {
+    let mut job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let offer = job.person.get(&job.path("/plan")).await.good();
     let after = offer["plans"][0]["after"].as_array().unwrap();
     let reach_deg = after.iter().map(|table| number(&table["reach_deg"]));
     let reach_deg = reach_deg.fold(0.0, f64::max);
-    job.order_again(json!({ "residual_deg": reach_deg + 0.2 }))
+    job.replace_order(json!({ "residual_deg": reach_deg + 0.2 }))
         .await;
     let order = job.adjust().await;
     let setting = &order["plan"]["plan"]["setting"];
     let before = order["plan"]["plan"]["before"].clone();
     let (mut said, mut off) = (Value::Null, Value::Null);
     for (forward, starboard) in [(0.7, 0.7), (0.7, -0.7), (-0.7, 0.7), (-0.7, -0.7)] {
-        off = read_again(setting);
+        off = second_reading(setting);
         off["forward"] = json!(number(&off["forward"]) + forward);
         off["starboard"] = json!(number(&off["starboard"]) + starboard);
         let order = job.post("/second-reading", &off).await.good();
@@ -147,26 +149,26 @@ async fn what_is_left_beyond_the_limits_is_planned_anew_from_the_second_reading(
     }
     assert_eq!(said["verdict"], "replan", "{said}");
     assert_eq!(said["refusals"][0]["refusal"], "residual_too_large");
-    let held = job.post("/complete", &word()).await;
+    let held = job.post("/complete", &completion_details()).await;
     assert_eq!(held.problem(), "wrong-state");
     // Read once more it may be as planned: what was read before is as if it had not been.
-    let order = job.post("/second-reading", &read_again(setting)).await;
+    let order = job.post("/second-reading", &second_reading(setting)).await;
     let order = order.good();
     assert_eq!(order["second_reading"]["verdict"], "as_planned");
     assert_eq!(order["state"], "adjusting");
     job.post("/second-reading", &off).await.good();
-    let order = job.follow_a_plan().await;
+    let order = job.follow_plan().await;
     assert!(order["steps_done"].as_u64() > Some(0), "{order}");
-    job.post("/complete", &word()).await.good();
+    job.post("/complete", &completion_details()).await.good();
     // The record tells of the adjustment from its first reading on.
     let record = job.person.get(&job.path("/record.json")).await.good();
     assert_eq!(record["predicted_before"], before);
     assert_eq!(record["reading"]["forward"], reading()["forward"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn steps_that_do_not_add_up_are_completed_by_a_second_reading_only(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn steps_that_do_not_add_up_are_completed_by_a_second_reading_only(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let mut order = job.post("/plan", &json!({})).await.good();
     while let Some(step) = order["next_step"].as_object() {
@@ -178,21 +180,21 @@ async fn steps_that_do_not_add_up_are_completed_by_a_second_reading_only(shore: 
         order = job.post(&path, &after).await.good();
         assert_eq!(order["last_step"]["verdict"], "confirmed", "{order}");
     }
-    let held = job.post("/complete", &word()).await;
+    let held = job.post("/complete", &completion_details()).await;
     assert_eq!(held.problem(), "wrong-state");
     assert!(held.text.contains("second reading"), "{held:?}");
     let setting = &order["plan"]["plan"]["setting"];
-    let order = job.post("/second-reading", &read_again(setting)).await;
+    let order = job.post("/second-reading", &second_reading(setting)).await;
     assert_eq!(order.good()["second_reading"]["verdict"], "as_planned");
-    job.post("/complete", &word()).await.good();
-    shore.finish().await;
+    job.post("/complete", &completion_details()).await.good();
+    server.finish().await;
 }
 
-async fn a_word_that_explains_nothing_leaves_a_second_reading_open(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_word_that_explains_nothing_leaves_a_second_reading_open(server: TestServer) {
+    let job = Job::begin(&server).await;
     let order = job.adjust().await;
     let setting = &order["plan"]["plan"]["setting"];
-    let mut off = read_again(setting);
+    let mut off = second_reading(setting);
     off["forward"] = json!(number(&off["forward"]) + 33.0);
     let order = job.post("/second-reading", &off).await.good();
     assert_eq!(order["second_reading"]["verdict"], "unexplained");
@@ -213,21 +215,21 @@ async fn a_word_that_explains_nothing_leaves_a_second_reading_open(shore: Shore)
     let stand = json!({ "setting": setting });
     job.post("/corrector-settings", &stand).await.good();
     job.post("/plan", &json!({})).await.good();
-    let held = job.post("/complete", &word()).await;
+    let held = job.post("/complete", &completion_details()).await;
     assert_eq!(held.problem(), "wrong-state");
-    let order = job.post("/second-reading", &read_again(setting)).await;
+    let order = job.post("/second-reading", &second_reading(setting)).await;
     assert_eq!(order.good()["looked_since"], false);
-    job.post("/complete", &word()).await.good();
+    job.post("/complete", &completion_details()).await.good();
     let record = job.person.get(&job.path("/record.json")).await.good();
     assert_eq!(record["settings_as_said"][0]["after"], other);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_compass_that_stands_against_the_field_is_not_confirmed(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_compass_that_stands_against_the_field_is_not_confirmed(server: TestServer) {
+    let job = Job::begin(&server).await;
     let order = job.adjust().await;
     let compass_deg = number(&order["compass_deg"]);
-    let mut again = read_again(&order["plan"]["plan"]["setting"]);
+    let mut again = second_reading(&order["plan"]["plan"]["setting"]);
     again["compass_deg"] = json!((compass_deg + 145.0).rem_euclid(360.0));
     let said = job.post("/second-reading", &again).await.good()["second_reading"].clone();
     assert_eq!(said["verdict"], "unexplained");
@@ -246,18 +248,18 @@ async fn a_compass_that_stands_against_the_field_is_not_confirmed(shore: Shore) 
     assert_eq!(said["verdict"], "unexplained");
     assert_eq!(said["could_be"][0], "the magnetometer's axes are swapped");
     assert_eq!(
-        job.post("/complete", &word()).await.problem(),
+        job.post("/complete", &completion_details()).await.problem(),
         "wrong-state"
     );
     again["compass_deg"] = json!(compass_deg);
     let said = job.post("/second-reading", &again).await.good()["second_reading"].clone();
     assert_eq!(said["verdict"], "as_planned", "{said}");
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// A ship that wants heeling magnets, adjusted by a reading with its vertical part.
-async fn heeling(shore: &Shore) -> (Job, Value, Value) {
-    let job = Job::begin(shore).await;
+async fn heeling(server: &TestServer) -> (Job, Value, Value) {
+    let job = Job::begin(server).await;
     let path = format!("/compasses/{}/binnacle", job.compass);
     let mut more = binnacle();
     let magnets = more["aboard"]["magnets"].as_array_mut().unwrap();
@@ -266,7 +268,7 @@ async fn heeling(shore: &Shore) -> (Job, Value, Value) {
     let mut first = reading();
     first["down"] = json!(at_berth().1.z_nt / 1000.0 + 8.0);
     job.post("/berth-reading", &first).await.good();
-    let order = job.follow_a_plan().await;
+    let order = job.follow_plan().await;
     let setting = order["plan"]["plan"]["setting"].clone();
     assert!(setting["heeling"].is_object(), "{setting}");
     (job, first, setting)
@@ -278,37 +280,37 @@ fn without_down(reading: &Value) -> Value {
     reading
 }
 
-async fn what_the_vertical_part_disproved_is_not_confirmed_without_it(shore: Shore) {
-    let (job, first, setting) = heeling(&shore).await;
+async fn what_the_vertical_part_disproved_is_not_confirmed_without_it(server: TestServer) {
+    let (job, first, setting) = heeling(&server).await;
     let mut truly = setting.clone();
     truly["heeling"] = Value::Null;
-    let not_done = read_again_after(&first, &truly);
+    let not_done = second_reading_after(&first, &truly);
     let order = job.post("/second-reading", &not_done).await.good();
     assert_eq!(order["second_reading"]["verdict"], "slip", "{order}");
     let blind = job.post("/second-reading", &without_down(&not_done)).await;
     assert_eq!(blind.problem(), "invalid");
     assert!(blind.text.contains("down"), "{blind:?}");
-    let held = job.post("/complete", &word()).await;
+    let held = job.post("/complete", &completion_details()).await;
     assert_eq!(held.problem(), "wrong-state");
-    let done = read_again_after(&first, &setting);
+    let done = second_reading_after(&first, &setting);
     let order = job.post("/second-reading", &done).await.good();
     assert_eq!(order["second_reading"]["verdict"], "as_planned", "{order}");
-    job.post("/complete", &word()).await.good();
+    job.post("/complete", &completion_details()).await.good();
     let record = job.person.get(&job.path("/record.json")).await.good();
     assert_eq!(record["not_shown"], Value::Null);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn heeling_magnets_are_confirmed_by_the_vertical_part_alone(shore: Shore) {
-    let (job, first, setting) = heeling(&shore).await;
-    let blind = without_down(&read_again_after(&first, &setting));
+async fn heeling_magnets_are_confirmed_by_the_vertical_part_alone(server: TestServer) {
+    let (job, first, setting) = heeling(&server).await;
+    let blind = without_down(&second_reading_after(&first, &setting));
     let said = job.post("/second-reading", &blind).await.good()["second_reading"].clone();
     assert_eq!(said["verdict"], "as_planned", "{said}");
     assert!(
         said["words"].as_str().unwrap().contains("heeling"),
         "{said}"
     );
-    job.post("/complete", &word()).await.good();
+    job.post("/complete", &completion_details()).await.good();
     let record = job.person.get(&job.path("/record.json")).await.good();
     let hidden = record["not_shown"]["steps"].as_array().unwrap();
     assert_eq!(hidden.len(), 1, "{hidden:?}");
@@ -316,11 +318,11 @@ async fn heeling_magnets_are_confirmed_by_the_vertical_part_alone(shore: Shore) 
         hidden[0].as_str().unwrap().contains("heeling"),
         "{hidden:?}"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_reading_of_correctors_that_no_plan_led_to_is_one_to_plan_from(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_reading_of_correctors_that_no_plan_led_to_is_one_to_plan_from(server: TestServer) {
+    let job = Job::begin(&server).await;
     let order = job.adjust().await;
     let mut other = order["plan"]["plan"]["setting"].clone();
     let axis = if other["athwartship"] == json!([]) {
@@ -333,7 +335,7 @@ async fn a_reading_of_correctors_that_no_plan_led_to_is_one_to_plan_from(shore: 
     let stand = json!({ "setting": other });
     job.post("/corrector-settings", &stand).await.good();
     let order = job
-        .post("/second-reading", &read_again(&other))
+        .post("/second-reading", &second_reading(&other))
         .await
         .good();
     let said = &order["second_reading"];
@@ -341,5 +343,5 @@ async fn a_reading_of_correctors_that_no_plan_led_to_is_one_to_plan_from(shore: 
     assert_eq!(order["state"], "measured");
     let offer = job.person.get(&job.path("/plan")).await.good();
     assert!(!offer["plans"].as_array().unwrap().is_empty());
-    shore.finish().await;
+    server.finish().await;
 }

@@ -3,8 +3,8 @@
 use binnacle_compass::sample::Sample;
 use binnacle_server_testing::alerts::limit;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::work_orders::{Job, foretold};
-use binnacle_server_testing::{Shore, days_at_sea};
+use binnacle_server_testing::work_orders::{Job, predicted_model};
+use binnacle_server_testing::{TestServer, days_at_sea};
 use serde_json::{Value, json};
 
 on_both!(
@@ -14,11 +14,13 @@ on_both!(
     a_card_right_after_an_adjustment_bears_no_alert_from_before_it,
 );
 
-async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_epoch(shore: Shore) {
-    let mut job = Job::begin(&shore).await;
-    job.is_said_everywhere("predicted").await;
-    let ship = foretold(&job.complete().await);
-    job.is_said_everywhere("predicted").await;
+async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_epoch(
+    server: TestServer,
+) {
+    let mut job = Job::begin(&server).await;
+    job.expect_card_status("predicted").await;
+    let ship = predicted_model(&job.complete().await);
+    job.expect_card_status("predicted").await;
     let card = job.card().await;
     assert_eq!(card["verified"], Value::Null);
     assert_eq!(card["adjusted_by"]["order"], job.order);
@@ -55,10 +57,10 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
         assert!(svg.contains(words), "{words}: {svg}");
     }
     assert!(!svg.contains("(logbook)"), "{svg}");
-    let more = job.sail(&shore, &ship, 2, 6.0).await;
+    let more = job.sail(&server, &ship, 2, 6.0).await;
     assert_eq!(more["state"], "verified", "{}", more["verification"]);
 
-    job.is_said_everywhere("verified").await;
+    job.expect_card_status("verified").await;
     let card = job.card().await;
     assert_eq!(card["next_due"]["on"], "2028-11-21");
     assert_eq!(card["unverified_order"], Value::Null);
@@ -80,43 +82,43 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
     // A later fit of the same epoch is of the same adjustment.
     let later = days_at_sea(&ship, "2026-11-28T13:00:00Z", 60.0);
     let later: Vec<Sample> = later.into_iter().step_by(8).collect();
-    job.send(&shore, 3, &later, 60.5).await;
+    job.send(&server, 3, &later, 60.5).await;
     let model = job.person.get(&job.ship.path("/model")).await.good();
     assert_eq!(model["foretold_by"], Value::Null, "it has been fitted");
     assert_eq!(model["epoch_from"], by["adjusted_at"]);
-    job.is_said_everywhere("verified").await;
+    job.expect_card_status("verified").await;
     // The book has each card as it was then.
-    let book = job.in_the_book("2026-11-21T12:00:00Z").await;
+    let book = job.book_statuses("2026-11-21T12:00:00Z").await;
     let then: Vec<&Value> = book.iter().collect();
     assert_eq!(then.first(), Some(&&json!("predicted")), "{book:?}");
     assert_eq!(then.last(), Some(&&json!("verified")), "{book:?}");
-    let after = job.in_the_book("2026-11-28T14:00:00Z").await;
+    let after = job.book_statuses("2026-11-28T14:00:00Z").await;
     assert!(after.iter().all(|status| status == "verified"), "{after:?}");
 
     // A magnet that somebody moved ends it,
-    let now = shore.app.clock.now().to_string();
+    let now = server.app.clock.now().to_string();
     let moved = json!({ "kind": "corrector_change", "from": now });
     job.person
         .post(&job.ship.path("/logbook"), &moved)
         .await
         .good();
-    shore.work().await;
+    server.work().await;
     let none = job.person.get(&job.ship.path("/card.json")).await;
     assert_eq!(none.problem(), "no-model-yet");
     // and what is fitted after that is predicted.
     let mut other = ship.clone();
     other.parameters_over_lambda.bx_nt += 700.0;
     let since = days_at_sea(&other, "2027-01-28T02:00:00Z", 6.0);
-    job.send(&shore, 4, &since, 7.0).await;
-    job.is_said_everywhere("predicted").await;
+    job.send(&server, 4, &since, 7.0).await;
+    job.expect_card_status("predicted").await;
     assert_eq!(job.card().await["verified"], Value::Null);
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// A ship that sends no more: her order ends, and nothing says that it was verified.
-async fn an_order_closed_without_verification_leaves_its_card_predicted(shore: Shore) {
-    let mut job = Job::begin(&shore).await;
-    let ship = foretold(&job.complete().await);
+async fn an_order_closed_without_verification_leaves_its_card_predicted(server: TestServer) {
+    let mut job = Job::begin(&server).await;
+    let ship = predicted_model(&job.complete().await);
     let early = job.post("/close", &json!({ "text": "filed" })).await;
     assert!(early.text.contains("without_verification"), "{early:?}");
     assert_eq!(early.problem(), "wrong-state");
@@ -125,7 +127,7 @@ async fn an_order_closed_without_verification_leaves_its_card_predicted(shore: S
     assert_eq!(closed["state"], "closed_unverified");
     assert_eq!(closed["standing"], "predicted, not a certificate");
     assert_eq!(closed["verification"], Value::Null);
-    job.is_said_everywhere("predicted").await;
+    job.expect_card_status("predicted").await;
     let card = job.card().await;
     assert_eq!(card["next_due"], Value::Null, "{card}");
     let log = job.person.get(&job.path("/entries")).await.good();
@@ -139,10 +141,10 @@ async fn an_order_closed_without_verification_leaves_its_card_predicted(shore: S
     let jobs = report["jobs"].to_string();
     assert!(jobs.contains("\"closed_unverified\""), "{report}");
     // Neither what she sends after all nor a second closing changes it.
-    let sent = job.sail(&shore, &ship, 2, 6.0).await;
+    let sent = job.sail(&server, &ship, 2, 6.0).await;
     assert_eq!(sent["state"], "closed_unverified");
     assert_eq!(sent["verification"], Value::Null);
-    job.is_said_everywhere("predicted").await;
+    job.expect_card_status("predicted").await;
     let again = job.post("/close", &json!({ "text": "again" })).await;
     assert_eq!(again.problem(), "wrong-state");
     let needs = job.person.get("/needs").await.good();
@@ -151,26 +153,26 @@ async fn an_order_closed_without_verification_leaves_its_card_predicted(shore: S
         reason.starts_with("adjusted, not yet verified at sea"),
         "{reason}"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_adjustment_that_failed_at_sea_leaves_its_card_predicted(shore: Shore) {
-    let mut job = Job::begin(&shore).await;
-    let mut ship = foretold(&job.complete().await);
+async fn an_adjustment_that_failed_at_sea_leaves_its_card_predicted(server: TestServer) {
+    let mut job = Job::begin(&server).await;
+    let mut ship = predicted_model(&job.complete().await);
     ship.parameters_over_lambda.bx_nt += 4000.0;
-    let failed = job.sail(&shore, &ship, 2, 6.0).await;
+    let failed = job.sail(&server, &ship, 2, 6.0).await;
     assert_eq!(failed["state"], "failed");
-    job.is_said_everywhere("predicted").await;
+    job.expect_card_status("predicted").await;
     let closed = job.post("/close", &json!({ "text": "to be swung" })).await;
     assert_eq!(closed.good()["standing"], "predicted, not a certificate");
-    job.is_said_everywhere("predicted").await;
-    shore.finish().await;
+    job.expect_card_status("predicted").await;
+    server.finish().await;
 }
 
-async fn a_card_right_after_an_adjustment_bears_no_alert_from_before_it(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_card_right_after_an_adjustment_bears_no_alert_from_before_it(server: TestServer) {
+    let job = Job::begin(&server).await;
     limit(
-        &shore,
+        &server,
         &job.person,
         &job.ship,
         json!({ "deviation_deg": 1.0 }),
@@ -189,5 +191,5 @@ async fn a_card_right_after_an_adjustment_bears_no_alert_from_before_it(shore: S
         "{}",
         notes().await
     );
-    shore.finish().await;
+    server.finish().await;
 }

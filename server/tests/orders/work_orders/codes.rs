@@ -3,8 +3,10 @@
 use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::work_orders::AT;
-use binnacle_server_testing::work_orders::{HEADING_DEG, Job, read_again, reading, word};
-use binnacle_server_testing::{Person, Shore};
+use binnacle_server_testing::work_orders::{
+    HEADING_DEG, Job, completion_details, reading, second_reading,
+};
+use binnacle_server_testing::{Person, TestServer};
 use serde_json::{Value, json};
 
 on_both!(
@@ -24,8 +26,8 @@ fn with(changes: &Value) -> Value {
     body
 }
 
-async fn a_reading_that_cannot_be_is_refused_by_its_word(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_reading_that_cannot_be_is_refused_by_its_word(server: TestServer) {
+    let job = Job::begin(&server).await;
     let good = reading();
     let part = |name: &str, times: f64| json!(times * good[name].as_f64().unwrap());
     let times = |times: f64| {
@@ -53,14 +55,14 @@ async fn a_reading_that_cannot_be_is_refused_by_its_word(shore: Shore) {
         assert_eq!(job.refused("/berth-reading", &body).await, word, "{body}");
     }
     let nanotesla = times(1000.0);
-    let answer = job.post("/berth-reading", &nanotesla).await.json();
-    let could_be = answer["refusals"][0]["could_be"].to_string();
-    assert!(could_be.contains("in nanotesla"), "{answer}");
-    shore.finish().await;
+    let response = job.post("/berth-reading", &nanotesla).await.json();
+    let could_be = response["refusals"][0]["could_be"].to_string();
+    assert!(could_be.contains("in nanotesla"), "{response}");
+    server.finish().await;
 }
 
-async fn a_plan_that_would_not_do_is_refused_by_its_word(shore: Shore) {
-    let mut job = Job::begin(&shore).await;
+async fn a_plan_that_would_not_do_is_refused_by_its_word(server: TestServer) {
+    let mut job = Job::begin(&server).await;
     let none = json!({});
     for (limits, body, word) in [
         (json!({ "model_age_days": 1.0 }), &none, "model_too_old"),
@@ -84,24 +86,24 @@ async fn a_plan_that_would_not_do_is_refused_by_its_word(shore: Shore) {
             "unchecked_berth",
         ),
     ] {
-        job.order_again(limits.clone()).await;
+        job.replace_order(limits.clone()).await;
         job.post("/berth-reading", &with(body)).await.good();
-        let order = job.seen().await;
+        let order = job.view_order().await;
         for (name, limit) in limits.as_object().unwrap() {
             assert_eq!(order["limits"][name], *limit);
         }
         let refused = job.refused("/plan", &json!({})).await;
         assert_eq!(refused, word, "{limits}");
-        assert_eq!(job.seen().await["state"], "measured");
+        assert_eq!(job.view_order().await["state"], "measured");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// As a ship whose magnetism has changed by 2 µT along the needle would make it.
 async fn a_lambda_that_the_last_adjustment_contradicts_is_refused_until_the_logbook_explains_it(
-    shore: Shore,
+    server: TestServer,
 ) {
-    let mut job = Job::begin(&shore).await;
+    let mut job = Job::begin(&server).await;
     let done = job.complete().await;
     let setting = done["plan"]["plan"]["setting"].clone();
     let made = job.person.post("/work-orders", &job.new_order()).await;
@@ -111,15 +113,16 @@ async fn a_lambda_that_the_last_adjustment_contradicts_is_refused_until_the_logb
         .clone_into(&mut job.order);
     let read = |times: f64| {
         let mut body = reading();
-        let again = read_again(&setting);
+        let again = second_reading(&setting);
         for name in ["forward", "starboard"] {
             body[name] = json!(again[name].as_f64().unwrap() * times);
         }
         body["compass_deg"] = Value::Null;
         body
     };
-    let is_other =
-        |answer: &binnacle_server_testing::Answer| answer.text.contains("\"other_lambda\"");
+    let is_other = |response: &binnacle_server_testing::ApiResponse| {
+        response.text.contains("\"other_lambda\"")
+    };
     job.post("/berth-reading", &read(1.0)).await.good();
     let same = job.person.get(&job.path("/plan")).await;
     assert_eq!(same.status, 200, "{}", same.text);
@@ -133,11 +136,11 @@ async fn a_lambda_that_the_last_adjustment_contradicts_is_refused_until_the_logb
     job.post("/berth-reading", &read(1.1)).await.good();
     let explained = job.person.get(&job.path("/plan")).await;
     assert_eq!(explained.status, 200, "{}", explained.text);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn limits_that_nobody_may_ask_for_are_refused(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn limits_that_nobody_may_ask_for_are_refused(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.post("/cancel", &json!({ "text": "another" }))
         .await
         .good();
@@ -150,15 +153,15 @@ async fn limits_that_nobody_may_ask_for_are_refused(shore: Shore) {
     ] {
         let mut order = job.new_order();
         order["limits"] = limits.clone();
-        let answer = job.person.post("/work-orders", &order).await;
-        assert_eq!(answer.problem(), "invalid", "{limits}");
-        assert!(answer.text.contains("limits"), "{}", answer.text);
+        let response = job.person.post("/work-orders", &order).await;
+        assert_eq!(response.problem(), "invalid", "{limits}");
+        assert!(response.text.contains("limits"), "{}", response.text);
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn one_of_two_browsers_does_a_step(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn one_of_two_browsers_does_a_step(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let order = job.post("/plan", &json!({})).await.good();
     let step = &order["next_step"];
@@ -168,27 +171,27 @@ async fn one_of_two_browsers_does_a_step(shore: Shore) {
     let mut answers = [one.status, other.status];
     answers.sort_unstable();
     assert_eq!(answers, [200, 409], "{one:?} {other:?}");
-    assert_eq!(job.seen().await["last_seq"], 4, "it is done once");
-    shore.finish().await;
+    assert_eq!(job.view_order().await["last_seq"], 4, "it is done once");
+    server.finish().await;
 }
 
-async fn what_was_read_before_the_ship_changed_is_read_again(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn what_was_read_before_the_ship_changed_is_read_again(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let welded = json!({ "kind": "welding", "from": "2026-11-21T06:45:00Z" });
     job.person
         .post(&job.ship.path("/logbook"), &welded)
         .await
         .good();
-    shore.work().await;
+    server.work().await;
     let refused = job.post("/plan", &json!({})).await;
     assert_eq!(refused.problem(), "wrong-state");
     assert!(refused.text.contains("read it again"), "{refused:?}");
     // And what was read long ago, when she may have lain elsewhere.
-    let other = Job::of(&shore, shore.admin("eve").await).await;
+    let other = Job::of(&server, server.admin("eve").await).await;
     other.post("/berth-reading", &reading()).await.good();
-    shore.advance(60.0 * 3600.0);
-    let person = Person::sign_in(&shore, other.person.operator, &other.person.email);
+    server.advance(60.0 * 3600.0);
+    let person = Person::sign_in(&server, other.person.operator, &other.person.email);
     let late = Job {
         person: person.await,
         ..other
@@ -196,26 +199,26 @@ async fn what_was_read_before_the_ship_changed_is_read_again(shore: Shore) {
     let refused = late.post("/plan", &json!({})).await;
     assert_eq!(refused.problem(), "wrong-state");
     assert!(refused.text.contains("hours ago"), "{refused:?}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn correctors_that_are_not_on_board_are_said_to_be_missing(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn correctors_that_are_not_on_board_are_said_to_be_missing(server: TestServer) {
+    let job = Job::begin(&server).await;
     let path = job
         .ship
         .path(&format!("/compasses/{}/binnacle", job.compass));
     let mut empty = binnacle();
     empty["aboard"]["magnets"] = json!([]);
-    let answer = put(&job.person, &path, &empty).await;
-    assert_eq!(answer.problem(), "invalid");
-    assert!(answer.text.contains("name at least one"), "{answer:?}");
+    let response = put(&job.person, &path, &empty).await;
+    assert_eq!(response.problem(), "invalid");
+    assert!(response.text.contains("name at least one"), "{response:?}");
     // One magnet is too few for what she needs.
     let mut few = binnacle();
     few["aboard"] = json!({ "magnets": [{ "magnet": "200 mm", "count": 1 }] });
     put(&job.person, &path, &few).await.good();
     job.post("/berth-reading", &reading()).await.good();
     assert_eq!(job.refused("/plan", &json!({})).await, "residual_too_large");
-    let early = job.post("/complete", &word()).await;
+    let early = job.post("/complete", &completion_details()).await;
     assert_eq!(early.problem(), "wrong-state");
-    shore.finish().await;
+    server.finish().await;
 }

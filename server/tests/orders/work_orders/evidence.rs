@@ -2,7 +2,7 @@
 
 use binnacle_orders::evidence;
 use binnacle_orders::work_orders::log_entry::sha256_hex;
-use binnacle_server_testing::Shore;
+use binnacle_server_testing::TestServer;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::work_orders::Job;
 use binnacle_server_testing::work_orders::{PICTURE, hex};
@@ -22,8 +22,8 @@ on_both!(
     the_record_can_be_had_in_each_form,
 );
 
-async fn each_entry_names_the_hash_of_the_one_before(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn each_entry_names_the_hash_of_the_one_before(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.complete().await;
     let log = job.person.get(&job.path("/entries")).await.good();
     let entries = log["items"].as_array().unwrap();
@@ -34,12 +34,12 @@ async fn each_entry_names_the_hash_of_the_one_before(shore: Shore) {
         assert_eq!(found["entry"]["previous_sha256"], previous);
         previous = found["sha256"].clone();
     }
-    assert_eq!(job.seen().await["last_sha256"], previous);
-    shore.finish().await;
+    assert_eq!(job.view_order().await["last_sha256"], previous);
+    server.finish().await;
 }
 
-async fn the_record_can_be_had_in_each_form(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn the_record_can_be_had_in_each_form(server: TestServer) {
+    let job = Job::begin(&server).await;
     let forms = [
         ("pdf", "application/pdf"),
         ("svg", "image/svg+xml"),
@@ -62,9 +62,9 @@ async fn the_record_can_be_had_in_each_form(shore: Shore) {
     };
     for (form, kind) in forms {
         let path = job.path(&format!("/record.{form}"));
-        let answer = job.person.request(Method::GET, &path).send().await.unwrap();
-        assert_eq!(answer.headers()["content-type"], kind);
-        let bytes = answer.bytes().await.unwrap();
+        let response = job.person.request(Method::GET, &path).send().await.unwrap();
+        assert_eq!(response.headers()["content-type"], kind);
+        let bytes = response.bytes().await.unwrap();
         match form {
             "pdf" => assert_eq!(bytes, file("record.pdf")),
             "csv" => assert_eq!(bytes, file("predicted.csv")),
@@ -79,11 +79,11 @@ async fn the_record_can_be_had_in_each_form(shore: Shore) {
             }
         }
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn only_a_picture_is_a_photograph(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn only_a_picture_is_a_photograph(server: TestServer) {
+    let job = Job::begin(&server).await;
     let page = job.photo(b"<html><script>alert(1)</script>").await;
     assert_eq!(
         (page.status, page.problem().as_str()),
@@ -93,7 +93,7 @@ async fn only_a_picture_is_a_photograph(shore: Shore) {
     assert_eq!(cut_off.problem(), "unsupported-media-type");
     assert!(cut_off.text.contains("cut off"), "{cut_off:?}");
     job.photo(PICTURE).await.good();
-    let order = job.seen().await;
+    let order = job.view_order().await;
     assert_eq!(order["photos"].as_array().unwrap().len(), 1);
     let log = job.person.get(&job.path("/entries?after=1")).await.good();
     let taken = &log["items"][0]["entry"]["content"];
@@ -109,7 +109,7 @@ async fn only_a_picture_is_a_photograph(shore: Shore) {
     assert_eq!(request.bytes().await.unwrap(), PICTURE);
     let large = Box::leak(vec![0xFF_u8; 11 * 1024 * 1024].into_boxed_slice());
     assert_eq!(job.photo(large).await.status, 413);
-    shore.finish().await;
+    server.finish().await;
 }
 
 fn unpacked(bytes: &[u8]) -> BTreeMap<String, Vec<u8>> {
@@ -329,8 +329,8 @@ fn what_no_signature_covers_is_told_as_such(files: &BTreeMap<String, Vec<u8>>) {
     assert!(found.problems[0].contains("another adjuster"), "{found:?}");
 }
 
-async fn evidence_that_was_tampered_with_is_found_out(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn evidence_that_was_tampered_with_is_found_out(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.photo(PICTURE).await.good();
     let done = job.complete().await;
     let record_sha256 = done["completion"]["record_sha256"].as_str().unwrap();
@@ -422,5 +422,5 @@ async fn evidence_that_was_tampered_with_is_found_out(shore: Shore) {
         uncovered.is_some_and(|fact| fact.contains(&later)),
         "{found:?}"
     );
-    shore.finish().await;
+    server.finish().await;
 }

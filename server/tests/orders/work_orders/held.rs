@@ -1,11 +1,11 @@
 //! What holds an adjustment back: a ship that swung, a binnacle written
 //! meanwhile, a moment before its own steps, and a prediction that nobody proved.
 
-use binnacle_server_testing::alerts::says_that_it_departs;
+use binnacle_server_testing::alerts::report_departure_without_samples;
 use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::work_orders::{AT, Job, read_again, reading, word};
-use binnacle_server_testing::{Answer, Person, Shore};
+use binnacle_server_testing::work_orders::{AT, Job, completion_details, reading, second_reading};
+use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use serde_json::{Value, json};
 
 on_both!(
@@ -22,8 +22,8 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-async fn a_compass_that_turned_by_itself_is_not_read_for_a_step(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_compass_that_turned_by_itself_is_not_read_for_a_step(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let order = job.post("/plan", &json!({})).await.good();
     let step = &order["next_step"];
@@ -46,11 +46,11 @@ async fn a_compass_that_turned_by_itself_is_not_read_for_a_step(shore: Shore) {
         let off = number(&next["expected_compass_deg"]) - expected.rem_euclid(360.0);
         assert!(off.abs() < 1e-9, "{off}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_binnacle_written_meanwhile_is_noticed(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_binnacle_written_meanwhile_is_noticed(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let path = job
         .ship
@@ -66,20 +66,20 @@ async fn a_binnacle_written_meanwhile_is_noticed(shore: Shore) {
     let refused = put(&job.person, &path, &binnacle()).await;
     assert_eq!(refused.problem(), "wrong-state");
     assert!(refused.text.contains("is being adjusted"), "{refused:?}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn cargo_that_is_logged_after_the_reading_holds_the_work_back(shore: Shore) {
+async fn cargo_that_is_logged_after_the_reading_holds_the_work_back(server: TestServer) {
     let since = "2026-11-21T06:45:00Z";
-    let job = Job::begin(&shore).await;
+    let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
-    let held = |answer: Answer| {
-        assert_eq!(answer.problem(), "wrong-state");
+    let held = |response: ApiResponse| {
+        assert_eq!(response.problem(), "wrong-state");
         for words in [
             "magnetic cargo on board since 2026-11-21 06:45 UTC",
             "withdraw",
         ] {
-            assert!(answer.text.contains(words), "{answer:?}");
+            assert!(response.text.contains(words), "{response:?}");
         }
     };
     let steel = job.load_steel(since).await;
@@ -93,18 +93,18 @@ async fn cargo_that_is_logged_after_the_reading_holds_the_work_back(shore: Shore
     let after = json!({ "after_deg": step["expected_compass_deg"] });
     held(job.post(&path, &after).await);
     job.withdraw(&steel).await;
-    let order = job.follow_a_plan().await;
+    let order = job.follow_plan().await;
     let steel = job.load_steel(since).await;
-    let again = read_again(&order["plan"]["plan"]["setting"]);
+    let again = second_reading(&order["plan"]["plan"]["setting"]);
     held(job.post("/second-reading", &again).await);
-    held(job.post("/complete", &word()).await);
+    held(job.post("/complete", &completion_details()).await);
     job.withdraw(&steel).await;
-    job.post("/complete", &word()).await.good();
-    shore.finish().await;
+    job.post("/complete", &completion_details()).await.good();
+    server.finish().await;
 }
 
-async fn cargo_that_was_withdrawn_from_the_logbook_refuses_no_new_reading(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn cargo_that_was_withdrawn_from_the_logbook_refuses_no_new_reading(server: TestServer) {
+    let job = Job::begin(&server).await;
     let steel = job.load_steel("2026-11-21T06:00:00Z").await;
     job.post("/berth-reading", &reading()).await.good();
     assert_eq!(
@@ -117,31 +117,31 @@ async fn cargo_that_was_withdrawn_from_the_logbook_refuses_no_new_reading(shore:
     assert!(held.text.contains("read the berth again"), "{held:?}");
     job.post("/berth-reading", &reading()).await.good();
     job.post("/plan", &json!({})).await.good();
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_adjustment_is_not_dated_before_its_steps(shore: Shore) {
-    let mut job = Job::begin(&shore).await;
+async fn an_adjustment_is_not_dated_before_its_steps(server: TestServer) {
+    let mut job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
-    shore.advance(86_400.0);
-    job.person = Person::sign_in(&shore, job.person.operator, &job.person.email).await;
-    let order = job.follow_a_plan().await;
+    server.advance(86_400.0);
+    job.person = Person::sign_in(&server, job.person.operator, &job.person.email).await;
+    let order = job.follow_plan().await;
     // The berth was read a day before the steps, and so was this.
-    let again = read_again(&order["plan"]["plan"]["setting"]);
+    let again = second_reading(&order["plan"]["plan"]["setting"]);
     let refused = job.post("/second-reading", &again).await;
     assert_eq!(refused.problem(), "invalid");
     assert!(refused.text.contains("before the last step"), "{refused:?}");
-    let mut early = word();
+    let mut early = completion_details();
     early["at"] = json!("2026-11-21T07:00:00Z");
     let refused = job.post("/complete", &early).await;
     assert_eq!(refused.problem(), "invalid");
     assert!(refused.text.contains("before the last step"), "{refused:?}");
-    job.post("/complete", &word()).await.good();
-    shore.finish().await;
+    job.post("/complete", &completion_details()).await.good();
+    server.finish().await;
 }
 
-async fn a_prediction_that_nothing_proved_does_not_count_as_fresh(shore: Shore) {
-    let mut job = Job::begin(&shore).await;
+async fn a_prediction_that_nothing_proved_does_not_count_as_fresh(server: TestServer) {
+    let mut job = Job::begin(&server).await;
     let done = job.complete().await;
     let record = job.person.get(&job.path("/record.json")).await.good();
     let made = job
@@ -151,7 +151,7 @@ async fn a_prediction_that_nothing_proved_does_not_count_as_fresh(shore: Shore) 
         .good();
     made["id"].as_str().unwrap().clone_into(&mut job.order);
     let mut again = reading();
-    let there = read_again(&done["setting"]);
+    let there = second_reading(&done["setting"]);
     for part in ["forward", "starboard"] {
         again[part] = there[part].clone();
     }
@@ -172,16 +172,16 @@ async fn a_prediction_that_nothing_proved_does_not_count_as_fresh(shore: Shore) 
         .unwrap();
     let model = &read["entry"]["content"]["basis"]["model"];
     assert_eq!(model["headings_until"], record["data"]["until"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_alert_about_the_compass_is_told_with_the_plan(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn an_alert_about_the_compass_is_told_with_the_plan(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let notes = async || job.person.get(&job.path("/plan")).await.good()["notes"].to_string();
     let says = "an alert about this compass is open: Compass and gyro parted";
     assert!(!notes().await.contains(says));
-    says_that_it_departs(&job.ship, 2).await;
+    report_departure_without_samples(&job.ship, 2).await;
     assert!(notes().await.contains(says), "{}", notes().await);
-    shore.finish().await;
+    server.finish().await;
 }

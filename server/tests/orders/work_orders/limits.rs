@@ -1,8 +1,8 @@
 //! What keeps an order within its limits, and its steps at where the compass stands.
 
-use binnacle_server_testing::Shore;
+use binnacle_server_testing::TestServer;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::work_orders::{Job, reading, word};
+use binnacle_server_testing::work_orders::{Job, completion_details, reading};
 use serde_json::{Value, json};
 
 on_both!(
@@ -19,8 +19,8 @@ fn turned(from_deg: f64, to_deg: f64) -> f64 {
     (to_deg - from_deg + 540.0).rem_euclid(360.0) - 180.0
 }
 
-async fn a_step_starts_from_the_compass_as_it_was_last_read(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_step_starts_from_the_compass_as_it_was_last_read(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let order = job.post("/plan", &json!({})).await.good();
     let step = &order["next_step"];
@@ -46,11 +46,11 @@ async fn a_step_starts_from_the_compass_as_it_was_last_read(shore: Shore) {
     let refused = job.post(&path, &after).await;
     assert_eq!(refused.problem(), "invalid");
     assert!(refused.text.contains("before_deg"), "{refused:?}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn no_plan_beyond_the_limits_is_offered(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn no_plan_beyond_the_limits_is_offered(server: TestServer) {
+    let job = Job::begin(&server).await;
     let order = job.post("/berth-reading", &reading()).await.good();
     let limits = &order["limits"];
     let offer = job.person.get(&job.path("/plan")).await.good();
@@ -65,25 +65,25 @@ async fn no_plan_beyond_the_limits_is_offered(shore: Shore) {
     }
     let next = json!({ "plan": plans.len() + 1 });
     assert_eq!(job.post("/plan", &next).await.problem(), "invalid");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_was_planned_beyond_the_limits_is_not_completed(shore: Shore) {
-    let mut job = Job::begin(&shore).await;
-    job.order_again(json!({ "residual_deg": 2.9 })).await;
+async fn what_was_planned_beyond_the_limits_is_not_completed(server: TestServer) {
+    let mut job = Job::begin(&server).await;
+    job.replace_order(json!({ "residual_deg": 2.9 })).await;
     job.adjust().await;
     // As if it had been planned when plans beyond the limits were still offered.
-    shore
+    server
         .sql(
             "UPDATE work_order_entries \
              SET line = REPLACE(line, '\"residual_deg\":2.9', '\"residual_deg\":0.5')",
         )
         .await;
-    let refused = job.post("/complete", &word()).await;
+    let refused = job.post("/complete", &completion_details()).await;
     assert_eq!(refused.problem(), "not-adjustable", "{refused:?}");
     let refusal = refused.json()["refusals"][0].clone();
     assert_eq!(refusal["refusal"], "residual_too_large");
     assert!(!refusal["cures"].as_array().unwrap().is_empty());
-    assert_eq!(job.seen().await["state"], "adjusting");
-    shore.finish().await;
+    assert_eq!(job.view_order().await["state"], "adjusting");
+    server.finish().await;
 }

@@ -2,8 +2,8 @@
 
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::work_orders::PICTURE;
-use binnacle_server_testing::work_orders::{HEADING_DEG, Job, reading, word};
-use binnacle_server_testing::{Answer, Person, Shore};
+use binnacle_server_testing::work_orders::{HEADING_DEG, Job, completion_details, reading};
+use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -20,11 +20,11 @@ on_both!(
     an_order_is_blank_to_another_operator,
 );
 
-async fn a_request_sent_again_under_its_key_writes_one_entry(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_request_sent_again_under_its_key_writes_one_entry(server: TestServer) {
+    let job = Job::begin(&server).await;
     let send = |rest: &str, body: Value, key: &str| {
         let request = job.person.request(Method::POST, &job.path(rest));
-        Answer::of(request.header("idempotency-key", key).json(&body))
+        ApiResponse::of(request.header("idempotency-key", key).json(&body))
     };
     let mut bad = reading();
     bad["unit"] = json!("nanotesla");
@@ -38,13 +38,13 @@ async fn a_request_sent_again_under_its_key_writes_one_entry(shore: Shore) {
         let key = format!("key {index}");
         let first = send(rest, body.clone(), &key).await;
         assert_eq!(first.status, status, "{first:?}");
-        let seq = job.seen().await["last_seq"].clone();
+        let seq = job.view_order().await["last_seq"].clone();
         let again = send(rest, body, &key).await;
         assert_eq!((again.status, &again.text), (first.status, &first.text));
-        assert_eq!(job.seen().await["last_seq"], seq, "{rest}");
+        assert_eq!(job.view_order().await["last_seq"], seq, "{rest}");
     }
     // A step that was sent again is not the next one.
-    let step = job.seen().await["next_step"].clone();
+    let step = job.view_order().await["next_step"].clone();
     let path = format!("/steps/{}", step["number"]);
     let read = json!({ "after_deg": step["expected_compass_deg"] });
     let first = send(&path, read.clone(), "step").await.good();
@@ -53,30 +53,33 @@ async fn a_request_sent_again_under_its_key_writes_one_entry(shore: Shore) {
     assert_eq!(first, again);
     let other = send(&path, json!({ "after_deg": 1.0 }), "step").await;
     assert_eq!(other.problem(), "idempotency-key-reused");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_a_phone_kept_for_days_is_written_once(shore: Shore) {
-    let mut job = Job::begin(&shore).await;
+async fn what_a_phone_kept_for_days_is_written_once(server: TestServer) {
+    let mut job = Job::begin(&server).await;
     let photo = PICTURE.to_vec();
     for days in [0.0, 3.0, 40.0] {
-        shore.advance(86_400.0 * days);
+        server.advance(86_400.0 * days);
         // No session lasts so long.
-        job.person = Person::sign_in(&shore, job.person.operator, &job.person.email).await;
+        job.person = Person::sign_in(&server, job.person.operator, &job.person.email).await;
         let send = |rest: &str, key: &str| {
             let request = job.person.request(Method::POST, &job.path(rest));
             request.header("idempotency-key", key)
         };
         let remark = send("/remarks", "remark").json(&json!({ "text": "crane alongside" }));
-        Answer::of(remark).await.good();
+        ApiResponse::of(remark).await.good();
         let picture = send("/photos", "photo").body(photo.clone());
-        Answer::of(picture).await.good();
+        ApiResponse::of(picture).await.good();
         let other = send("/remarks", "remark").json(&json!({ "text": "no crane" }));
-        assert_eq!(Answer::of(other).await.problem(), "idempotency-key-reused");
+        assert_eq!(
+            ApiResponse::of(other).await.problem(),
+            "idempotency-key-reused"
+        );
         // Whatever else is written meanwhile under keys of their own.
         let another = send("/remarks", &format!("after {days}"));
         let another = another.json(&json!({ "text": "crane gone" }));
-        Answer::of(another).await.good();
+        ApiResponse::of(another).await.good();
     }
     let log = job.person.get(&job.path("/entries")).await.good();
     let lines = log["items"].as_array().unwrap().iter();
@@ -85,11 +88,11 @@ async fn what_a_phone_kept_for_days_is_written_once(shore: Shore) {
         kinds,
         ["opened", "remark", "photo", "remark", "remark", "remark"]
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_bad_reading_is_kept_and_refused_with_what_could_be_wrong(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_bad_reading_is_kept_and_refused_with_what_could_be_wrong(server: TestServer) {
+    let job = Job::begin(&server).await;
     let good = reading();
     let part = |name: &str| good[name].as_f64().unwrap();
     let with = |changes: Value| {
@@ -117,17 +120,17 @@ async fn a_bad_reading_is_kept_and_refused_with_what_could_be_wrong(shore: Shore
     .into_iter()
     .enumerate()
     {
-        let answer = job.post("/berth-reading", &body).await;
+        let response = job.post("/berth-reading", &body).await;
         assert_eq!(
-            (answer.status, answer.problem().as_str()),
+            (response.status, response.problem().as_str()),
             (422, "not-adjustable")
         );
-        let refusal = answer.json()["refusals"][0].clone();
+        let refusal = response.json()["refusals"][0].clone();
         let could_be = refusal["could_be"].to_string();
         assert!(could_be.contains(said), "{said}: {refusal}");
         assert!(!could_be.contains("across the needle"), "{refusal}");
         assert!(!refusal["cures"].as_array().unwrap().is_empty());
-        let order = job.seen().await;
+        let order = job.view_order().await;
         assert_eq!(
             (&order["state"], &order["reading"]),
             (&json!("planned"), &Value::Null)
@@ -141,20 +144,23 @@ async fn a_bad_reading_is_kept_and_refused_with_what_could_be_wrong(shore: Shore
         (with(json!({ "at": "2027-01-01T00:00:00Z" })), "at"),
         (with(json!({ "foreward": 1.0 })), "foreward"),
     ] {
-        let answer = job.post("/berth-reading", &body).await;
-        assert_eq!((answer.status, answer.problem().as_str()), (422, "invalid"));
-        assert!(answer.text.contains(named), "{named}: {answer:?}");
+        let response = job.post("/berth-reading", &body).await;
+        assert_eq!(
+            (response.status, response.problem().as_str()),
+            (422, "invalid")
+        );
+        assert!(response.text.contains(named), "{named}: {response:?}");
     }
     assert_eq!(
-        job.seen().await["last_seq"],
+        job.view_order().await["last_seq"],
         4,
         "what cannot be read is not kept"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_reading_is_doubted_by_the_port_and_by_the_track(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_reading_is_doubted_by_the_port_and_by_the_track(server: TestServer) {
+    let job = Job::begin(&server).await;
     let with = |changes: Value| {
         let mut body = reading();
         body.as_object_mut()
@@ -164,9 +170,9 @@ async fn a_reading_is_doubted_by_the_port_and_by_the_track(shore: Shore) {
     };
     // Of a week ago no plan could be made.
     let old = with(json!({ "at": "2026-11-14T06:30:00Z" }));
-    let answer = job.post("/berth-reading", &old).await;
-    assert_eq!(answer.problem(), "invalid");
-    assert!(answer.text.contains("hours back"), "{answer:?}");
+    let response = job.post("/berth-reading", &old).await;
+    assert_eq!(response.problem(), "invalid");
+    assert!(response.text.contains("hours back"), "{response:?}");
     // East for west; and when by her own track she was at sea.
     for (body, words) in [
         (with(json!({ "lon": 3.04 })), "nautical miles from Bilbao"),
@@ -175,18 +181,18 @@ async fn a_reading_is_doubted_by_the_port_and_by_the_track(shore: Shore) {
             "from where her track has her",
         ),
     ] {
-        let answer = job.post("/berth-reading", &body).await;
-        assert_eq!(answer.problem(), "not-adjustable", "{body}");
-        let refusal = answer.json()["refusals"][0].clone();
+        let response = job.post("/berth-reading", &body).await;
+        assert_eq!(response.problem(), "not-adjustable", "{body}");
+        let refusal = response.json()["refusals"][0].clone();
         assert!(refusal.to_string().contains(words), "{words}: {refusal}");
-        assert_eq!(job.seen().await["state"], "planned");
+        assert_eq!(job.view_order().await["state"], "planned");
     }
     job.post("/berth-reading", &reading()).await.good();
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_was_moved_can_be_put_back_and_the_berth_read_again(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn what_was_moved_can_be_put_back_and_the_berth_read_again(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let order = job.post("/plan", &json!({})).await.good();
     let before = order["next_step"]["setting_before"].clone();
@@ -200,11 +206,11 @@ async fn what_was_moved_can_be_put_back_and_the_berth_read_again(shore: Shore) {
     job.post("/corrector-settings", &stand).await.good();
     let order = job.post("/berth-reading", &reading()).await.good();
     assert_eq!(order["state"], "measured");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_step_that_reads_otherwise_is_planned_anew(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_step_that_reads_otherwise_is_planned_anew(server: TestServer) {
+    let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let mut order = job.post("/plan", &json!({})).await.good();
     // The first step with magnets in it, which a heading between the cardinals shows.
@@ -237,14 +243,14 @@ async fn a_step_that_reads_otherwise_is_planned_anew(shore: Shore) {
         replanned["setting"], step["setting_after"],
         "it stands as it was set"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_cannot_be_done_in_a_state_is_refused_and_writes_nothing(shore: Shore) {
-    let job = Job::begin(&shore).await;
-    let refused = |answer: Answer| {
+async fn what_cannot_be_done_in_a_state_is_refused_and_writes_nothing(server: TestServer) {
+    let job = Job::begin(&server).await;
+    let refused = |response: ApiResponse| {
         assert_eq!(
-            (answer.status, answer.problem().as_str()),
+            (response.status, response.problem().as_str()),
             (409, "wrong-state")
         );
     };
@@ -255,23 +261,29 @@ async fn what_cannot_be_done_in_a_state_is_refused_and_writes_nothing(shore: Sho
         job.post("/corrector-settings", &json!({ "setting": {} }))
             .await,
     );
-    refused(job.post("/complete", &word()).await);
+    refused(job.post("/complete", &completion_details()).await);
     refused(job.person.get(&job.path("/evidence.zip")).await);
     let key = json!({ "public_key": "00".repeat(32), "signature": "00".repeat(64) });
     refused(job.post("/signatures", &key).await);
-    assert_eq!(job.seen().await["last_seq"], 1);
+    assert_eq!(job.view_order().await["last_seq"], 1);
     job.post("/berth-reading", &reading()).await.good();
     job.post("/plan", &json!({})).await.good();
     refused(job.post("/steps/99", &json!({ "after_deg": 1.0 })).await);
-    refused(job.post("/complete", &word()).await);
+    refused(job.post("/complete", &completion_details()).await);
     let tray = json!([{ "hole": 99, "magnet": "200 mm", "count": 1, "red": "port" }]);
     let nowhere = json!({ "setting": { "athwartship": tray } });
-    let answer = job.post("/corrector-settings", &nowhere).await;
-    assert_eq!((answer.status, answer.problem().as_str()), (422, "invalid"));
-    assert!(answer.text.contains("athwartship[0].hole"), "{answer:?}");
+    let response = job.post("/corrector-settings", &nowhere).await;
+    assert_eq!(
+        (response.status, response.problem().as_str()),
+        (422, "invalid")
+    );
+    assert!(
+        response.text.contains("athwartship[0].hole"),
+        "{response:?}"
+    );
     let none = job.post("/plan", &json!({ "plan": 99 })).await;
     assert_eq!(none.problem(), "invalid");
-    assert_eq!(job.seen().await["last_seq"], 3);
+    assert_eq!(job.view_order().await["last_seq"], 3);
     let cancelled = job
         .post("/cancel", &json!({ "text": "she sails" }))
         .await
@@ -279,11 +291,11 @@ async fn what_cannot_be_done_in_a_state_is_refused_and_writes_nothing(shore: Sho
     assert_eq!(cancelled["state"], "cancelled");
     refused(job.post("/berth-reading", &reading()).await);
     refused(job.post("/cancel", &json!({ "text": "again" })).await);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_compass_has_one_order_under_way(shore: Shore) {
-    let job = Job::begin(&shore).await;
+async fn a_compass_has_one_order_under_way(server: TestServer) {
+    let job = Job::begin(&server).await;
     let second = job.person.post("/work-orders", &job.new_order()).await;
     assert_eq!(
         (second.status, second.problem().as_str()),
@@ -308,12 +320,12 @@ async fn a_compass_has_one_order_under_way(shore: Shore) {
     assert_eq!(list["items"][0]["id"], job.order);
     let list = job.person.get("/work-orders?state=planned").await.good();
     assert_eq!(list["items"].as_array().unwrap().len(), 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_viewer_reads_an_order_and_does_not_write(shore: Shore) {
-    let job = Job::begin(&shore).await;
-    let bob = job.person.viewer(&shore).await;
+async fn a_viewer_reads_an_order_and_does_not_write(server: TestServer) {
+    let job = Job::begin(&server).await;
+    let bob = job.person.viewer(&server).await;
     assert_eq!(bob.get(&job.path("")).await.good()["state"], "planned");
     assert_eq!(
         bob.get(&job.path("/entries")).await.good()["items"][0]["seq"],
@@ -327,24 +339,24 @@ async fn a_viewer_reads_an_order_and_does_not_write(shore: Shore) {
         ("/remarks", json!({ "text": "hm" })),
         ("/cancel", json!({ "text": "hm" })),
         ("/close", json!({ "text": "hm" })),
-        ("/complete", word()),
+        ("/complete", completion_details()),
     ] {
-        let answer = bob.post(&job.path(rest), &body).await;
+        let response = bob.post(&job.path(rest), &body).await;
         assert_eq!(
-            (answer.status, answer.problem().as_str()),
+            (response.status, response.problem().as_str()),
             (403, "forbidden"),
             "{rest}"
         );
     }
     let made = bob.post("/work-orders", &job.new_order()).await;
     assert_eq!(made.problem(), "forbidden");
-    assert_eq!(job.seen().await["last_seq"], 1);
-    shore.finish().await;
+    assert_eq!(job.view_order().await["last_seq"], 1);
+    server.finish().await;
 }
 
-async fn an_order_is_blank_to_another_operator(shore: Shore) {
-    let job = Job::begin(&shore).await;
-    let eve = shore.admin("eve").await;
+async fn an_order_is_blank_to_another_operator(server: TestServer) {
+    let job = Job::begin(&server).await;
+    let eve = server.admin("eve").await;
     for rest in ["", "/entries", "/plan", "/evidence.zip", "/record.json"] {
         assert_eq!(
             eve.get(&job.path(rest)).await.problem(),
@@ -361,14 +373,14 @@ async fn an_order_is_blank_to_another_operator(shore: Shore) {
         ("/remarks", json!({ "text": "hm" })),
         ("/cancel", json!({ "text": "hm" })),
         ("/close", json!({ "text": "hm" })),
-        ("/complete", word()),
+        ("/complete", completion_details()),
         ("/signatures", key),
     ] {
-        let answer = eve.post(&job.path(rest), &body).await;
-        assert_eq!(answer.problem(), "not-found", "{rest}");
+        let response = eve.post(&job.path(rest), &body).await;
+        assert_eq!(response.problem(), "not-found", "{rest}");
     }
     let made = eve.post("/work-orders", &job.new_order()).await;
     assert_eq!(made.problem(), "not-found");
     assert_eq!(eve.get("/work-orders").await.good()["items"], json!([]));
-    shore.finish().await;
+    server.finish().await;
 }

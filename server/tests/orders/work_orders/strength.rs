@@ -2,8 +2,8 @@
 
 use binnacle_compass::model::Model;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::work_orders::{Job, read_again_after, reading_aboard};
-use binnacle_server_testing::{Shore, truth};
+use binnacle_server_testing::work_orders::{Job, reading_on_ship, second_reading_after};
+use binnacle_server_testing::{TestServer, true_model};
 use serde_json::{Value, json};
 
 on_both!(
@@ -17,7 +17,7 @@ fn number(value: &Value) -> f64 {
 
 /// A ship that wants magnets near the card, where holes tell.
 fn ship() -> Model {
-    let mut ship = truth();
+    let mut ship = true_model();
     (
         ship.parameters_over_lambda.bx_nt,
         ship.parameters_over_lambda.by_nt,
@@ -27,7 +27,7 @@ fn ship() -> Model {
 
 /// What the compass reads at the berth with correctors that stand so, but for its needles.
 fn shown_deg(setting: &Value) -> f64 {
-    let field = read_again_after(&reading_aboard(&ship()), setting);
+    let field = second_reading_after(&reading_on_ship(&ship()), setting);
     let [forward, starboard] = ["forward", "starboard"].map(|part| number(&field[part]));
     (-starboard).atan2(forward).to_degrees()
 }
@@ -53,10 +53,10 @@ fn miscounted(step: &Value, by: i64) -> Option<(u64, Value)> {
 
 /// A job whose last step went three holes off, with the step, how the correctors stand, and
 /// what the compass reads.
-async fn gone_wrong(shore: &Shore) -> (Job, Value, Value, f64) {
-    let person = shore.admin("ada").await;
-    let job = Job::aboard(shore, person, &ship()).await;
-    let read = reading_aboard(&ship());
+async fn gone_wrong(server: &TestServer) -> (Job, Value, Value, f64) {
+    let person = server.admin("ada").await;
+    let job = Job::aboard(server, person, &ship()).await;
+    let read = reading_on_ship(&ship());
     job.post("/berth-reading", &read).await.good();
     let mut order = job.post("/plan", &json!({})).await.good();
     loop {
@@ -110,22 +110,22 @@ async fn goes_on(job: &Job, said: &Value) {
     }
 }
 
-async fn a_tray_in_another_hole_leaves_no_stronger_magnets_behind(shore: Shore) {
-    let (job, _, setting, compass_deg) = gone_wrong(&shore).await;
+async fn a_tray_in_another_hole_leaves_no_stronger_magnets_behind(server: TestServer) {
+    let (job, _, setting, compass_deg) = gone_wrong(&server).await;
     let said = json!({
         "setting": setting, "compass_deg": compass_deg, "note": "counted from the top",
     });
     goes_on(&job, &said).await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_tray_that_was_put_right_leaves_no_stronger_magnets_behind(shore: Shore) {
-    let (job, step, setting, compass_deg) = gone_wrong(&shore).await;
+async fn a_tray_that_was_put_right_leaves_no_stronger_magnets_behind(server: TestServer) {
+    let (job, step, setting, compass_deg) = gone_wrong(&server).await;
     let as_planned = &step["setting_after"];
     let compass_deg = compass_deg + turn_deg(&setting, as_planned);
     let said = json!({
         "setting": as_planned, "compass_deg": compass_deg.rem_euclid(360.0),
     });
     goes_on(&job, &said).await;
-    shore.finish().await;
+    server.finish().await;
 }

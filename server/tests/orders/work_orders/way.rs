@@ -2,8 +2,12 @@
 
 use binnacle_server_testing::alerts;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::work_orders::{Job, LAMBDA, foretold, reading, reading_aboard, word};
-use binnacle_server_testing::{Shore, days_at_sea, days_in, struck, truth};
+use binnacle_server_testing::work_orders::{
+    Job, LAMBDA, completion_details, predicted_model, reading, reading_on_ship,
+};
+use binnacle_server_testing::{
+    TestServer, days_at_sea, days_in_waters, model_after_step, true_model,
+};
 use serde_json::{Value, json};
 
 on_both!(
@@ -15,9 +19,9 @@ on_both!(
     an_adjustment_clears_what_was_open_about_the_ship_before_it,
 );
 
-async fn an_order_goes_from_the_berth_to_a_predicted_model(shore: Shore) {
-    let job = Job::begin(&shore).await;
-    let order = job.seen().await;
+async fn an_order_goes_from_the_berth_to_a_predicted_model(server: TestServer) {
+    let job = Job::begin(&server).await;
+    let order = job.view_order().await;
     assert_eq!(order["state"], "planned");
     assert_eq!(order["standing"], "predicted, not a certificate");
     let order = job.post("/berth-reading", &reading()).await.good();
@@ -35,7 +39,7 @@ async fn an_order_goes_from_the_berth_to_a_predicted_model(shore: Shore) {
         (&json!("adjusting"), &Value::Null)
     );
     assert!(order["steps_done"].as_u64().unwrap() > 0);
-    let done = job.post("/complete", &word()).await.good();
+    let done = job.post("/complete", &completion_details()).await.good();
     assert_eq!(done["state"], "adjusted");
 
     // The binnacle stands as it was set,
@@ -65,20 +69,20 @@ async fn an_order_goes_from_the_berth_to_a_predicted_model(shore: Shore) {
         assert_eq!(sent["model"]["id"], done["completion"]["model_id"]);
         assert_eq!(sent["model"]["replaces"]["reason"], "adjustment");
         assert_eq!(sent["card_withdrawn"], Value::Null);
-        shore.work().await;
+        server.work().await;
     }
     let model = job.person.get(&job.ship.path("/model")).await.good();
     assert_eq!(model["foretold_by"], job.order);
     assert_eq!(job.open_alerts().await, Vec::<Value>::new());
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn headings_at_sea_verify_an_adjustment(shore: Shore) {
-    let mut job = Job::begin(&shore).await;
+async fn headings_at_sea_verify_an_adjustment(server: TestServer) {
+    let mut job = Job::begin(&server).await;
     let done = job.complete().await;
     assert_eq!(done["verification"], Value::Null);
-    let ship = foretold(&done);
-    let some = job.sail(&shore, &ship, 2, 0.25).await;
+    let ship = predicted_model(&done);
+    let some = job.sail(&server, &ship, 2, 0.25).await;
     assert_eq!(some["state"], "adjusted");
     assert_eq!(
         some["verification"]["verification"]["verdict"],
@@ -91,7 +95,7 @@ async fn headings_at_sea_verify_an_adjustment(shore: Shore) {
     let not_verified = "adjusted, not yet verified at sea: ";
     let reason = reason_of_need(&job).await;
     assert!(reason.starts_with(not_verified), "{reason}");
-    let more = job.sail(&shore, &ship, 3, 6.0).await;
+    let more = job.sail(&server, &ship, 3, 6.0).await;
     assert_eq!(more["state"], "verified", "{}", more["verification"]);
     assert_eq!(more["standing"], "verified at sea");
     let reason = reason_of_need(&job).await;
@@ -106,14 +110,14 @@ async fn headings_at_sea_verify_an_adjustment(shore: Shore) {
         (&closed["state"], &closed["standing"]),
         (&json!("closed"), &json!("verified at sea"))
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_heading_at_sea_that_does_not_agree_is_an_alert(shore: Shore) {
-    let mut job = Job::begin(&shore).await;
-    let mut ship = foretold(&job.complete().await);
+async fn a_heading_at_sea_that_does_not_agree_is_an_alert(server: TestServer) {
+    let mut job = Job::begin(&server).await;
+    let mut ship = predicted_model(&job.complete().await);
     ship.parameters_over_lambda.bx_nt += 4000.0;
-    let failed = job.sail(&shore, &ship, 2, 1.0).await;
+    let failed = job.sail(&server, &ship, 2, 1.0).await;
     assert_eq!(failed["state"], "failed");
     assert_eq!(failed["standing"], "predicted, not a certificate");
     let alerts = job.open_alerts().await;
@@ -139,14 +143,14 @@ async fn a_heading_at_sea_that_does_not_agree_is_an_alert(shore: Shore) {
     let after = job.person.get("/needs").await.good();
     assert_eq!(after["items"][0]["causes"], needs["items"][0]["causes"]);
     let more = days_at_sea(&ship, "2026-11-23T12:00:00Z", 1.0);
-    job.send(&shore, 3, &more, 1.0).await;
+    job.send(&server, 3, &more, 1.0).await;
     let alerts = job.open_alerts().await;
     let causes: Vec<&Value> = alerts.iter().map(|alert| &alert["cause"]).collect();
     assert!(
         causes.contains(&&json!("adjustment_not_confirmed")),
         "{causes:?}"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
 async fn reason_of_need(job: &Job) -> String {
@@ -157,11 +161,11 @@ async fn reason_of_need(job: &Job) -> String {
 }
 
 /// A job that the sea has disproved, on the day after the adjustment.
-async fn disproved(shore: &Shore) -> Job {
-    let mut job = Job::begin(shore).await;
-    let mut ship = foretold(&job.complete().await);
+async fn disproved(server: &TestServer) -> Job {
+    let mut job = Job::begin(server).await;
+    let mut ship = predicted_model(&job.complete().await);
     ship.parameters_over_lambda.bx_nt += 4000.0;
-    let failed = job.sail(shore, &ship, 2, 1.0).await;
+    let failed = job.sail(server, &ship, 2, 1.0).await;
     assert_eq!(failed["state"], "failed");
     assert!(is_failed(&job).await);
     job
@@ -173,8 +177,8 @@ async fn is_failed(job: &Job) -> bool {
     causes.any(|cause| cause["kind"] == "failed_verification")
 }
 
-async fn an_adjustment_after_the_verdict_answers_it_on_its_very_day(shore: Shore) {
-    let job = disproved(&shore).await;
+async fn an_adjustment_after_the_verdict_answers_it_on_its_very_day(server: TestServer) {
+    let job = disproved(&server).await;
     // The last heading at sea was at 11:50 on that day.
     let before = json!({ "kind": "adjustment", "from": "2026-11-22T09:00:00Z" });
     let logbook = job.ship.path("/logbook");
@@ -183,16 +187,16 @@ async fn an_adjustment_after_the_verdict_answers_it_on_its_very_day(shore: Shore
     let after = json!({ "kind": "adjustment", "from": "2026-11-22T15:00:00Z" });
     job.person.post(&logbook, &after).await.good();
     assert!(!is_failed(&job).await);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn another_orders_adjustment_answers_the_verdict_of_the_first(shore: Shore) {
-    let job = disproved(&shore).await;
+async fn another_orders_adjustment_answers_the_verdict_of_the_first(server: TestServer) {
+    let job = disproved(&server).await;
     let mut again = job.new_order();
     again["planned_at"] = json!("2026-11-23T09:00:00Z");
     job.person.post("/work-orders", &again).await.good();
     // An hour after the first, before the sea's verdict came.
-    shore
+    server
         .sql(
             "UPDATE work_orders SET state = 'adjusted', completed_at =
                  (SELECT MAX(c.completed_at) FROM work_orders c) + 3600000000
@@ -205,23 +209,23 @@ async fn another_orders_adjustment_answers_the_verdict_of_the_first(shore: Shore
         needs.contains("adjusted, not yet verified at sea"),
         "{needs}"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_adjustment_clears_what_was_open_about_the_ship_before_it(shore: Shore) {
-    let person = shore.admin("ada").await;
-    let now = struck(3000.0, 2000.0);
-    let mut samples = days_at_sea(&truth(), "2026-10-27T00:00:00Z", 12.0);
-    samples.extend(days_in(
+async fn an_adjustment_clears_what_was_open_about_the_ship_before_it(server: TestServer) {
+    let person = server.admin("ada").await;
+    let now = model_after_step(3000.0, 2000.0);
+    let mut samples = days_at_sea(&true_model(), "2026-10-27T00:00:00Z", 12.0);
+    samples.extend(days_in_waters(
         (10.0, -25.0),
-        &truth(),
+        &true_model(),
         "2026-11-08T00:00:00Z",
         7.0,
     ));
     samples.extend(days_at_sea(&now, "2026-11-15T00:00:00Z", 5.0));
-    let job = Job::after(&shore, person, &samples).await;
-    alerts::says_that_it_departs(&job.ship, 2).await;
-    shore.work().await;
+    let job = Job::after(&server, person, &samples).await;
+    alerts::report_departure_without_samples(&job.ship, 2).await;
+    server.work().await;
     let causes = |alerts: &[Value]| -> Vec<String> {
         let causes = alerts.iter().map(|alert| alert["cause"].as_str().unwrap());
         causes.map(str::to_owned).collect()
@@ -234,12 +238,12 @@ async fn an_adjustment_clears_what_was_open_about_the_ship_before_it(shore: Shor
     ] {
         assert!(open.iter().any(|one| one == cause), "{open:?}");
     }
-    job.post("/berth-reading", &reading_aboard(&now))
+    job.post("/berth-reading", &reading_on_ship(&now))
         .await
         .good();
-    job.follow_a_plan().await;
-    job.post("/complete", &word()).await.good();
-    shore.work().await;
+    job.follow_plan().await;
+    job.post("/complete", &completion_details()).await.good();
+    server.work().await;
     assert_eq!(job.open_alerts().await, Vec::<Value>::new());
     let list = job.person.get("/alerts").await.good();
     for alert in list["items"].as_array().unwrap() {
@@ -247,9 +251,9 @@ async fn an_adjustment_clears_what_was_open_about_the_ship_before_it(shore: Shor
         assert!(why.contains("the predicted card holds"), "{alert}");
     }
     // Nor does what the new samples show bring it back within its week.
-    let ship = foretold(&job.seen().await);
+    let ship = predicted_model(&job.view_order().await);
     let mut job = job;
-    job.sail(&shore, &ship, 9, 2.0).await;
+    job.sail(&server, &ship, 9, 2.0).await;
     assert_eq!(job.open_alerts().await, Vec::<Value>::new());
-    shore.finish().await;
+    server.finish().await;
 }

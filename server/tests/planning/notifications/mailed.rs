@@ -3,11 +3,11 @@
 use super::{mailed, say};
 use binnacle_planning::notifications::post;
 use binnacle_server_testing::HOUR_S;
-use binnacle_server_testing::alerts::{limit, with_model};
+use binnacle_server_testing::alerts::{limit, ship_with_model};
 use binnacle_server_testing::mail::{add, deliver};
-use binnacle_server_testing::offers::Trade;
+use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Relay, Shore};
+use binnacle_server_testing::{ApiResponse, Relay, TestServer};
 use reqwest::Method;
 use serde_json::json;
 
@@ -31,37 +31,37 @@ fn quiet() -> serde_json::Value {
     })
 }
 
-async fn quiet_hours_keep_letters_back_and_put_them_together(shore: Shore) {
+async fn quiet_hours_keep_letters_back_and_put_them_together(server: TestServer) {
     let relay = Relay::start().await;
-    let trade = Trade::planned(&shore, 2).await;
-    say(&trade.ada, &quiet()).await.good();
-    trade
-        .post(&trade.ada, "/offer", &trade.offer())
+    let parties = OfferParties::planned(&server, 2).await;
+    say(&parties.ada, &quiet()).await.good();
+    parties
+        .post(&parties.ada, "/offer", &parties.offer())
         .await
         .good();
-    let [(_, rosa), (_, juan)] = &trade.firms[..] else {
+    let [(_, rosa), (_, juan)] = &parties.firms[..] else {
         unreachable!("there are two")
     };
-    trade.post(rosa, "/decline", &json!({})).await;
-    trade.post(juan, "/accept", &json!({})).await.good();
+    parties.post(rosa, "/decline", &json!({})).await;
+    parties.post(juan, "/accept", &json!({})).await.good();
     // The firms have no quiet hours.
     let offered = "Nao: a job is offered to you at Bilbao";
-    assert_eq!(mailed(&shore, &relay).await, [offered; 2]);
-    shore.advance(1.5 * HOUR_S - 1.0);
-    assert_eq!(mailed(&shore, &relay).await.len(), 2);
-    shore.advance(1.0);
-    let all = mailed(&shore, &relay).await;
+    assert_eq!(mailed(&server, &relay).await, [offered; 2]);
+    server.advance(1.5 * HOUR_S - 1.0);
+    assert_eq!(mailed(&server, &relay).await.len(), 2);
+    server.advance(1.0);
+    let all = mailed(&server, &relay).await;
     assert_eq!(all[2..], ["2 notifications from Binnacle"]);
-    let letter = relay.got().pop().unwrap();
+    let letter = relay.letters().pop().unwrap();
     assert_eq!(letter.to, ["<ada@example.com>"]);
     let read = binnacle_server_testing::mail::read(&letter);
     let text = read["text"].as_str().unwrap();
     let (last, first) = (text.find("juan accepts"), text.find("rosa declines"));
     assert!(last.unwrap() < first.unwrap(), "{text}");
     // What each has to say, with its own page, as a letter of its own has it.
-    let page = format!("https://binnacle.example/work-orders/{}", trade.order);
+    let page = format!("https://binnacle.example/work-orders/{}", parties.order);
     assert_eq!(text.matches(&page).count(), 2, "{text}");
-    let listed = trade.ada.get("/notifications").await.good();
+    let listed = parties.ada.get("/notifications").await.good();
     for one in listed["items"].as_array().unwrap() {
         for line in one["text"].as_str().unwrap().lines() {
             assert!(text.contains(line), "{line:?} is not in {text}");
@@ -71,59 +71,59 @@ async fn quiet_hours_keep_letters_back_and_put_them_together(shore: Shore) {
         text.contains("https://binnacle.example/notifications"),
         "{text}"
     );
-    shore.advance(24.0 * HOUR_S);
-    assert_eq!(mailed(&shore, &relay).await.len(), 3);
-    shore.finish().await;
+    server.advance(24.0 * HOUR_S);
+    assert_eq!(mailed(&server, &relay).await.len(), 3);
+    server.finish().await;
 }
 
-async fn what_is_read_in_quiet_hours_is_not_mailed_after_them(shore: Shore) {
+async fn what_is_read_in_quiet_hours_is_not_mailed_after_them(server: TestServer) {
     let relay = Relay::start().await;
-    let trade = Trade::offered(&shore, 1).await;
-    say(&trade.ada, &quiet()).await.good();
-    let rosa = &trade.firms[0].1;
-    trade.post(rosa, "/accept", &json!({})).await.good();
-    trade.post(rosa, "/on-board", &json!({})).await.good();
-    let listed = trade.ada.get("/notifications").await.good();
+    let parties = OfferParties::offered(&server, 1).await;
+    say(&parties.ada, &quiet()).await.good();
+    let rosa = &parties.firms[0].1;
+    parties.post(rosa, "/accept", &json!({})).await.good();
+    parties.post(rosa, "/on-board", &json!({})).await.good();
+    let listed = parties.ada.get("/notifications").await.good();
     let first = json!({ "until": listed["items"][1]["id"] });
-    trade.ada.post("/notifications/read", &first).await;
-    assert_eq!(mailed(&shore, &relay).await.len(), 1);
-    shore.advance(2.0 * HOUR_S);
-    let all = mailed(&shore, &relay).await;
+    parties.ada.post("/notifications/read", &first).await;
+    assert_eq!(mailed(&server, &relay).await.len(), 1);
+    server.advance(2.0 * HOUR_S);
+    let all = mailed(&server, &relay).await;
     assert_eq!(all[1..], ["Nao: the adjuster is on board at Bilbao"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_critical_alert_passes_quiet_hours_and_a_warning_does_not(shore: Shore) {
+async fn a_critical_alert_passes_quiet_hours_and_a_warning_does_not(server: TestServer) {
     let relay = Relay::start().await;
-    let ada = shore.admin("ada").await;
-    let nao = with_model(&shore, &ada).await;
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
     let mut settings = quiet();
     settings["ways"] = json!({ "alert": "mail" });
     say(&ada, &settings).await.good();
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
-    assert_eq!(mailed(&shore, &relay).await, [""; 0]);
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    assert_eq!(mailed(&server, &relay).await, [""; 0]);
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let critical = "Nao: critical, deviation over the limit";
-    assert_eq!(mailed(&shore, &relay).await, [critical]);
+    assert_eq!(mailed(&server, &relay).await, [critical]);
     // Nor does it wait for a digest.
     settings["ways"] = json!({ "alert": "digest" });
     say(&ada, &settings).await.good();
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
-    assert_eq!(mailed(&shore, &relay).await, [critical; 2]);
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    assert_eq!(mailed(&server, &relay).await, [critical; 2]);
     // Only who wants none of it gets none.
     settings["ways"] = json!({ "alert": "off" });
     say(&ada, &settings).await.good();
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
-    assert_eq!(mailed(&shore, &relay).await.len(), 2);
-    shore.finish().await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    assert_eq!(mailed(&server, &relay).await.len(), 2);
+    server.finish().await;
 }
 
-async fn who_was_told_of_an_alert_hears_once_that_it_sank_or_is_over(shore: Shore) {
+async fn who_was_told_of_an_alert_hears_once_that_it_sank_or_is_over(server: TestServer) {
     let relay = Relay::start().await;
-    let ada = shore.admin("ada").await;
-    let nao = with_model(&shore, &ada).await;
+    let ada = server.admin("ada").await;
+    let nao = ship_with_model(&server, &ada).await;
     say(&ada, &json!({ "ways": { "alert": "mail" } }))
         .await
         .good();
@@ -133,113 +133,113 @@ async fn who_was_told_of_an_alert_hears_once_that_it_sank_or_is_over(shore: Shor
     let sunk_deg = worst_deg + 0.45;
     for deviation_deg in [1.0, 2.9, sunk_deg, 45.0, 2.9, sunk_deg, 2.9, 45.0] {
         limit(
-            &shore,
+            &server,
             &ada,
             &nao,
             json!({ "deviation_deg": deviation_deg }),
         )
         .await;
-        mailed(&shore, &relay).await;
+        mailed(&server, &relay).await;
     }
     let [critical, warning, sunk, over] = ["critical", "warning", "only notice now", "over"]
         .map(|state| format!("Nao: {state}, deviation over the limit"));
-    let all = mailed(&shore, &relay).await;
+    let all = mailed(&server, &relay).await;
     assert_eq!(
         all,
         [&critical, &sunk, &warning, &sunk, &warning, &over].map(String::as_str)
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn who_is_on_the_mailing_list_gets_no_second_letter_of_an_alert(shore: Shore) {
+async fn who_is_on_the_mailing_list_gets_no_second_letter_of_an_alert(server: TestServer) {
     let relay = Relay::start().await;
-    let ada = shore.admin("ada").await;
+    let ada = server.admin("ada").await;
     add(&ada, "Ada@example.com", "warning").await;
-    let nao = with_model(&shore, &ada).await;
+    let nao = ship_with_model(&server, &ada).await;
     say(&ada, &json!({ "ways": { "alert": "mail" } }))
         .await
         .good();
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
-    let all = mailed(&shore, &relay).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    let all = mailed(&server, &relay).await;
     assert_eq!(all, ["Nao: warning, deviation over the limit"]);
     assert_eq!(super::told(&ada).await, all);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_digest_has_what_came_since_the_last_one(shore: Shore) {
+async fn a_digest_has_what_came_since_the_last_one(server: TestServer) {
     let relay = Relay::start().await;
-    let trade = Trade::offered(&shore, 1).await;
-    let rosa = &trade.firms[0].1;
+    let parties = OfferParties::offered(&server, 1).await;
+    let rosa = &parties.firms[0].1;
     let weekly = json!({
         "time_zone": "Asia/Singapore", "ways": { "answered": "digest", "on_board": "digest" },
         "digest": { "every": "week", "on": "sunday", "at": "09:00" },
     });
-    let said = say(&trade.ada, &weekly).await.good();
+    let said = say(&parties.ada, &weekly).await.good();
     assert_eq!(said["next_digest_at"], "2026-11-22T01:00:00Z");
-    trade.post(rosa, "/accept", &json!({})).await.good();
-    assert_eq!(mailed(&shore, &relay).await.len(), 1);
-    shore.advance(18.0 * HOUR_S);
-    let all = mailed(&shore, &relay).await;
+    parties.post(rosa, "/accept", &json!({})).await.good();
+    assert_eq!(mailed(&server, &relay).await.len(), 1);
+    server.advance(18.0 * HOUR_S);
+    let all = mailed(&server, &relay).await;
     assert_eq!(all[1..], ["Nao: rosa accepts the job at Bilbao"]);
-    trade.post(rosa, "/on-board", &json!({})).await.good();
-    shore.advance(6.9 * 24.0 * HOUR_S);
-    assert_eq!(mailed(&shore, &relay).await.len(), 2);
-    shore.advance(0.1 * 24.0 * HOUR_S);
-    let all = mailed(&shore, &relay).await;
+    parties.post(rosa, "/on-board", &json!({})).await.good();
+    server.advance(6.9 * 24.0 * HOUR_S);
+    assert_eq!(mailed(&server, &relay).await.len(), 2);
+    server.advance(0.1 * 24.0 * HOUR_S);
+    let all = mailed(&server, &relay).await;
     assert_eq!(all[2..], ["Nao: the adjuster is on board at Bilbao"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn two_servers_make_one_letter(shore: Shore) {
+async fn two_servers_make_one_letter(server: TestServer) {
     let relay = Relay::start().await;
-    let _trade = Trade::offered(&shore, 1).await;
-    let other = shore.second().await;
-    let (one, two) = tokio::join!(post(&shore.app), post(&other));
+    let _trade = OfferParties::offered(&server, 1).await;
+    let other = server.second().await;
+    let (one, two) = tokio::join!(post(&server.app), post(&other));
     one.unwrap();
     two.unwrap();
-    assert_eq!(deliver(&shore, &relay).await.len(), 1);
+    assert_eq!(deliver(&server, &relay).await.len(), 1);
     other.db.close().await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_waits_follows_the_new_settings(shore: Shore) {
+async fn what_waits_follows_the_new_settings(server: TestServer) {
     let relay = Relay::start().await;
-    let trade = Trade::offered(&shore, 1).await;
-    say(&trade.ada, &quiet()).await.good();
-    trade
-        .post(&trade.firms[0].1, "/accept", &json!({}))
+    let parties = OfferParties::offered(&server, 1).await;
+    say(&parties.ada, &quiet()).await.good();
+    parties
+        .post(&parties.firms[0].1, "/accept", &json!({}))
         .await
         .good();
-    assert_eq!(mailed(&shore, &relay).await.len(), 1);
-    say(&trade.ada, &json!({})).await.good();
-    let all = mailed(&shore, &relay).await;
+    assert_eq!(mailed(&server, &relay).await.len(), 1);
+    say(&parties.ada, &json!({})).await.good();
+    let all = mailed(&server, &relay).await;
     assert_eq!(all[1..], ["Nao: rosa accepts the job at Bilbao"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn who_is_removed_gets_no_more_letters(shore: Shore) {
+async fn who_is_removed_gets_no_more_letters(server: TestServer) {
     let relay = Relay::start().await;
-    let trade = Trade::offered(&shore, 1).await;
-    let viewer = trade.ada.viewer(&shore).await;
+    let parties = OfferParties::offered(&server, 1).await;
+    let viewer = parties.ada.viewer(&server).await;
     say(&viewer, &json!({ "ways": { "answered": "mail" } }))
         .await
         .good();
-    trade
-        .post(&trade.firms[0].1, "/accept", &json!({}))
+    parties
+        .post(&parties.firms[0].1, "/accept", &json!({}))
         .await
         .good();
-    post(&shore.app).await.unwrap();
+    post(&server.app).await.unwrap();
     let id = viewer.get("/me").await.good()["user_id"].clone();
     let path = format!("/users/{}", id.as_str().unwrap());
-    let removed = Answer::of(trade.ada.request(Method::DELETE, &path)).await;
+    let removed = ApiResponse::of(parties.ada.request(Method::DELETE, &path)).await;
     assert_eq!(removed.status, 204, "{removed:?}");
-    deliver(&shore, &relay).await;
+    deliver(&server, &relay).await;
     let to: Vec<_> = relay
-        .got()
+        .letters()
         .iter()
         .flat_map(|letter| letter.to.clone())
         .collect();
     assert_eq!(to.len(), 2, "{to:?}");
     assert!(!to.iter().any(|to| to.contains("viewer")), "{to:?}");
-    shore.finish().await;
+    server.finish().await;
 }

@@ -8,9 +8,9 @@ use binnacle_orders::dispatch::lapse;
 use binnacle_planning::notifications::post;
 use binnacle_server_testing::HOUR_S;
 use binnacle_server_testing::mail::{deliver, subjects};
-use binnacle_server_testing::offers::Trade;
+use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Person, Relay, Shore};
+use binnacle_server_testing::{ApiResponse, Person, Relay, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -32,27 +32,27 @@ pub(crate) async fn told(person: &Person) -> Vec<String> {
 }
 
 /// Makes the letters that are due and sends them; the subjects of all there were.
-async fn mailed(shore: &Shore, relay: &Relay) -> Vec<String> {
-    post(&shore.app).await.unwrap();
-    deliver(shore, relay).await;
+async fn mailed(server: &TestServer, relay: &Relay) -> Vec<String> {
+    post(&server.app).await.unwrap();
+    deliver(server, relay).await;
     subjects(relay)
 }
 
-async fn say(person: &Person, settings: &Value) -> Answer {
+async fn say(person: &Person, settings: &Value) -> ApiResponse {
     let request = person.request(Method::PUT, "/me/notifications");
-    Answer::of(request.json(settings)).await
+    ApiResponse::of(request.json(settings)).await
 }
 
-async fn an_offer_and_its_answers_reach_the_other_side(shore: Shore) {
+async fn an_offer_and_its_answers_reach_the_other_side(server: TestServer) {
     let relay = Relay::start().await;
-    let trade = Trade::offered(&shore, 2).await;
-    let [(_, rosa), (_, juan)] = &trade.firms[..] else {
+    let parties = OfferParties::offered(&server, 2).await;
+    let [(_, rosa), (_, juan)] = &parties.firms[..] else {
         unreachable!("there are two")
     };
     let offered = "Nao: a job is offered to you at Bilbao";
     assert_eq!(told(rosa).await, [offered]);
-    assert_eq!(mailed(&shore, &relay).await, [offered]);
-    let letter = relay.got().remove(0);
+    assert_eq!(mailed(&server, &relay).await, [offered]);
+    let letter = relay.letters().remove(0);
     assert_eq!(letter.to, ["<rosa@adjusters.example>"]);
     let read = binnacle_server_testing::mail::read(&letter);
     let text = read["text"].as_str().unwrap();
@@ -62,69 +62,75 @@ async fn an_offer_and_its_answers_reach_the_other_side(shore: Shore) {
         "Planned:   2026-11-22 08:00 UTC",
         "Operator:  ada",
         "Answer by: 2026-11-21 08:00 UTC",
-        &format!("https://binnacle.example/work-orders/{}", trade.order),
+        &format!("https://binnacle.example/work-orders/{}", parties.order),
         "https://binnacle.example/settings",
     ] {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
 
     let no = json!({ "text": "No team." });
-    assert_eq!(trade.post(rosa, "/decline", &no).await.status, 204);
+    assert_eq!(parties.post(rosa, "/decline", &no).await.status, 204);
     let terms = json!({ "planned_at": "2026-11-22T13:00:00Z", "berth": "A7", "fee_eur": 900.5 });
     let proposal = json!({ "terms": terms, "text": "At noon." });
-    trade.post(juan, "/propose", &proposal).await.good();
+    parties.post(juan, "/propose", &proposal).await.good();
     let answers = [
         "Nao: rosa declines the job at Bilbao",
         "Nao: juan proposes other terms at Bilbao",
     ];
-    assert_eq!(told(&trade.ada).await, answers);
-    let listed = trade.ada.get("/notifications?kind=answered").await.good();
+    assert_eq!(told(&parties.ada).await, answers);
+    let listed = parties.ada.get("/notifications?kind=answered").await.good();
     let newest = &listed["items"][0];
-    assert_eq!(newest["order_id"], trade.order.as_str());
+    assert_eq!(newest["order_id"], parties.order.as_str());
     let said = "juan@adjusters.example: 2026-11-22 13:00 UTC, berth A7, for 900.50 euros. At noon.";
     assert!(newest["text"].as_str().unwrap().contains(said), "{newest}");
 
-    trade.post(&trade.ada, "/accept", &json!({})).await.good();
-    trade.post(juan, "/on-board", &json!({})).await.good();
+    parties
+        .post(&parties.ada, "/accept", &json!({}))
+        .await
+        .good();
+    parties.post(juan, "/on-board", &json!({})).await.good();
     assert_eq!(
         told(juan).await,
         [offered, "Nao: your terms are agreed to at Bilbao"]
     );
-    let all = told(&trade.ada).await;
+    let all = told(&parties.ada).await;
     assert_eq!(
         all.last().unwrap(),
         "Nao: the adjuster is on board at Bilbao"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_answer_that_is_late_is_told_to_both_sides(shore: Shore) {
-    let trade = Trade::offered(&shore, 1).await;
-    shore.advance(HOUR_S + 1.0);
-    assert_eq!(lapse(&shore.app).await.unwrap(), 1);
-    let late = told(&trade.ada).await;
+async fn an_answer_that_is_late_is_told_to_both_sides(server: TestServer) {
+    let parties = OfferParties::offered(&server, 1).await;
+    server.advance(HOUR_S + 1.0);
+    assert_eq!(lapse(&server.app).await.unwrap(), 1);
+    let late = told(&parties.ada).await;
     assert_eq!(late, ["Nao: no answer in time from rosa at Bilbao"]);
-    let theirs = told(&trade.firms[0].1).await;
+    let theirs = told(&parties.firms[0].1).await;
     assert_eq!(theirs[1], "Nao: you have not answered in time at Bilbao");
     assert_eq!(theirs.len(), 2);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn who_does_something_is_not_told_of_it(shore: Shore) {
-    let trade = Trade::planned(&shore, 1).await;
-    let viewer = trade.ada.viewer(&shore).await;
-    trade
-        .post(&trade.ada, "/offer", &trade.offer())
+async fn who_does_something_is_not_told_of_it(server: TestServer) {
+    let parties = OfferParties::planned(&server, 1).await;
+    let viewer = parties.ada.viewer(&server).await;
+    parties
+        .post(&parties.ada, "/offer", &parties.offer())
         .await
         .good();
-    let rosa = &trade.firms[0].1;
-    trade.post(rosa, "/accept", &json!({})).await.good();
+    let rosa = &parties.firms[0].1;
+    parties.post(rosa, "/accept", &json!({})).await.good();
     let text = json!({ "text": "Is the gangway to port?" });
-    trade.post(&trade.ada, "/messages", &text).await;
+    parties.post(&parties.ada, "/messages", &text).await;
     // An admin stands in for the adjuster.
-    trade.post(&trade.ada, "/on-board", &json!({})).await.good();
+    parties
+        .post(&parties.ada, "/on-board", &json!({}))
+        .await
+        .good();
     assert_eq!(
-        told(&trade.ada).await,
+        told(&parties.ada).await,
         ["Nao: rosa accepts the job at Bilbao"]
     );
     let others = told(&viewer).await;
@@ -138,19 +144,19 @@ async fn who_does_something_is_not_told_of_it(shore: Shore) {
         "Nao: the operator writes at Bilbao",
     ];
     assert_eq!(theirs, expected);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_offer_that_is_withdrawn_is_told_without_a_reason(shore: Shore) {
-    let trade = Trade::planned(&shore, 2).await;
-    let [(_, rosa), (_, juan)] = &trade.firms[..] else {
+async fn an_offer_that_is_withdrawn_is_told_without_a_reason(server: TestServer) {
+    let parties = OfferParties::planned(&server, 2).await;
+    let [(_, rosa), (_, juan)] = &parties.firms[..] else {
         unreachable!("there are two")
     };
-    let mut offer = trade.offer();
+    let mut offer = parties.offer();
     offer["at_once"] = json!(true);
-    trade.post(&trade.ada, "/offer", &offer).await.good();
+    parties.post(&parties.ada, "/offer", &offer).await.good();
     let yes = json!({ "text": "For 1200 euros as always." });
-    trade.post(rosa, "/accept", &yes).await.good();
+    parties.post(rosa, "/accept", &yes).await.good();
     let listed = juan.get("/notifications?kind=withdrawn").await.good();
     let withdrawn = &listed["items"][0];
     assert_eq!(
@@ -159,22 +165,22 @@ async fn an_offer_that_is_withdrawn_is_told_without_a_reason(shore: Shore) {
     );
     let text = withdrawn["text"].as_str().unwrap();
     assert!(!text.contains("rosa") && !text.contains("1200"), "{text}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_was_read_is_marked_and_ones_own(shore: Shore) {
-    let trade = Trade::offered(&shore, 1).await;
-    let rosa = &trade.firms[0].1;
-    trade.post(rosa, "/accept", &json!({})).await.good();
-    trade.post(rosa, "/on-board", &json!({})).await.good();
-    let ada = &trade.ada;
+async fn what_was_read_is_marked_and_ones_own(server: TestServer) {
+    let parties = OfferParties::offered(&server, 1).await;
+    let rosa = &parties.firms[0].1;
+    parties.post(rosa, "/accept", &json!({})).await.good();
+    parties.post(rosa, "/on-board", &json!({})).await.good();
+    let ada = &parties.ada;
     let listed = ada.get("/notifications?unread=true").await.good();
     assert_eq!(listed["unread"], 2);
     let first = listed["items"][1]["id"].as_str().unwrap();
     let path = format!("/notifications/{first}");
     let mark = |who: &Person, read: bool| {
         let request = who.request(Method::PATCH, &path);
-        Answer::of(request.json(&json!({ "read": read })))
+        ApiResponse::of(request.json(&json!({ "read": read })))
     };
     assert_eq!(mark(rosa, true).await.problem(), "not-found");
     assert_eq!(mark(ada, true).await.status, 204);
@@ -198,7 +204,7 @@ async fn what_was_read_is_marked_and_ones_own(shore: Shore) {
         page["next"].as_str().unwrap()
     );
     assert_eq!(ada.get(&next).await.good()["items"][0]["id"], first);
-    let root = ada.platform_admin(&shore).await;
+    let root = ada.platform_admin(&server).await;
     assert_eq!(root.get("/notifications").await.problem(), "forbidden");
-    shore.finish().await;
+    server.finish().await;
 }

@@ -1,9 +1,9 @@
 //! What a person says of how to be told.
 
 use super::say;
-use binnacle_server_testing::offers::Trade;
+use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Shore};
+use binnacle_server_testing::{ApiResponse, TestServer};
 use reqwest::Method;
 use serde_json::json;
 
@@ -13,9 +13,9 @@ on_both!(
     a_token_that_may_only_read_changes_no_settings,
 );
 
-async fn each_is_told_in_the_usual_way_until_they_say_otherwise(shore: Shore) {
-    let trade = Trade::planned(&shore, 1).await;
-    let usual = trade.ada.get("/me/notifications").await.good();
+async fn each_is_told_in_the_usual_way_until_they_say_otherwise(server: TestServer) {
+    let parties = OfferParties::planned(&server, 1).await;
+    let usual = parties.ada.get("/me/notifications").await.good();
     assert_eq!(usual["settings"]["time_zone"], "UTC");
     assert_eq!(usual["settings"]["quiet_hours"], json!(null));
     assert_eq!(usual["ways"]["answered"], "mail");
@@ -27,10 +27,10 @@ async fn each_is_told_in_the_usual_way_until_they_say_otherwise(shore: Shore) {
         (&json!("ada@example.com"), &json!(true))
     );
     assert_eq!(usual["next_digest_at"], "2026-11-22T07:00:00Z");
-    let viewer = trade.ada.viewer(&shore).await;
+    let viewer = parties.ada.viewer(&server).await;
     let theirs = viewer.get("/me/notifications").await.good();
     assert_eq!(theirs["ways"]["answered"], "list");
-    let firms = trade.firms[0].1.get("/me/notifications").await.good();
+    let firms = parties.firms[0].1.get("/me/notifications").await.good();
     assert_eq!(firms["ways"]["offered"], "mail");
     assert_eq!(firms["ways"]["alert"], json!(null));
     let wanted = json!({
@@ -43,11 +43,11 @@ async fn each_is_told_in_the_usual_way_until_they_say_otherwise(shore: Shore) {
     assert_eq!(said["settings"], wanted);
     assert_eq!(said["ways"]["answered"], "off");
     assert_eq!(said["next_digest_at"], "2026-11-27T04:30:00Z");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn settings_that_make_no_sense_are_refused(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn settings_that_make_no_sense_are_refused(server: TestServer) {
+    let ada = server.admin("ada").await;
     for bad in [
         json!({ "time_zone": "Europe/Atlantis" }),
         json!({ "quiet_hours": { "from": "25:00", "to": "06:00" } }),
@@ -62,20 +62,20 @@ async fn settings_that_make_no_sense_are_refused(shore: Shore) {
     }
     let usual = ada.get("/me/notifications").await.good();
     assert_eq!(usual["settings"]["time_zone"], "UTC");
-    let root = ada.platform_admin(&shore).await;
+    let root = ada.platform_admin(&server).await;
     assert_eq!(root.get("/me/notifications").await.problem(), "forbidden");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_token_that_may_only_read_changes_no_settings(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_token_that_may_only_read_changes_no_settings(server: TestServer) {
+    let ada = server.admin("ada").await;
     let token = json!({ "name": "ERP", "scope": "read" });
     let token = ada.post("/tokens", &token).await.good()["token"].clone();
-    let url = format!("{}/api/v1/me/notifications", shore.url);
+    let url = format!("{}/api/v1/me/notifications", server.url);
     for (method, status) in [(Method::GET, 200), (Method::PUT, 403)] {
-        let request = shore.http.request(method, &url).json(&json!({}));
-        let answer = Answer::of(request.bearer_auth(token.as_str().unwrap())).await;
-        assert_eq!(answer.status, status, "{answer:?}");
+        let request = server.http.request(method, &url).json(&json!({}));
+        let response = ApiResponse::of(request.bearer_auth(token.as_str().unwrap())).await;
+        assert_eq!(response.status, status, "{response:?}");
     }
-    shore.finish().await;
+    server.finish().await;
 }

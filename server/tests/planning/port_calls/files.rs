@@ -3,7 +3,7 @@
 use super::listed;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::port_calls::{call, path};
-use binnacle_server_testing::{Answer, Person, Shore};
+use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -22,9 +22,9 @@ on_both!(
 
 const HEADER: &str = "id,port,eta,etd,berth\n";
 
-async fn send(person: &Person, path: &str, text: impl Into<String>) -> Answer {
+async fn send(person: &Person, path: &str, text: impl Into<String>) -> ApiResponse {
     let request = person.request(Method::POST, path).body(text.into());
-    Answer::of(request.header("content-type", "text/csv")).await
+    ApiResponse::of(request.header("content-type", "text/csv")).await
 }
 
 fn did(created: u32, amended: u32, unchanged: u32, withdrawn: u32, over: u32) -> Value {
@@ -38,8 +38,8 @@ fn row(id: &str, port: &str, day: u32) -> String {
     format!("{id},{port},{},{},A5\n", at("eta"), at("etd"))
 }
 
-async fn a_csv_is_taken_once_however_often_it_comes(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_csv_is_taken_once_however_often_it_comes(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let csv = format!("{}.csv", path(&nao));
     let file = format!("{HEADER}{}{}", row("a", "NLRTM", 8), row("b", "BEANR", 10));
@@ -52,27 +52,27 @@ async fn a_csv_is_taken_once_however_often_it_comes(shore: Shore) {
     let list = ada.get(&path(&nao)).await.good();
     assert_eq!(list["items"][0]["source"], "csv");
     assert_eq!(list["items"][0]["revision"], 2);
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// An export that is sent each night still has the call that was left yesterday.
-async fn a_csv_is_taken_when_some_of_its_calls_are_over(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_csv_is_taken_when_some_of_its_calls_are_over(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let csv = format!("{}.csv", path(&nao));
     let file = format!("{HEADER}{}{}", row("a", "NLRTM", 8), row("b", "BEANR", 20));
     assert_eq!(send(&ada, &csv, &file).await.good(), did(2, 0, 0, 0, 0));
-    shore.advance(20.0 * 86_400.0);
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    server.advance(20.0 * 86_400.0);
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     assert_eq!(send(&ada, &csv, &file).await.good(), did(0, 0, 1, 0, 1));
     let all = format!("{csv}?replace=true");
     assert_eq!(send(&ada, &all, &file).await.good(), did(0, 0, 1, 0, 1));
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 08", "BEANR 20"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_csv_of_a_european_spreadsheet_is_taken(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_csv_of_a_european_spreadsheet_is_taken(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let csv = format!("{}.csv", path(&nao));
     let file = "\u{feff}id;port;eta;etd;berth;eta_uncertainty_h\r\n\
@@ -97,11 +97,11 @@ async fn a_csv_of_a_european_spreadsheet_is_taken(shore: Shore) {
         let detail = refused.json()["detail"].as_str().unwrap().to_owned();
         assert!(detail.contains(said), "{detail}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_csv_with_one_wrong_line_leaves_nothing(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_csv_with_one_wrong_line_leaves_nothing(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     ada.post(&path(&nao), &call("NLRTM", 20)).await.good();
     let csv = format!("{}.csv", path(&nao));
@@ -132,17 +132,17 @@ async fn a_csv_with_one_wrong_line_leaves_nothing(shore: Shore) {
             "file: line 3: eta: 9999-11-10T06:00:00Z is more than 730 days ahead",
         ),
     ] {
-        let answer = send(&ada, &csv, format!("{HEADER}{rows}")).await;
-        assert_eq!(answer.problem(), "invalid");
-        let detail = answer.json()["detail"].as_str().unwrap().to_owned();
+        let response = send(&ada, &csv, format!("{HEADER}{rows}")).await;
+        assert_eq!(response.problem(), "invalid");
+        let detail = response.json()["detail"].as_str().unwrap().to_owned();
         assert!(detail.starts_with(said), "{detail}\nis not\n{said}");
     }
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 20"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_file_that_replaces_withdraws_what_is_not_in_it_any_more(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_file_that_replaces_withdraws_what_is_not_in_it_any_more(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     ada.post(&path(&nao), &call("ESBIO", 4)).await.good();
     let csv = format!("{}.csv?replace=true", path(&nao));
@@ -157,11 +157,11 @@ async fn a_file_that_replaces_withdraws_what_is_not_in_it_any_more(shore: Shore)
     assert_eq!(send(&ada, &csv, &file).await.good(), did(0, 1, 0, 1, 0));
     let list = ada.get(&path(&nao)).await.good();
     assert_eq!(list["items"][1]["revision"], 2);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(server: TestServer) {
+    let ada = server.admin("ada").await;
     let numbered = json!({ "name": "Nao", "imo_number": "9074729" });
     let nao = ada.post("/vessels", &numbered).await.good();
     let pinta = ada.create_vessel("La Pinta").await;
@@ -206,7 +206,7 @@ async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(shore: Shore) {
     ada.create_vessel("Nao").await;
     let which = send(&ada, "/port-calls.csv", rows(["Nao", id])).await;
     assert!(which.text.contains("several vessels; write the IMO number"));
-    shore.finish().await;
+    server.finish().await;
 }
 
 fn calendar(events: &[String]) -> String {
@@ -221,8 +221,8 @@ fn event(id: &str, port: &str, day: &str, more: &str) -> String {
     )
 }
 
-async fn a_calendar_is_taken_and_what_it_cancels_is_withdrawn(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_calendar_is_taken_and_what_it_cancels_is_withdrawn(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let ics = format!("{}.ics", path(&nao));
     let first = calendar(&[
@@ -242,31 +242,31 @@ async fn a_calendar_is_taken_and_what_it_cancels_is_withdrawn(shore: Shore) {
     let cancelled = &all["items"][0];
     assert_eq!(cancelled["withdrawal_reason"], "cancelled in the file");
     let floating = next.replace("20261211T060000Z", "20261211T060000");
-    let answer = send(&ada, &ics, floating).await;
+    let response = send(&ada, &ics, floating).await;
     assert!(
-        answer.text.contains("file: line 12: DTSTART: "),
-        "{answer:?}"
+        response.text.contains("file: line 12: DTSTART: "),
+        "{response:?}"
     );
-    assert!(answer.text.contains("has no time zone"));
-    shore.finish().await;
+    assert!(response.text.contains("has no time zone"));
+    server.finish().await;
 }
 
-async fn fifty_megabytes_are_refused_in_words(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn fifty_megabytes_are_refused_in_words(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let line = row("a", "NLRTM", 8);
     let file = format!("{HEADER}{}", line.repeat(50_000_000 / line.len()));
     for path in [format!("{}.csv", path(&nao)), "/port-calls.csv".to_owned()] {
-        let answer = send(&ada, &path, file.as_str()).await;
-        assert_eq!(answer.problem(), "too-large");
-        assert!(answer.text.contains("8388608 bytes"), "{answer:?}");
+        let response = send(&ada, &path, file.as_str()).await;
+        assert_eq!(response.problem(), "too-large");
+        assert!(response.text.contains("8388608 bytes"), "{response:?}");
     }
     assert_eq!(listed(&ada, &path(&nao)).await, [] as [&str; 0]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_is_exported_reads_back(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn what_is_exported_reads_back(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let mut formula = call("NLRTM", 8);
     formula["reference"] = json!("=1+1");
@@ -277,12 +277,12 @@ async fn what_is_exported_reads_back(shore: Shore) {
     assert!(exported.text.contains("\n'=1+1,"), "{exported:?}");
     let again = send(&ada, &csv, exported.text.as_str()).await.good();
     assert_eq!(again, did(0, 0, 1, 0, 0));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_file_is_for_ones_own_vessels_only(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn a_file_is_for_ones_own_vessels_only(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     let nao = ada.create_vessel("Nao").await;
     let file = format!("{HEADER}{}", row("a", "NLRTM", 8));
     let csv = format!("{}.csv", path(&nao));
@@ -290,11 +290,11 @@ async fn a_file_is_for_ones_own_vessels_only(shore: Shore) {
     assert_eq!(eve.get(&csv).await.problem(), "not-found");
     let id = nao["id"].as_str().unwrap();
     let fleet = format!("vessel,{HEADER}{id},{}", row("a", "NLRTM", 8));
-    let answer = send(&eve, "/port-calls.csv", &fleet).await;
-    assert!(answer.text.contains("there is no vessel"), "{answer:?}");
+    let response = send(&eve, "/port-calls.csv", &fleet).await;
+    assert!(response.text.contains("there is no vessel"), "{response:?}");
     // A row may not name another vessel than the path.
     let pinta = ada.create_vessel("Pinta").await;
     let other = send(&ada, &format!("{}.csv", path(&pinta)), &fleet).await;
     assert!(other.text.contains("there is no vessel"), "{other:?}");
-    shore.finish().await;
+    server.finish().await;
 }

@@ -5,7 +5,7 @@ mod files;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::patch;
 use binnacle_server_testing::port_calls::{call, path};
-use binnacle_server_testing::{Person, Shore};
+use binnacle_server_testing::{Person, TestServer};
 use serde_json::json;
 
 on_both!(
@@ -31,8 +31,8 @@ async fn listed(person: &Person, path: &str) -> Vec<String> {
         .collect()
 }
 
-async fn a_call_is_entered_amended_and_withdrawn_and_each_revision_is_kept(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_call_is_entered_amended_and_withdrawn_and_each_revision_is_kept(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let mut new = call("NLRTM", 8);
     new["eta"] = json!("2026-12-08T07:00:00+01:00");
@@ -77,12 +77,12 @@ async fn a_call_is_entered_amended_and_withdrawn_and_each_revision_is_kept(shore
     assert_eq!(listed(&ada, &path(&nao)).await, [] as [&str; 0]);
     let all = format!("{}?withdrawn=true", path(&nao));
     assert_eq!(listed(&ada, &all).await, ["NLRTM 08"]);
-    assert_eq!(shore.events().await, ["port_call"; 3]);
-    shore.finish().await;
+    assert_eq!(server.events().await, ["port_call"; 3]);
+    server.finish().await;
 }
 
-async fn what_is_no_call_is_refused_by_its_field_and_leaves_nothing(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn what_is_no_call_is_refused_by_its_field_and_leaves_nothing(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     for (field, value, said) in [
         ("eta", json!("2026-12-08T06:00:00"), "has no time zone"),
@@ -100,25 +100,25 @@ async fn what_is_no_call_is_refused_by_its_field_and_leaves_nothing(shore: Shore
     ] {
         let mut wrong = call("NLRTM", 8);
         wrong[field] = value.clone();
-        let answer = ada.post(&path(&nao), &wrong).await;
-        assert_eq!(answer.problem(), "invalid", "{field}: {value}");
-        let detail = answer.json()["detail"].as_str().unwrap().to_owned();
+        let response = ada.post(&path(&nao), &wrong).await;
+        assert_eq!(response.problem(), "invalid", "{field}: {value}");
+        let detail = response.json()["detail"].as_str().unwrap().to_owned();
         assert!(detail.contains(field) && detail.contains(said), "{detail}");
     }
     let past =
         json!({ "port": "NLRTM", "eta": "2026-11-01T00:00:00Z", "etd": "2026-11-02T00:00:00Z" });
-    let answer = ada.post(&path(&nao), &past).await;
+    let response = ada.post(&path(&nao), &past).await;
     assert!(
-        answer
+        response
             .text
             .contains("etd: 2026-11-02T00:00:00Z is in the past")
     );
     assert_eq!(listed(&ada, &path(&nao)).await, [] as [&str; 0]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn calls_of_one_vessel_do_not_overlap(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn calls_of_one_vessel_do_not_overlap(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let first = ada.post(&path(&nao), &call("NLRTM", 8)).await.good();
     let overlapping = ada.post(&path(&nao), &call("BEANR", 9)).await;
@@ -142,11 +142,11 @@ async fn calls_of_one_vessel_do_not_overlap(shore: Shore) {
     // Another vessel may be in port at the same time.
     let other = ada.create_vessel("Pinta").await;
     ada.post(&path(&other), &call("BEANR", 9)).await.good();
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_call_sent_again_under_its_key_is_one_call(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_call_sent_again_under_its_key_is_one_call(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let mut ids = Vec::new();
     for _ in 0..2 {
@@ -154,15 +154,20 @@ async fn a_call_sent_again_under_its_key_is_one_call(shore: Shore) {
         let request = request
             .header("idempotency-key", "k")
             .json(&call("NLRTM", 8));
-        ids.push(binnacle_server_testing::Answer::of(request).await.good()["id"].clone());
+        ids.push(
+            binnacle_server_testing::ApiResponse::of(request)
+                .await
+                .good()["id"]
+                .clone(),
+        );
     }
     assert_eq!(ids[0], ids[1]);
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 08"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn calls_are_listed_in_order_of_time_by_fleet_and_by_vessel(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn calls_are_listed_in_order_of_time_by_fleet_and_by_vessel(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let pinta = ada.create_vessel("Pinta").await;
     ada.post(&path(&nao), &call("NLRTM", 14)).await.good();
@@ -184,12 +189,12 @@ async fn calls_are_listed_in_order_of_time_by_fleet_and_by_vessel(shore: Shore) 
     );
     assert_eq!(listed(&ada, "/port-calls?port=nlrtm").await, ["NLRTM 14"]);
     assert_eq!(ada.get("/port-calls?port=x").await.problem(), "invalid");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_call_is_found_with_its_own_vessel_only(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn a_call_is_found_with_its_own_vessel_only(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     let nao = ada.create_vessel("Nao").await;
     let pinta = ada.create_vessel("Pinta").await;
     let hers = ada.post(&path(&nao), &call("NLRTM", 8)).await.good();
@@ -206,23 +211,23 @@ async fn a_call_is_found_with_its_own_vessel_only(shore: Shore) {
     assert_eq!(theirs.problem(), "not-found");
     assert_eq!(eve.get(&path(&nao)).await.problem(), "not-found");
     assert_eq!(listed(&eve, "/port-calls").await, [] as [&str; 0]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_viewer_reads_and_does_not_write(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_viewer_reads_and_does_not_write(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     ada.post(&path(&nao), &call("NLRTM", 8)).await.good();
-    let viewer = ada.viewer(&shore).await;
+    let viewer = ada.viewer(&server).await;
     assert_eq!(listed(&viewer, &path(&nao)).await, ["NLRTM 08"]);
     let written = viewer.post(&path(&nao), &call("NLRTM", 20)).await;
     assert_eq!(written.problem(), "forbidden");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_berth_heading_is_learnt_from_the_fleets_earlier_calls(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn a_berth_heading_is_learnt_from_the_fleets_earlier_calls(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     let nao = ada.create_vessel("Nao").await;
     let mut known = call("NLRTM", 1);
     known["berth"] = json!("A5");
@@ -236,9 +241,9 @@ async fn a_berth_heading_is_learnt_from_the_fleets_earlier_calls(shore: Shore) {
     let next = ada.post(&path(&pinta), &next).await.good();
     // She has not been there yet: nobody knows.
     assert_eq!(next["berth_heading"], json!(null));
-    shore.advance(12.0 * 86_400.0);
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
-    let eve = Person::sign_in(&shore, eve.operator, &eve.email).await;
+    server.advance(12.0 * 86_400.0);
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
+    let eve = Person::sign_in(&server, eve.operator, &eve.email).await;
     let found = ada.get(&path(&pinta)).await.good();
     let learnt = json!({ "heading_deg": 112.0, "source": "berth" });
     assert_eq!(found["items"][0]["berth_heading"], learnt);
@@ -253,11 +258,11 @@ async fn a_berth_heading_is_learnt_from_the_fleets_earlier_calls(shore: Shore) {
     let santa = eve.create_vessel("Santa").await;
     let theirs = eve.post(&path(&santa), &call("NLRTM", 12)).await.good();
     assert_eq!(theirs["berth_heading"], json!(null));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn ports_are_found_by_name_and_by_code(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn ports_are_found_by_name_and_by_code(server: TestServer) {
+    let ada = server.admin("ada").await;
     let found = ada.get("/ports?q=rotterdam").await.good();
     assert_eq!(found["items"][0]["code"], "NLRTM");
     assert_eq!(found["items"][0]["zone"], "Europe/Amsterdam");
@@ -267,5 +272,5 @@ async fn ports_are_found_by_name_and_by_code(shore: Shore) {
     assert_eq!(accented["items"][0]["code"], "ESAGP");
     assert_eq!(ada.get("/ports?q=").await.good()["items"], json!([]));
     assert_eq!(ada.get("/ports").await.problem(), "bad-request");
-    shore.finish().await;
+    server.finish().await;
 }

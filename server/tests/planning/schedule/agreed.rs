@@ -4,7 +4,7 @@ use super::offers::{firm, offer};
 use super::{due_vessel, enter, solve};
 use binnacle_server_testing::patch;
 use binnacle_server_testing::port_calls;
-use binnacle_server_testing::{Answer, Person, Shore};
+use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use serde_json::{Value, json};
 
 /// A ship in Rotterdam from the fourteenth to the fifteenth, and a firm that has the job.
@@ -19,11 +19,11 @@ pub(super) struct Agreed {
 }
 
 impl Agreed {
-    pub(super) async fn new(shore: &Shore) -> Agreed {
-        let ada = shore.admin("ada").await;
+    pub(super) async fn new(server: &TestServer) -> Agreed {
+        let ada = server.admin("ada").await;
         let nao = due_vessel(&ada, "Nao").await;
         let call = enter(&ada, &nao, "NLRTM", 14).await;
-        let (firm, rosa) = firm(shore, &ada, "rosa").await;
+        let (firm, rosa) = firm(server, &ada, "rosa").await;
         let plan = solve(&ada).await;
         let order = offer(&ada, &plan, &nao).await;
         rosa.post(&format!("{order}/accept"), &json!({}))
@@ -46,11 +46,11 @@ impl Agreed {
         patch(&self.ada, &self.call, &times).await.good();
     }
 
-    pub(super) async fn seen(&self) -> Value {
+    pub(super) async fn view_order(&self) -> Value {
         self.ada.get(&self.order).await.good()
     }
 
-    pub(super) async fn retime(&self, at: &str) -> Answer {
+    pub(super) async fn retime(&self, at: &str) -> ApiResponse {
         let asked = json!({ "terms": { "planned_at": at }, "answer_within_hours": 1,
                             "text": "She is late." });
         self.ada
@@ -58,7 +58,7 @@ impl Agreed {
             .await
     }
 
-    pub(super) async fn answer(&self, who: &Person, yes: &str) -> Answer {
+    pub(super) async fn respond(&self, who: &Person, yes: &str) -> ApiResponse {
         who.post(&format!("{}/retime/{yes}", self.order), &json!({}))
             .await
     }

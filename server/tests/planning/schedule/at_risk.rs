@@ -4,7 +4,7 @@ use super::agreed::Agreed;
 use super::offers::{alerts, direct, firm};
 use super::{due_vessel, enter, follow, put, solve, terms};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Shore};
+use binnacle_server_testing::{ApiResponse, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -15,15 +15,15 @@ on_both!(
     an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known,
 );
 
-async fn a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
-    follow(&shore).await;
+async fn a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
+    follow(&server).await;
     // She is due on the twentieth.
     agreed
         .moves("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
         .await;
-    assert_eq!(agreed.seen().await["call_fit"], "needs_new_day");
-    assert_eq!(follow(&shore).await, Some(agreed.ada.operator));
+    assert_eq!(agreed.view_order().await["call_fit"], "needs_new_day");
+    assert_eq!(follow(&server).await, Some(agreed.ada.operator));
     let told = alerts(&agreed.ada).await;
     assert_eq!(told.len(), 1, "{told:?}");
     let summary = told[0]["summary"].as_str().unwrap();
@@ -33,21 +33,21 @@ async fn a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks(shore: Sho
     );
     // A new day in the call is late, and agreed on all the same if both want it.
     agreed.retime("2026-12-22T08:00:00Z").await.good();
-    agreed.answer(&agreed.rosa, "accept").await.good();
-    assert_eq!(agreed.seen().await["call_fit"], Value::Null);
-    follow(&shore).await;
+    agreed.respond(&agreed.rosa, "accept").await.good();
+    assert_eq!(agreed.view_order().await["call_fit"], Value::Null);
+    follow(&server).await;
     let told = alerts(&agreed.ada).await;
     assert_eq!(told.len(), 1, "it is still after the due date: {told:?}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_agreed_job_stays_at_risk_when_its_firm_is_left_out(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn an_agreed_job_stays_at_risk_when_its_firm_is_left_out(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     let ada = &agreed.ada;
     solve(ada).await;
     let path = format!("/firms/{}/terms", agreed.firm);
     let left_out = async || {
-        Answer::of(ada.request(Method::DELETE, &path)).await;
+        ApiResponse::of(ada.request(Method::DELETE, &path)).await;
         let plan = solve(ada).await;
         assert_eq!(plan["under_way"].as_array().unwrap().len(), 1, "{plan}");
         alerts(ada).await
@@ -74,11 +74,11 @@ async fn an_agreed_job_stays_at_risk_when_its_firm_is_left_out(shore: Shore) {
         .good();
     solve(ada).await;
     assert_eq!(alerts(ada).await, [] as [Value; 0]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_agreed_job_whose_firm_has_no_teams_any_more_is_at_risk(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn an_agreed_job_whose_firm_has_no_teams_any_more_is_at_risk(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     let path = format!("/firms/{}/terms", agreed.firm);
     let mut none = terms();
     none["teams"] = json!(0);
@@ -94,13 +94,13 @@ async fn an_agreed_job_whose_firm_has_no_teams_any_more_is_at_risk(shore: Shore)
     put(&agreed.ada, &path, &terms()).await.good();
     solve(&agreed.ada).await;
     assert_eq!(alerts(&agreed.ada).await, [] as [Value; 0]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    let (id, rosa) = firm(&shore, &ada, "rosa").await;
+    let (id, rosa) = firm(&server, &ada, "rosa").await;
     let order = direct(&nao, "NLRTM", "2026-12-15T09:00:00Z", &id);
     let order = ada.post("/work-orders", &order).await.good();
     let order = format!("/work-orders/{}", order["id"].as_str().unwrap());
@@ -117,5 +117,5 @@ async fn an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known(shore:
     enter(&ada, &nao, "NLRTM", 16).await;
     solve(&ada).await;
     assert_eq!(alerts(&ada).await.len(), 1);
-    shore.finish().await;
+    server.finish().await;
 }

@@ -1,15 +1,15 @@
 //! Solving at once.
 
 use super::{due_vessel, enter, planned_firm};
-use binnacle_server_testing::Shore;
+use binnacle_server_testing::TestServer;
 use binnacle_server_testing::on_both;
 use serde_json::{Value, json};
 
 on_both!(who_solves_at_once_agrees_on_one_plan);
 
-async fn who_solves_at_once_agrees_on_one_plan(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    planned_firm(&shore, &ada, "Maas Compass").await;
+async fn who_solves_at_once_agrees_on_one_plan(server: TestServer) {
+    let ada = server.admin("ada").await;
+    planned_firm(&server, &ada, "Maas Compass").await;
     for name in ["Nao", "Pinta", "Santa"] {
         let vessel = due_vessel(&ada, name).await;
         enter(&ada, &vessel, "NLRTM", 8).await;
@@ -19,7 +19,7 @@ async fn who_solves_at_once_agrees_on_one_plan(shore: Shore) {
     let (one, two, three, four) = tokio::join!(solve(), solve(), solve(), solve());
     let plans: Vec<Value> = [one, two, three, four]
         .iter()
-        .map(|answer| answer.good()["plan"].clone())
+        .map(|response| response.good()["plan"].clone())
         .collect();
     assert!(plans.iter().all(|plan| plan == &plans[0]), "{plans:?}");
     let list = ada.get("/schedule/plans").await.good();
@@ -28,5 +28,5 @@ async fn who_solves_at_once_agrees_on_one_plan(shore: Shore) {
     let days = plans[0]["jobs"].as_array().unwrap().iter();
     let days: Vec<&str> = days.map(|job| job["day"].as_str().unwrap()).collect();
     assert_eq!(days, ["2026-12-08", "2026-12-09"]);
-    shore.finish().await;
+    server.finish().await;
 }

@@ -6,7 +6,7 @@ use binnacle_server_testing::on_both;
 use binnacle_server_testing::patch;
 use binnacle_server_testing::port_calls;
 use binnacle_server_testing::webhooks::{Receiver, deliver, make};
-use binnacle_server_testing::{Person, Shore};
+use binnacle_server_testing::{Person, TestServer};
 use serde_json::{Value, json};
 
 on_both!(
@@ -18,11 +18,11 @@ on_both!(
 );
 
 /// A ship whose job is offered to one firm of two; the order's path.
-async fn asked(shore: &Shore) -> (Person, Value, Person, String) {
-    let ada = shore.admin("ada").await;
+async fn asked(server: &TestServer) -> (Person, Value, Person, String) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
-    let (_, rosa) = firm(shore, &ada, "rosa").await;
+    let (_, rosa) = firm(server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     let order = offer(&ada, &plan, &nao).await;
     (ada, nao, rosa, order)
@@ -39,14 +39,14 @@ async fn yes(who: &Person, order: &str) -> Value {
         .good()
 }
 
-async fn an_offer_carries_the_fee_that_the_schedule_saw(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn an_offer_carries_the_fee_that_the_schedule_saw(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let path = format!("/vessels/{}/compasses", nao["id"].as_str().unwrap());
     let second = json!({ "name": "Steering", "role": "steering" });
     ada.post(&path, &second).await.good();
     enter(&ada, &nao, "NLRTM", 14).await;
-    let (id, rosa) = firm(&shore, &ada, "rosa").await;
+    let (id, rosa) = firm(&server, &ada, "rosa").await;
     let mut dearer = terms();
     dearer["extra_compass_eur"] = json!(400.5);
     put(&ada, &format!("/firms/{id}/terms"), &dearer)
@@ -80,11 +80,11 @@ async fn an_offer_carries_the_fee_that_the_schedule_saw(shore: Shore) {
                           "offer": { "firms": [id] } });
     let made = ada.post("/work-orders", &by_hand).await.good();
     assert_eq!(made["offers"][0]["fee_eur"], 1800.0, "{made}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_firm_proposes_another_fee_alone_and_the_operator_agrees(shore: Shore) {
-    let (ada, _, rosa, order) = asked(&shore).await;
+async fn a_firm_proposes_another_fee_alone_and_the_operator_agrees(server: TestServer) {
+    let (ada, _, rosa, order) = asked(&server).await;
     let (receiver, url) = Receiver::start().await;
     make(&ada, &url, &["order.answered"]).await;
     let before = ada.get(&order).await.good();
@@ -114,24 +114,24 @@ async fn a_firm_proposes_another_fee_alone_and_the_operator_agrees(shore: Shore)
     ] {
         assert_eq!(&agreed[field], is, "{field}");
     }
-    deliver(&shore).await;
+    deliver(&server).await;
     let bodies: Vec<Value> = receiver
-        .got()
+        .received()
         .iter()
         .map(|(_, body)| serde_json::from_str(body).unwrap())
         .collect();
     assert_eq!(bodies[0]["entry"]["terms"], asked);
     assert_eq!(bodies[1]["entry"]["kind"], "proposal_accepted");
     assert_eq!(bodies[1]["entry"]["terms"]["fee_eur"], 2100.0);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_fee_that_is_not_agreed_to_leaves_the_next_firm_its_own(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_fee_that_is_not_agreed_to_leaves_the_next_firm_its_own(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
-    let (_, rosa) = firm(&shore, &ada, "rosa").await;
-    let (second, juan) = firm(&shore, &ada, "juan").await;
+    let (_, rosa) = firm(&server, &ada, "rosa").await;
+    let (second, juan) = firm(&server, &ada, "juan").await;
     let mut dearer = terms();
     dearer["fee_eur"] = json!(1950);
     put(&ada, &format!("/firms/{second}/terms"), &dearer)
@@ -157,11 +157,11 @@ async fn a_fee_that_is_not_agreed_to_leaves_the_next_firm_its_own(shore: Shore) 
     let agreed = yes(&ada, &order).await;
     assert_eq!(agreed["fee_eur"], 1950.0);
     assert_eq!(agreed["planned_at"], "2026-12-15T10:00:00Z");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_fee_alone_leaves_what_became_of_the_call(shore: Shore) {
-    let (ada, nao, rosa, order) = asked(&shore).await;
+async fn a_fee_alone_leaves_what_became_of_the_call(server: TestServer) {
+    let (ada, nao, rosa, order) = asked(&server).await;
     let calls = ada.get(&port_calls::path(&nao)).await.good();
     let call = calls["items"][0]["id"].as_str().unwrap();
     let call = format!("{}/{call}", port_calls::path(&nao));
@@ -180,12 +180,12 @@ async fn a_fee_alone_leaves_what_became_of_the_call(shore: Shore) {
     let moved = yes(&rosa, &format!("{order}/retime")).await;
     assert_eq!(moved["call_fit"], Value::Null);
     assert_eq!(moved["fee_eur"], 2100.0);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn who_answers_for_another_firm_is_refused(shore: Shore) {
-    let (ada, _, rosa, order) = asked(&shore).await;
-    let (other, _) = firm(&shore, &ada, "juan").await;
+async fn who_answers_for_another_firm_is_refused(server: TestServer) {
+    let (ada, _, rosa, order) = asked(&server).await;
+    let (other, _) = firm(&server, &ada, "juan").await;
     let theirs = json!({ "firm_id": other });
     let message = json!({ "firm_id": other, "text": "Hello." });
     let bodies = [
@@ -210,5 +210,5 @@ async fn who_answers_for_another_firm_is_refused(shore: Shore) {
         let refused = who.post(&format!("{order}/{rest}"), &theirs).await;
         assert_eq!(refused.problem(), "invalid", "{rest}");
     }
-    shore.finish().await;
+    server.finish().await;
 }

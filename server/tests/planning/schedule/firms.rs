@@ -2,7 +2,7 @@
 
 use super::{due_vessel, enter, firm, planned_firm, put, solve, terms};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Shore};
+use binnacle_server_testing::{ApiResponse, TestServer};
 use reqwest::Method;
 use serde_json::json;
 
@@ -13,11 +13,11 @@ on_both!(
     a_firm_without_terms_is_not_planned_with,
 );
 
-async fn a_firm_without_days_is_kept_and_said_to_be_of_no_use(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_firm_without_days_is_kept_and_said_to_be_of_no_use(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
-    let id = firm(&shore, &ada, "Maas Compass").await;
+    let id = firm(&server, &ada, "Maas Compass").await;
     let mut idle = terms();
     idle["working_days"] = json!([]);
     let kept = put(&ada, &format!("/firms/{id}/terms"), &idle).await.good();
@@ -30,12 +30,12 @@ async fn a_firm_without_days_is_kept_and_said_to_be_of_no_use(shore: Shore) {
     assert_eq!(plan["left_out"][0]["firm_name"], "Maas Compass");
     assert_eq!(plan["left_out"][0]["why"], said);
     assert_eq!(plan["jobs"], json!([]));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn wrong_terms_are_refused_by_their_field(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let id = firm(&shore, &ada, "Maas Compass").await;
+async fn wrong_terms_are_refused_by_their_field(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let id = firm(&server, &ada, "Maas Compass").await;
     let path = format!("/firms/{id}/terms");
     for (field, value) in [
         ("fee_eur", json!(-1)),
@@ -53,40 +53,40 @@ async fn wrong_terms_are_refused_by_their_field(shore: Shore) {
     ] {
         let mut wrong = terms();
         wrong[field] = value.clone();
-        let answer = put(&ada, &path, &wrong).await;
-        assert_eq!(answer.problem(), "invalid", "{field}: {value}");
-        assert!(answer.text.contains(field), "{answer:?}");
+        let response = put(&ada, &path, &wrong).await;
+        assert_eq!(response.problem(), "invalid", "{field}: {value}");
+        assert!(response.text.contains(field), "{response:?}");
     }
     let list = ada.get("/firm-terms").await.good();
     assert_eq!(list["items"][0]["terms"], json!(null));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn terms_are_an_operators_own(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
-    let id = planned_firm(&shore, &ada, "Maas Compass").await;
+async fn terms_are_an_operators_own(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
+    let id = planned_firm(&server, &ada, "Maas Compass").await;
     let path = format!("/firms/{id}/terms");
     assert_eq!(put(&eve, &path, &terms()).await.problem(), "not-found");
     let delete = |person: &binnacle_server_testing::Person| person.request(Method::DELETE, &path);
-    let theirs = Answer::of(delete(&eve)).await;
+    let theirs = ApiResponse::of(delete(&eve)).await;
     assert_eq!(theirs.problem(), "not-found");
     assert_eq!(eve.get("/firm-terms").await.good()["items"], json!([]));
-    let viewer = ada.viewer(&shore).await;
+    let viewer = ada.viewer(&server).await;
     assert_eq!(put(&viewer, &path, &terms()).await.problem(), "forbidden");
-    assert_eq!(Answer::of(delete(&ada)).await.status, 204);
-    assert_eq!(Answer::of(delete(&ada)).await.problem(), "not-found");
-    shore.finish().await;
+    assert_eq!(ApiResponse::of(delete(&ada)).await.status, 204);
+    assert_eq!(ApiResponse::of(delete(&ada)).await.problem(), "not-found");
+    server.finish().await;
 }
 
-async fn a_firm_without_terms_is_not_planned_with(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_firm_without_terms_is_not_planned_with(server: TestServer) {
+    let ada = server.admin("ada").await;
     due_vessel(&ada, "Nao").await;
-    firm(&shore, &ada, "Maas Compass").await;
+    firm(&server, &ada, "Maas Compass").await;
     let plan = solve(&ada).await;
     let why = "nobody has said on what terms it works";
     assert_eq!(plan["left_out"][0]["why"], why);
     let because = &plan["unscheduled"][0]["because"];
     assert_eq!(because, &json!(["no port call is known"]));
-    shore.finish().await;
+    server.finish().await;
 }

@@ -19,14 +19,14 @@ use binnacle_planning::schedule::PlanSlots;
 use binnacle_platform::ids::OperatorId;
 use binnacle_platform::time::Time;
 use binnacle_server_testing::port_calls;
-use binnacle_server_testing::{Answer, Person, Shore};
+use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
 /// A firm that a person's operator works with.
-pub(crate) async fn firm(shore: &Shore, person: &Person, name: &str) -> String {
-    let now = Time(shore.app.clock.now());
-    let mut tx = shore.app.db.begin().await.unwrap();
+pub(crate) async fn firm(server: &TestServer, person: &Person, name: &str) -> String {
+    let now = Time(server.app.clock.now());
+    let mut tx = server.app.db.begin().await.unwrap();
     let id = all_firms::create(&mut tx, name, now).await.unwrap();
     all_firms::engage(&mut tx, person.operator, id, now)
         .await
@@ -43,13 +43,13 @@ pub(crate) fn terms() -> Value {
     })
 }
 
-pub(crate) async fn put(person: &Person, path: &str, body: &Value) -> Answer {
-    Answer::of(person.request(Method::PUT, path).json(body)).await
+pub(crate) async fn put(person: &Person, path: &str, body: &Value) -> ApiResponse {
+    ApiResponse::of(person.request(Method::PUT, path).json(body)).await
 }
 
 /// A firm with terms.
-pub(crate) async fn planned_firm(shore: &Shore, person: &Person, name: &str) -> String {
-    let id = firm(shore, person, name).await;
+pub(crate) async fn planned_firm(server: &TestServer, person: &Person, name: &str) -> String {
+    let id = firm(server, person, name).await;
     put(person, &format!("/firms/{id}/terms"), &terms())
         .await
         .good();
@@ -89,9 +89,9 @@ pub(crate) async fn solve(person: &Person) -> Value {
 }
 
 /// Lets time go by until what has changed is due, and has the worker make a schedule.
-pub(crate) async fn follow(shore: &Shore) -> Option<OperatorId> {
-    shore.advance(31.0);
-    schedule::step(&shore.app, &PlanSlots::default())
+pub(crate) async fn follow(server: &TestServer) -> Option<OperatorId> {
+    server.advance(31.0);
+    schedule::step(&server.app, &PlanSlots::default())
         .await
         .unwrap()
 }

@@ -10,7 +10,7 @@ use binnacle_server_testing::on_both;
 use binnacle_server_testing::patch;
 use binnacle_server_testing::port_calls;
 use binnacle_server_testing::webhooks::{Receiver, deliver, make};
-use binnacle_server_testing::{Answer, Shore};
+use binnacle_server_testing::{ApiResponse, TestServer};
 use icalendar::Component;
 use reqwest::Method;
 use serde_json::{Value, json};
@@ -25,18 +25,21 @@ on_both!(
     what_nobody_is_asked_for_moves_in_silence,
 );
 
-async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     let (ours, our_url) = Receiver::start().await;
     let (theirs, their_url) = Receiver::start().await;
     make(&agreed.ada, &our_url, &["order.call_moved"]).await;
     make(&agreed.rosa, &their_url, &["order.call_moved"]).await;
-    assert_eq!(agreed.seen().await["planned_at"], "2026-12-15T07:00:00Z");
-    assert_eq!(agreed.seen().await["call_fit"], Value::Null);
+    assert_eq!(
+        agreed.view_order().await["planned_at"],
+        "2026-12-15T07:00:00Z"
+    );
+    assert_eq!(agreed.view_order().await["call_fit"], Value::Null);
     agreed
         .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
         .await;
-    let order = agreed.seen().await;
+    let order = agreed.view_order().await;
     for person in [&agreed.ada, &agreed.rosa] {
         let mut calendar = events(&person.get("/calendar.ics").await.text);
         let uid = format!("{}@binnacle", order["id"].as_str().unwrap());
@@ -74,10 +77,10 @@ async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(shore: Shore) {
         let listed = person.get("/work-orders").await.good();
         assert_eq!(listed["items"][0]["call_fit"], "needs_new_day");
     }
-    deliver(&shore).await;
+    deliver(&server).await;
     for receiver in [&ours, &theirs] {
         assert_eq!(receiver.kinds(), ["order.call_moved"]);
-        let (_, body) = receiver.got().pop().unwrap();
+        let (_, body) = receiver.received().pop().unwrap();
         let body: Value = serde_json::from_str(&body).unwrap();
         let call = &body["entry"]["call"];
         assert_eq!(call["was"]["etd"], "2026-12-15T18:00:00Z");
@@ -88,29 +91,29 @@ async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(shore: Shore) {
     agreed
         .moves("2026-12-15T12:00:00Z", "2026-12-16T18:00:00Z")
         .await;
-    assert_eq!(agreed.seen().await["call_fit"], "other_hour");
+    assert_eq!(agreed.view_order().await["call_fit"], "other_hour");
     agreed
         .moves("2026-12-15T06:00:00Z", "2026-12-16T18:00:00Z")
         .await;
-    assert_eq!(agreed.seen().await["call_fit"], "fits");
+    assert_eq!(agreed.view_order().await["call_fit"], "fits");
     // Another berth, or a surer time, is no other time.
     let berth = json!({ "berth": "A5", "eta_uncertainty_h": 3 });
     patch(&agreed.ada, &agreed.call, &berth).await.good();
     assert_eq!(messages(&agreed.rosa, &agreed.order).await.len(), 3);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn files_that_move_a_call_are_told_as_a_request_is(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn files_that_move_a_call_are_told_as_a_request_is(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     let post = |path: String, kind: &'static str, text: String| {
         let request = agreed.ada.request(Method::POST, &path).body(text);
-        Answer::of(request.header("content-type", kind))
+        ApiResponse::of(request.header("content-type", kind))
     };
     let calls = port_calls::path(&agreed.nao);
     let csv = "id,port,eta,etd\nNLRTM 2026-12-14T06:00:00Z,NLRTM,2026-12-16T06:00:00Z,2026-12-17T18:00:00Z\n";
     let did = post(format!("{calls}.csv"), "text/csv", csv.to_owned()).await;
     assert_eq!(did.good()["amended"], 1);
-    assert_eq!(agreed.seen().await["call_fit"], "needs_new_day");
+    assert_eq!(agreed.view_order().await["call_fit"], "needs_new_day");
     // A list without names, sent whole: the call that is gone is the one that is new.
     let row = |eta: &str, etd: &str| format!("port,eta,etd\nNLRTM,{eta},{etd}\n");
     let again = row("2026-12-15T06:00:00Z", "2026-12-16T18:00:00Z");
@@ -118,12 +121,12 @@ async fn files_that_move_a_call_are_told_as_a_request_is(shore: Shore) {
         .await
         .good();
     assert_eq!((&did["created"], &did["withdrawn"]), (&json!(1), &json!(1)));
-    assert_eq!(agreed.seen().await["call_fit"], "fits");
+    assert_eq!(agreed.view_order().await["call_fit"], "fits");
     let again = row("2026-12-17T06:00:00Z", "2026-12-18T18:00:00Z");
     post(format!("{calls}.csv?replace=true"), "text/csv", again)
         .await
         .good();
-    assert_eq!(agreed.seen().await["call_fit"], "needs_new_day");
+    assert_eq!(agreed.view_order().await["call_fit"], "needs_new_day");
     // A calendar that says when she really comes, and one that takes the call away.
     let event = |more: &str| {
         format!(
@@ -135,19 +138,19 @@ async fn files_that_move_a_call_are_told_as_a_request_is(shore: Shore) {
     };
     let path = || format!("{calls}.ics");
     post(path(), "text/calendar", event("")).await.good();
-    assert_eq!(agreed.seen().await["call_fit"], "fits");
+    assert_eq!(agreed.view_order().await["call_fit"], "fits");
     post(path(), "text/calendar", event("STATUS:CANCELLED\r\n"))
         .await
         .good();
-    assert_eq!(agreed.seen().await["call_fit"], "no_call");
+    assert_eq!(agreed.view_order().await["call_fit"], "no_call");
     let said = messages(&agreed.rosa, &agreed.order).await;
     assert_eq!(said.len(), 5);
     assert!(said[4]["text"].as_str().unwrap().contains("is withdrawn"));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     agreed
         .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
         .await;
@@ -158,19 +161,19 @@ async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(shore: Shore) 
     assert_eq!(new, "2026-12-17T08:00:00Z");
     let last = told(&agreed.rosa).await.pop().unwrap();
     assert!(last.contains("another time is asked of you"), "{last}");
-    let refused = agreed.answer(&agreed.rosa, "decline").await.good();
+    let refused = agreed.respond(&agreed.rosa, "decline").await.good();
     assert_eq!(refused["planned_at"], "2026-12-15T07:00:00Z");
     assert_eq!(refused["state"], "accepted");
     assert_eq!(refused["call_fit"], "needs_new_day");
-    let none = agreed.answer(&agreed.rosa, "accept").await;
+    let none = agreed.respond(&agreed.rosa, "accept").await;
     assert_eq!(none.problem(), "wrong-state");
     // Asked anew, taken back, and asked anew.
     agreed.retime("2026-12-16T08:00:00Z").await.good();
-    agreed.answer(&agreed.ada, "decline").await.good();
+    agreed.respond(&agreed.ada, "decline").await.good();
     agreed.retime("2026-12-16T08:00:00Z").await.good();
-    let not_hers = agreed.answer(&agreed.ada, "accept").await;
+    let not_hers = agreed.respond(&agreed.ada, "accept").await;
     assert_eq!(not_hers.problem(), "wrong-state");
-    let order = agreed.answer(&agreed.rosa, "accept").await.good();
+    let order = agreed.respond(&agreed.rosa, "accept").await.good();
     assert_eq!(order["planned_at"], "2026-12-16T08:00:00Z");
     assert_eq!(order["call_fit"], Value::Null);
     assert_eq!(order["offers"][0]["new_terms"], Value::Null);
@@ -185,16 +188,16 @@ async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(shore: Shore) 
     agreed.retime("2026-12-17T08:00:00Z").await.good();
     let aboard = format!("{}/on-board", agreed.order);
     agreed.rosa.post(&aboard, &json!({})).await.good();
-    let order = agreed.seen().await;
+    let order = agreed.view_order().await;
     assert_eq!(order["answer_by"], Value::Null);
     assert_eq!(order["offers"][0]["new_terms"], Value::Null);
     let late = agreed.retime("2026-12-17T08:00:00Z").await;
     assert_eq!(late.problem(), "wrong-state");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     let pinta = due_vessel(&agreed.ada, "Pinta").await;
     enter(&agreed.ada, &pinta, "NLRTM", 17).await;
     let plan = solve(&agreed.ada).await;
@@ -230,48 +233,51 @@ async fn a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team(shore: Shore)
     none["teams"] = json!(0);
     let path = format!("/firms/{}/terms", agreed.firm);
     put(&agreed.ada, &path, &none).await.good();
-    let gone = agreed.answer(&agreed.rosa, "accept").await;
+    let gone = agreed.respond(&agreed.rosa, "accept").await;
     assert!(gone.text.contains("no team left"), "{gone:?}");
     put(&agreed.ada, &path, &terms()).await.good();
     // And she may have moved once more.
     agreed
         .moves("2026-12-19T06:00:00Z", "2026-12-20T18:00:00Z")
         .await;
-    let gone = agreed.answer(&agreed.rosa, "accept").await;
+    let gone = agreed.respond(&agreed.rosa, "accept").await;
     assert!(gone.text.contains("no call at NLRTM"), "{gone:?}");
-    assert_eq!(agreed.seen().await["planned_at"], "2026-12-15T07:00:00Z");
-    shore.finish().await;
+    assert_eq!(
+        agreed.view_order().await["planned_at"],
+        "2026-12-15T07:00:00Z"
+    );
+    server.finish().await;
 }
 
-async fn another_time_leaves_the_fee_that_was_agreed(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn another_time_leaves_the_fee_that_was_agreed(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     agreed
         .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
         .await;
     let dearer = json!({ "terms": { "planned_at": "2026-12-16T08:00:00Z", "fee_eur": 900.5 } });
     let path = format!("{}/retime", agreed.order);
     agreed.ada.post(&path, &dearer).await.good();
-    let order = agreed.answer(&agreed.rosa, "accept").await.good();
+    let order = agreed.respond(&agreed.rosa, "accept").await.good();
     assert_eq!(order["offers"][0]["terms"]["fee_eur"], 900.5);
     agreed.retime("2026-12-17T08:00:00Z").await.good();
-    let order = agreed.answer(&agreed.rosa, "accept").await.good();
+    let order = agreed.respond(&agreed.rosa, "accept").await.good();
     assert_eq!(order["planned_at"], "2026-12-17T08:00:00Z");
     assert_eq!(order["offers"][0]["terms"]["fee_eur"], 900.5);
     // She is at sea then.
     let elsewhere = agreed.retime("2026-12-20T08:00:00Z").await;
     assert_eq!(elsewhere.problem(), "wrong-state");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_question_that_is_not_answered_leaves_what_was_agreed(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn a_question_that_is_not_answered_leaves_what_was_agreed(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     agreed.retime("2026-12-14T08:00:00Z").await.good();
-    shore.advance(3601.0);
-    let late = agreed.answer(&agreed.rosa, "accept").await;
+    server.advance(3601.0);
+    let late = agreed.respond(&agreed.rosa, "accept").await;
     assert!(late.text.contains("has lapsed"), "{late:?}");
-    assert_eq!(lapse(&shore.app).await.unwrap(), 1);
-    assert_eq!(lapse(&shore.app).await.unwrap(), 0);
-    let order = agreed.seen().await;
+    assert_eq!(lapse(&server.app).await.unwrap(), 1);
+    assert_eq!(lapse(&server.app).await.unwrap(), 0);
+    let order = agreed.view_order().await;
     assert_eq!(order["state"], "accepted");
     assert_eq!(order["firm"], "rosa");
     assert_eq!(order["planned_at"], "2026-12-15T07:00:00Z");
@@ -280,14 +286,14 @@ async fn a_question_that_is_not_answered_leaves_what_was_agreed(shore: Shore) {
     let cancelled = json!({ "text": "sold" });
     let path = format!("{}/cancel", agreed.order);
     agreed.ada.post(&path, &cancelled).await.good();
-    shore.advance(3601.0);
-    assert_eq!(lapse(&shore.app).await.unwrap(), 0);
-    assert_eq!(agreed.seen().await["state"], "cancelled");
-    shore.finish().await;
+    server.advance(3601.0);
+    assert_eq!(lapse(&server.app).await.unwrap(), 0);
+    assert_eq!(agreed.view_order().await["state"], "cancelled");
+    server.finish().await;
 }
 
-async fn what_nobody_is_asked_for_moves_in_silence(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn what_nobody_is_asked_for_moves_in_silence(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     let other = enter(&agreed.ada, &agreed.nao, "BEANR", 20).await;
     let other = format!(
         "{}/{}",
@@ -303,7 +309,7 @@ async fn what_nobody_is_asked_for_moves_in_silence(shore: Shore) {
     agreed
         .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
         .await;
-    assert_eq!(agreed.seen().await["call_fit"], Value::Null);
+    assert_eq!(agreed.view_order().await["call_fit"], Value::Null);
     assert_eq!(messages(&agreed.ada, &agreed.order).await.len(), 0);
-    shore.finish().await;
+    server.finish().await;
 }

@@ -4,7 +4,7 @@ use super::{due_vessel, enter, put};
 use binnacle_compass::model::Model;
 use binnacle_planning::notifications::look;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Person, Ship, Shore, days_at_sea, truth};
+use binnacle_server_testing::{Person, Ship, TestServer, days_at_sea, true_model};
 use serde_json::{Value, json};
 
 on_both!(
@@ -33,8 +33,8 @@ async fn need(person: &Person, vessel: &Value) -> Value {
     list["items"][0].clone()
 }
 
-async fn a_compass_without_a_record_is_due_today_and_says_by_which_rule(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_compass_without_a_record_is_due_today_and_says_by_which_rule(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let need = need(&ada, &nao).await;
     assert_eq!(
@@ -48,11 +48,11 @@ async fn a_compass_without_a_record_is_due_today_and_says_by_which_rule(shore: S
     assert_eq!(rule["second_hand"], true);
     let all = ["flag_state", "gross_tonnage", "trade", "deviation_record"];
     assert_eq!(need["not_known"], json!(all));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_is_known_of_a_vessel_gives_her_time(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn what_is_known_of_a_vessel_gives_her_time(server: TestServer) {
+    let ada = server.admin("ada").await;
     let flagged = json!({ "name": "Nao", "flag": "Panama" });
     let nao = ada.post("/vessels", &flagged).await.good();
     let adjusted = json!({ "kind": "adjustment", "from": "2026-03-01T08:00:00Z" });
@@ -68,11 +68,11 @@ async fn what_is_known_of_a_vessel_gives_her_time(shore: Shore) {
     );
     assert_eq!(need["adjusted_on"], "2026-03-01");
     assert_eq!(need["not_known"], json!(["gross_tonnage", "trade"]));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn the_first_due_comes_first_on_every_page(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn the_first_due_comes_first_on_every_page(server: TestServer) {
+    let ada = server.admin("ada").await;
     due_vessel(&ada, "Nao").await;
     ada.create_vessel("Pinta").await;
     due_vessel(&ada, "Santa").await;
@@ -91,13 +91,13 @@ async fn the_first_due_comes_first_on_every_page(shore: Shore) {
         .await
         .good();
     assert_eq!(soon["items"].as_array().unwrap().len(), 2);
-    let eve = shore.admin("eve").await;
+    let eve = server.admin("eve").await;
     assert_eq!(eve.get("/needs").await.good()["items"], json!([]));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn work_on_the_ship_and_a_transit_bring_a_need_forward(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn work_on_the_ship_and_a_transit_bring_a_need_forward(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     assert_eq!(need(&ada, &nao).await["due_on"], "2026-12-20");
     let docked = json!({ "kind": "dry_docking", "from": "2026-11-01T00:00:00Z",
@@ -119,22 +119,22 @@ async fn work_on_the_ship_and_a_transit_bring_a_need_forward(shore: Shore) {
     let before_transit = need(&ada, &nao).await;
     assert_eq!(before_transit["due_on"], "2026-12-05");
     assert_eq!(before_transit["causes"][0]["kind"], "transit");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_compass_that_was_moved_is_due_like_a_new_one(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_compass_that_was_moved_is_due_like_a_new_one(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let moved = json!({ "kind": "compass_moved", "from": "2026-11-05T00:00:00Z" });
     ada.post(&path(&nao, "/logbook"), &moved).await.good();
     let after = need(&ada, &nao).await;
     assert_eq!(after["due_on"], "2026-12-05", "{after}");
     assert_eq!(after["causes"][0]["kind"], "event");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_is_planned_has_not_happened(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn what_is_planned_has_not_happened(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let docking = json!({ "kind": "dry_docking", "from": "2026-11-21T20:00:00Z",
                           "to": "2026-11-25T00:00:00Z" });
@@ -147,20 +147,20 @@ async fn what_is_planned_has_not_happened(shore: Shore) {
             .collect::<Vec<_>>()
     };
     assert_eq!(events(&need(&ada, &nao).await), Vec::<Value>::new());
-    shore.advance(86_400.0);
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    server.advance(86_400.0);
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     assert_eq!(events(&need(&ada, &nao).await), [json!("2026-12-25")]);
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// An Australian ship with a kept record of deviation and some days at sea, and how she is
 /// shown. However wide her band may be, no alert comes of it.
-async fn australian(shore: &Shore, ada: &Person, truth: &Model) -> (Ship, Value) {
-    let nao = shore.ship(ada, "Nao").await;
-    let samples = days_at_sea(truth, "2026-11-10T00:00:00Z", 6.0);
+async fn australian(server: &TestServer, ada: &Person, true_model: &Model) -> (Ship, Value) {
+    let nao = server.ship(ada, "Nao").await;
+    let samples = days_at_sea(true_model, "2026-11-10T00:00:00Z", 6.0);
     nao.put(1, &samples).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    server.advance(A_WHILE_S);
+    server.work().await;
     let vessel = ada.get(&nao.path("")).await.good();
     let mut settings = ada.get(&nao.path("/settings")).await.good();
     settings["alerts"]["band95_deg"] = json!(45.0);
@@ -171,19 +171,19 @@ async fn australian(shore: &Shore, ada: &Person, truth: &Model) -> (Ship, Value)
 }
 
 /// Two weeks from the day on which it was first seen, not from each day anew.
-async fn deviation_over_its_limit_becomes_overdue(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let mut astray = truth();
+async fn deviation_over_its_limit_becomes_overdue(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let mut astray = true_model();
     astray.parameters_over_lambda.bx_nt += 3_000.0;
-    let (nao, vessel) = australian(&shore, &ada, &astray).await;
+    let (nao, vessel) = australian(&server, &ada, &astray).await;
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-01T08:00:00Z" });
     ada.post(&nao.path("/logbook"), &adjusted).await.good();
-    look(&shore.app).await.unwrap();
+    look(&server.app).await.unwrap();
     let first = need(&ada, &vessel).await;
     assert_eq!(first["causes"][0]["kind"], "over_limit", "{first}");
     assert_eq!(first["due_on"], "2026-12-05");
-    shore.advance(20.0 * 86_400.0);
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    server.advance(20.0 * 86_400.0);
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     let later = need(&ada, &vessel).await;
     assert_eq!(
         (&later["due_on"], &later["urgency"]),
@@ -191,12 +191,12 @@ async fn deviation_over_its_limit_becomes_overdue(shore: Shore) {
     );
     let reason = later["reason"].as_str().unwrap();
     assert!(reason.contains("or more since 2026-11-21"), "{reason}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn predicted_deviation_at_a_port_ahead_brings_a_need_forward(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let (nao, vessel) = australian(&shore, &ada, &truth()).await;
+async fn predicted_deviation_at_a_port_ahead_brings_a_need_forward(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let (nao, vessel) = australian(&server, &ada, &true_model()).await;
     let adjusted = json!({ "kind": "adjustment", "from": "2025-12-01T08:00:00Z" });
     let sure = need(&ada, &vessel).await;
     let here = sure["predicted"][0]["worst_deviation_deg"]
@@ -223,14 +223,14 @@ async fn predicted_deviation_at_a_port_ahead_brings_a_need_forward(shore: Shore)
             .unwrap()
             .contains("Australian")
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn deviation_over_the_vessels_own_limit_brings_a_need_forward(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let mut astray = truth();
+async fn deviation_over_the_vessels_own_limit_brings_a_need_forward(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let mut astray = true_model();
     astray.parameters_over_lambda.bx_nt += 3_000.0;
-    let (nao, vessel) = australian(&shore, &ada, &astray).await;
+    let (nao, vessel) = australian(&server, &ada, &astray).await;
     // No rule of her flag limits deviation.
     let known = json!({ "flag_state": "NO", "deviation_record": "kept" });
     put(&ada, &nao.path("/particulars"), &known).await.good();
@@ -276,12 +276,12 @@ async fn deviation_over_the_vessels_own_limit_brings_a_need_forward(shore: Shore
         let need = need(&ada, &vessel).await;
         assert_eq!(need["due_on"], "2028-11-01", "{need}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn particulars_are_checked_and_ones_own(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn particulars_are_checked_and_ones_own(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     let nao = ada.create_vessel("Nao").await;
     let particulars = path(&nao, "/particulars");
     for (field, value) in [
@@ -296,22 +296,22 @@ async fn particulars_are_checked_and_ones_own(shore: Shore) {
         ),
         ("colour", json!("red")),
     ] {
-        let answer = put(&ada, &particulars, &json!({ field: value })).await;
-        assert_eq!(answer.problem(), "invalid", "{field}: {value}");
+        let response = put(&ada, &particulars, &json!({ field: value })).await;
+        assert_eq!(response.problem(), "invalid", "{field}: {value}");
     }
     assert_eq!(eve.get(&particulars).await.problem(), "not-found");
     let theirs = put(&eve, &particulars, &json!({})).await;
     assert_eq!(theirs.problem(), "not-found");
-    let viewer = ada.viewer(&shore).await;
+    let viewer = ada.viewer(&server).await;
     let read = viewer.get(&particulars).await.good();
     assert_eq!(read["gross_tonnage"], json!(null));
     let written = put(&viewer, &particulars, &json!({})).await;
     assert_eq!(written.problem(), "forbidden");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_operators_own_terms_are_what_counts(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn an_operators_own_terms_are_what_counts(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let docked = json!({ "kind": "dry_docking", "from": "2026-11-10T00:00:00Z" });
     ada.post(&path(&nao, "/logbook"), &docked).await.good();
@@ -335,14 +335,14 @@ async fn an_operators_own_terms_are_what_counts(shore: Shore) {
         (&json!("2026-12-20"), &json!("routine"))
     );
     // Another operator's stay the usual ones.
-    let eve = shore.admin("eve").await;
+    let eve = server.admin("eve").await;
     let nina = due_vessel(&eve, "Nina").await;
     assert_eq!(need(&eve, &nina).await["urgency"], "soon");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_cancelled_order_is_no_adjustment(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_cancelled_order_is_no_adjustment(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let order = json!({ "vessel_id": nao["id"], "compass_id": super::compass_of(&nao),
                         "port": "Rotterdam", "planned_at": "2026-12-01T08:00:00Z" });
@@ -357,5 +357,5 @@ async fn a_cancelled_order_is_no_adjustment(shore: Shore) {
         .await
         .good();
     assert_eq!(need(&ada, &nao).await["due_on"], "2026-12-20");
-    shore.finish().await;
+    server.finish().await;
 }

@@ -3,7 +3,7 @@
 use super::agreed::Agreed;
 use super::{compass_of, due_vessel, enter, first, put, solve, terms};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Person, Shore};
+use binnacle_server_testing::{Person, TestServer};
 use serde_json::{Value, json};
 
 on_both!(
@@ -20,8 +20,8 @@ on_both!(
 );
 
 /// A firm with terms, and its adjuster.
-pub(super) async fn firm(shore: &Shore, person: &Person, name: &str) -> (String, Person) {
-    let (id, adjuster) = person.adjuster(shore, name).await;
+pub(super) async fn firm(server: &TestServer, person: &Person, name: &str) -> (String, Person) {
+    let (id, adjuster) = person.adjuster(server, name).await;
     let path = format!("/firms/{id}/terms");
     put(person, &path, &terms()).await.good();
     (id.to_string(), adjuster)
@@ -54,11 +54,11 @@ pub(super) async fn alerts(person: &Person) -> Vec<Value> {
         .collect()
 }
 
-async fn a_planned_job_is_offered_and_agreed_and_stays_in_the_plan(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_planned_job_is_offered_and_agreed_and_stays_in_the_plan(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "BEANR", 8).await;
-    let (firm_id, rosa) = firm(&shore, &ada, "rosa").await;
+    let (firm_id, rosa) = firm(&server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     let order = offer(&ada, &plan, &nao).await;
     let seen = ada.get(&order).await.good();
@@ -81,11 +81,11 @@ async fn a_planned_job_is_offered_and_agreed_and_stays_in_the_plan(shore: Shore)
     assert_eq!(plan["jobs"][0]["port"], "BEANR");
     assert_eq!(plan["changes"][0]["what"], "kept");
     assert_eq!(alerts(&ada).await, [] as [Value; 0]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_eta_moved_past_the_due_date_is_told_and_planned_anew(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn an_eta_moved_past_the_due_date_is_told_and_planned_anew(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     let Agreed {
         ada, nao, order, ..
     } = &agreed;
@@ -121,14 +121,14 @@ async fn an_eta_moved_past_the_due_date_is_told_and_planned_anew(shore: Shore) {
     let plan = solve(ada).await;
     assert_eq!(alerts(ada).await, [] as [Value; 0]);
     offer(ada, &plan, nao).await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_firm_that_said_no_is_not_planned_again(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_firm_that_said_no_is_not_planned_again(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
-    let (_, rosa) = firm(&shore, &ada, "rosa").await;
+    let (_, rosa) = firm(&server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     let order = offer(&ada, &plan, &nao).await;
     // What a firm has declined it sees no more.
@@ -138,7 +138,7 @@ async fn a_firm_that_said_no_is_not_planned_again(shore: Shore) {
     assert_eq!(plan["jobs"], json!([]));
     let because = plan["unscheduled"][0]["because"].to_string();
     assert!(because.contains("rosa declined"), "{because}");
-    firm(&shore, &ada, "juan").await;
+    firm(&server, &ada, "juan").await;
     let plan = solve(&ada).await;
     assert_eq!(first(&plan).2, "juan");
     let id = order.rsplit('/').next().unwrap();
@@ -150,21 +150,21 @@ async fn a_firm_that_said_no_is_not_planned_again(shore: Shore) {
         ada.get(&next).await.good()["offers"][0]["firm_name"],
         "juan"
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// Rosa is the cheaper one.
-async fn a_no_holds_when_its_order_is_cancelled(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_no_holds_when_its_order_is_cancelled(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
-    let (juans, _) = firm(&shore, &ada, "juan").await;
+    let (juans, _) = firm(&server, &ada, "juan").await;
     let mut dearer = terms();
     dearer["fee_eur"] = json!(4000);
     put(&ada, &format!("/firms/{juans}/terms"), &dearer)
         .await
         .good();
-    let (rosas, rosa) = firm(&shore, &ada, "rosa").await;
+    let (rosas, rosa) = firm(&server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     assert_eq!(first(&plan).2, "rosa");
     let order = offer(&ada, &plan, &nao).await;
@@ -185,31 +185,31 @@ async fn a_no_holds_when_its_order_is_cancelled(shore: Shore) {
     assert_eq!(first(&plan), ("NLRTM", "2026-12-15", "rosa"));
     assert_eq!(plan["jobs"][0]["state"], "confirmed");
     assert_eq!(alerts(&ada).await, [] as [Value; 0]);
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// The plan that was looked at still has the job in the place of an order that is cancelled.
-async fn an_order_that_is_cancelled_is_in_nobodys_way(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn an_order_that_is_cancelled_is_in_nobodys_way(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
-    let (_, rosa) = firm(&shore, &ada, "rosa").await;
+    let (_, rosa) = firm(&server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     let order = offer(&ada, &plan, &nao).await;
     rosa.post(&format!("{order}/decline"), &json!({})).await;
-    firm(&shore, &ada, "juan").await;
+    firm(&server, &ada, "juan").await;
     let plan = solve(&ada).await;
     let why = json!({ "text": "declined" });
     ada.post(&format!("{order}/cancel"), &why).await.good();
     offer(&ada, &plan, &nao).await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_offer_is_of_the_plan_that_was_looked_at(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn an_offer_is_of_the_plan_that_was_looked_at(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     let nao = due_vessel(&ada, "Nao").await;
-    firm(&shore, &ada, "rosa").await;
+    firm(&server, &ada, "rosa").await;
     let wrong = json!({ "version": 1, "compass_id": compass_of(&nao) });
     let none = ada.post("/schedule/offer", &wrong).await;
     assert_eq!(none.problem(), "not-found");
@@ -222,10 +222,10 @@ async fn an_offer_is_of_the_plan_that_was_looked_at(shore: Shore) {
     assert!(old.text.contains("the plan is of version 2 now"), "{old:?}");
     let theirs = eve.post("/schedule/offer", &offer_of(&plan, &nao)).await;
     assert_eq!(theirs.problem(), "not-found");
-    let viewer = ada.viewer(&shore).await;
+    let viewer = ada.viewer(&server).await;
     let seen = viewer.post("/schedule/offer", &offer_of(&plan, &nao)).await;
     assert_eq!(seen.problem(), "forbidden");
-    shore.finish().await;
+    server.finish().await;
 }
 
 async fn orders(person: &Person) -> usize {
@@ -233,14 +233,14 @@ async fn orders(person: &Person) -> usize {
     list["items"].as_array().unwrap().len()
 }
 
-async fn a_job_is_offered_whole_or_not_at_all(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_job_is_offered_whole_or_not_at_all(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let path = format!("/vessels/{}/compasses", nao["id"].as_str().unwrap());
     let second = json!({ "name": "Steering", "role": "steering" });
     let second = ada.post(&path, &second).await.good();
     enter(&ada, &nao, "NLRTM", 14).await;
-    firm(&shore, &ada, "rosa").await;
+    firm(&server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     assert_eq!(plan["jobs"][0]["compasses"].as_array().unwrap().len(), 2);
     // The job's last compass is ordered meanwhile.
@@ -254,11 +254,11 @@ async fn a_job_is_offered_whole_or_not_at_all(shore: Shore) {
     let refused = ada.post("/schedule/offer", &offer).await;
     assert_eq!(refused.problem(), "wrong-state");
     assert_eq!(orders(&ada).await, 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_agreed_job_that_fits_nowhere_names_its_order(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn an_agreed_job_that_fits_nowhere_names_its_order(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     let Agreed { ada, order, .. } = &agreed;
     solve(ada).await;
     // An hour alongside is not enough for anybody.
@@ -270,13 +270,13 @@ async fn an_agreed_job_that_fits_nowhere_names_its_order(shore: Shore) {
     let id = order.rsplit('/').next().unwrap();
     assert_eq!(plan["unscheduled"][0]["orders"], json!([id]));
     assert_eq!(alerts(ada).await.len(), 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn no_firm_is_asked_that_may_not_adjust_her(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn no_firm_is_asked_that_may_not_adjust_her(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    let (firm_id, _) = firm(&shore, &ada, "rosa").await;
+    let (firm_id, _) = firm(&server, &ada, "rosa").await;
     let ask = async || {
         let order = direct(&nao, "Rotterdam (NLRTM)", "2026-12-15T08:00:00Z", &firm_id);
         ada.post("/work-orders", &order).await
@@ -306,14 +306,14 @@ async fn no_firm_is_asked_that_may_not_adjust_her(shore: Shore) {
     some["licences"] = json!(["NO-7"]);
     put(&ada, &firms, &some).await.good();
     ask().await.good();
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_order_is_for_a_call_where_calls_at_its_port_are_known(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn an_order_is_for_a_call_where_calls_at_its_port_are_known(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
-    let (firm_id, rosa) = firm(&shore, &ada, "rosa").await;
+    let (firm_id, rosa) = firm(&server, &ada, "rosa").await;
     let order = |at: &str| direct(&nao, "NLRTM", at, &firm_id);
     let other = ada
         .post("/work-orders", &order("2026-12-18T08:00:00Z"))
@@ -334,5 +334,5 @@ async fn an_order_is_for_a_call_where_calls_at_its_port_are_known(shore: Shore) 
     rosa.post(&format!("{order}/propose"), &earlier)
         .await
         .good();
-    shore.finish().await;
+    server.finish().await;
 }

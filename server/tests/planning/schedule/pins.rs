@@ -3,7 +3,7 @@
 use super::{compass_of, due_vessel, enter, first, planned_firm, put, solve, terms};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::port_calls;
-use binnacle_server_testing::{Answer, Shore};
+use binnacle_server_testing::{ApiResponse, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -18,12 +18,12 @@ fn pin(vessel: &Value, call: &Value, firm: &str, day: &str) -> Value {
             "day": day, "note": "agreed by telephone" })
 }
 
-async fn a_pinned_job_stays_where_it_is_until_it_is_let_go(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_pinned_job_stays_where_it_is_until_it_is_let_go(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
     let later = enter(&ada, &nao, "BEANR", 15).await;
-    let firm = planned_firm(&shore, &ada, "Maas Compass").await;
+    let firm = planned_firm(&server, &ada, "Maas Compass").await;
     let wanted = pin(&nao, &later, &firm, "2026-12-15");
     let kept = ada.post("/schedule/pins", &wanted).await.good();
     assert_eq!(kept["created_by"], "ada@example.com");
@@ -37,24 +37,24 @@ async fn a_pinned_job_stays_where_it_is_until_it_is_let_go(shore: Shore) {
     let list = ada.get("/schedule/pins").await.good();
     assert_eq!(list["items"][0], kept);
     let path = format!("/schedule/pins/{}", compass_of(&nao));
-    let eve = shore.admin("eve").await;
-    let theirs = Answer::of(eve.request(Method::DELETE, &path)).await;
+    let eve = server.admin("eve").await;
+    let theirs = ApiResponse::of(eve.request(Method::DELETE, &path)).await;
     assert_eq!(theirs.problem(), "not-found");
     assert_eq!(eve.get("/schedule/pins").await.good()["items"], json!([]));
-    let gone = Answer::of(ada.request(Method::DELETE, &path)).await;
+    let gone = ApiResponse::of(ada.request(Method::DELETE, &path)).await;
     assert_eq!(gone.status, 204);
     let made = solve(&ada).await;
     assert_eq!(first(&made), ("NLRTM", "2026-12-09", "Maas Compass"));
     assert_eq!(made["jobs"][0]["pinned"], false);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_pin_gives_way_for_cause_and_the_plan_says_which(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_pin_gives_way_for_cause_and_the_plan_says_which(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
     let later = enter(&ada, &nao, "BEANR", 15).await;
-    let firm = planned_firm(&shore, &ada, "Maas Compass").await;
+    let firm = planned_firm(&server, &ada, "Maas Compass").await;
     let wanted = pin(&nao, &later, &firm, "2026-12-15");
     ada.post("/schedule/pins", &wanted).await.good();
     solve(&ada).await;
@@ -75,17 +75,17 @@ async fn a_pin_gives_way_for_cause_and_the_plan_says_which(shore: Shore) {
         "{change}"
     );
     assert_eq!(made["jobs"][0]["pinned"], false);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_cannot_be_pinned_is_refused(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn what_cannot_be_pinned_is_refused(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     let nao = due_vessel(&ada, "Nao").await;
     let pinta = due_vessel(&ada, "Pinta").await;
     let call = enter(&ada, &nao, "NLRTM", 8).await;
     let others = enter(&ada, &pinta, "NLRTM", 8).await;
-    let firm = planned_firm(&shore, &ada, "Maas Compass").await;
+    let firm = planned_firm(&server, &ada, "Maas Compass").await;
     let early = ada
         .post("/schedule/pins", &pin(&nao, &call, &firm, "2026-12-07"))
         .await;
@@ -96,8 +96,8 @@ async fn what_cannot_be_pinned_is_refused(shore: Shore) {
         pin(&nao, &others, &firm, day),
         pin(&nao, &call, nao["id"].as_str().unwrap(), day),
     ] {
-        let answer = ada.post("/schedule/pins", &wrong).await;
-        assert_eq!(answer.problem(), "not-found", "{wrong}");
+        let response = ada.post("/schedule/pins", &wrong).await;
+        assert_eq!(response.problem(), "not-found", "{wrong}");
     }
     // A firm that the schedule leaves out: it would give way at once.
     let mut idle = terms();
@@ -115,5 +115,5 @@ async fn what_cannot_be_pinned_is_refused(shore: Shore) {
         .post("/schedule/pins", &pin(&nao, &call, &firm, day))
         .await;
     assert_eq!(theirs.problem(), "not-found");
-    shore.finish().await;
+    server.finish().await;
 }

@@ -6,7 +6,7 @@ use binnacle_platform::db::Pools;
 use binnacle_schedule::{input, plan};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::port_calls;
-use binnacle_server_testing::{Person, Shore};
+use binnacle_server_testing::{Person, TestServer};
 use serde_json::{Value, json};
 
 on_both!(
@@ -26,14 +26,14 @@ async fn current(person: &Person) -> Value {
     person.get("/schedule").await.good()
 }
 
-async fn a_plan_names_who_goes_where_and_is_made_again_from_its_input(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_plan_names_who_goes_where_and_is_made_again_from_its_input(server: TestServer) {
+    let ada = server.admin("ada").await;
     let none = json!({ "plan": null, "outdated_since": null, "problem": null });
     assert_eq!(current(&ada).await, none);
     assert_eq!(ada.get("/schedule/input").await.problem(), "not-found");
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
-    planned_firm(&shore, &ada, "Maas Compass").await;
+    planned_firm(&server, &ada, "Maas Compass").await;
     let outdated = current(&ada).await["outdated_since"].clone();
     assert!(outdated.is_string(), "{outdated}");
     let made = solve(&ada).await;
@@ -58,11 +58,11 @@ async fn a_plan_names_who_goes_where_and_is_made_again_from_its_input(shore: Sho
     let again = plan::plan(&input::read(&again.text).unwrap());
     assert!((again.cost_eur - made["cost_eur"].as_f64().unwrap()).abs() < 1e-9);
     assert_eq!(again.jobs.len(), 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_cannot_be_done_says_why_and_what_would_help(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn what_cannot_be_done_says_why_and_what_would_help(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let pinta = due_vessel(&ada, "Pinta").await;
     for vessel in [&nao, &pinta] {
@@ -73,7 +73,7 @@ async fn what_cannot_be_done_says_why_and_what_would_help(shore: Shore) {
     }
     let far = ada.create_vessel("Far").await;
     enter(&ada, &far, "BRSSZ", 1).await;
-    planned_firm(&shore, &ada, "Maas Compass").await;
+    planned_firm(&server, &ada, "Maas Compass").await;
     let made = solve(&ada).await;
     assert_eq!(made["jobs"].as_array().unwrap().len(), 1);
     let unscheduled = made["unscheduled"].as_array().unwrap();
@@ -83,16 +83,16 @@ async fn what_cannot_be_done_says_why_and_what_would_help(shore: Shore) {
     let other = of("Nao").or(of("Pinta")).unwrap().to_string();
     assert!(other.contains("teams of 2026-12-08 go to"), "{other}");
     assert!(other.contains("one more team of Maas Compass on 2026-12-08"));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_moved_eta_makes_another_plan_that_says_what_it_costs(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_moved_eta_makes_another_plan_that_says_what_it_costs(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let call = enter(&ada, &nao, "NLRTM", 8).await;
     enter(&ada, &nao, "BEANR", 15).await;
-    planned_firm(&shore, &ada, "Maas Compass").await;
-    assert_eq!(follow(&shore).await, Some(ada.operator));
+    planned_firm(&server, &ada, "Maas Compass").await;
+    assert_eq!(follow(&server).await, Some(ada.operator));
     let before = current(&ada).await["plan"].clone();
     assert_eq!(first(&before), ("NLRTM", "2026-12-09", "Maas Compass"));
     let one = format!(
@@ -104,7 +104,7 @@ async fn a_moved_eta_makes_another_plan_that_says_what_it_costs(shore: Shore) {
     ada.post(&format!("{one}/withdraw"), &withdrawn)
         .await
         .good();
-    assert_eq!(follow(&shore).await, Some(ada.operator));
+    assert_eq!(follow(&server).await, Some(ada.operator));
     let after = current(&ada).await["plan"].clone();
     assert_eq!(first(&after), ("BEANR", "2026-12-16", "Maas Compass"));
     let change = &after["changes"][0];
@@ -135,87 +135,87 @@ async fn a_moved_eta_makes_another_plan_that_says_what_it_costs(shore: Shore) {
         .collect();
     assert_eq!(versions, [2, 1]);
     assert_eq!(ada.get("/schedule/plans/1").await.good(), before);
-    let told = shore.events().await;
+    let told = server.events().await;
     assert_eq!(told.iter().filter(|kind| *kind == "schedule").count(), 2);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_storm_of_changes_makes_one_plan_after_half_a_minute(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    planned_firm(&shore, &ada, "Maas Compass").await;
+async fn a_storm_of_changes_makes_one_plan_after_half_a_minute(server: TestServer) {
+    let ada = server.admin("ada").await;
+    planned_firm(&server, &ada, "Maas Compass").await;
     let nao = due_vessel(&ada, "Nao").await;
     for day in [1, 8, 15] {
         enter(&ada, &nao, "NLRTM", day).await;
     }
-    shore.advance(20.0);
+    server.advance(20.0);
     assert_eq!(
-        schedule::step(&shore.app, &PlanSlots::default())
+        schedule::step(&server.app, &PlanSlots::default())
             .await
             .unwrap(),
         None
     );
-    let second = shore.second().await;
-    shore.advance(11.0);
+    let second = server.second().await;
+    server.advance(11.0);
     let (here, there) = (PlanSlots::default(), PlanSlots::default());
     let (one, other) = tokio::join!(
-        schedule::step(&shore.app, &here),
+        schedule::step(&server.app, &here),
         schedule::step(&second, &there)
     );
     // Two servers, one schedule.
     assert!(one.unwrap().is_some() != other.unwrap().is_some());
     assert_eq!(
-        schedule::step(&shore.app, &PlanSlots::default())
+        schedule::step(&server.app, &PlanSlots::default())
             .await
             .unwrap(),
         None
     );
     assert_eq!(current(&ada).await["plan"]["version"], 1);
     second.db.close().await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_plan_is_made_anew_each_day(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    planned_firm(&shore, &ada, "Maas Compass").await;
+async fn a_plan_is_made_anew_each_day(server: TestServer) {
+    let ada = server.admin("ada").await;
+    planned_firm(&server, &ada, "Maas Compass").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
-    assert!(follow(&shore).await.is_some());
-    shore.advance(86_000.0);
+    assert!(follow(&server).await.is_some());
+    server.advance(86_000.0);
     assert_eq!(
-        schedule::step(&shore.app, &PlanSlots::default())
+        schedule::step(&server.app, &PlanSlots::default())
             .await
             .unwrap(),
         None
     );
-    shore.advance(500.0);
+    server.advance(500.0);
     assert!(
-        schedule::step(&shore.app, &PlanSlots::default())
+        schedule::step(&server.app, &PlanSlots::default())
             .await
             .unwrap()
             .is_some()
     );
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     let plan = current(&ada).await["plan"].clone();
     assert_eq!(plan["version"], 2);
     assert_eq!(plan["changes"][0]["what"], "kept");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_operator_without_firms_gets_no_plan_by_itself(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn an_operator_without_firms_gets_no_plan_by_itself(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
-    assert!(follow(&shore).await.is_some());
-    assert_eq!(follow(&shore).await, None);
+    assert!(follow(&server).await.is_some());
+    assert_eq!(follow(&server).await, None);
     assert_eq!(current(&ada).await["plan"], json!(null));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_compass_with_an_order_under_way_is_beside_the_plan(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_compass_with_an_order_under_way_is_beside_the_plan(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
-    planned_firm(&shore, &ada, "Maas Compass").await;
+    planned_firm(&server, &ada, "Maas Compass").await;
     let order = json!({ "vessel_id": nao["id"], "compass_id": compass_of(&nao),
                         "port": "Rotterdam", "planned_at": "2026-12-08T10:00:00Z" });
     let order = ada.post("/work-orders", &order).await.good();
@@ -228,7 +228,7 @@ async fn a_compass_with_an_order_under_way_is_beside_the_plan(shore: Shore) {
         .await
         .good();
     assert_eq!(solve(&ada).await["jobs"].as_array().unwrap().len(), 1);
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// Calls by the second, beside the one that there is; with a name for each.
@@ -248,13 +248,13 @@ macro_rules! many_calls {
     };
 }
 
-async fn a_fleet_that_is_too_large_to_be_planned_is_told_so(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    planned_firm(&shore, &ada, "Maas Compass").await;
+async fn a_fleet_that_is_too_large_to_be_planned_is_told_so(server: TestServer) {
+    let ada = server.admin("ada").await;
+    planned_firm(&server, &ada, "Maas Compass").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
-    shore
-        .sql(match shore.app.db.pools() {
+    server
+        .sql(match server.app.db.pools() {
             Pools::Sqlite { .. } => many_calls!("randomblob(16)"),
             Pools::Postgres(_) => many_calls!("gen_random_uuid()"),
         })
@@ -263,16 +263,16 @@ async fn a_fleet_that_is_too_large_to_be_planned_is_told_so(shore: Shore) {
     let refused = ada.post("/schedule/solve", &json!({})).await;
     assert_eq!(refused.problem(), "wrong-state");
     assert_eq!(refused.json()["detail"], said);
-    follow(&shore).await;
+    follow(&server).await;
     assert_eq!(current(&ada).await["problem"], said);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn settings_weigh_and_are_checked(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn settings_weigh_and_are_checked(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
-    planned_firm(&shore, &ada, "Maas Compass").await;
+    planned_firm(&server, &ada, "Maas Compass").await;
     for wrong in [
         json!({ "horizon_days": 0 }),
         json!({ "weights": { "job_h": 0 } }),
@@ -280,8 +280,8 @@ async fn settings_weigh_and_are_checked(shore: Shore) {
         json!({ "weights": { "colour": 1 } }),
         json!({ "terms": { "soon_days": -1 } }),
     ] {
-        let answer = put(&ada, "/schedule/settings", &wrong).await;
-        assert_eq!(answer.problem(), "invalid", "{wrong}");
+        let response = put(&ada, "/schedule/settings", &wrong).await;
+        assert_eq!(response.problem(), "invalid", "{wrong}");
     }
     assert_eq!(
         ada.get("/schedule/settings").await.good()["horizon_days"],
@@ -297,23 +297,23 @@ async fn settings_weigh_and_are_checked(shore: Shore) {
     put(&ada, "/schedule/settings", &near).await.good();
     let made = solve(&ada).await;
     assert_eq!(made["later"][0]["vessel_name"], "Nao");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn schedules_are_an_operators_own(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn schedules_are_an_operators_own(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     due_vessel(&ada, "Nao").await;
-    planned_firm(&shore, &ada, "Maas Compass").await;
+    planned_firm(&server, &ada, "Maas Compass").await;
     solve(&ada).await;
     assert_eq!(current(&eve).await["plan"], json!(null));
     assert_eq!(eve.get("/schedule/plans/1").await.problem(), "not-found");
     assert_eq!(eve.get("/schedule/input").await.problem(), "not-found");
     let plans = eve.get("/schedule/plans").await.good();
     assert_eq!(plans["items"], json!([]));
-    let viewer = ada.viewer(&shore).await;
+    let viewer = ada.viewer(&server).await;
     assert!(current(&viewer).await["plan"].is_object());
     let solved = viewer.post("/schedule/solve", &json!({})).await;
     assert_eq!(solved.problem(), "forbidden");
-    shore.finish().await;
+    server.finish().await;
 }

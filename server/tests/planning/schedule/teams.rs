@@ -5,7 +5,7 @@ use super::offers::{direct, firm, offer, offer_of};
 use super::{due_vessel, enter, first, put, solve, terms};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::port_calls;
-use binnacle_server_testing::{Answer, Shore};
+use binnacle_server_testing::{ApiResponse, TestServer};
 use serde_json::{Value, json};
 
 on_both!(
@@ -18,11 +18,11 @@ on_both!(
 );
 
 /// By the terms that are said of it, on every day but Sunday from eight to eighteen hours.
-async fn no_firm_is_asked_for_a_time_at_which_it_is_closed(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn no_firm_is_asked_for_a_time_at_which_it_is_closed(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
-    let (id, rosa) = firm(&shore, &ada, "rosa").await;
+    let (id, rosa) = firm(&server, &ada, "rosa").await;
     let mut closed = terms();
     closed["closed"] = json!(["2026-12-14"]);
     put(&ada, &format!("/firms/{id}/terms"), &closed)
@@ -57,11 +57,11 @@ async fn no_firm_is_asked_for_a_time_at_which_it_is_closed(shore: Shore) {
     let asked = direct(&nao, "NLRTM", "2026-12-14T09:00:00Z", &id);
     let refused = ada.post("/work-orders", &asked).await;
     assert!(refused.text.contains("does not work on"), "{refused:?}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn no_firm_is_offered_more_ships_than_it_has_teams(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn no_firm_is_offered_more_ships_than_it_has_teams(server: TestServer) {
+    let ada = server.admin("ada").await;
     let (nao, pinta) = (
         due_vessel(&ada, "Nao").await,
         due_vessel(&ada, "Pinta").await,
@@ -69,7 +69,7 @@ async fn no_firm_is_offered_more_ships_than_it_has_teams(shore: Shore) {
     for vessel in [&nao, &pinta] {
         enter(&ada, vessel, "NLRTM", 14).await;
     }
-    let (firm_id, _) = firm(&shore, &ada, "rosa").await;
+    let (firm_id, _) = firm(&server, &ada, "rosa").await;
     let mut two = terms();
     two["teams"] = json!(2);
     let path = format!("/firms/{firm_id}/terms");
@@ -85,18 +85,20 @@ async fn no_firm_is_offered_more_ships_than_it_has_teams(shore: Shore) {
     // One of the teams is lost while both are offered at once.
     put(&ada, &path, &terms()).await.good();
     let (one, other) = (offer_of(&plan, &nao), offer_of(&plan, &pinta));
-    let (one, other): (Answer, Answer) = tokio::join!(
+    let (one, other): (ApiResponse, ApiResponse) = tokio::join!(
         ada.post("/schedule/offer", &one),
         ada.post("/schedule/offer", &other)
     );
     let mut statuses = [one.status, other.status];
     statuses.sort_unstable();
     assert_eq!(statuses, [201, 409], "{one:?} {other:?}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_firm_that_is_asked_at_once_with_others_is_planned_for_no_other_ship_then(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_firm_that_is_asked_at_once_with_others_is_planned_for_no_other_ship_then(
+    server: TestServer,
+) {
+    let ada = server.admin("ada").await;
     let (nao, pinta) = (
         due_vessel(&ada, "Nao").await,
         due_vessel(&ada, "Pinta").await,
@@ -106,8 +108,8 @@ async fn a_firm_that_is_asked_at_once_with_others_is_planned_for_no_other_ship_t
     for vessel in [&nao, &pinta] {
         ada.post(&port_calls::path(vessel), &that_day).await.good();
     }
-    let (rosa, _) = firm(&shore, &ada, "rosa").await;
-    let (juan, _) = firm(&shore, &ada, "juan").await;
+    let (rosa, _) = firm(&server, &ada, "rosa").await;
+    let (juan, _) = firm(&server, &ada, "juan").await;
     let mut order = direct(&nao, "NLRTM", "2026-12-15T09:00:00Z", &rosa);
     order["offer"] = json!({ "firms": [rosa, juan], "at_once": true });
     ada.post("/work-orders", &order).await.good();
@@ -117,12 +119,12 @@ async fn a_firm_that_is_asked_at_once_with_others_is_planned_for_no_other_ship_t
     assert_eq!(plan["jobs"][0]["state"], "offered");
     let because = plan["unscheduled"][0]["because"].to_string();
     assert!(because.contains("are booked"), "{because}");
-    shore.finish().await;
+    server.finish().await;
 }
 
 /// As long as an order stands that its job was moved away from, its firm keeps the day.
-async fn a_team_that_an_order_still_holds_is_planned_for_no_other_ship(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn a_team_that_an_order_still_holds_is_planned_for_no_other_ship(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     let Agreed {
         ada,
         nao,
@@ -168,19 +170,19 @@ async fn a_team_that_an_order_still_holds_is_planned_for_no_other_ship(shore: Sh
     let plan = solve(ada).await;
     assert_eq!(first(&plan), ("NLRTM", "2026-12-15", "rosa"));
     offer(ada, &plan, &pinta).await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_firm_is_booked_once_by_all_operators_together(shore: Shore) {
-    let (ada, eve) = (shore.admin("ada").await, shore.admin("eve").await);
+async fn a_firm_is_booked_once_by_all_operators_together(server: TestServer) {
+    let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     let (nao, hind) = (
         due_vessel(&ada, "Nao").await,
         due_vessel(&eve, "Hind").await,
     );
-    let (id, rosa) = firm(&shore, &ada, "rosa").await;
-    let mut tx = shore.app.db.begin().await.unwrap();
+    let (id, rosa) = firm(&server, &ada, "rosa").await;
+    let mut tx = server.app.db.begin().await.unwrap();
     let firm_id = binnacle_platform::ids::FirmId(id.parse().unwrap());
-    let now = binnacle_platform::time::Time(shore.app.clock.now());
+    let now = binnacle_platform::time::Time(server.app.clock.now());
     binnacle_orders::firms::engage(&mut tx, eve.operator, firm_id, now)
         .await
         .unwrap();
@@ -221,14 +223,14 @@ async fn a_firm_is_booked_once_by_all_operators_together(shore: Shore) {
         "{full:?}"
     );
     assert!(!full.text.contains(theirs), "{full:?}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn an_order_is_for_a_port_and_a_time_that_can_be(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn an_order_is_for_a_port_and_a_time_that_can_be(server: TestServer) {
+    let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
-    let (id, _) = firm(&shore, &ada, "rosa").await;
+    let (id, _) = firm(&server, &ada, "rosa").await;
     let ask = async |port: &str, at: &str| {
         let order = direct(&nao, port, at, &id);
         ada.post("/work-orders", &order).await
@@ -254,5 +256,5 @@ async fn an_order_is_for_a_port_and_a_time_that_can_be(shore: Shore) {
     let path = format!("/work-orders/{}", order["id"].as_str().unwrap());
     let why = json!({ "text": "not this day" });
     ada.post(&format!("{path}/cancel"), &why).await.good();
-    shore.finish().await;
+    server.finish().await;
 }

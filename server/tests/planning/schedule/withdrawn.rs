@@ -6,7 +6,7 @@ use super::{enter, first, follow, solve};
 use crate::notifications::told;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::port_calls;
-use binnacle_server_testing::{Answer, Shore};
+use binnacle_server_testing::{ApiResponse, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -15,18 +15,18 @@ on_both!(
     a_call_entered_anew_has_the_agreed_job_again,
 );
 
-async fn a_call_withdrawn_after_acceptance_is_told_and_done_at_another(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn a_call_withdrawn_after_acceptance_is_told_and_done_at_another(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     let why = json!({ "reason": "charter" });
     let path = format!("{}/withdraw", agreed.call);
     agreed.ada.post(&path, &why).await.good();
-    let order = agreed.seen().await;
+    let order = agreed.view_order().await;
     assert_eq!(order["call_fit"], "no_call");
     assert_eq!(order["call_change"]["is"], Value::Null);
     assert_eq!(order["state"], "accepted");
     let last = told(&agreed.rosa).await.pop().unwrap();
     assert!(last.contains("the port call is withdrawn"), "{last}");
-    follow(&shore).await;
+    follow(&server).await;
     assert_eq!(alerts(&agreed.ada).await.len(), 1);
     let nowhere = agreed.retime("2026-12-15T08:00:00Z").await;
     assert_eq!(nowhere.problem(), "wrong-state");
@@ -36,24 +36,24 @@ async fn a_call_withdrawn_after_acceptance_is_told_and_done_at_another(shore: Sh
     assert_eq!(elsewhere.problem(), "wrong-state");
     enter(&agreed.ada, &agreed.nao, "NLRTM", 17).await;
     agreed.retime("2026-12-17T08:00:00Z").await.good();
-    agreed.answer(&agreed.rosa, "accept").await.good();
+    agreed.respond(&agreed.rosa, "accept").await.good();
     let plan = solve(&agreed.ada).await;
     assert_eq!(first(&plan), ("NLRTM", "2026-12-17", "rosa"));
     assert_eq!(plan["jobs"][0]["state"], "confirmed");
     assert_eq!(alerts(&agreed.ada).await, [] as [Value; 0]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_call_entered_anew_has_the_agreed_job_again(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
+async fn a_call_entered_anew_has_the_agreed_job_again(server: TestServer) {
+    let agreed = Agreed::new(&server).await;
     let withdrawn = format!("{}/withdraw", agreed.call);
     agreed.ada.post(&withdrawn, &json!({})).await.good();
-    assert_eq!(agreed.seen().await["call_fit"], "no_call");
+    assert_eq!(agreed.view_order().await["call_fit"], "no_call");
     // One at another port, or at another time, is none of the job's.
     enter(&agreed.ada, &agreed.nao, "NLRTM", 18).await;
-    assert_eq!(agreed.seen().await["call_fit"], "no_call");
+    assert_eq!(agreed.view_order().await["call_fit"], "no_call");
     let call = enter(&agreed.ada, &agreed.nao, "NLRTM", 14).await;
-    let order = agreed.seen().await;
+    let order = agreed.view_order().await;
     assert_eq!(order["call_fit"], "fits");
     assert_eq!(order["call_change"]["call_id"], call["id"]);
     let last = messages(&agreed.rosa, &agreed.order).await.pop().unwrap();
@@ -73,7 +73,7 @@ async fn a_call_entered_anew_has_the_agreed_job_again(shore: Shore) {
             .ada
             .request(Method::POST, &path)
             .body(text.to_owned());
-        Answer::of(request.header("content-type", "text/csv"))
+        ApiResponse::of(request.header("content-type", "text/csv"))
             .await
             .good()
     };
@@ -89,8 +89,8 @@ async fn a_call_entered_anew_has_the_agreed_job_again(shore: Shore) {
         )
         .await
         .good();
-    assert_eq!(agreed.seen().await["call_fit"], "no_call");
+    assert_eq!(agreed.view_order().await["call_fit"], "no_call");
     file("id,port,eta,etd\nx,NLRTM,2026-12-14T06:00:00Z,2026-12-15T18:00:00Z\n").await;
-    assert_eq!(agreed.seen().await["call_fit"], "fits");
-    shore.finish().await;
+    assert_eq!(agreed.view_order().await["call_fit"], "fits");
+    server.finish().await;
 }

@@ -5,11 +5,11 @@ mod world;
 
 use binnacle_server::routes::openapi;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Shore};
+use binnacle_server_testing::{ApiResponse, TestServer};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use table::{OPEN, TABLE};
-use world::{Key, ROLES, Side, answer, request};
+use world::{Key, ROLES, Side, request, response};
 
 on_both!(every_role_may_do_what_the_table_says_and_nothing_to_others_data);
 
@@ -50,8 +50,8 @@ fn url(path: &str) -> String {
 }
 
 /// The last word of a problem's type; empty for what is none.
-fn kind(answer: &Answer) -> String {
-    let problem: Option<Value> = serde_json::from_str(&answer.text).ok();
+fn kind(response: &ApiResponse) -> String {
+    let problem: Option<Value> = serde_json::from_str(&response.text).ok();
     let kind = problem
         .as_ref()
         .and_then(|problem| problem["type"].as_str());
@@ -90,17 +90,17 @@ fn rank(one: &Operation) -> u8 {
 }
 
 struct Trial<'a> {
-    shore: &'a Shore,
+    server: &'a TestServer,
     ada: &'a Side,
     eve: &'a Side,
     faults: Vec<String>,
 }
 
-async fn every_role_may_do_what_the_table_says_and_nothing_to_others_data(shore: Shore) {
-    let (ada, root) = Side::new(&shore, "ada", None).await;
-    let (eve, _) = Side::new(&shore, "eve", Some(&root)).await;
+async fn every_role_may_do_what_the_table_says_and_nothing_to_others_data(server: TestServer) {
+    let (ada, root) = Side::new(&server, "ada", None).await;
+    let (eve, _) = Side::new(&server, "eve", Some(&root)).await;
     let mut trial = Trial {
-        shore: &shore,
+        server: &server,
         ada: &ada,
         eve: &eve,
         faults: Vec::new(),
@@ -115,24 +115,30 @@ async fn every_role_may_do_what_the_table_says_and_nothing_to_others_data(shore:
         trial.lets(one).await;
     }
     assert!(trial.faults.is_empty(), "{:#?}", trial.faults);
-    shore.finish().await;
+    server.finish().await;
 }
 
 impl Trial<'_> {
     /// As someone, of what that role of ada's side has, or of what is nowhere.
-    async fn ask(&self, one: &Operation, key: Option<&Key>, role: usize, real: bool) -> Answer {
+    async fn ask(
+        &self,
+        one: &Operation,
+        key: Option<&Key>,
+        role: usize,
+        real: bool,
+    ) -> ApiResponse {
         let path = url(&self.ada.fill(&one.path, role, real));
-        let mut asked = request(self.shore, key, &one.method, &path);
+        let mut asked = request(self.server, key, &one.method, &path);
         if one.has_body {
             asked = asked.json(&self.ada.body(&one.name));
         }
-        answer(asked).await
+        response(asked).await
     }
 
-    fn expect(&mut self, holds: bool, one: &Operation, who: &str, answer: &Answer) {
+    fn expect(&mut self, holds: bool, one: &Operation, who: &str, response: &ApiResponse) {
         if !holds {
-            let told: String = answer.text.chars().take(160).collect();
-            let fault = format!("{} as {who}: {} {told}", one.name, answer.status);
+            let told: String = response.text.chars().take(160).collect();
+            let fault = format!("{} as {who}: {} {told}", one.name, response.status);
             self.faults.push(fault);
         }
     }

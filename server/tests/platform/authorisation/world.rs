@@ -7,7 +7,7 @@ use binnacle_server_testing::alerts;
 use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::port_calls::call;
 use binnacle_server_testing::work_orders::{PICTURE, hex};
-use binnacle_server_testing::{Answer, PASSWORD, Person, Ship, Shore};
+use binnacle_server_testing::{ApiResponse, PASSWORD, Person, Ship, TestServer};
 use reqwest::{Method, RequestBuilder};
 use ring::signature::{Ed25519KeyPair, KeyPair};
 use serde_json::{Value, json};
@@ -49,34 +49,38 @@ const EVERY_DAY: [&str; 7] = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
 const NONE: &str = "019a0000-0000-7000-8000-000000000000";
 
 impl Side {
-    pub(super) async fn new(shore: &Shore, name: &str, root: Option<&[Key]>) -> (Side, Vec<Key>) {
-        let admin = shore.admin(name).await;
-        let viewer = admin.viewer(shore).await;
-        let (firm, adjuster) = admin.adjuster(shore, &format!("firm-{name}")).await;
-        let ship = shore.ship(&admin, &format!("ship-of-{name}")).await;
+    pub(super) async fn new(
+        server: &TestServer,
+        name: &str,
+        root: Option<&[Key]>,
+    ) -> (Side, Vec<Key>) {
+        let admin = server.admin(name).await;
+        let viewer = admin.viewer(server).await;
+        let (firm, adjuster) = admin.adjuster(server, &format!("firm-{name}")).await;
+        let ship = server.ship(&admin, &format!("ship-of-{name}")).await;
         let root = if let Some(keys) = root {
             keys.to_vec()
         } else {
-            let root = admin.platform_admin(shore).await;
-            second_factor::set_up(shore, &root).await;
+            let root = admin.platform_admin(server).await;
+            second_factor::set_up(server, &root).await;
             let token = token(&root, "read").await;
             vec![Key::Cookie(root.cookie), token.1]
         };
         for person in [&viewer, &adjuster] {
-            second_factor::set_up(shore, person).await;
+            second_factor::set_up(server, person).await;
         }
-        let (_, codes) = second_factor::set_up(shore, &admin).await;
+        let (_, codes) = second_factor::set_up(server, &admin).await;
         let read = token(&admin, "read").await;
         let write = token(&admin, "write").await;
         let firms = token(&adjuster, "read").await;
-        alerts::departs(&ship).await;
+        alerts::report_departure(&ship).await;
         let mut ids = possessions(&admin, &ship, &format!("{firm}")).await;
         ids.extend(of_an_order(&admin, &adjuster, firm, &ids).await);
-        ids.insert("colleague", colleague(shore, &admin, &ship).await);
+        ids.insert("colleague", colleague(server, &admin, &ship).await);
         ids.insert("firm", firm.to_string());
         ids.insert("operator", admin.operator.to_string());
         ids.insert("token", token(&admin, "read").await.0);
-        second_factor::sign_in(shore, &admin.email, &codes[0])
+        second_factor::sign_in(server, &admin.email, &codes[0])
             .await
             .good();
         let sessions = admin.get("/sessions").await.good();
@@ -276,7 +280,7 @@ async fn of_an_order(
     adjuster.post(&format!("{order}/accept"), &yes).await.good();
     let photos = format!("{order}/photos?caption=trays");
     let photo = admin.request(Method::POST, &photos).body(PICTURE);
-    let photo = Answer::of(photo).await.good();
+    let photo = ApiResponse::of(photo).await.good();
     let mut all = ids.clone();
     all.insert("firm", firm.to_string());
     admin.post("/schedule/pins", &pin(&all)).await.good();
@@ -294,11 +298,11 @@ fn pin(ids: &BTreeMap<&'static str, String>) -> Value {
 }
 
 /// Someone with a second factor, who can lose it: their id.
-async fn colleague(shore: &Shore, admin: &Person, ship: &Ship) -> String {
+async fn colleague(server: &TestServer, admin: &Person, ship: &Ship) -> String {
     let email = format!("purser-{}@example.com", ship.id);
-    Person::create(shore, Some(admin.operator.into()), &email, Role::Viewer).await;
-    let purser = Person::sign_in(shore, admin.operator, &email).await;
-    second_factor::set_up(shore, &purser).await;
+    Person::create(server, Some(admin.operator.into()), &email, Role::Viewer).await;
+    let purser = Person::sign_in(server, admin.operator, &email).await;
+    second_factor::set_up(server, &purser).await;
     text(&purser.get("/me").await.good()["user_id"])
 }
 
@@ -319,13 +323,13 @@ async fn token(person: &Person, scope: &str) -> (String, Key) {
 
 /// A request by someone, or by nobody.
 pub(super) fn request(
-    shore: &Shore,
+    server: &TestServer,
     key: Option<&Key>,
     method: &str,
     path: &str,
 ) -> RequestBuilder {
     let method = Method::from_bytes(method.as_bytes()).unwrap();
-    let request = shore.http.request(method, format!("{}{path}", shore.url));
+    let request = server.http.request(method, format!("{}{path}", server.url));
     match key {
         Some(Key::Cookie(cookie)) => request
             .header("cookie", cookie)
@@ -336,7 +340,7 @@ pub(super) fn request(
 }
 
 /// What is answered; of live events, which have no end, only that they begin.
-pub(super) async fn answer(request: RequestBuilder) -> Answer {
+pub(super) async fn response(request: RequestBuilder) -> ApiResponse {
     let response = request.send().await.unwrap();
     let (status, headers) = (response.status().as_u16(), response.headers().clone());
     let endless = headers
@@ -348,7 +352,7 @@ pub(super) async fn answer(request: RequestBuilder) -> Answer {
         response.bytes().await.unwrap().to_vec()
     };
     let text = String::from_utf8_lossy(&bytes).into_owned();
-    Answer {
+    ApiResponse {
         status,
         headers,
         text,

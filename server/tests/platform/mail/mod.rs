@@ -6,10 +6,10 @@ mod tls;
 use binnacle_fleet::alerts;
 use binnacle_platform::outbox::Sent;
 use binnacle_server_testing::DAY_S;
-use binnacle_server_testing::alerts::{limit, with_model};
+use binnacle_server_testing::alerts::{limit, ship_with_model};
 use binnacle_server_testing::mail::{add, deliver, path, read, subjects, test};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{Answer, Relay, Shore};
+use binnacle_server_testing::{ApiResponse, Relay, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -22,15 +22,15 @@ on_both!(
     another_operators_recipients_are_not_there,
 );
 
-async fn a_letter_says_ship_and_what_to_do_and_where_to_look(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_letter_says_ship_and_what_to_do_and_where_to_look(server: TestServer) {
+    let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
-    let nao = with_model(&shore, &ada).await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
-    assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered]);
+    let nao = ship_with_model(&server, &ada).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    assert_eq!(deliver(&server, &relay).await, [Sent::Delivered]);
 
-    let letter = relay.got().remove(0);
+    let letter = relay.letters().remove(0);
     assert_eq!(letter.from, "<alerts@binnacle.example>");
     assert_eq!(letter.to, ["<bridge@example.com>"]);
     let read = read(&letter);
@@ -68,32 +68,32 @@ async fn a_letter_says_ship_and_what_to_do_and_where_to_look(shore: Shore) {
     );
     let id = delivery["id"].as_str().unwrap();
     assert!(read["message-id"].as_str().unwrap().contains(id), "{read}");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_letter_comes_when_an_alert_is_raised_gets_worse_and_is_over(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_letter_comes_when_an_alert_is_raised_gets_worse_and_is_over(server: TestServer) {
+    let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     add(&ada, "bridge@example.com", "notice").await;
-    let nao = with_model(&shore, &ada).await;
+    let nao = ship_with_model(&server, &ada).await;
     // Other words, worse, less bad, as bad as before, over.
     for deviation_deg in [2.5, 2.4, 1.0, 2.5, 1.0, 45.0] {
         limit(
-            &shore,
+            &server,
             &ada,
             &nao,
             json!({ "deviation_deg": deviation_deg }),
         )
         .await;
     }
-    deliver(&shore, &relay).await;
+    deliver(&server, &relay).await;
     let expected = [
         "Nao: warning, deviation over the limit",
         "Nao: critical, deviation over the limit",
         "Nao: over, deviation over the limit",
     ];
     assert_eq!(subjects(&relay), expected);
-    let got: Vec<Value> = relay.got().iter().map(read).collect();
+    let got: Vec<Value> = relay.letters().iter().map(read).collect();
     assert!(
         got.iter()
             .all(|letter| letter["references"] == got[0]["references"])
@@ -106,65 +106,65 @@ async fn a_letter_comes_when_an_alert_is_raised_gets_worse_and_is_over(shore: Sh
     );
 
     // The same cause again is another alert, and is told again.
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
-    assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered]);
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    assert_eq!(deliver(&server, &relay).await, [Sent::Delivered]);
     let alert = ada.get("/alerts?open=true").await.good()["items"][0].clone();
     let at = |rest: &str| format!("/alerts/{}{rest}", alert["id"].as_str().unwrap());
     ada.post(&at("/acknowledge"), &json!({})).await.good();
-    assert_eq!(deliver(&shore, &relay).await, []);
+    assert_eq!(deliver(&server, &relay).await, []);
     ada.post(&at("/clear"), &json!({ "reason": "Adjusted" }))
         .await
         .good();
-    assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered]);
-    let last = read(&relay.got().pop().unwrap());
+    assert_eq!(deliver(&server, &relay).await, [Sent::Delivered]);
+    let last = read(&relay.letters().pop().unwrap());
     assert!(
         last["text"]
             .as_str()
             .unwrap()
             .contains("Cleared by ada@example.com: Adjusted")
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_recipient_hears_of_nothing_less_bad_than_asked(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn a_recipient_hears_of_nothing_less_bad_than_asked(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     let relay = Relay::start().await;
     add(&ada, "master@example.com", "critical").await;
     add(&eve, "eve@example.com", "notice").await;
-    let nao = with_model(&shore, &ada).await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
-    assert_eq!(deliver(&shore, &relay).await, []);
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    let nao = ship_with_model(&server, &ada).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    assert_eq!(deliver(&server, &relay).await, []);
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     // Told of the worst, the master is told once that it is not so bad any more.
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.9 })).await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
-    assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered; 2]);
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.9 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    assert_eq!(deliver(&server, &relay).await, [Sent::Delivered; 2]);
     let expected = [
         "Nao: critical, deviation over the limit",
         "Nao: only warning now, deviation over the limit",
     ];
     assert_eq!(subjects(&relay), expected);
-    let sunk = read(&relay.got().pop().unwrap());
+    let sunk = read(&relay.letters().pop().unwrap());
     let text = sunk["text"].as_str().unwrap();
     assert!(
         text.contains("Severity: warning (critical before)"),
         "{text}"
     );
     // What is as bad as asked until it is over is told to be over.
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
-    deliver(&shore, &relay).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    deliver(&server, &relay).await;
     let expected = [
         "Nao: critical, deviation over the limit",
         "Nao: over, deviation over the limit",
     ];
     assert_eq!(subjects(&relay)[2..], expected);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn names_make_no_headers_and_come_through_whole(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn names_make_no_headers_and_come_through_whole(server: TestServer) {
+    let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     for ending in ["\r\n", "\u{2028}", "\u{2029}"] {
         let injected = json!({ "name": format!("Nao{ending}Bcc: eve@example.com") });
@@ -177,13 +177,13 @@ async fn names_make_no_headers_and_come_through_whole(shore: Shore) {
         "Наш корабль ".repeat(16).trim().to_owned(),
     ];
     for name in &names {
-        shore.ship(&ada, name).await;
+        server.ship(&ada, name).await;
     }
     add(&ada, "bridge@example.com", "notice").await;
-    shore.advance(4.0 * DAY_S);
-    alerts::check_silence(&shore.app).await.unwrap();
-    assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered; 3]);
-    let mut got: Vec<Value> = relay.got().iter().map(read).collect();
+    server.advance(4.0 * DAY_S);
+    alerts::check_silence(&server.app).await.unwrap();
+    assert_eq!(deliver(&server, &relay).await, [Sent::Delivered; 3]);
+    let mut got: Vec<Value> = relay.letters().iter().map(read).collect();
     for name in names {
         let subject = format!("{name}: notice, no word from the vessel").replace("=?", "= ?");
         let place = got
@@ -194,20 +194,20 @@ async fn names_make_no_headers_and_come_through_whole(shore: Shore) {
         assert!(read.get("bcc").is_none() && read.get("cc").is_none());
         assert!(read["text"].as_str().unwrap().contains(&name), "{read}");
     }
-    for letter in relay.got() {
+    for letter in relay.letters() {
         assert!(letter.text.is_ascii(), "{}", letter.text);
         assert!(letter.text.lines().all(|line| line.len() <= 998));
         assert_eq!(letter.to, ["<bridge@example.com>"]);
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_recipient_is_added_once_changed_and_removed(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_recipient_is_added_once_changed_and_removed(server: TestServer) {
+    let ada = server.admin("ada").await;
     let new = json!({ "address": "Bridge@Example.com" });
     let twice = || {
         let request = ada.request(Method::POST, "/mail-recipients").json(&new);
-        Answer::of(request.header("idempotency-key", "one"))
+        ApiResponse::of(request.header("idempotency-key", "one"))
     };
     let made = twice().await.good();
     assert_eq!(twice().await.good(), made);
@@ -234,23 +234,23 @@ async fn a_recipient_is_added_once_changed_and_removed(shore: Shore) {
     }
     let wanted = json!({ "severity": "critical" });
     let request = ada.request(Method::PUT, &path(&made, "")).json(&wanted);
-    let changed = Answer::of(request).await.good();
+    let changed = ApiResponse::of(request).await.good();
     assert_eq!(changed["severity"], "critical");
-    let viewer = ada.viewer(&shore).await;
+    let viewer = ada.viewer(&server).await;
     assert_eq!(viewer.get("/mail-recipients").await.status, 200);
     for (method, rest) in [(Method::DELETE, ""), (Method::POST, "/test")] {
-        let refused = Answer::of(viewer.request(method, &path(&made, rest))).await;
+        let refused = ApiResponse::of(viewer.request(method, &path(&made, rest))).await;
         assert_eq!(refused.problem(), "forbidden");
     }
-    let removed = Answer::of(ada.request(Method::DELETE, &path(&made, ""))).await;
+    let removed = ApiResponse::of(ada.request(Method::DELETE, &path(&made, ""))).await;
     assert_eq!(removed.status, 204);
     assert_eq!(ada.get(&path(&made, "")).await.problem(), "not-found");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn another_operators_recipients_are_not_there(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn another_operators_recipients_are_not_there(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
     let letter = test(&ada, &bridge).await;
     let resend = format!("/deliveries/{}/resend", letter["id"].as_str().unwrap());
@@ -266,13 +266,13 @@ async fn another_operators_recipients_are_not_there(shore: Shore) {
         let request = eve
             .request(method.clone(), &path(&bridge, rest))
             .json(&wanted);
-        let answer = Answer::of(request).await;
-        assert_eq!(answer.problem(), "not-found", "{method} {rest}");
+        let response = ApiResponse::of(request).await;
+        assert_eq!(response.problem(), "not-found", "{method} {rest}");
     }
     // A webhook's path finds no recipient, nor the other way round.
     let webhook = format!("/webhooks/{}", bridge["id"].as_str().unwrap());
-    let removed = Answer::of(ada.request(Method::DELETE, &webhook)).await;
+    let removed = ApiResponse::of(ada.request(Method::DELETE, &webhook)).await;
     assert_eq!(removed.problem(), "not-found");
     assert_eq!(eve.get("/mail-recipients").await.good()["items"], json!([]));
-    shore.finish().await;
+    server.finish().await;
 }

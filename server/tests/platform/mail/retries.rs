@@ -2,10 +2,10 @@
 
 use binnacle_platform::outbox::{self, Sent};
 use binnacle_server_testing::DAY_S;
-use binnacle_server_testing::alerts::{limit, with_model};
+use binnacle_server_testing::alerts::{limit, ship_with_model};
 use binnacle_server_testing::mail::{add, deliver, mailer, path, subjects, test};
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{At, Mood, Person, Relay, Shore};
+use binnacle_server_testing::{Behaviour, Person, Relay, Stage, TestServer};
 use serde_json::json;
 
 on_both!(
@@ -18,151 +18,153 @@ on_both!(
     two_servers_send_a_letter_once,
 );
 
-async fn a_busy_relay_is_tried_again_and_a_refusal_is_final(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_busy_relay_is_tried_again_and_a_refusal_is_final(server: TestServer) {
+    let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
     test(&ada, &bridge).await;
     for busy in [
-        Mood::Says(At::Greeting, "421 too busy"),
+        Behaviour::Reply(Stage::Greeting, "421 too busy"),
         // No answer to this letter: the relay may be mended.
-        Mood::Says(At::Greeting, "554 no service here"),
-        Mood::Says(At::Recipient, "450 greylisted"),
-        Mood::Says(At::Data, "451 try later"),
-        Mood::Says(At::End, "452 disk full"),
+        Behaviour::Reply(Stage::Greeting, "554 no service here"),
+        Behaviour::Reply(Stage::Recipient, "450 greylisted"),
+        Behaviour::Reply(Stage::Data, "451 try later"),
+        Behaviour::Reply(Stage::End, "452 disk full"),
     ] {
-        relay.next(busy);
-        assert_eq!(deliver(&shore, &relay).await, [Sent::Failed], "{busy:?}");
+        relay.behave_next(busy);
+        assert_eq!(deliver(&server, &relay).await, [Sent::Failed], "{busy:?}");
         assert_eq!(
-            deliver(&shore, &relay).await,
+            deliver(&server, &relay).await,
             [],
             "before the pause is over"
         );
-        shore.advance(3600.0);
+        server.advance(3600.0);
     }
     let listed = ada.get(&path(&bridge, "/deliveries")).await.good();
     assert_eq!(listed["items"][0]["last_status"], 452);
     let problem = listed["items"][0]["last_error"].as_str().unwrap();
     assert!(problem.contains("disk full"), "{problem}");
-    assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered]);
+    assert_eq!(deliver(&server, &relay).await, [Sent::Delivered]);
 
     for refusal in [
-        Mood::Says(At::Recipient, "550 no such mailbox"),
-        Mood::Says(At::End, "554 not wanted"),
+        Behaviour::Reply(Stage::Recipient, "550 no such mailbox"),
+        Behaviour::Reply(Stage::End, "554 not wanted"),
     ] {
         let letter = test(&ada, &bridge).await;
-        relay.next(refusal);
-        assert_eq!(deliver(&shore, &relay).await, [Sent::Dead], "{refusal:?}");
+        relay.behave_next(refusal);
+        assert_eq!(deliver(&server, &relay).await, [Sent::Dead], "{refusal:?}");
         let again = format!("/deliveries/{}/resend", letter["id"].as_str().unwrap());
         ada.post(&path(&bridge, &again), &json!({})).await.good();
-        assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered]);
+        assert_eq!(deliver(&server, &relay).await, [Sent::Delivered]);
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_relay_that_hangs_or_drops_is_tried_again(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_relay_that_hangs_or_drops_is_tried_again(server: TestServer) {
+    let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
     test(&ada, &bridge).await;
     for bad in [
-        Mood::Hangs(At::Greeting),
-        Mood::Hangs(At::Data),
-        Mood::Drops(At::Greeting),
-        Mood::Drops(At::Recipient),
-        Mood::Says(At::Greeting, "gibberish"),
+        Behaviour::Hang(Stage::Greeting),
+        Behaviour::Hang(Stage::Data),
+        Behaviour::Drop(Stage::Greeting),
+        Behaviour::Drop(Stage::Recipient),
+        Behaviour::Reply(Stage::Greeting, "gibberish"),
     ] {
-        relay.next(bad);
-        assert_eq!(deliver(&shore, &relay).await, [Sent::Failed], "{bad:?}");
-        shore.advance(3600.0);
+        relay.behave_next(bad);
+        assert_eq!(deliver(&server, &relay).await, [Sent::Failed], "{bad:?}");
+        server.advance(3600.0);
     }
-    assert_eq!(relay.got(), []);
-    assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered]);
-    assert_eq!(relay.got().len(), 1);
-    shore.finish().await;
+    assert_eq!(relay.letters(), []);
+    assert_eq!(deliver(&server, &relay).await, [Sent::Delivered]);
+    assert_eq!(relay.letters().len(), 1);
+    server.finish().await;
 }
 
-async fn a_letter_that_was_taken_is_not_sent_again(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_letter_that_was_taken_is_not_sent_again(server: TestServer) {
+    let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
     for bad in [
-        Mood::Drops(At::Quit),
-        Mood::Hangs(At::Quit),
-        Mood::Says(At::Quit, "554 go away"),
+        Behaviour::Drop(Stage::Quit),
+        Behaviour::Hang(Stage::Quit),
+        Behaviour::Reply(Stage::Quit, "554 go away"),
     ] {
         test(&ada, &bridge).await;
-        relay.next(bad);
-        assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered], "{bad:?}");
+        relay.behave_next(bad);
+        assert_eq!(deliver(&server, &relay).await, [Sent::Delivered], "{bad:?}");
     }
-    shore.advance(2.0 * DAY_S);
-    assert_eq!(deliver(&shore, &relay).await, []);
-    assert_eq!(relay.got().len(), 3);
-    shore.finish().await;
+    server.advance(2.0 * DAY_S);
+    assert_eq!(deliver(&server, &relay).await, []);
+    assert_eq!(relay.letters().len(), 3);
+    server.finish().await;
 }
 
-async fn a_letter_whose_answer_was_lost_comes_again_under_its_id(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_letter_whose_answer_was_lost_comes_again_under_its_id(server: TestServer) {
+    let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
     test(&ada, &bridge).await;
-    relay.next(Mood::Drops(At::End));
-    assert_eq!(deliver(&shore, &relay).await, [Sent::Failed]);
-    shore.advance(3600.0);
-    assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered]);
-    let got = relay.got();
+    relay.behave_next(Behaviour::Drop(Stage::End));
+    assert_eq!(deliver(&server, &relay).await, [Sent::Failed]);
+    server.advance(3600.0);
+    assert_eq!(deliver(&server, &relay).await, [Sent::Delivered]);
+    let got = relay.letters();
     assert_eq!(got.len(), 2);
     assert_eq!(got[0], got[1], "the same letter, to the byte");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn letters_come_in_order_and_survive_a_restart(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn letters_come_in_order_and_survive_a_restart(server: TestServer) {
+    let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     add(&ada, "bridge@example.com", "notice").await;
-    let nao = with_model(&shore, &ada).await;
+    let nao = ship_with_model(&server, &ada).await;
     for deviation_deg in [2.5, 1.0, 45.0] {
         limit(
-            &shore,
+            &server,
             &ada,
             &nao,
             json!({ "deviation_deg": deviation_deg }),
         )
         .await;
     }
-    relay.next(Mood::Says(At::Data, "451 try later"));
+    relay.behave_next(Behaviour::Reply(Stage::Data, "451 try later"));
     assert_eq!(
-        deliver(&shore, &relay).await,
+        deliver(&server, &relay).await,
         [Sent::Failed],
         "the next ones wait"
     );
-    let shore = shore.restart().await;
-    shore.advance(60.0);
-    assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered; 3]);
+    let server = server.restart().await;
+    server.advance(60.0);
+    assert_eq!(deliver(&server, &relay).await, [Sent::Delivered; 3]);
     let states: Vec<String> = subjects(&relay)
         .iter()
         .map(|subject| subject.split([':', ',']).nth(1).unwrap().trim().to_owned())
         .collect();
     assert_eq!(states, ["warning", "critical", "over"]);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_relay_that_is_away_for_a_day_leaves_a_dead_letter_that_can_be_sent_again(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_relay_that_is_away_for_a_day_leaves_a_dead_letter_that_can_be_sent_again(
+    server: TestServer,
+) {
+    let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
     let letter = test(&ada, &bridge).await;
     let (mut tries, mut last) = (0, None);
     while last != Some(Sent::Dead) {
-        relay.next(Mood::Drops(At::Greeting));
-        let sent = deliver(&shore, &relay).await;
+        relay.behave_next(Behaviour::Drop(Stage::Greeting));
+        let sent = deliver(&server, &relay).await;
         last = sent.last().copied().or(last);
         tries += sent.len();
         assert!(tries < 50, "it is never given up");
-        shore.advance(3600.0);
+        server.advance(3600.0);
     }
     assert!((15..=26).contains(&tries), "{tries} tries in a day");
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     assert_eq!(ada.get(&path(&bridge, "")).await.good()["dead"], 1);
     let dead = ada
         .get(&path(&bridge, "/deliveries?state=dead"))
@@ -172,27 +174,27 @@ async fn a_relay_that_is_away_for_a_day_leaves_a_dead_letter_that_can_be_sent_ag
     let again = format!("/deliveries/{}/resend", letter["id"].as_str().unwrap());
     ada.post(&path(&bridge, &again), &json!({})).await.good();
     assert_eq!(
-        deliver(&shore, &Relay::start().await).await,
+        deliver(&server, &Relay::start().await).await,
         [Sent::Delivered]
     );
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn two_servers_send_a_letter_once(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn two_servers_send_a_letter_once(server: TestServer) {
+    let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
     test(&ada, &bridge).await;
-    let second = shore.second().await;
+    let second = server.second().await;
     let mailer = mailer(&relay);
     let (one, other) = tokio::join!(
-        outbox::step(&shore.app, &mailer),
+        outbox::step(&server.app, &mailer),
         outbox::step(&second, &mailer)
     );
     let mut sent = [one.unwrap(), other.unwrap()];
     sent.sort_by_key(Option::is_some);
     assert_eq!(sent, [None, Some(Sent::Delivered)]);
-    assert_eq!(relay.got().len(), 1);
+    assert_eq!(relay.letters().len(), 1);
     second.db.close().await;
-    shore.finish().await;
+    server.finish().await;
 }

@@ -3,7 +3,7 @@
 use binnacle_platform::config;
 use binnacle_platform::mail::Mailer;
 use binnacle_platform::outbox::{self, Sent};
-use binnacle_server_testing::{Encryption, Engine, Relay, Shore};
+use binnacle_server_testing::{Encryption, Engine, Relay, TestServer};
 use rcgen::{CertifiedKey, generate_simple_self_signed};
 use rustls::ServerConfig;
 use rustls::pki_types::PrivateKeyDer;
@@ -40,19 +40,19 @@ fn mailer(url: String, authority: &Path) -> Mailer {
 
 /// Queues a letter and tries it once.
 async fn send(mailer: &Mailer) -> (Option<Sent>, String) {
-    let shore = Shore::start(Engine::Sqlite).await;
-    let ada = shore.admin("ada").await;
+    let server = TestServer::start(Engine::Sqlite).await;
+    let ada = server.admin("ada").await;
     let new = json!({ "address": "bridge@example.com" });
     let bridge = ada.post("/mail-recipients", &new).await.good();
     let path = format!("/mail-recipients/{}", bridge["id"].as_str().unwrap());
     ada.post(&format!("{path}/test"), &json!({})).await.good();
-    let sent = outbox::step(&shore.app, mailer).await.unwrap();
+    let sent = outbox::step(&server.app, mailer).await.unwrap();
     let listed = ada.get(&format!("{path}/deliveries")).await.good();
     let problem = listed["items"][0]["last_error"]
         .as_str()
         .unwrap_or_default();
     let problem = problem.to_owned();
-    shore.finish().await;
+    server.finish().await;
     (sent, problem)
 }
 
@@ -70,9 +70,9 @@ async fn user_and_password_go_to_a_relay_that_proves_who_it_is() {
         let url = format!("{scheme}://ada:s%40cret@localhost:{}", relay.port);
         let (sent, problem) = send(&mailer(url, &authority)).await;
         assert_eq!(sent, Some(Sent::Delivered), "{scheme}: {problem}");
-        assert!(relay.got()[0].encrypted);
+        assert!(relay.letters()[0].encrypted);
         // base64 of NUL ada NUL s@cret
-        let heard = relay.heard();
+        let heard = relay.commands();
         assert!(
             heard.contains(&"AUTH PLAIN AGFkYQBzQGNyZXQ=".to_owned()),
             "{heard:?}"
@@ -101,8 +101,8 @@ async fn a_relay_that_cannot_prove_who_it_is_hears_no_letter_and_no_password() {
             !problem.is_empty() && !problem.contains("secret"),
             "{problem}"
         );
-        assert_eq!(relay.got(), []);
-        let heard = relay.heard();
+        assert_eq!(relay.letters(), []);
+        let heard = relay.commands();
         assert!(
             heard.iter().all(|line| !line.starts_with("AUTH")),
             "{heard:?}"

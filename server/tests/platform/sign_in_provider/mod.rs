@@ -5,7 +5,7 @@ use binnacle_platform::audit::RequestContext;
 use binnacle_platform::time::Time;
 use binnacle_platform::users;
 use binnacle_server_testing::{
-    Answer, Engine, PASSWORD, Person, Provider, Shore, Signer, attempt, provider_settings,
+    ApiResponse, Engine, PASSWORD, Person, Provider, Signer, TestServer, attempt, provider_settings,
 };
 use serde_json::{Value, json};
 use tokio::net::TcpListener;
@@ -45,7 +45,7 @@ with_provider!(
 );
 
 struct World {
-    shore: Shore,
+    server: TestServer,
     provider: Provider,
     ada: Person,
 }
@@ -53,48 +53,48 @@ struct World {
 impl World {
     async fn new(engine: Engine) -> World {
         let provider = Provider::start().await;
-        let shore = Shore::start_with(engine, &provider.settings()).await;
-        let ada = shore.admin("ada").await;
+        let server = TestServer::start_with(engine, &provider.settings()).await;
+        let ada = server.admin("ada").await;
         World {
-            shore,
+            server,
             provider,
             ada,
         }
     }
 
-    async fn sign_in(&self) -> Answer {
-        let (there, cookie) = begin(&self.shore).await;
-        let back = at_provider(&self.shore, &there).await;
-        come_back(&self.shore, &back, &cookie).await
+    async fn sign_in(&self) -> ApiResponse {
+        let (there, cookie) = begin(&self.server).await;
+        let back = at_provider(&self.server, &there).await;
+        come_back(&self.server, &back, &cookie).await
     }
 
     /// Whom the provider signs in.
     async fn me(&self) -> Value {
         let done = self.sign_in().await;
         assert_eq!(outcome(&done), "/");
-        let answer = with_cookie(&self.shore, "/me", &session(&done).unwrap()).await;
-        answer.good()
+        let response = with_cookie(&self.server, "/me", &session(&done).unwrap()).await;
+        response.good()
     }
 }
 
-async fn get(shore: &Shore, path: &str, cookie: &str) -> Answer {
-    let url = format!("{}{path}", shore.url);
-    Answer::of(shore.http.get(url).header("cookie", cookie)).await
+async fn get(server: &TestServer, path: &str, cookie: &str) -> ApiResponse {
+    let url = format!("{}{path}", server.url);
+    ApiResponse::of(server.http.get(url).header("cookie", cookie)).await
 }
 
-async fn with_cookie(shore: &Shore, path: &str, cookie: &str) -> Answer {
-    get(shore, &format!("/api/v1{path}"), cookie).await
+async fn with_cookie(server: &TestServer, path: &str, cookie: &str) -> ApiResponse {
+    get(server, &format!("/api/v1{path}"), cookie).await
 }
 
-fn cookies(answer: &Answer) -> Vec<String> {
-    let all = answer.headers.get_all("set-cookie").iter();
+fn cookies(response: &ApiResponse) -> Vec<String> {
+    let all = response.headers.get_all("set-cookie").iter();
     all.map(|cookie| cookie.to_str().unwrap().to_owned())
         .collect()
 }
 
 /// The cookie of a session, if one was opened.
-fn session(answer: &Answer) -> Option<String> {
-    let all = cookies(answer);
+fn session(response: &ApiResponse) -> Option<String> {
+    let all = cookies(response);
     let found = all
         .iter()
         .find(|cookie| cookie.starts_with("binnacle_session="));
@@ -102,65 +102,65 @@ fn session(answer: &Answer) -> Option<String> {
 }
 
 /// Where the browser is sent to.
-fn outcome(answer: &Answer) -> &str {
-    assert_eq!(answer.status, 303, "{answer:?}");
-    answer.headers["location"].to_str().unwrap()
+fn outcome(response: &ApiResponse) -> &str {
+    assert_eq!(response.status, 303, "{response:?}");
+    response.headers["location"].to_str().unwrap()
 }
 
 /// The provider's address, and the cookie that the browser keeps.
-async fn begin(shore: &Shore) -> (String, String) {
-    let answer = get(shore, START, "").await;
-    let cookie = cookies(&answer)[0].split(';').next().unwrap().to_owned();
-    (outcome(&answer).to_owned(), cookie)
+async fn begin(server: &TestServer) -> (String, String) {
+    let response = get(server, START, "").await;
+    let cookie = cookies(&response)[0].split(';').next().unwrap().to_owned();
+    (outcome(&response).to_owned(), cookie)
 }
 
 /// What the provider sends the browser back to.
-async fn at_provider(shore: &Shore, address: &str) -> String {
-    let answer = Answer::of(shore.http.get(address)).await;
-    let back = outcome(&answer);
+async fn at_provider(server: &TestServer, address: &str) -> String {
+    let response = ApiResponse::of(server.http.get(address)).await;
+    let back = outcome(&response);
     back.strip_prefix(PUBLIC).unwrap().to_owned()
 }
 
-async fn come_back(shore: &Shore, back: &str, cookie: &str) -> Answer {
-    get(shore, back, cookie).await
+async fn come_back(server: &TestServer, back: &str, cookie: &str) -> ApiResponse {
+    get(server, back, cookie).await
 }
 
-async fn send_code(shore: &Shore, cookie: &str, code: &str) -> Answer {
-    let url = format!("{}/api/v1/session/provider/code", shore.url);
-    let request = shore.http.post(url).header("cookie", cookie);
-    Answer::of(request.json(&json!({ "code": code }))).await
+async fn send_code(server: &TestServer, cookie: &str, code: &str) -> ApiResponse {
+    let url = format!("{}/api/v1/session/provider/code", server.url);
+    let request = server.http.post(url).header("cookie", cookie);
+    ApiResponse::of(request.json(&json!({ "code": code }))).await
 }
 
 async fn whoever_the_provider_vouches_for_is_signed_in(world: World) {
-    let named = with_cookie(&world.shore, "/session/provider", "").await;
+    let named = with_cookie(&world.server, "/session/provider", "").await;
     assert_eq!(named.good(), json!({ "name": "Example Lines" }));
     let done = world.sign_in().await;
     let cookie = session(&done).unwrap();
-    let me = with_cookie(&world.shore, "/me", &cookie).await.good();
+    let me = with_cookie(&world.server, "/me", &cookie).await.good();
     assert_eq!(me["email"], "ada@example.com");
     let sessions = world.ada.get("/sessions").await.good();
     assert_eq!(sessions["items"][0]["provider"], Value::Null);
     assert_eq!(sessions["items"][1]["provider"], "Example Lines");
-    let url = format!("{}/api/v1/session", world.shore.url);
-    let out = world.shore.http.delete(url).header("cookie", &cookie);
-    let out = Answer::of(out.header("x-binnacle-request", "1")).await;
+    let url = format!("{}/api/v1/session", world.server.url);
+    let out = world.server.http.delete(url).header("cookie", &cookie);
+    let out = ApiResponse::of(out.header("x-binnacle-request", "1")).await;
     assert_eq!(out.status, 204);
     assert_eq!(
-        with_cookie(&world.shore, "/me", &cookie).await.problem(),
+        with_cookie(&world.server, "/me", &cookie).await.problem(),
         "unauthenticated"
     );
-    world.shore.finish().await;
+    world.server.finish().await;
 }
 
 async fn a_sign_in_is_kept_from_scripts_and_tells_the_provider_no_secret(world: World) {
-    let answer = get(&world.shore, START, "").await;
-    let cookie = cookies(&answer)[0].clone();
+    let response = get(&world.server, START, "").await;
+    let cookie = cookies(&response)[0].clone();
     for part in ["HttpOnly", "SameSite=Lax", "Max-Age=600", "Path=/"] {
         assert!(cookie.contains(part), "{cookie}");
     }
     let kept = cookie.split([';', '=', '.']).nth(2).unwrap();
     assert_eq!(kept.len(), 43);
-    let there = outcome(&answer);
+    let there = outcome(&response);
     assert!(there.starts_with(&world.provider.issuer));
     assert!(
         !there.contains(kept) && !there.contains("secret"),
@@ -179,22 +179,22 @@ async fn a_sign_in_is_kept_from_scripts_and_tells_the_provider_no_secret(world: 
     assert!(forgotten.unwrap().contains("Max-Age=0"));
     assert!(done.headers.contains_key("content-security-policy"));
     assert_eq!(done.headers["cache-control"], "no-store");
-    world.shore.finish().await;
+    world.server.finish().await;
 }
 
 async fn a_person_may_change_their_mind(world: World) {
-    let (there, cookie) = begin(&world.shore).await;
-    let back = at_provider(&world.shore, &there).await;
+    let (there, cookie) = begin(&world.server).await;
+    let back = at_provider(&world.server, &there).await;
     let (path, query) = back.split_once('?').unwrap();
     let (_, state) = query.split_once("&state=").unwrap();
     let back = format!("{path}?error=access_denied&state={state}");
-    let done = come_back(&world.shore, &back, &cookie).await;
+    let done = come_back(&world.server, &back, &cookie).await;
     assert_eq!(outcome(&done), "/?sign-in=cancelled");
-    world.shore.finish().await;
+    world.server.finish().await;
 }
 
 async fn a_person_stays_who_they_are_whatever_becomes_of_the_email(world: World) {
-    let eve = world.shore.admin("eve").await;
+    let eve = world.server.admin("eve").await;
     assert_eq!(world.me().await["email"], "ada@example.com");
     for changed in [
         json!({ "email": "eve@example.com" }),
@@ -211,14 +211,14 @@ async fn a_person_stays_who_they_are_whatever_becomes_of_the_email(world: World)
     assert_eq!(session(&done), None);
     let sessions = eve.get("/sessions").await.good();
     assert_eq!(sessions["items"].as_array().unwrap().len(), 1);
-    world.shore.finish().await;
+    world.server.finish().await;
 }
 
 async fn people_of_every_company_sign_in_as_themselves(world: World) {
-    let shore = &world.shore;
-    let eve = shore.admin("eve").await;
-    let (firm, adjuster) = world.ada.adjuster(shore, "needle").await;
-    let root = world.ada.platform_admin(shore).await;
+    let server = &world.server;
+    let eve = server.admin("eve").await;
+    let (firm, adjuster) = world.ada.adjuster(server, "needle").await;
+    let root = world.ada.platform_admin(server).await;
     for (person, email) in [&eve, &adjuster, &root].iter().zip(2..) {
         let claims = json!({ "sub": format!("person-{email}"), "email": person.email });
         world.provider.says(claims);
@@ -231,50 +231,50 @@ async fn people_of_every_company_sign_in_as_themselves(world: World) {
     let me = world.me().await;
     assert_eq!(me["firm_id"], json!(firm));
     assert_eq!(me["operator_id"], Value::Null);
-    world.shore.finish().await;
+    world.server.finish().await;
 }
 
 async fn whoever_has_a_second_factor_is_asked_for_it(world: World) {
-    let shore = &world.shore;
-    let (secret, _) = set_up(shore, &world.ada).await;
-    let (there, cookie) = begin(shore).await;
-    let back = at_provider(shore, &there).await;
-    let early = send_code(shore, &cookie, &app_code(&secret, now_s(shore))).await;
+    let server = &world.server;
+    let (secret, _) = set_up(server, &world.ada).await;
+    let (there, cookie) = begin(server).await;
+    let back = at_provider(server, &there).await;
+    let early = send_code(server, &cookie, &app_code(&secret, now_s(server))).await;
     assert_eq!(early.problem(), "gone");
-    let done = come_back(shore, &back, &cookie).await;
+    let done = come_back(server, &back, &cookie).await;
     assert_eq!(outcome(&done), "/?sign-in=code");
     assert_eq!(session(&done), None);
-    let code = app_code(&secret, now_s(shore));
-    let (_, another) = begin(shore).await;
+    let code = app_code(&secret, now_s(server));
+    let (_, another) = begin(server).await;
     for strange in ["", another.as_str()] {
-        assert_eq!(send_code(shore, strange, &code).await.problem(), "gone");
+        assert_eq!(send_code(server, strange, &code).await.problem(), "gone");
     }
-    let wrong = send_code(shore, &cookie, "a guess").await;
+    let wrong = send_code(server, &cookie, "a guess").await;
     assert_eq!(wrong.problem(), "wrong-code");
-    let right = send_code(shore, &cookie, &code).await;
+    let right = send_code(server, &cookie, &code).await;
     assert_eq!(right.good()["email"], "ada@example.com");
-    let me = with_cookie(shore, "/me", &session(&right).unwrap()).await;
+    let me = with_cookie(server, "/me", &session(&right).unwrap()).await;
     assert_eq!(me.status, 200);
-    shore.advance(60.0);
-    let again = send_code(shore, &cookie, &app_code(&secret, now_s(shore))).await;
+    server.advance(60.0);
+    let again = send_code(server, &cookie, &app_code(&secret, now_s(server))).await;
     assert_eq!(again.problem(), "gone");
 
-    let (there, cookie) = begin(shore).await;
-    let back = at_provider(shore, &there).await;
-    come_back(shore, &back, &cookie).await;
-    shore.advance(600.0);
-    let late = send_code(shore, &cookie, &app_code(&secret, now_s(shore))).await;
+    let (there, cookie) = begin(server).await;
+    let back = at_provider(server, &there).await;
+    come_back(server, &back, &cookie).await;
+    server.advance(600.0);
+    let late = send_code(server, &cookie, &app_code(&secret, now_s(server))).await;
     assert_eq!(late.problem(), "gone");
-    world.shore.finish().await;
+    world.server.finish().await;
 }
 
 async fn another_key_of_the_providers_is_looked_for(world: World) {
     assert_eq!(outcome(&world.sign_in().await), "/");
     world.provider.changes_its_key();
     assert_eq!(outcome(&world.sign_in().await), "/?sign-in=untrusted");
-    world.shore.advance(60.0);
+    world.server.advance(60.0);
     assert_eq!(outcome(&world.sign_in().await), "/");
-    world.shore.finish().await;
+    world.server.finish().await;
 }
 
 async fn a_provider_that_signs_with_rsa_is_believed(world: World) {
@@ -285,14 +285,14 @@ async fn a_provider_that_signs_with_rsa_is_believed(world: World) {
         assert_eq!(outcome(&world.sign_in().await), "/?sign-in=untrusted");
     }
     world.provider.signed_by(Signer::Itself);
-    world.shore.advance(60.0);
+    world.server.advance(60.0);
     world.provider.changes_its_key();
     assert_eq!(
         outcome(&world.sign_in().await),
         "/",
         "another RSA key is looked for"
     );
-    world.shore.finish().await;
+    world.server.finish().await;
 }
 
 async fn an_email_may_be_told_only_to_who_asks_for_it(world: World) {
@@ -306,7 +306,7 @@ async fn an_email_may_be_told_only_to_who_asks_for_it(world: World) {
     assert_eq!(outcome(&world.sign_in().await), "/?sign-in=unverified");
     world.provider.tells(told("person-1", true));
     assert_eq!(world.me().await["email"], "ada@example.com");
-    world.shore.finish().await;
+    world.server.finish().await;
 }
 
 async fn a_sign_in_is_in_the_audit_log(world: World) {
@@ -326,11 +326,11 @@ async fn a_sign_in_is_in_the_audit_log(world: World) {
     assert_eq!(after[0]["route"], "/api/v1/session/provider/callback");
     assert_eq!(after[0]["path"], "/api/v1/session/provider/callback");
     assert_eq!(after[0]["status"], 303);
-    world.shore.finish().await;
+    world.server.finish().await;
 }
 
 async fn a_person_who_begins_anew_is_found_anew(world: World) {
-    let shore = &world.shore;
+    let server = &world.server;
     let email = "bob@example.com";
     let colleague = json!({ "email": email, "name": "Bob", "role": "viewer" });
     world.ada.post("/users", &colleague).await.good();
@@ -344,11 +344,11 @@ async fn a_person_who_begins_anew_is_found_anew(world: World) {
         .provider
         .says(json!({ "sub": "person-3", "email": email }));
     assert_eq!(outcome(&world.sign_in().await), "/?sign-in=taken");
-    let now = Time(shore.app.clock.now());
-    let command = RequestContext::of_command(&shore.app.db, "admin reset-user", now);
+    let now = Time(server.app.clock.now());
+    let command = RequestContext::of_command(&server.app.db, "admin reset-user", now);
     users::reset(&command, email, now).await.unwrap();
     assert_eq!(world.me().await["email"], email);
-    world.shore.finish().await;
+    world.server.finish().await;
 }
 
 async fn a_one_time_code_forgets_whom_the_provider_means(world: World) {
@@ -357,15 +357,15 @@ async fn a_one_time_code_forgets_whom_the_provider_means(world: World) {
     let code = world.ada.post(&path, &json!({})).await.good()["code"].clone();
     world.provider.says(json!({ "sub": "person-2" }));
     assert_eq!(outcome(&world.sign_in().await), "/?sign-in=taken");
-    let url = format!("{}/api/v1/invitations/accept", world.shore.url);
+    let url = format!("{}/api/v1/invitations/accept", world.server.url);
     let body = json!({ "code": code, "password": "seven gulls over the quay" });
-    Answer::of(world.shore.http.post(url).json(&body))
+    ApiResponse::of(world.server.http.post(url).json(&body))
         .await
         .good();
     assert_eq!(world.me().await["email"], "ada@example.com");
     world.provider.says(json!({}));
     assert_eq!(outcome(&world.sign_in().await), "/?sign-in=taken");
-    world.shore.finish().await;
+    world.server.finish().await;
 }
 
 #[tokio::test]
@@ -376,35 +376,35 @@ async fn a_provider_that_is_down_stands_in_nobodys_way_and_is_tried_again() {
     drop(listener);
     let issuer = format!("http://127.0.0.1:{port}");
     let settings = provider_settings(&issuer);
-    let shore = Shore::start_with(Engine::Sqlite, &settings).await;
-    shore.admin("ada").await;
-    let answer = get(&shore, START, "").await;
-    assert_eq!(outcome(&answer), "/?sign-in=unreachable");
+    let server = TestServer::start_with(Engine::Sqlite, &settings).await;
+    server.admin("ada").await;
+    let response = get(&server, START, "").await;
+    assert_eq!(outcome(&response), "/?sign-in=unreachable");
     assert_eq!(
-        attempt(&shore, "ada@example.com", PASSWORD).await.status,
+        attempt(&server, "ada@example.com", PASSWORD).await.status,
         200
     );
     let provider = Provider::start_at(port).await;
     assert_eq!(provider.issuer, issuer);
     assert_eq!(
-        outcome(&get(&shore, START, "").await),
+        outcome(&get(&server, START, "").await),
         "/?sign-in=unreachable"
     );
-    shore.advance(5.0);
-    let (there, cookie) = begin(&shore).await;
-    let back = at_provider(&shore, &there).await;
-    assert_eq!(outcome(&come_back(&shore, &back, &cookie).await), "/");
-    shore.finish().await;
+    server.advance(5.0);
+    let (there, cookie) = begin(&server).await;
+    let back = at_provider(&server, &there).await;
+    assert_eq!(outcome(&come_back(&server, &back, &cookie).await), "/");
+    server.finish().await;
 }
 
 #[tokio::test]
 async fn a_server_without_a_provider_says_so() {
-    let shore = Shore::start(Engine::Sqlite).await;
-    let named = with_cookie(&shore, "/session/provider", "").await.good();
+    let server = TestServer::start(Engine::Sqlite).await;
+    let named = with_cookie(&server, "/session/provider", "").await.good();
     assert_eq!(named, json!({ "name": null }));
-    assert_eq!(get(&shore, START, "").await.problem(), "not-set-up");
-    let back = with_cookie(&shore, "/session/provider/callback", "").await;
+    assert_eq!(get(&server, START, "").await.problem(), "not-set-up");
+    let back = with_cookie(&server, "/session/provider/callback", "").await;
     assert_eq!(back.problem(), "not-set-up");
-    assert_eq!(send_code(&shore, "", "287082").await.problem(), "gone");
-    shore.finish().await;
+    assert_eq!(send_code(&server, "", "287082").await.problem(), "gone");
+    server.finish().await;
 }

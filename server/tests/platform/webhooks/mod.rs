@@ -9,8 +9,8 @@ use binnacle_platform::outbox::{self, Sent};
 use binnacle_platform::webhooks::{Reach, Sender};
 use binnacle_server_testing::DAY_S;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::webhooks::{Receiver, deliver, example_says, json_of, make, path};
-use binnacle_server_testing::{Answer, Person, Shore};
+use binnacle_server_testing::webhooks::{Receiver, deliver, example_accepts, json_of, make, path};
+use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -28,21 +28,21 @@ on_both!(
 );
 
 /// A vessel falls silent: an alert is raised. The person signs in anew.
-async fn raise(shore: &Shore, person: &Person) -> Person {
-    shore.ship(person, "Nao").await;
-    shore.advance(4.0 * DAY_S);
-    alerts::check_silence(&shore.app).await.unwrap();
-    Person::sign_in(shore, person.operator, &person.email).await
+async fn raise(server: &TestServer, person: &Person) -> Person {
+    server.ship(person, "Nao").await;
+    server.advance(4.0 * DAY_S);
+    alerts::check_silence(&server.app).await.unwrap();
+    Person::sign_in(server, person.operator, &person.email).await
 }
 
-async fn an_alert_reaches_the_receiver_signed(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn an_alert_reaches_the_receiver_signed(server: TestServer) {
+    let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
     let webhook = make(&ada, &url, &["alert.raised"]).await;
-    let ada = raise(&shore, &ada).await;
-    assert_eq!(deliver(&shore).await, [Sent::Delivered]);
+    let ada = raise(&server, &ada).await;
+    assert_eq!(deliver(&server).await, [Sent::Delivered]);
 
-    let (signature, body) = receiver.got().remove(0);
+    let (signature, body) = receiver.received().remove(0);
     let message = json_of(&body);
     let alert = ada.get("/alerts").await.good()["items"][0].clone();
     assert_eq!(
@@ -50,23 +50,23 @@ async fn an_alert_reaches_the_receiver_signed(shore: Shore) {
         (&json!("alert.raised"), &alert)
     );
     let secret = webhook["secret"].as_str().unwrap();
-    let now_s = shore.app.clock.now().micros() / 1_000_000;
+    let now_s = server.app.clock.now().micros() / 1_000_000;
     assert!(
-        example_says(secret, &signature, &body, now_s),
+        example_accepts(secret, &signature, &body, now_s),
         "{signature}"
     );
-    assert!(!example_says("bns_other", &signature, &body, now_s));
-    assert!(!example_says(
+    assert!(!example_accepts("bns_other", &signature, &body, now_s));
+    assert!(!example_accepts(
         secret,
         &signature,
         &body.replace("raised", "closed"),
         now_s
     ));
     assert!(
-        !example_says(secret, &signature, &body, now_s + 301),
+        !example_accepts(secret, &signature, &body, now_s + 301),
         "it is old"
     );
-    assert!(!example_says(secret, "v1=abc", &body, now_s));
+    assert!(!example_accepts(secret, "v1=abc", &body, now_s));
 
     let listed = ada.get(&path(&webhook, "/deliveries")).await.good();
     let delivery = &listed["items"][0];
@@ -79,29 +79,29 @@ async fn an_alert_reaches_the_receiver_signed(shore: Shore) {
         (&json!(1), &json!(200))
     );
     assert_eq!(delivery["body"], message);
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn what_was_not_asked_for_is_not_sent(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn what_was_not_asked_for_is_not_sent(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     let (receiver, url) = Receiver::start().await;
     make(&ada, &url, &["alert.cleared"]).await;
     make(&eve, &url, &["alert.raised"]).await;
     let off = json!({ "url": url, "kinds": ["alert.raised"], "enabled": false });
     ada.post("/webhooks", &off).await.good();
-    raise(&shore, &ada).await;
-    assert_eq!(deliver(&shore).await, []);
-    assert_eq!(receiver.got(), []);
-    shore.finish().await;
+    raise(&server, &ada).await;
+    assert_eq!(deliver(&server).await, []);
+    assert_eq!(receiver.received(), []);
+    server.finish().await;
 }
 
-async fn messages_come_in_order_and_wait_for_the_one_before(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn messages_come_in_order_and_wait_for_the_one_before(server: TestServer) {
+    let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
     let kinds = ["alert.raised", "alert.acknowledged", "alert.cleared"];
     make(&ada, &url, &kinds).await;
-    let ada = raise(&shore, &ada).await;
+    let ada = raise(&server, &ada).await;
     let alert = ada.get("/alerts").await.good()["items"][0].clone();
     let at = |rest: &str| format!("/alerts/{}{rest}", alert["id"].as_str().unwrap());
     ada.post(&at("/acknowledge"), &json!({})).await.good();
@@ -109,11 +109,11 @@ async fn messages_come_in_order_and_wait_for_the_one_before(shore: Shore) {
         .await
         .good();
 
-    receiver.answer(StatusCode::SERVICE_UNAVAILABLE);
-    assert_eq!(deliver(&shore).await, [Sent::Failed]);
-    assert_eq!(deliver(&shore).await, [], "before the pause is over");
-    shore.advance(13.0);
-    assert_eq!(deliver(&shore).await, [Sent::Delivered; 3]);
+    receiver.respond_next(StatusCode::SERVICE_UNAVAILABLE);
+    assert_eq!(deliver(&server).await, [Sent::Failed]);
+    assert_eq!(deliver(&server).await, [], "before the pause is over");
+    server.advance(13.0);
+    assert_eq!(deliver(&server).await, [Sent::Delivered; 3]);
     let again = [
         "alert.raised",
         "alert.raised",
@@ -121,30 +121,30 @@ async fn messages_come_in_order_and_wait_for_the_one_before(shore: Shore) {
         "alert.cleared",
     ];
     assert_eq!(receiver.kinds(), again);
-    let got = receiver.got();
+    let got = receiver.received();
     assert_eq!(got[0].1, got[1].1, "the same message, to the byte");
     assert_ne!(got[0].0, got[1].0, "signed anew");
-    shore.finish().await;
+    server.finish().await;
 }
 
 async fn a_receiver_that_is_away_for_a_day_leaves_a_dead_letter_that_can_be_sent_again(
-    shore: Shore,
+    server: TestServer,
 ) {
-    let ada = shore.admin("ada").await;
+    let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
     let webhook = make(&ada, &url, &["alert.raised"]).await;
     ada.post(&path(&webhook, "/test"), &json!({})).await.good();
     let (mut tries, mut last) = (0, None);
     while last != Some(Sent::Dead) {
-        receiver.answer(StatusCode::INTERNAL_SERVER_ERROR);
-        let sent = deliver(&shore).await;
+        receiver.respond_next(StatusCode::INTERNAL_SERVER_ERROR);
+        let sent = deliver(&server).await;
         last = sent.last().copied().or(last);
         tries += sent.len();
         assert!(tries < 50, "it is never given up");
-        shore.advance(1200.0);
+        server.advance(1200.0);
     }
     assert!((25..=40).contains(&tries), "{tries} tries in a day");
-    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     assert_eq!(ada.get(&path(&webhook, "")).await.good()["dead"], 1);
     let dead = ada
         .get(&path(&webhook, "/deliveries?state=dead"))
@@ -154,60 +154,63 @@ async fn a_receiver_that_is_away_for_a_day_leaves_a_dead_letter_that_can_be_sent
     assert_eq!(letter["last_status"], 500);
     assert_eq!(letter["next_attempt_at"], Value::Null);
 
-    receiver.answer_well();
+    receiver.respond_normally();
     let again = format!("/deliveries/{}/resend", letter["id"].as_str().unwrap());
     let queued = ada.post(&path(&webhook, &again), &json!({})).await.good();
     assert_eq!(
         (&queued["state"], &queued["id"]),
         (&json!("pending"), &letter["id"])
     );
-    assert_eq!(deliver(&shore).await, [Sent::Delivered]);
-    assert_eq!(receiver.got().last().unwrap().1, receiver.got()[0].1);
+    assert_eq!(deliver(&server).await, [Sent::Delivered]);
+    assert_eq!(
+        receiver.received().last().unwrap().1,
+        receiver.received()[0].1
+    );
     let dead = ada
         .get(&path(&webhook, "/deliveries?state=dead"))
         .await
         .good();
     assert_eq!(dead["items"], json!([]));
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_delivery_under_way_is_not_taken_by_another_server(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_delivery_under_way_is_not_taken_by_another_server(server: TestServer) {
+    let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
     let webhook = make(&ada, &url, &["alert.raised"]).await;
     for _ in 0..2 {
         ada.post(&path(&webhook, "/test"), &json!({})).await.good();
     }
-    let second = shore.second().await;
+    let second = server.second().await;
     let sender = Sender::new(Reach::Anywhere).unwrap();
     let (one, other) = tokio::join!(
-        outbox::step(&shore.app, &sender),
+        outbox::step(&server.app, &sender),
         outbox::step(&second, &sender)
     );
     let sent = [one.unwrap(), other.unwrap()];
     assert!(sent.contains(&Some(Sent::Delivered)), "{sent:?}");
-    deliver(&shore).await;
-    assert_eq!(receiver.got().len(), 2, "each once");
+    deliver(&server).await;
+    assert_eq!(receiver.received().len(), 2, "each once");
     second.db.close().await;
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_redirect_is_a_failure_and_is_not_followed(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_redirect_is_a_failure_and_is_not_followed(server: TestServer) {
+    let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
     let (elsewhere, other) = Receiver::start().await;
     let webhook = make(&ada, &url, &["alert.raised"]).await;
     ada.post(&path(&webhook, "/test"), &json!({})).await.good();
-    receiver.answer(Redirect::temporary(&other));
-    assert_eq!(deliver(&shore).await, [Sent::Failed]);
-    assert_eq!(elsewhere.got(), []);
+    receiver.respond_next(Redirect::temporary(&other));
+    assert_eq!(deliver(&server).await, [Sent::Failed]);
+    assert_eq!(elsewhere.received(), []);
     let listed = ada.get(&path(&webhook, "/deliveries")).await.good();
     assert_eq!(listed["items"][0]["last_error"], "answered with status 307");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn nothing_is_sent_to_an_address_within_the_network(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn nothing_is_sent_to_an_address_within_the_network(server: TestServer) {
+    let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
     // As if it had been made while that was allowed, or its name meant another place.
     let by_name = url.replace("http://127.0.0.1", "https://localhost");
@@ -215,7 +218,7 @@ async fn nothing_is_sent_to_an_address_within_the_network(shore: Shore) {
         let webhook = make(&ada, &url, &["alert.raised"]).await;
         ada.post(&path(&webhook, "/test"), &json!({})).await.good();
         let sender = Sender::new(Reach::Public).unwrap();
-        let sent = outbox::step(&shore.app, &sender).await.unwrap();
+        let sent = outbox::step(&server.app, &sender).await.unwrap();
         assert_eq!(sent, Some(Sent::Failed));
         let listed = ada.get(&path(&webhook, "/deliveries")).await.good();
         let problem = listed["items"][0]["last_error"]
@@ -225,18 +228,18 @@ async fn nothing_is_sent_to_an_address_within_the_network(shore: Shore) {
         let refused = problem.contains("not https") || problem.contains("public internet");
         assert!(refused, "{problem}");
     }
-    assert_eq!(receiver.got(), []);
-    shore.finish().await;
+    assert_eq!(receiver.received(), []);
+    server.finish().await;
 }
 
-async fn a_webhook_is_made_once_changed_and_removed(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_webhook_is_made_once_changed_and_removed(server: TestServer) {
+    let ada = server.admin("ada").await;
     // A blank comes along when an address is copied.
     let new =
         json!({ "url": " https://example.com/a\n", "kinds": ["alert.raised", "alert.raised"] });
     let twice = || {
         let request = ada.request(Method::POST, "/webhooks").json(&new);
-        Answer::of(request.header("idempotency-key", "one"))
+        ApiResponse::of(request.header("idempotency-key", "one"))
     };
     let made = twice().await.good();
     assert_eq!(twice().await.good(), made);
@@ -249,22 +252,22 @@ async fn a_webhook_is_made_once_changed_and_removed(shore: Shore) {
     let wanted =
         json!({ "url": "https://example.com/b", "kinds": ["alert.cleared"], "enabled": false });
     let request = ada.request(Method::PUT, &path(&made, "")).json(&wanted);
-    let changed = Answer::of(request).await.good();
+    let changed = ApiResponse::of(request).await.good();
     assert_eq!(
         (&changed["url"], &changed["enabled"]),
         (&wanted["url"], &json!(false))
     );
-    let viewer = ada.viewer(&shore).await;
-    let refused = Answer::of(viewer.request(Method::DELETE, &path(&made, ""))).await;
+    let viewer = ada.viewer(&server).await;
+    let refused = ApiResponse::of(viewer.request(Method::DELETE, &path(&made, ""))).await;
     assert_eq!(refused.problem(), "forbidden");
-    let removed = Answer::of(ada.request(Method::DELETE, &path(&made, ""))).await;
+    let removed = ApiResponse::of(ada.request(Method::DELETE, &path(&made, ""))).await;
     assert_eq!(removed.status, 204);
     assert_eq!(ada.get(&path(&made, "")).await.problem(), "not-found");
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_webhook_that_makes_no_sense_is_refused(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_webhook_that_makes_no_sense_is_refused(server: TestServer) {
+    let ada = server.admin("ada").await;
     for (url, kinds) in [
         ("ftp://example.com/", json!(["alert.raised"])),
         ("not a url", json!(["alert.raised"])),
@@ -275,17 +278,17 @@ async fn a_webhook_that_makes_no_sense_is_refused(shore: Shore) {
         ("https://example.com/", json!(["test"])),
         ("https://example.com/", json!(["alert.exploded"])),
     ] {
-        let answer = ada
+        let response = ada
             .post("/webhooks", &json!({ "url": url, "kinds": kinds }))
             .await;
-        assert_eq!(answer.problem(), "invalid", "{url} {kinds}");
+        assert_eq!(response.problem(), "invalid", "{url} {kinds}");
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn another_operators_webhooks_are_not_there(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let eve = shore.admin("eve").await;
+async fn another_operators_webhooks_are_not_there(server: TestServer) {
+    let ada = server.admin("ada").await;
+    let eve = server.admin("eve").await;
     let webhook = make(&ada, "https://example.com/", &["alert.raised"]).await;
     let test = ada.post(&path(&webhook, "/test"), &json!({})).await.good();
     let resend = format!("/deliveries/{}/resend", test["id"].as_str().unwrap());
@@ -302,11 +305,11 @@ async fn another_operators_webhooks_are_not_there(shore: Shore) {
             .request(method.clone(), &path(&webhook, rest))
             .json(&wanted);
         assert_eq!(
-            Answer::of(request).await.problem(),
+            ApiResponse::of(request).await.problem(),
             "not-found",
             "{method} {rest}"
         );
     }
     assert_eq!(eve.get("/webhooks").await.good()["items"], json!([]));
-    shore.finish().await;
+    server.finish().await;
 }

@@ -4,7 +4,7 @@ use binnacle_platform::audit::RequestContext;
 use binnacle_platform::ids::{DeliveryId, OrderId};
 use binnacle_platform::outbox::{self, Kind, Message, Sent};
 use binnacle_platform::webhooks::{Reach, Sender};
-use binnacle_server_testing::Shore;
+use binnacle_server_testing::TestServer;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::webhooks::{Receiver, deliver, make, path};
 use serde_json::json;
@@ -47,16 +47,16 @@ impl Silent {
 }
 
 /// Has a worker make one delivery beside the test.
-fn begin(shore: &Shore) -> JoinHandle<Option<Sent>> {
-    let app = shore.app.clone();
+fn begin(server: &TestServer) -> JoinHandle<Option<Sent>> {
+    let app = server.app.clone();
     tokio::spawn(async move {
         let sender = Sender::new(Reach::Anywhere).unwrap();
         outbox::step(&app, &sender).await.unwrap()
     })
 }
 
-async fn receivers_that_do_not_answer_keep_no_other_operators_waiting(shore: Shore) {
-    let (ada, eve) = (shore.admin("ada").await, shore.admin("eve").await);
+async fn receivers_that_do_not_answer_keep_no_other_operators_waiting(server: TestServer) {
+    let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     let (mut silent, nowhere) = Silent::start().await;
     for _ in 0..3 {
         let webhook = make(&ada, &nowhere, &["alert.raised"]).await;
@@ -65,22 +65,22 @@ async fn receivers_that_do_not_answer_keep_no_other_operators_waiting(shore: Sho
     let (receiver, url) = Receiver::start().await;
     let webhook = make(&eve, &url, &["alert.raised"]).await;
     eve.post(&path(&webhook, "/test"), &json!({})).await.good();
-    let waiting = [begin(&shore), begin(&shore)];
+    let waiting = [begin(&server), begin(&server)];
     for _ in &waiting {
         silent.hear().await;
     }
     // The third of Ada's is not called upon while two of hers hold workers up.
-    assert_eq!(deliver(&shore).await, [Sent::Delivered]);
-    assert_eq!(receiver.got().len(), 1);
+    assert_eq!(deliver(&server).await, [Sent::Delivered]);
+    assert_eq!(receiver.received().len(), 1);
     drop(silent);
     for one in waiting {
         assert_eq!(one.await.unwrap(), Some(Sent::Failed));
     }
-    shore.finish().await;
+    server.finish().await;
 }
 
-async fn a_receiver_that_does_not_answer_is_called_upon_once_at_a_time(shore: Shore) {
-    let ada = shore.admin("ada").await;
+async fn a_receiver_that_does_not_answer_is_called_upon_once_at_a_time(server: TestServer) {
+    let ada = server.admin("ada").await;
     let (mut silent, nowhere) = Silent::start().await;
     let webhook = make(&ada, &nowhere, &["order.updated"]).await;
     let receiver = webhook["id"].as_str().unwrap().parse().unwrap();
@@ -92,17 +92,17 @@ async fn a_receiver_that_does_not_answer_is_called_upon_once_at_a_time(shore: Sh
             order: Some(OrderId::new()),
             body: "{}".to_owned(),
         };
-        let now = shore.app.clock.now().into();
-        let command = RequestContext::of_command(&shore.app.db, "queue", now);
+        let now = server.app.clock.now().into();
+        let command = RequestContext::of_command(&server.app.db, "queue", now);
         let queued = outbox::queue_one(&command, receiver, &message, now);
         queued.await.unwrap();
     }
-    let first = begin(&shore);
+    let first = begin(&server);
     silent.hear().await;
-    assert_eq!(deliver(&shore).await, []);
+    assert_eq!(deliver(&server).await, []);
     drop(silent);
     assert_eq!(first.await.unwrap(), Some(Sent::Failed));
     // Then it is the other's turn.
-    assert_eq!(deliver(&shore).await, [Sent::Failed]);
-    shore.finish().await;
+    assert_eq!(deliver(&server).await, [Sent::Failed]);
+    server.finish().await;
 }
