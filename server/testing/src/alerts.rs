@@ -16,7 +16,7 @@ const DAY: &str = "2026-11-15T00:00:00Z";
 const AGENT_DAY: &str = "2026-11-20T00:00:00Z";
 const A_WHILE_S: f64 = 10.0;
 
-/// Sets the vessel's limits and has her analysed.
+/// Sets the vessel's alert limits and runs its analysis.
 pub async fn limit(server: &TestServer, person: &Person, ship: &Ship, limits: Value) {
     let mut settings = person.get(&ship.path("/settings")).await.good();
     settings["alerts"] = limits;
@@ -26,7 +26,7 @@ pub async fn limit(server: &TestServer, person: &Person, ship: &Ship, limits: Va
     server.work().await;
 }
 
-/// A ship with a model, whose greatest deviation lies between 3 and 12 degrees.
+/// Enrols a ship with a model whose largest deviation is between 3 and 12 degrees.
 pub async fn ship_with_model(server: &TestServer, person: &Person) -> Ship {
     let ship = server.ship(person, "Nao").await;
     limit(server, person, &ship, json!({ "deviation_deg": 45.0 })).await;
@@ -64,7 +64,7 @@ pub async fn put_agent_alerts(ship: &Ship, seq: u64, samples: Vec<Sample>, alert
     ship.put_bytes(seq, bytes).await.good();
 }
 
-/// The ship's agent says that her compass parts from her gyro.
+/// Sends an alert of the agent: the compass departs from the gyro.
 pub async fn report_departure(ship: &Ship) {
     let id = Uuid::parse_str(&ship.id).unwrap().as_u128();
     let mut open = agent_alert(1, 1, ShipAlertState::Open);
@@ -72,7 +72,7 @@ pub async fn report_departure(ship: &Ship) {
     put_agent_alerts(ship, 1, passage(AGENT_DAY, 6), vec![open]).await;
 }
 
-/// The same with that and no sample.
+/// Sends the same alert in a batch without samples.
 pub async fn report_departure_without_samples(ship: &Ship, seq: u64) {
     let open = agent_alert(1, 1, ShipAlertState::Open);
     put_agent_alerts(ship, seq, Vec::new(), vec![open]).await;

@@ -1,11 +1,11 @@
-//! A binnacle as these tests enter it.
+//! A binnacle that tests enter.
 
 use crate::person::{ApiResponse, Person};
 use binnacle_adjustment::binnacle::SHIPPED;
 use reqwest::Method;
 use serde_json::{Value, json};
 
-/// A binnacle with trays, spheres and a bar in pieces, nothing of it in use.
+/// Returns a binnacle with trays, spheres and a Flinders bar in pieces, none of them in use.
 pub fn binnacle() -> Value {
     let (_, design) = SHIPPED[0];
     json!({

@@ -1,7 +1,7 @@
-//! A database of its own for each test.
+//! A separate database for each test.
 //!
-//! Its tables are made once, in a pattern that each test's database is a copy of: all
-//! migrations one by one, for each of hundreds of tests, would take minutes.
+//! Migrations run once, on a template that each test's database is a copy of. Running them
+//! for each of hundreds of tests would take minutes.
 
 use binnacle_platform::db::Db;
 use binnacle_server::subscriptions::subscribers;
@@ -28,13 +28,13 @@ enum Kind {
     Server { admin_url: String, name: String },
 }
 
-/// What each test's file holds at first.
+/// Bytes of the migrated SQLite file that each test copies.
 static FILE_PATTERN: OnceCell<Vec<u8>> = OnceCell::const_new();
-/// What each test's database on the server is a copy of, by its name there.
+/// Name of the migrated PostgreSQL database that each test copies.
 static SERVER_PATTERN: OnceCell<String> = OnceCell::const_new();
 
 impl Database {
-    /// One with every table, and nothing in them.
+    /// Creates a database with every table, all empty.
     pub(crate) async fn new(engine: Engine) -> Database {
         match engine {
             Engine::Sqlite => {
@@ -50,7 +50,7 @@ impl Database {
         }
     }
 
-    /// One without any table.
+    /// Creates a database without any table.
     pub(crate) async fn bare(engine: Engine) -> Database {
         match engine {
             Engine::Sqlite => Database::file(tempfile::tempdir().unwrap()),
@@ -100,7 +100,7 @@ async fn server_pattern() -> String {
     name.to_owned()
 }
 
-/// Makes every table, and leaves the database to itself.
+/// Runs all migrations and closes the connection.
 async fn migrate(url: &str) {
     let db = Db::connect(url, subscribers()).await.unwrap();
     db.migrate().await.unwrap();

@@ -1,5 +1,6 @@
-//! Support for the tests of the server over HTTP: a server of its own for each test on
-//! either database, and those who talk to it.
+//! Support for the tests of the server over HTTP.
+//!
+//! Each test has a server and a database of its own, and clients that talk to it.
 //!
 //! PostgreSQL comes from `BINNACLE_TEST_POSTGRES`, the URL of a server on which
 //! each test makes a database of its own; without it the tests fail, they are

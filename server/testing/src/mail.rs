@@ -1,4 +1,4 @@
-//! Mail to a relay in this process.
+//! Mail recipients, and delivery to a relay in this process.
 
 use crate::person::Person;
 use crate::relay::{Letter, Relay};
@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 use std::process::Command;
 use std::time::Duration;
 
-/// Long enough to talk to a relay in this process, short enough to wait for.
+/// Timeout that a relay in this process keeps easily, and that a test can wait for.
 pub const PATIENCE: Duration = Duration::from_millis(1500);
 
-/// What sends to a relay in this process.
+/// Returns a mailer that sends to a relay in this process.
 pub fn mailer(relay: &Relay) -> Mailer {
     let config = config::Mail {
         smtp_url: Some(format!("smtp://localhost:{}?tls=none", relay.port)),
@@ -54,7 +54,7 @@ pub async fn deliver(server: &TestServer, relay: &Relay) -> Vec<Sent> {
     sent
 }
 
-/// A letter as Python's mail parser reads it: headers by name, and `text`.
+/// Parses a letter with Python's mail parser into headers by name and `text`.
 pub fn read(letter: &Letter) -> Value {
     let program = "import email, email.policy, json, sys\n\
         m = email.message_from_bytes(sys.argv[1].encode(), policy=email.policy.default)\n\

@@ -1,14 +1,14 @@
-//! An operator with a ship, and firms that work for it.
+//! A work order of an operator, and the firms it is offered to.
 
 use crate::person::{ApiResponse, Person};
 use crate::server::TestServer;
 use binnacle_platform::ids::FirmId;
 use serde_json::{Value, json};
 
-/// 2026-11-22T13:00:00Z: the day after every test begins.
+/// A time on the day after every test begins.
 pub const NEXT_DAY: &str = "2026-11-22T13:00:00Z";
 
-/// An operator with a ship, and firms that work for it.
+/// An operator with a work order for a ship, and firms that work for the operator.
 pub struct OfferParties {
     pub ada: Person,
     pub vessel: String,
@@ -18,7 +18,7 @@ pub struct OfferParties {
 }
 
 impl OfferParties {
-    /// With so many firms, the order planned but not offered.
+    /// Creates the order, planned but not offered, and this many firms.
     pub async fn planned(server: &TestServer, firms: usize) -> OfferParties {
         let ada = server.admin("ada").await;
         let vessel = ada.create_vessel("Nao").await;
@@ -48,7 +48,7 @@ impl OfferParties {
         parties
     }
 
-    /// With so many firms, offered to them, each with an hour to answer.
+    /// Creates the order and offers it to this many firms, each with an hour to respond.
     pub async fn offered(server: &TestServer, firms: usize) -> OfferParties {
         let parties = OfferParties::planned(server, firms).await;
         parties
@@ -82,7 +82,7 @@ impl OfferParties {
         self.ada.get(&self.path("")).await.good()
     }
 
-    /// The kinds of the entries of the log, as someone reads it; `-` where one is withheld.
+    /// Returns the kinds of the log entries that a person sees; `-` where one is withheld.
     pub async fn kinds(&self, who: &Person) -> Vec<String> {
         let log = who.get(&self.path("/entries")).await.good();
         let entries = log["items"].as_array().unwrap().iter();
@@ -90,7 +90,7 @@ impl OfferParties {
         entries.map(kind).collect()
     }
 
-    /// How the offers stand, in order.
+    /// Returns the states of the offers, in order.
     pub async fn offers(&self) -> Vec<String> {
         let order = self.view_order().await;
         let offers = order["offers"].as_array().unwrap().iter();

@@ -1,4 +1,4 @@
-//! Someone with a browser.
+//! A signed-in person with a browser.
 
 use crate::server::{PASSWORD, TestServer};
 use binnacle_orders::firms;
@@ -20,7 +20,7 @@ pub struct Person {
     pub cookie: String,
 }
 
-/// A status and what came with it.
+/// Status, headers and body of a response.
 #[derive(Debug)]
 pub struct ApiResponse {
     pub status: u16,
@@ -42,13 +42,13 @@ impl ApiResponse {
         serde_json::from_str(&self.text).unwrap_or_else(|_| panic!("not JSON: {self:?}"))
     }
 
-    /// The JSON of a request that went well.
+    /// Returns the JSON of a successful response.
     pub fn good(&self) -> Value {
         assert!((200..300).contains(&self.status), "{self:?}");
         self.json()
     }
 
-    /// The last word of a problem's type, after checking that it is one.
+    /// Returns the last segment of a problem's type, after checking the problem document.
     pub fn problem(&self) -> String {
         let problem = self.json();
         assert_eq!(self.headers["content-type"], "application/problem+json");
@@ -59,7 +59,7 @@ impl ApiResponse {
     }
 }
 
-/// Hashing takes long without optimisation: once is enough.
+/// Returns the hash of [`PASSWORD`], computed once because hashing is slow.
 pub fn password_hash() -> &'static str {
     static HASH: OnceLock<String> = OnceLock::new();
     HASH.get_or_init(|| secret::hash_password(PASSWORD).unwrap())
@@ -73,7 +73,7 @@ impl Person {
         Person::sign_in(server, operator, &email).await
     }
 
-    /// An adjuster of a new firm's that works for this person's operator, signed in.
+    /// Creates a firm that works for this person's operator, and signs its adjuster in.
     pub async fn adjuster(&self, server: &TestServer, name: &str) -> (FirmId, Person) {
         let now = Time(server.app.clock.now());
         let mut tx = server.app.db.begin().await.unwrap();
@@ -87,14 +87,14 @@ impl Person {
         (firm, Person::sign_in(server, self.operator, &email).await)
     }
 
-    /// Someone who manages operators and firms, signed in.
+    /// Creates a platform admin, and signs them in.
     pub async fn platform_admin(&self, server: &TestServer) -> Person {
         let email = "root@example.com";
         Person::create(server, None, email, Role::PlatformAdmin).await;
         Person::sign_in(server, self.operator, email).await
     }
 
-    /// A colleague of this person, signed in.
+    /// Creates a viewer of the same operator, and signs them in.
     pub async fn viewer(&self, server: &TestServer) -> Person {
         let email = format!("viewer-{}", self.email);
         Person::create(server, Some(self.operator.into()), &email, Role::Viewer).await;
@@ -123,7 +123,7 @@ impl Person {
         }
     }
 
-    /// The same person, talking to a server that was started again.
+    /// Returns the same person with a server that was restarted.
     pub fn at(&self, server: &TestServer) -> Person {
         Person {
             url: server.url.clone(),
@@ -131,7 +131,7 @@ impl Person {
         }
     }
 
-    /// A request as the dashboard makes it.
+    /// Builds a request as the dashboard makes it.
     pub fn request(&self, method: Method, path: &str) -> reqwest::RequestBuilder {
         self.http
             .request(method, format!("{}/api/v1{path}", self.url))

@@ -1,4 +1,4 @@
-//! Port calls as these tests enter them.
+//! Port calls that tests enter.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ pub fn path(vessel: &Value) -> String {
     format!("/vessels/{}/port-calls", vessel["id"].as_str().unwrap())
 }
 
-/// A call of two days in December 2026.
+/// Returns a port call of two days in December 2026.
 pub fn call(port: &str, day: u32) -> Value {
     json!({
         "port": port,

@@ -1,4 +1,4 @@
-//! The program itself, run as a user runs it.
+//! The server's program, run as a user runs it.
 
 use crate::ship::passage;
 use std::fmt::Write;
@@ -24,7 +24,7 @@ pub fn good(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-/// Exit code 2, nothing on standard output, one line with all the words.
+/// Checks for exit code 2, no standard output, and one error line with all the words.
 pub fn assert_refused(output: &Output, words: &[&str]) {
     let errors = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{errors}");

@@ -1,7 +1,7 @@
-//! An OpenID Connect provider, which says what it is told to: real keys, real tokens.
+//! An OpenID Connect provider with real keys and tokens, whose claims the test sets.
 //!
-//! It takes a code once, from who has the client's secret and the verifier of the challenge
-//! that the code was asked for with (RFC 7636).
+//! A code is redeemed once, with the client's secret and the verifier of the challenge that
+//! the code was requested with (RFC 7636).
 
 use crate::server::START;
 use axum::extract::{Form, Query, State};
@@ -26,14 +26,14 @@ use uuid::Uuid;
 const CLIENT_ID: &str = "binnacle";
 pub const CLIENT_SECRET: &str = "the-clients-secret";
 
-/// Who signs a token.
+/// Signer of an ID token.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Signer {
     #[default]
     Itself,
-    /// Someone else, who calls their key by the same name.
+    /// Another key under the same key id.
     Stranger,
-    /// Whoever knows the client's secret, which is not only the provider.
+    /// The client's secret, as an HMAC key: the client knows it too.
     Secret,
     Nobody,
 }
@@ -44,7 +44,7 @@ pub struct Provider {
     said: Arc<Mutex<Said>>,
 }
 
-/// What it signs with, as most providers do and as some.
+/// Signing key.
 #[derive(Clone)]
 enum Key {
     /// RS256, which every provider has (OpenID Connect Core 1.0, section 15.1).
@@ -63,7 +63,7 @@ struct Said {
     secrets: Vec<String>,
 }
 
-/// The settings of a server that people may sign in to by the provider at an address.
+/// Server settings for sign-in by the provider at an address.
 pub fn provider_settings(issuer: &str) -> [&str; 8] {
     [
         "--oidc-issuer",
@@ -86,7 +86,7 @@ impl Key {
         Key::Ecdsa(Arc::new(key))
     }
 
-    /// Made by openssl: ring makes none.
+    /// Generates an RSA key with openssl, because ring cannot.
     fn rsa() -> Key {
         let made = Command::new("openssl")
             .args(["genpkey", "-algorithm", "RSA", "-outform", "DER"])
@@ -94,13 +94,13 @@ impl Key {
             .output()
             .unwrap();
         assert!(made.status.success(), "{made:?}");
-        // By its version it writes PKCS #8 or PKCS #1.
+        // openssl writes PKCS #8 or PKCS #1, depending on its version.
         let key = RsaKeyPair::from_pkcs8(&made.stdout);
         let key = key.or_else(|_| RsaKeyPair::from_der(&made.stdout));
         Key::Rsa(Arc::new(key.unwrap()))
     }
 
-    /// Another of the same kind.
+    /// Returns another key of the same kind.
     fn another(&self) -> Key {
         match self {
             Key::Rsa(_) => Key::rsa(),
@@ -128,7 +128,7 @@ impl Key {
         }
     }
 
-    /// As a provider shows it (RFC 7517).
+    /// Returns the public key as a JWK (RFC 7517).
     fn shown(&self, key_id: &str) -> Value {
         match self {
             Key::Rsa(key) => {
@@ -187,7 +187,7 @@ impl Provider {
         provider_settings(&self.issuer)
     }
 
-    /// What the next tokens say, over what they say by themselves; null takes away.
+    /// Sets claims of the next tokens over the default ones; null removes a claim.
     pub fn says(&self, claims: Value) {
         let mut said = self.said.lock().unwrap();
         said.claims = claims;
@@ -198,24 +198,24 @@ impl Provider {
         self.said.lock().unwrap().signer = signer;
     }
 
-    /// What it says to who asks besides.
+    /// Sets the response of the user info endpoint.
     pub fn tells(&self, user_info: Value) {
         self.said.lock().unwrap().user_info = user_info;
     }
 
-    /// Another key under another name, and the one before is gone.
+    /// Replaces the key by another one with another key id.
     pub fn changes_its_key(&self) {
         let mut said = self.said.lock().unwrap();
         (said.key, said.key_id) = (said.key.another(), "second".to_owned());
     }
 
-    /// Signs with an RSA key from now on, which nobody has seen.
+    /// Signs with a new RSA key from now on.
     pub fn signs_by_rsa(&self) {
         let mut said = self.said.lock().unwrap();
         (said.key, said.key_id) = (Key::rsa(), "rsa".to_owned());
     }
 
-    /// Every code and token that it gave.
+    /// Returns every code and token it issued.
     pub fn secrets(&self) -> Vec<String> {
         self.said.lock().unwrap().secrets.clone()
     }
@@ -240,7 +240,7 @@ async fn keys(State(provider): State<Provider>) -> Json<Value> {
     Json(json!({ "keys": [said.key.shown(&said.key_id)] }))
 }
 
-/// The person is asked nothing: it is who the test says.
+/// Redirects back with a code at once, without a sign-in page.
 async fn authorize(
     State(provider): State<Provider>,
     Query(asked): Query<HashMap<String, String>>,
@@ -334,7 +334,7 @@ impl Said {
     }
 }
 
-/// RFC 4648 section 5, without padding.
+/// Encodes in the URL-safe alphabet without padding (RFC 4648 section 5).
 fn base64url(bytes: &[u8]) -> String {
     const DIGITS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
     let bits: Vec<u8> = bytes

@@ -1,4 +1,4 @@
-//! A mail relay that speaks SMTP (RFC 5321), and answers as it was told to.
+//! A mail relay that speaks SMTP (RFC 5321) and behaves as the test sets.
 
 use std::collections::VecDeque;
 use std::future::pending;
@@ -7,18 +7,18 @@ use tokio::io::{AsyncBufReadExt, AsyncRead, AsyncWrite, AsyncWriteExt, BufReader
 use tokio::net::{TcpListener, TcpStream};
 use tokio_rustls::TlsAcceptor;
 
-/// A place in a conversation: before the answer there.
+/// Stage of an SMTP session, before the reply there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     Greeting,
     Recipient,
     Data,
-    /// After the letter's last line.
+    /// After the last line of the message.
     End,
     Quit,
 }
 
-/// How one conversation goes.
+/// Behaviour of the relay in one session.
 #[derive(Clone, Copy, Debug)]
 pub enum Behaviour {
     Accept,
@@ -27,7 +27,7 @@ pub enum Behaviour {
     Drop(Stage),
 }
 
-/// What was handed over, whether it was taken or not.
+/// A message handed over, whether the relay accepted it or not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Letter {
     pub from: String,
@@ -44,7 +44,7 @@ pub struct Relay {
     behaviours: Arc<Mutex<VecDeque<Behaviour>>>,
 }
 
-/// How a relay encrypts.
+/// Encryption that the relay offers.
 #[derive(Clone, Default)]
 pub enum Encryption {
     #[default]
@@ -74,7 +74,7 @@ impl Relay {
         relay
     }
 
-    /// How the next conversation goes for which nothing was said yet.
+    /// Sets the behaviour of the next session that has none yet.
     pub fn behave_next(&self, behaviour: Behaviour) {
         self.behaviours.lock().unwrap().push_back(behaviour);
     }
@@ -83,7 +83,7 @@ impl Relay {
         self.letters.lock().unwrap().clone()
     }
 
-    /// Everything that was said to it, but for the letters.
+    /// Returns every command it received, without the messages.
     pub fn commands(&self) -> Vec<String> {
         self.commands.lock().unwrap().clone()
     }
@@ -111,8 +111,8 @@ impl Relay {
         }
     }
 
-    /// One conversation; the stream back if it is to be encrypted. `encrypted` is
-    /// none for a relay that cannot.
+    /// Serves one session. Returns the stream when it is to be encrypted. `encrypted` is
+    /// `None` for a relay without encryption.
     async fn talk<S>(
         &self,
         stream: S,
@@ -172,8 +172,8 @@ impl Relay {
     }
 }
 
-/// Answers at a place in the conversation; `false` if not as usual, none if the
-/// conversation is over.
+/// Replies at a stage. Returns `false` for an unusual reply, `None` when the session is
+/// over.
 async fn response<S>(stream: &mut S, behaviour: Behaviour, at: Stage, usual: &str) -> Option<bool>
 where
     S: AsyncWrite + Unpin,
@@ -206,7 +206,7 @@ async fn read_line<S: AsyncBufReadExt + Unpin>(stream: &mut S) -> Option<String>
     (read > 0).then(|| line.trim_end_matches(['\r', '\n']).to_owned())
 }
 
-/// Up to the line with only a full stop, doubled ones undone (section 4.5.2).
+/// Reads up to the line with only a full stop, and undoes doubled ones (section 4.5.2).
 async fn read_letter<S: AsyncBufReadExt + Unpin>(stream: &mut S) -> Option<String> {
     let mut text = String::new();
     loop {

@@ -1,4 +1,4 @@
-//! A server of its own for each test, and those who talk to it.
+//! A running server for each test.
 
 use crate::database::{Database, Engine};
 use crate::person::Person;
@@ -18,14 +18,14 @@ use std::sync::OnceLock;
 use tokio::net::TcpListener;
 use tokio::task::JoinHandle;
 
-/// When every test begins.
+/// Start time of every test.
 pub const START: &str = "2026-11-21T07:00:00Z";
 pub const DAY_S: f64 = 86_400.0;
 pub const HOUR_S: f64 = 3600.0;
 pub const PASSWORD: &str = "correct horse battery";
 
-/// A running server with a clock that the test moves. Its worker does nothing by
-/// itself: the test calls [`Shore::work`].
+/// A running server with a clock that the test advances. Its worker does nothing by
+/// itself: the test calls [`TestServer::work`].
 pub struct TestServer {
     pub app: App,
     pub url: String,
@@ -39,21 +39,21 @@ impl TestServer {
         TestServer::start_with(engine, &[]).await
     }
 
-    /// A server with settings of its own.
+    /// Starts a server with more settings.
     pub async fn start_with(engine: Engine, settings: &[&str]) -> TestServer {
         let database = Database::new(engine).await;
         let clock = Clock::manual(Timestamp::parse(START).unwrap());
         TestServer::open(database, clock, settings).await
     }
 
-    /// A migrated database, before the server opens it.
+    /// Creates a migrated database, before the server opens it.
     pub async fn prepared(engine: Engine) -> Prepared {
         let prepared = TestServer::bare(engine).await;
         prepared.db.migrate().await.unwrap();
         prepared
     }
 
-    /// A database without any table, before the server opens it.
+    /// Creates a database without any table, before the server opens it.
     pub async fn bare(engine: Engine) -> Prepared {
         let database = Database::bare(engine).await;
         let db = Db::connect(&database.url, subscribers()).await.unwrap();
@@ -91,7 +91,7 @@ impl TestServer {
         self.database.remove().await;
     }
 
-    /// A second server process on the same database, as it were.
+    /// Opens a second server on the same database, as another process would.
     pub async fn second(&self) -> App {
         let db = Db::connect(&self.database.url, subscribers())
             .await
@@ -100,7 +100,7 @@ impl TestServer {
         App::new(db, self.app.clock.clone(), config, metrics())
     }
 
-    /// Changes the database behind the server's back.
+    /// Runs SQL on the database without the server's knowledge.
     pub async fn sql(&self, statement: &'static str) {
         let mut tx = self.app.db.begin().await.unwrap();
         match tx.connection() {
@@ -114,7 +114,7 @@ impl TestServer {
         tx.commit().await.unwrap();
     }
 
-    /// The kinds of all live events there were, in order.
+    /// Returns the kinds of all live events so far, in order.
     pub async fn events(&self) -> Vec<String> {
         let sql = "SELECT kind FROM events ORDER BY id";
         match self.app.db.pools() {
@@ -124,7 +124,7 @@ impl TestServer {
         .unwrap()
     }
 
-    /// Does every job that is due now.
+    /// Runs every job that is due now.
     pub async fn work(&self) -> Vec<Worked> {
         let mut done = Vec::new();
         while let Some(worked) = worker::step(&self.app).await.unwrap() {
@@ -137,18 +137,18 @@ impl TestServer {
         self.app.clock.advance(seconds);
     }
 
-    /// An operator of her own with one admin, signed in.
+    /// Creates an operator with one admin, and signs the admin in.
     pub async fn admin(&self, name: &str) -> Person {
         Person::admin(self, name).await
     }
 
-    /// A vessel of the person's with an enrolled agent.
+    /// Creates a vessel of the person's operator and enrols an agent.
     pub async fn ship(&self, person: &Person, name: &str) -> Ship {
         Ship::enrol(self, person, name).await
     }
 }
 
-/// A database to be filled before the server opens it.
+/// A database that the test fills before the server opens it.
 pub struct Prepared {
     pub db: Db,
     database: Database,
@@ -198,7 +198,7 @@ fn config(url: &str, settings: &[&str]) -> Serve {
     *serve
 }
 
-/// There is one recorder in a process.
+/// Returns the metrics recorder, of which a process has one.
 fn metrics() -> PrometheusHandle {
     static HANDLE: OnceLock<PrometheusHandle> = OnceLock::new();
     HANDLE
@@ -207,7 +207,7 @@ fn metrics() -> PrometheusHandle {
 }
 
 pub fn client() -> reqwest::Client {
-    // Only one of the tests can be first; reqwest wants a provider also for http.
+    // Only the first test can install it; reqwest needs a provider also for http.
     let _ = rustls::crypto::ring::default_provider().install_default();
     reqwest::Client::builder()
         .redirect(reqwest::redirect::Policy::none())

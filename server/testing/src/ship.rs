@@ -1,4 +1,4 @@
-//! A ship with an agent, whose batches the test makes.
+//! A ship with an enrolled agent, whose batches the test makes.
 
 use crate::person::{ApiResponse, Person};
 use crate::server::TestServer;
@@ -42,7 +42,7 @@ impl Ship {
         }
     }
 
-    /// The same ship, talking to a server that was started again.
+    /// Continues with a server that was restarted.
     pub fn at(&mut self, server: &TestServer) {
         self.url.clone_from(&server.url);
     }
@@ -63,7 +63,7 @@ impl Ship {
             .good()
     }
 
-    /// The answer in the compact form, its octets with it.
+    /// Returns the downlink in its compact form, and its length in bytes.
     pub async fn compact(&self, has: &str) -> (Downlink, usize) {
         let path = format!("/streams/{}/downlink?form=1{has}", self.stream);
         let response = self.request(reqwest::Method::GET, &path).send().await;
@@ -116,10 +116,10 @@ pub fn frame(stream: StreamId, seq: u64, samples: &[Sample]) -> Vec<u8> {
     binnacle_wire::encode(&batch).unwrap()
 }
 
-/// Where these ships are, unless a test says otherwise: degrees north and east.
+/// Default position of the ships: degrees north and east.
 const BISCAY: (f64, f64) = (48.0, -6.0);
 
-/// A ship whose magnetism is known.
+/// Returns the known magnetism of the ships.
 pub fn true_model() -> Model {
     serde_json::from_value(json!({ "parameters_over_lambda": {
         "bx_nt": 1500.0, "chi13": -0.01, "by_nt": -900.0, "chi23": 0.002,
@@ -128,12 +128,12 @@ pub fn true_model() -> Model {
     .unwrap()
 }
 
-/// What that ship's compass and gyro read on a true heading at a time.
+/// Returns a sample of that ship on a true heading.
 pub fn sample(time: Timestamp, heading_deg: f64) -> Sample {
     sample_of(&true_model(), BISCAY, time, heading_deg)
 }
 
-/// The same ship after a step of her permanent magnetism, nT.
+/// Returns the known magnetism after a step in permanent magnetism, nT.
 pub fn model_after_step(bx_nt: f64, by_nt: f64) -> Model {
     let mut ship = true_model();
     ship.parameters_over_lambda.bx_nt += bx_nt;
@@ -161,7 +161,7 @@ fn sample_of(ship: &Model, place: (f64, f64), time: Timestamp, heading_deg: f64)
     }
 }
 
-/// A passage of ten-minute samples on all headings, from a day and hour on.
+/// Returns ten-minute samples on all headings from a start time on.
 pub fn passage(from: &str, samples: usize) -> Vec<Sample> {
     let start = Timestamp::parse(from).unwrap();
     (0..samples)
@@ -169,13 +169,13 @@ pub fn passage(from: &str, samples: usize) -> Vec<Sample> {
         .collect()
 }
 
-/// So many days at sea from a day and hour on, in legs of three hours, with a sample
-/// every ten minutes from both references, all a little off.
+/// Returns samples of a number of days at sea: legs of three hours, a sample every ten
+/// minutes with both references, each with a small error.
 pub fn days_at_sea(ship: &Model, from: &str, days: f64) -> Vec<Sample> {
     days_in_waters(BISCAY, ship, from, days)
 }
 
-/// The same in other waters, degrees north and east.
+/// Returns such samples at another position, degrees north and east.
 pub fn days_in_waters(place: (f64, f64), ship: &Model, from: &str, days: f64) -> Vec<Sample> {
     let start = Timestamp::parse(from).unwrap();
     let samples = (days * 144.0).round() as u32;
@@ -195,7 +195,7 @@ pub fn days_in_waters(place: (f64, f64), ship: &Model, from: &str, days: f64) ->
         .collect()
 }
 
-/// Between -1 and 1, without any pattern that matters, the same each time.
+/// Returns a reproducible pseudo-random number between -1 and 1.
 fn unevenness(i: u32) -> f64 {
     let mixed = i.wrapping_mul(2_654_435_761) ^ 0x9E37_79B9;
     let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x85EB_CA6B);

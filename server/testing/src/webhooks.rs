@@ -15,7 +15,7 @@ use std::collections::VecDeque;
 use std::process::Command;
 use std::sync::{Arc, Mutex};
 
-/// A program that takes messages; it answers as it was told to, or 200.
+/// A program that receives messages and responds as the test sets, or with 200.
 #[derive(Clone, Default)]
 pub struct Receiver {
     received: Arc<Mutex<Vec<(String, String)>>>,
@@ -41,12 +41,12 @@ impl Receiver {
             .push_back(response.into_response());
     }
 
-    /// Answers 200 again.
+    /// Responds with 200 again.
     pub fn respond_normally(&self) {
         self.responses.lock().unwrap().clear();
     }
 
-    /// Signatures and bodies, in the order in which they came.
+    /// Returns signatures and bodies in order of arrival.
     pub fn received(&self) -> Vec<(String, String)> {
         self.received.lock().unwrap().clone()
     }
@@ -89,7 +89,7 @@ pub async fn deliver(server: &TestServer) -> Vec<Sent> {
     sent
 }
 
-/// Whether the example in the documentation takes a message for ours.
+/// Returns true if the example in the documentation accepts a message.
 pub fn example_accepts(secret: &str, signature: &str, body: &str, now_s: i64) -> bool {
     let document = include_str!("../../../docs/webhooks.md");
     let (_, example) = document.split_once("```python\n").unwrap();

@@ -1,4 +1,4 @@
-//! Work orders: from the berth's reading to the evidence and the proof at sea.
+//! A work order: berth reading, plan, steps, completion, evidence.
 
 use crate::binnacles::{binnacle, put};
 use crate::person::{ApiResponse, Person};
@@ -15,20 +15,20 @@ use binnacle_compass::time::Timestamp;
 use reqwest::Method;
 use serde_json::{Value, json};
 
-/// The berth where all these ships are adjusted, and when the magnetometer is read.
+/// Position of the berth, and time of the magnetometer reading there.
 pub const BERTH: (f64, f64) = (43.35, -3.04);
 pub const AT: &str = "2026-11-21T06:30:00Z";
 pub const HEADING_DEG: f64 = 40.0;
-/// What no heading tells: the ships' λ.
+/// The ships' λ, which no heading shows.
 pub const LAMBDA: f64 = 0.9;
 
-/// The frame of a JPEG of 800 by 600, and the beginning of its scan.
+/// Frame header of a JPEG of 800 by 600, and the start of its scan.
 pub const PICTURE: &[u8] = &[
     0xFF, 0xD8, 0xFF, 0xE0, 0, 4, 0, 0, 0xFF, 0xC0, 0, 11, 8, 0x02, 0x58, 0x03, 0x20, 1, 1, 0x11,
     0, 0xFF, 0xDA, 0, 8,
 ];
 
-/// A ship with a model, a binnacle with nothing in use, and an order to adjust it.
+/// A ship with a model, a binnacle with no corrector in use, and an order to adjust it.
 pub struct Job {
     pub person: Person,
     pub ship: Ship,
@@ -46,7 +46,7 @@ impl Job {
         Job::aboard(server, person, &true_model()).await
     }
 
-    /// The same aboard a ship of this magnetism.
+    /// Creates the order for a ship with this magnetism.
     pub async fn aboard(server: &TestServer, person: Person, true_model: &Model) -> Job {
         let mut samples = days_at_sea(true_model, "2026-11-01T00:00:00Z", 10.0);
         samples.extend(days_in_waters(
@@ -59,7 +59,7 @@ impl Job {
         Job::after(server, person, &samples).await
     }
 
-    /// The same aboard a ship that has sent these samples.
+    /// Creates the order for a ship that has sent these samples.
     pub async fn after(server: &TestServer, person: Person, samples: &[Sample]) -> Job {
         let ship = server.ship(&person, "Nao").await;
         ship.put(1, samples).await.good();
@@ -102,13 +102,13 @@ impl Job {
         self.person.get(&self.path("")).await.good()
     }
 
-    /// Reads the berth, chooses a plan, and does its steps as foretold.
+    /// Reads the berth, chooses a plan, and does its steps as predicted.
     pub async fn adjust(&self) -> Value {
         self.post("/berth-reading", &reading()).await.good();
         self.follow_plan().await
     }
 
-    /// Chooses a plan, and does its steps as foretold.
+    /// Chooses a plan, and does its steps as predicted.
     pub async fn follow_plan(&self) -> Value {
         let mut order = self.post("/plan", &json!({})).await.good();
         while let Some(step) = order["next_step"].as_object() {
@@ -125,20 +125,20 @@ impl Job {
         self.post("/complete", &completion_details()).await.good()
     }
 
-    /// So many days at sea by a model, sent and analysed.
+    /// Sends and analyses samples of days at sea by a model; returns the order.
     pub async fn sail(&mut self, server: &TestServer, ship: &Model, seq: u64, days: f64) -> Value {
         let samples = days_at_sea(ship, "2026-11-21T12:00:00Z", days);
         self.send(server, seq, &samples, days + 0.5).await;
         self.view_order().await
     }
 
-    /// Samples that are sent and analysed so many days from now.
+    /// Sends and analyses samples a number of days from now.
     pub async fn send(&mut self, server: &TestServer, seq: u64, samples: &[Sample], days: f64) {
         server.advance(86_400.0 * days);
         self.ship.put(seq, samples).await.good();
         server.advance(60.0);
         server.work().await;
-        // No session lasts so long.
+        // The session has expired.
         self.person = Person::sign_in(server, self.person.operator, &self.person.email).await;
     }
 
@@ -160,7 +160,7 @@ impl Job {
         self.person.get(&self.ship.path("/card.json")).await.good()
     }
 
-    /// The card's status in each form: JSON, CSV, SVG.
+    /// Checks the card's status in each form: JSON, CSV, SVG.
     pub async fn expect_card_status(&self, status: &str) {
         let card = self.card().await;
         assert_eq!(card["status"], status, "{card}");
@@ -181,7 +181,7 @@ impl Job {
         assert!(svg.contains(&format!("Deviation card ({status})")));
     }
 
-    /// What the book's cards were worth, in order of its entries.
+    /// Returns the card statuses of the deviation book's entries, in order.
     pub async fn book_statuses(&self, from: &str) -> Vec<Value> {
         let path = format!("/deviation-book?limit=200&from={from}");
         let book = self.person.get(&self.ship.path(&path)).await.good();
@@ -189,7 +189,7 @@ impl Job {
         entries.iter().map(|e| e["card_status"].clone()).collect()
     }
 
-    /// Another order for the same compass, whose plan keeps to these limits.
+    /// Cancels the order and creates another one with these limits for the plan.
     pub async fn replace_order(&mut self, limits: Value) {
         self.post("/cancel", &json!({ "text": "other limits" }))
             .await
@@ -200,7 +200,7 @@ impl Job {
         made["id"].as_str().unwrap().clone_into(&mut self.order);
     }
 
-    /// The word of the first refusal of what is sent.
+    /// Posts something that is refused, and returns the code of the first refusal.
     pub async fn refused(&self, rest: &str, body: &Value) -> Value {
         let response = self.post(rest, body).await;
         assert_eq!(response.problem(), "not-adjustable", "{response:?}");
@@ -215,7 +215,7 @@ impl Job {
         ApiResponse::of(self.person.request(Method::POST, &path).body(bytes)).await
     }
 
-    /// Where the logbook's new entry of magnetic cargo is withdrawn.
+    /// Logs magnetic cargo, and returns the path that withdraws the entry.
     pub async fn load_steel(&self, from: &str) -> String {
         let steel = json!({ "kind": "magnetic_cargo", "from": from });
         let logbook = self.ship.path("/logbook");
@@ -229,7 +229,7 @@ impl Job {
     }
 }
 
-/// The model that an order foretells.
+/// Returns the model that a completed order predicts.
 pub fn predicted_model(order: &Value) -> Model {
     serde_json::from_value(order["completion"]["model"].clone()).unwrap()
 }
@@ -241,13 +241,13 @@ pub fn completion_details() -> Value {
     })
 }
 
-/// What the same magnetometer reads there with correctors that stand so, where nothing
-/// was in use before.
+/// Returns the second reading with this corrector setting, when no corrector was in use
+/// at the first one.
 pub fn second_reading(setting: &Value) -> Value {
     second_reading_after(&reading(), setting)
 }
 
-/// The same after another first reading.
+/// Returns the second reading with this corrector setting, after another first reading.
 pub fn second_reading_after(first: &Value, setting: &Value) -> Value {
     let setting: Setting = serde_json::from_value(setting.clone()).unwrap();
     let aboard: Binnacle = serde_json::from_value(binnacle()).unwrap();
@@ -269,7 +269,7 @@ pub fn second_reading_after(first: &Value, setting: &Value) -> Value {
     again
 }
 
-/// Magnetic heading and the earth's field.
+/// Returns the magnetic heading and the earth's field at the berth.
 pub fn at_berth() -> (f64, EarthField) {
     let position = Position::new(BERTH.0, BERTH.1).unwrap();
     let time = Timestamp::parse(AT).unwrap();
@@ -278,12 +278,12 @@ pub fn at_berth() -> (f64, EarthField) {
     (magnetic_deg, earth.for_ship())
 }
 
-/// What a good magnetometer reads aboard the ship of these tests.
+/// Returns the berth reading on the ship of these tests, without error.
 pub fn reading() -> Value {
     reading_on_ship(&true_model())
 }
 
-/// The same aboard a ship of this magnetism.
+/// Returns the berth reading on a ship with this magnetism.
 pub fn reading_on_ship(ship: &Model) -> Value {
     let (magnetic_deg, earth) = at_berth();
     let parameters = ship.parameters_over_lambda;

@@ -1,4 +1,4 @@
-//! Alerts that the ship's agent raises itself, on shore.
+//! Alerts raised by the ship's agent, as the server stores them.
 
 use binnacle_compass::time::Timestamp;
 use binnacle_fleet::alerts;
@@ -23,7 +23,7 @@ on_both!(
 
 const DAY: &str = "2026-11-20T00:00:00Z";
 
-/// Nothing comes for hours.
+/// Advances some hours without a batch.
 async fn hours_pass(server: &TestServer) {
     server.advance(7.0 * 3600.0);
     alerts::check_timed(&server.app).await.unwrap();
@@ -109,7 +109,7 @@ async fn an_alert_of_a_spool_that_was_lost_does_not_stay_open(server: TestServer
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     put_agent_alerts(&nao, 1, Vec::new(), vec![agent_alert(1, 1, Open)]).await;
-    // The agent that was put in its place knows nothing of it, and has one of its own.
+    // The agent that replaced it does not know that alert, and raises its own.
     put_agent_alerts(&nao, 2, Vec::new(), vec![agent_alert(2, 1, Open)]).await;
     assert_eq!(list(&ada).await.len(), 1, "updated, not repeated");
     put_agent_alerts(&nao, 3, Vec::new(), vec![agent_alert(2, 2, NotJudged)]).await;
@@ -155,14 +155,14 @@ async fn what_parts_again_and_again_within_hours_is_one_alert(server: TestServer
         "{one:?}"
     );
     assert_eq!(one[0]["since"], "2026-11-20T04:00:00Z");
-    // Samples tell, before the clock does, that they have stayed together.
+    // Samples show agreement before the timeout does.
     put_agent_alerts(&nao, 7, passage("2026-11-20T14:00:00Z", 60), Vec::new()).await;
     server.advance(3600.0);
     server.work().await;
     let over = list(&ada).await;
     let states: Vec<&Value> = over.iter().map(|alert| &alert["state"]).collect();
     assert_eq!(states, [&json!("cleared")], "{over:?}");
-    // A day later it is another.
+    // A day later it is another alert.
     put_agent_alerts(&nao, 8, Vec::new(), vec![said(4, 30.0, 1, Open)]).await;
     assert_eq!(list(&ada).await.len(), 2);
     server.finish().await;

@@ -1,4 +1,4 @@
-//! Alerts: from an analysis, or a silence, to the people.
+//! Alerts from an analysis or a silent agent.
 
 use binnacle_compass::angle::TrueHeading;
 use binnacle_fleet::alerts;
@@ -83,7 +83,7 @@ async fn an_alert_follows_the_vessels_limits_and_is_updated_not_repeated(server:
         ada.get("/vessels").await.good()["items"][0]["worst_alert"],
         Value::Null
     );
-    // Other limits are no other model.
+    // Other limits do not make another model.
     let versions = ada.get(&nao.path("/models")).await.good();
     assert_eq!(versions["items"].as_array().unwrap().len(), 1);
     server.finish().await;
@@ -134,7 +134,7 @@ async fn an_alert_that_got_worse_wants_to_be_acknowledged_again(server: TestServ
     limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let alert = list(&ada, "").await.remove(0);
     assert_eq!(alert["severity"], "warning");
-    // Without a body: a note is not asked for.
+    // Without a body, because the note is optional.
     let request = ada.request(Method::POST, &path(&alert, "/acknowledge"));
     let known = ApiResponse::of(request).await.good();
     assert_eq!(known["acknowledgement_note"], Value::Null);
@@ -167,7 +167,7 @@ async fn what_a_person_cleared_comes_back_only_when_it_gets_worse(server: TestSe
         ada.get(&path(&alert, "")).await.good()["cleared_by"],
         "ada@example.com"
     );
-    // Once its cause was away, it comes back like any other.
+    // After its cause was gone, it is raised like any other.
     ada.post(&path(&open[0], "/clear"), &reason).await.good();
     limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
     limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
@@ -182,7 +182,7 @@ async fn a_silent_agent_is_an_alert_until_it_sends_again(server: TestServer) {
     nao.put(1, &passage(DAY, 3)).await.good();
     server.advance(2.9 * DAY_S);
     alerts::check_silence(&server.app).await.unwrap();
-    // No session lasts so long unused.
+    // The idle session has expired.
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     assert_eq!(list(&ada, "").await, Vec::<Value>::new());
     server.advance(0.2 * DAY_S);
@@ -196,7 +196,7 @@ async fn a_silent_agent_is_an_alert_until_it_sends_again(server: TestServer) {
         (&raised[0]["cause"], &raised[0]["severity"]),
         (&json!("silent_agent"), &json!("notice"))
     );
-    // An analysis has no say in it.
+    // An analysis does not clear it.
     server.work().await;
     assert_eq!(list(&ada, "?open=true").await.len(), 1);
     nao.put(2, &passage(DAY, 3)).await.good();
@@ -229,7 +229,7 @@ async fn references_that_part_are_an_alert_and_not_the_compasss_fault(server: Te
     let mut samples = passage(DAY, 400);
     for (index, sample) in samples.iter_mut().enumerate() {
         sample.satellite = sample.gyro;
-        // The gyro begins to wander, ever farther.
+        // The gyro drifts further and further.
         let wrong_deg = (index as f64 - 370.0).max(0.0);
         sample.gyro = sample
             .gyro
@@ -309,7 +309,7 @@ async fn without_a_model_an_alert_is_not_said_to_be_over(server: TestServer) {
     let open = list(&ada, "?open=true").await.remove(0);
     assert_eq!(open["cause"], "deviation_over_limit");
 
-    // The samples are all of the time before.
+    // All samples are from before it.
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-18T06:00:00Z" });
     ada.post(&nao.path("/logbook"), &adjusted).await.good();
     server.work().await;
@@ -358,7 +358,7 @@ async fn after_an_adjustment_the_old_card_is_withdrawn_at_once(server: TestServe
         "{missed:?}"
     );
 
-    // A report that was wrong is withdrawn, and the card holds again.
+    // The report is withdrawn, and the card is valid again.
     let withdraw = format!("/logbook/{}/withdraw", entry["id"].as_str().unwrap());
     ada.post(&nao.path(&withdraw), &json!({})).await.good();
     server.work().await;

@@ -1,4 +1,4 @@
-//! Binnacles: what comes with the product, what is aboard, and every revision of it.
+//! Binnacles: shipped types, correctors on board, revisions.
 
 use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::on_both;
@@ -16,7 +16,7 @@ on_both!(
     the_fleet_says_what_each_compass_stands_in_and_which_stand_in_nothing,
 );
 
-/// A vessel's standard compass, and the path of its binnacle.
+/// Creates a vessel; returns the path of its standard compass's binnacle.
 async fn place(person: &Person) -> String {
     let vessel = person.create_vessel("Nao").await;
     let id = vessel["id"].as_str().unwrap();
@@ -100,7 +100,7 @@ async fn a_binnacle_sent_again_under_its_key_is_one_revision(server: TestServer)
     };
     assert_eq!(send(binnacle(), "a").await.good()["revision"], 1);
     assert_eq!(send(other, "b").await.good()["revision"], 2);
-    // Late, over a bad line: it does not undo what was written since.
+    // A repeat that arrives late does not undo a newer revision.
     assert_eq!(send(binnacle(), "a").await.good()["revision"], 2);
     let mut third = binnacle();
     third["serial"] = json!("2049");

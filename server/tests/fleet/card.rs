@@ -1,4 +1,4 @@
-//! Deviation cards, and when there is none.
+//! Deviation cards, and reasons to refuse one.
 
 use binnacle_compass::time::Timestamp;
 use binnacle_fleet::alerts;
@@ -32,7 +32,7 @@ const FROM: &str = "2026-11-15T00:00:00Z";
 const A_WHILE_S: f64 = 10.0;
 const DAY_S: f64 = 86_400.0;
 
-/// A ship with five days of samples and a model of them.
+/// Enrols a ship with a model of five days of samples.
 async fn modelled(server: &TestServer, ada: &Person) -> Ship {
     let nao = server.ship(ada, "Nao Victoria").await;
     nao.put(1, &days_at_sea(&true_model(), FROM, 5.0))
@@ -84,7 +84,7 @@ async fn a_card_says_what_the_model_predicts_and_what_it_is_worth(server: TestSe
         assert!(residual.is_none_or(|degrees| degrees.abs() < 0.5), "{row}");
     }
     assert_eq!(json!(samples), model["model"]["samples_used"]);
-    // The exact B and D of this ship: her parameters are known.
+    // The exact B and D of this ship, from its known parameters.
     let exact = &card["coefficients"]["exact"];
     assert!(
         (exact["D"].as_f64().unwrap() - 0.02_f64.to_degrees()).abs() < 0.2,
@@ -190,7 +190,7 @@ async fn a_card_is_for_the_place_and_the_date_that_are_asked_for(server: TestSer
     assert_eq!(there["place"]["at"], "2026-11-21T00:00:00Z");
     assert_eq!(there["place"]["variation_source"], "igrf14");
     assert_ne!(there["rows"], here["rows"]);
-    // Where the field is stronger this ship's deviation is less.
+    // This ship's deviation is smaller where the field is stronger.
     let worst = |card: &Value| card["worst"]["deviation_deg"].as_f64().unwrap().abs();
     assert!(worst(&there) < worst(&here), "{there}");
     server.finish().await;
@@ -204,7 +204,7 @@ async fn each_compass_has_a_card_of_its_own(server: TestServer) {
     let of = |id: &Value| nao.path(&format!("/card.json?compass={}", id.as_str().unwrap()));
     let card = ada.get(&nao.path("/card.json")).await.good();
     assert_eq!(ada.get(&of(&card["compass"]["id"])).await.good(), card);
-    // It has no samples, and borrows no other one's.
+    // It has no samples, and does not use those of another compass.
     assert_eq!(ada.get(&of(&other["id"])).await.problem(), "no-model-yet");
     assert_eq!(
         ada.get(&of(&card["vessel"]["id"])).await.problem(),
@@ -258,7 +258,7 @@ async fn what_cannot_be_asked_is_refused_by_its_field(server: TestServer) {
     server.finish().await;
 }
 
-/// Status, the problem's last word, and what it says.
+/// Returns status, last segment of the problem's type, and detail.
 async fn refusal(ada: &Person, nao: &Ship, query: &str) -> (u16, String, String) {
     let response = ada.get(&nao.path(&format!("/card.pdf{query}"))).await;
     let detail = response.json()["detail"].to_string();
@@ -276,7 +276,7 @@ async fn there_is_no_card_where_it_would_mislead(server: TestServer) {
             response.json()["detail"].to_string(),
         )
     };
-    // One latitude tells little of another.
+    // One latitude says little about another.
     let (status, problem, detail) = refused("?lat=-48&lon=20").await;
     assert_eq!((status, problem.as_str()), (409, "band-too-wide"));
     assert!(detail.contains("limit is ±3°"), "{detail}");
@@ -302,7 +302,7 @@ async fn there_is_no_card_where_it_would_mislead(server: TestServer) {
 async fn there_is_no_card_where_headings_are_ambiguous(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
-    // A field of her own that is nothing to the earth's in Biscay, and outdoes it in the
+    // A field of the ship's own that is small against the earth's in Biscay, and larger in the
     // far south.
     let ship = model_after_step(3000.0, 0.0);
     let mut strong = days_in_waters((10.0, -25.0), &ship, "2026-11-10T00:00:00Z", 4.0);
@@ -337,7 +337,7 @@ async fn there_is_no_card_of_a_compass_that_is_suspected(server: TestServer) {
     let (status, problem, detail) = refusal(&ada, &nao, "").await;
     assert_eq!((status, problem.as_str()), (409, "compass-suspected"));
     assert!(detail.contains("parted by 28°"), "{detail}");
-    // When compass and gyro have agreed for some hours there is one again.
+    // There is a card again after compass and gyro have agreed for some hours.
     (aboard.revision, aboard.state) = (2, ShipAlertState::Agree);
     nao.put_bytes(3, reporting(&nao, 3, aboard)).await.good();
     let (status, _, detail) = refusal(&ada, &nao, "").await;
@@ -349,7 +349,7 @@ async fn there_is_no_card_of_a_compass_that_is_suspected(server: TestServer) {
     server.finish().await;
 }
 
-/// A batch with nothing but an alert of the ship's own.
+/// Returns a batch with an alert of the agent alone.
 fn reporting(ship: &Ship, seq: u64, alert: ShipAlert) -> Vec<u8> {
     let batch = Batch {
         stream: ship.stream,
@@ -378,7 +378,7 @@ async fn a_card_from_after_a_change_says_that_no_older_one_holds(server: TestSer
     let since = card["replaces"]["since"].as_str().unwrap().to_owned();
     assert!(since.starts_with("2026-11-1"), "{card}");
     let first = card["notes"][0].as_str().unwrap();
-    // To the minute: nobody knows a change to the second.
+    // To the minute: a change is not known to the second.
     let expected = format!(
         "No card from before {} {} UTC holds (",
         &since[..10],

@@ -1,5 +1,5 @@
-//! What changed a ship's magnetism: from her samples to the timeline, the alert and
-//! the bridge.
+//! Changes of a ship's magnetism: from samples to the timeline, the alert and the
+//! model on board.
 
 use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::model::Model;
@@ -27,9 +27,9 @@ on_both!(
 );
 
 const A_WHILE_S: f64 = 10.0;
-/// Twenty days at sea begin,
+/// Start of twenty days at sea,
 const BASE: &str = "2026-10-20T00:00:00Z";
-/// and are over.
+/// and their end.
 const HIT: &str = "2026-11-09T00:00:00Z";
 
 async fn a_struck_ships_timeline_has_both_epochs_with_their_curves(server: TestServer) {
@@ -73,7 +73,7 @@ async fn a_struck_ships_timeline_has_both_epochs_with_their_curves(server: TestS
         [&json!(1), &json!(2)]
     );
     assert_eq!(epochs[1]["begun_by_change"], "lightning_or_shock");
-    // The curves part by what the change says, but for what a heading is by compass.
+    // The curves differ by the stated change, apart from the compass heading they refer to.
     let deviation = |epoch: &Value, row: usize| epoch["curve"][row]["deviation_deg"].as_f64();
     let parted = (0..36)
         .map(|row| deviation(&epochs[1], row).unwrap() - deviation(&epochs[0], row).unwrap());
@@ -97,7 +97,7 @@ async fn before_the_first_analysis_the_timeline_is_empty(server: TestServer) {
     server.finish().await;
 }
 
-/// A ship with a model of three weeks at sea.
+/// Enrols a ship with a model of three weeks at sea.
 async fn well_known(server: &TestServer, person: &Person) -> Ship {
     let ship = server.ship(person, "Nao").await;
     send(server, &ship, 1, &days_at_sea(&true_model(), BASE, 20.0)).await;
@@ -115,13 +115,13 @@ async fn open_alerts(person: &Person) -> Vec<Value> {
     listed["items"].as_array().unwrap().clone()
 }
 
-/// What the bridge is told that has the model of an earlier answer, or none.
+/// Returns the downlink of an agent that has the model of an earlier response, or none.
 async fn told(ship: &Ship, has: &Value) -> Value {
     let query = has["id"].as_str().map(|id| format!("?model={id}"));
     ship.downlink(&query.unwrap_or_default()).await
 }
 
-/// The widest half of the band over all headings, where the ships of these tests are.
+/// Returns the largest half-width of the band over all headings, at the default position.
 fn widest_band_deg(model: &Value) -> f64 {
     let model: Model = serde_json::from_value(model["model"].clone()).unwrap();
     let earth = EarthField {
@@ -163,7 +163,7 @@ async fn a_struck_ship_raises_one_alert_that_follows_what_is_known(server: TestS
     assert_eq!(later[0]["id"], raised[0]["id"], "updated, not repeated");
     assert_eq!(later[0]["severity"], "warning", "{later:?}");
     assert!(told(&later[0], "advice").contains("Put up a new card"));
-    // A compass that lightning has changed is to be adjusted.
+    // A compass changed by lightning needs an adjustment.
     let needs = ada.get(&nao.path("/needs")).await.good();
     let mut causes = needs["items"][0]["causes"].as_array().unwrap().iter();
     let change = causes.find(|cause| cause["kind"] == "change");
@@ -184,7 +184,7 @@ async fn of_lightning(person: &Person, query: &str) -> Vec<Value> {
     alerts
 }
 
-/// When that ship is struck again, and how it leaves her.
+/// Time of the second strike, and the magnetism after it.
 const HIT_AGAIN: &str = "2026-11-14T00:00:00Z";
 
 fn struck_again(days: f64) -> Vec<Sample> {
@@ -206,7 +206,7 @@ async fn a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first(s
     let note = json!({ "note": "Master informed" });
     ada.post(&format!("{path}/acknowledge"), &note).await.good();
     send(&server, &nao, 3, &first[36..]).await;
-    // The same strike, perhaps dated better, is still acknowledged.
+    // The same strike, perhaps with a better date, is still acknowledged.
     let known = ada.get(&path).await.good();
     assert_eq!(known["state"], "acknowledged", "{known}");
     mail::deliver(&server, &relay).await;
@@ -223,7 +223,7 @@ async fn a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first(s
         open[0]["since"].as_str().unwrap() > "2026-11-13T20",
         "{open:?}"
     );
-    // What was said of the first stands with the first.
+    // The acknowledgement stays with the first alert.
     let first = ada.get(&path).await.good();
     assert_eq!(
         (&first["state"], &first["acknowledgement_note"]),
@@ -264,7 +264,7 @@ async fn a_strike_before_a_person_cleared_the_last_ones_alert_is_told_when_it_ar
     let open = of_lightning(&ada, "?open=true").await;
     assert_eq!(open, Vec::<Value>::new(), "the same strike stays cleared");
 
-    // Of a week before the person cleared the alert.
+    // From a week before the person cleared the alert.
     send(&server, &nao, 4, &struck_again(2.0)).await;
     let open = of_lightning(&ada, "?open=true").await;
     assert_eq!(open.len(), 1, "{open:?}");
@@ -292,7 +292,7 @@ async fn a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band(server: T
     assert!(interim["replaces"]["since"].as_str().unwrap() > "2026-11-08T20");
     let (before, after) = (widest_band_deg(&base), widest_band_deg(&interim));
     assert!(after > 1.2 * before, "{before} and then {after}");
-    // The band holds what the ship is now.
+    // The band contains the ship's present deviation.
     send(&server, &nao, 3, &model_after_step[36..]).await;
     let later = told(&nao, &interim).await["model"].take();
     assert!(widest_band_deg(&later) < after);
@@ -348,7 +348,7 @@ async fn work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert(server: 
     let repair = json!({ "kind": "repair", "from": "2026-11-09T00:00:00Z" });
     ada.post(&nao.path("/logbook"), &repair).await.good();
     server.work().await;
-    // No sample since: no card holds, and the ship is told at once.
+    // No sample since: the card is withdrawn, and the ship learns it at once.
     let withdrawn = told(&nao, &base).await["card_withdrawn"].take();
     assert_eq!(withdrawn["reason"], "repair");
     let after = days_at_sea(
@@ -371,7 +371,7 @@ async fn work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert(server: 
     server.finish().await;
 }
 
-/// Thirty days at sea, the needle astray for some hours so long before the end.
+/// Returns thirty days at sea with the compass deflected for some hours before the end.
 fn astray(place: (f64, f64), from_h: usize, to_h: usize, deg: Swing) -> Vec<Sample> {
     let mut samples = days_in_waters(place, &true_model(), "2026-10-21T00:00:00Z", 30.0);
     let place = |hours| samples.len() - 6 * hours;
@@ -383,12 +383,12 @@ fn astray(place: (f64, f64), from_h: usize, to_h: usize, deg: Swing) -> Vec<Samp
     samples
 }
 
-/// Two hours, the same on two headings, over for half a day.
+/// A deflection of two hours, the same on two headings.
 fn passed(place: (f64, f64), hours_ago: usize) -> Vec<Sample> {
     astray(place, hours_ago + 2, hours_ago, |_| 3.0)
 }
 
-/// To and fro, for the last six hours.
+/// An oscillating deflection in the last six hours.
 fn passing(place: (f64, f64)) -> Vec<Sample> {
     astray(place, 6, 0, |i| 6.0 * (0.7 * i).sin())
 }
@@ -410,7 +410,7 @@ async fn two_ships_in_one_storm_name_it_and_one_alone_does_not(server: TestServe
     let alone = last_change(&ada, &nao).await;
     assert_eq!(alone["cause"], "local_anomaly", "{alone}");
 
-    // Another one in other hours is none the wiser, nor makes Nao so.
+    // A ship disturbed in other hours is not part of it.
     let victoria = server.ship(&eve, "Victoria").await;
     send(&server, &victoria, 1, &passed((30.0, -40.0), 62)).await;
     assert_eq!(last_change(&eve, &victoria).await["cause"], "local_anomaly");
@@ -462,7 +462,7 @@ async fn an_alert_follows_what_other_ships_show_without_another_fit(server: Test
     server.finish().await;
 }
 
-/// Degrees by the number of the reading.
+/// Deflection in degrees by the number of the sample.
 type Swing = fn(f64) -> f64;
 
 async fn however_far_the_needle_swings_one_alert_says_so(server: TestServer) {

@@ -24,7 +24,7 @@ fn entries(book: &Value) -> Vec<Value> {
 async fn the_book_has_each_watch_and_each_large_alteration(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
-    // Legs of three hours: three of four watches have an alteration in them.
+    // Legs of three hours: three of four watches contain an alteration.
     nao.put(1, &days_at_sea(&true_model(), FROM, 2.0))
         .await
         .good();
@@ -33,7 +33,7 @@ async fn the_book_has_each_watch_and_each_large_alteration(server: TestServer) {
     let book = entries(&ada.get(&nao.path("/deviation-book")).await.good());
     let of = |occasion: &str| book.iter().filter(|e| e["occasion"] == occasion).count();
     assert_eq!(of("watch"), 12);
-    // A leg that ends with its watch is altered between two watches.
+    // A leg that ends with its watch has its alteration between two watches.
     assert_eq!(of("alteration"), 12, "{book:?}");
     for entry in &book {
         let degrees = |name: &str| entry[name].as_f64().unwrap();
@@ -44,7 +44,7 @@ async fn the_book_has_each_watch_and_each_large_alteration(server: TestServer) {
         assert!(apart.abs() < 0.5, "{entry}");
         assert_eq!(entry["reference"], "gyro_and_satellite");
         assert_eq!(entry["observer"], "automatic");
-        // All was observed before there was a model.
+        // Everything was observed before there was a model.
         assert_eq!(entry["card_deviation_deg"], json!(null));
     }
 
@@ -110,7 +110,7 @@ async fn the_book_pages_and_filters_without_losing_an_entry(server: TestServer) 
     }
     assert_eq!(paged, whole);
 
-    // From within a watch: its entries are those that they were.
+    // A range that starts within a watch has the same entries.
     let range = "/deviation-book?from=2026-11-02T01:30:00Z&to=2026-11-03T04:00:00Z";
     let part = entries(&ada.get(&nao.path(range)).await.good());
     let time = |entry: &Value| entry["time"].as_str().unwrap().to_owned();
@@ -159,7 +159,7 @@ async fn a_card_counts_only_from_when_it_was_made_until_it_was_withdrawn(server:
     );
     assert!(with.len() > 12, "{}", with.len());
     for entry in &with {
-        // By the first model: the second was made after the last of them.
+        // The card of the first model: the second one was made after the last entry.
         assert_eq!(entry["model_version"], 1);
         let degrees = |name: &str| entry[name].as_f64().unwrap();
         let difference = degrees("deviation_deg") - degrees("card_deviation_deg");

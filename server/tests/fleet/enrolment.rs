@@ -1,4 +1,4 @@
-//! One-time codes.
+//! Enrolment of agents by one-time codes.
 
 use binnacle_fleet::alerts;
 use binnacle_server_testing::on_both;
@@ -94,7 +94,7 @@ async fn an_agent_reaches_only_its_own_streams(server: TestServer) {
     let path = format!("/streams/{}/downlink", kogge.stream);
     let asked = ApiResponse::of(nao.request(Method::GET, &path)).await;
     assert_eq!(asked.problem(), "not-found");
-    // And it is no key to the fleet.
+    // It does not open the fleet API either.
     let vessels = ApiResponse::of(nao.request(Method::GET, "/vessels")).await;
     assert_eq!(vessels.problem(), "unauthenticated");
 
@@ -208,7 +208,7 @@ async fn a_revoked_agent_is_known_no_more_and_what_it_sent_stays(server: TestSer
     server.finish().await;
 }
 
-/// The same agent's other stream.
+/// Opens another stream of the same agent.
 async fn another_stream(ship: &Ship) -> StreamId {
     let opened = ApiResponse::of(ship.request(Method::POST, "/streams")).await;
     StreamId(opened.json()["stream"].as_str().unwrap().parse().unwrap())
@@ -235,10 +235,10 @@ async fn a_second_computer_with_an_agents_files_is_an_alert_until_the_agent_is_r
     let nao = server.ship(&ada, "Nao").await;
     put_in(&nao, nao.stream, 1).await;
     let second = another_stream(&nao).await;
-    // So far it may be the same computer, which opened it in vain.
+    // So far it may be the same computer, which did not use the new stream.
     put_in(&nao, nao.stream, 2).await;
     put_in(&nao, second, 1).await;
-    // And the same batch again is nothing new.
+    // The same batch again proves nothing.
     put_in(&nao, nao.stream, 2).await;
     assert_eq!(clones(&ada).await, Vec::<Value>::new());
     for seq in 3..6 {

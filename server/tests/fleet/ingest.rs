@@ -1,4 +1,4 @@
-//! Batches: each stored once, none lost, none bent.
+//! Ingest of batches: each stored once, none lost, none altered.
 
 use binnacle_platform::db::Pools;
 use binnacle_server_testing::on_both;
@@ -193,7 +193,7 @@ async fn what_was_acknowledged_outlives_the_server(server: TestServer) {
     let ada = ada.at(&server);
     nao.at(&server);
     assert_eq!(nao.downlink("").await["contiguous_seq"], 1);
-    // The job too: it was stored with the batch.
+    // Its job was stored with the batch.
     server.advance(5.0);
     assert_eq!(server.work().await.len(), 1);
     let listed = ada.get(&nao.path("/samples")).await.good();
@@ -225,7 +225,7 @@ async fn a_disk_that_was_full_takes_batches_again() {
     let Pools::Sqlite { writer, .. } = server.app.db.pools() else {
         unreachable!("it was started on SQLite");
     };
-    // Not below what it has.
+    // Not below its present size.
     let limit = sqlx::query("PRAGMA max_page_count = 1");
     limit.execute(writer).await.unwrap();
     let mut seq = 1;

@@ -1,4 +1,4 @@
-//! The server's fleet as others see it: over real HTTP, on both databases.
+//! Fleet of the server, tested over real HTTP on both databases.
 
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 

@@ -1,4 +1,4 @@
-//! The fleet at a glance.
+//! The overview of the fleet.
 
 use binnacle_server_testing::TestServer;
 use binnacle_server_testing::alerts::{limit, ship_with_model};
@@ -70,7 +70,7 @@ async fn a_glance_looks_ahead_to_the_next_port_call(server: TestServer) {
         (&first["port"], &first["port_name"]),
         (&json!("NLRTM"), &json!("Rotterdam"))
     );
-    // As the deviation's own page has it for that place and time.
+    // The same as the deviation endpoint says for that place and time.
     let there = nao.path("/deviation?lat=51.95&lon=4.13&at=2026-11-21T08:00:00Z&step_deg=5");
     let rows = ada.get(&there).await.good()["rows"].clone();
     let largest = |rows: &Value| {
@@ -81,7 +81,7 @@ async fn a_glance_looks_ahead_to_the_next_port_call(server: TestServer) {
     let predicted_model = first["worst"]["deviation_deg"].as_f64().unwrap().abs();
     assert!((predicted_model - largest(&rows)).abs() < 0.1, "{first}");
 
-    // Alongside she is until she sails; then the next call is the next.
+    // The current port call counts until departure; then the next one follows.
     server.advance(2.0 * HOUR_S);
     assert_eq!(next().await["port"], "NLRTM");
     server.advance(2.0 * HOUR_S);

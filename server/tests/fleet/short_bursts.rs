@@ -1,4 +1,4 @@
-//! Batches that came as short-burst messages.
+//! Batches sent as short-burst messages.
 
 use crate::run;
 use binnacle_compass::sample::Sample;
@@ -20,7 +20,7 @@ on_both!(
 
 const DAY: &str = "2026-11-20T00:00:00Z";
 
-/// More than one message holds.
+/// Number of samples that do not fit in one message.
 fn long_passage(ship: &Ship) -> Vec<Sample> {
     let lengths = (100..1_500).step_by(100);
     let passages = lengths.map(|samples| passage("2026-11-01T00:00:00Z", samples));
@@ -55,7 +55,7 @@ async fn messages_become_the_batches_that_they_were_cut_from_and_once(server: Te
     let imported = brought(&server, &nao, &messages).await;
     assert_eq!((imported.stored, imported.repeated), (1, 1));
     assert_eq!(read_ack(&imported.answers[0].1).unwrap().contiguous_seq, 2);
-    // Over the ordinary link, too.
+    // The same batch over the ordinary link.
     let response = nao.put(1, &passage_1).await.good();
     assert_eq!(response["contiguous_seq"], 2);
     let streams = ada.get(&nao.path("/agents")).await.good();

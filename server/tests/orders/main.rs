@@ -1,4 +1,4 @@
-//! The server's firms and work orders as others see it: over real HTTP, on both databases.
+//! Firms and work orders of the server, tested over real HTTP on both databases.
 
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 

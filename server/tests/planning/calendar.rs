@@ -1,4 +1,4 @@
-//! Work orders in people's calendars.
+//! Calendar feeds of work orders, port calls and due dates.
 
 use crate::schedule::{compass_of, due_vessel, enter};
 use binnacle_planning::notifications::look;
@@ -22,7 +22,7 @@ on_both!(
     a_fleets_calendar_has_every_vessels_and_a_firms_none,
 );
 
-/// The lines of a calendar, unfolded, after checking their form.
+/// Returns the unfolded lines of a calendar, after checking their form.
 fn lines(text: &str) -> Vec<String> {
     assert!(text.ends_with("END:VCALENDAR\r\n"), "{text:?}");
     let mut unfolded: Vec<String> = Vec::new();
@@ -55,7 +55,7 @@ fn lines(text: &str) -> Vec<String> {
     unfolded
 }
 
-/// What a calendar's only event says of something.
+/// Returns a property of a calendar's only event.
 fn of(lines: &[String], key: &str) -> String {
     let mut found = lines
         .iter()
@@ -73,7 +73,7 @@ async fn feed(person: &Person, new: &Value) -> Value {
     made.good()
 }
 
-/// What someone reads who has nothing but the address.
+/// Reads a calendar by its address alone.
 async fn read(server: &TestServer, made: &Value) -> ApiResponse {
     let url = made["url"].as_str().unwrap();
     let path = url.strip_prefix("https://binnacle.example").unwrap();
@@ -95,7 +95,7 @@ async fn a_calendar_is_read_by_its_secret_address_until_it_is_removed(server: Te
     assert_eq!(of(&calendar, "STATUS"), "TENTATIVE");
     assert_eq!(of(&calendar, "LOCATION"), "Bilbao\\, A5");
     assert_eq!(found.text, read(&server, &made).await.text);
-    // The same by a token or a session, and nothing without.
+    // A token or a session reads the same; without them nothing.
     let own = parties.ada.get("/calendar.ics").await;
     assert_eq!(of(&lines(&own.text), "UID"), of(&calendar, "UID"));
     let url = format!("{}/api/v1/calendar.ics?token=bnc_wrong", server.url);
@@ -197,7 +197,7 @@ async fn long_and_strange_words_come_through(server: TestServer) {
     server.finish().await;
 }
 
-/// The events of a calendar as a reader of its own has them, by their UIDs.
+/// Parses a calendar with another library; returns its events by UID.
 pub(crate) fn events(text: &str) -> BTreeMap<String, icalendar::Event> {
     let calendar: icalendar::Calendar = text.parse().unwrap();
     let all = calendar.components.into_iter().map(|component| {
@@ -241,7 +241,7 @@ async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(server:
     assert!(why.contains("24 months after the adjustment"), "{why}");
     assert_eq!(due.property_value("TRANSP"), Some("TRANSPARENT"));
 
-    // She is late, and not sure of it; and was adjusted meanwhile.
+    // The vessel is late with an uncertain ETA, and was adjusted meanwhile.
     server.advance(3600.0);
     let one = call["id"].as_str().unwrap();
     let one = format!("{}/{one}", port_calls::path(&nao));
@@ -264,7 +264,7 @@ async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(server:
         assert!(sequence(after) > sequence(before));
         assert!(after.get_last_modified() > before.get_last_modified());
     }
-    // Nothing has changed: the same octets, for whoever asks again.
+    // Nothing has changed: the same bytes at the next request.
     look(&server.app).await.unwrap();
     let again = read(&server, &made).await.text;
     assert_eq!(again, read(&server, &made).await.text);
@@ -291,7 +291,7 @@ async fn a_fleets_calendar_has_every_vessels_and_a_firms_none(server: TestServer
     let fleet = events(&parties.ada.get("/calendar.ics").await.text);
     let kinds = |begin: &str| fleet.keys().filter(|uid| uid.starts_with(begin)).count();
     assert_eq!(kinds("call-"), 1);
-    // Of the one vessel nothing is known, and all binds her.
+    // One vessel has no particulars, so all rules apply to it.
     assert_eq!(kinds("due-"), 2);
     assert_eq!(fleet.len(), 4);
     let firms = events(&parties.firms[0].1.get("/calendar.ics").await.text);

@@ -1,4 +1,4 @@
-//! A vessel that is sold or laid up.
+//! Vessels out of service: sold or laid up.
 
 use crate::schedule::{due_vessel, enter, follow, planned_firm, solve};
 use binnacle_server_testing::alerts::{limit, ship_with_model};
@@ -28,7 +28,7 @@ async fn items(person: &Person, path: &str) -> Vec<Value> {
     listed["items"].as_array().unwrap().clone()
 }
 
-/// A ship whose deviation is over her limit, with a call ahead.
+/// Enrols a ship with deviation over its limit and a port call ahead.
 async fn over_her_limit(server: &TestServer, person: &Person) -> Ship {
     let nao = ship_with_model(server, person).await;
     limit(server, person, &nao, json!({ "deviation_deg": 1.0 })).await;
@@ -80,7 +80,7 @@ async fn a_vessel_out_of_service_is_in_no_list_and_calls_for_no_alert(server: Te
         .await
         .unwrap();
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
-    // Both have been silent.
+    // Both agents have been silent.
     let open = items(&ada, "/alerts?open=true").await;
     assert_eq!(open.len(), 1, "{open:?}");
     assert_eq!(open[0]["vessel_name"], "Kogge");

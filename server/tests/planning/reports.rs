@@ -1,4 +1,4 @@
-//! Reports: what is due, how bad it is, what was done and what that saved.
+//! Reports: due dates, deviations, jobs done and their savings.
 
 use crate::schedule::{due_vessel, put};
 use binnacle_planning::reports::look;
@@ -87,7 +87,7 @@ async fn a_job_is_reckoned_against_a_swing(server: TestServer) {
         (&done["state"], &done["fee_eur"]),
         (&json!("adjusted"), &json!(null))
     );
-    // The paper's figures, until the operator has others.
+    // The paper's figures, unless the operator sets others.
     let usual = json!({
         "jobs": 1, "swings": 1, "swing_eur": 6000.0, "swing_h": 3.0, "fees_eur": 0.0, "without_fee": 1,
         "saved_eur": 6000.0, "saved_h": 3.0,
@@ -100,7 +100,7 @@ async fn a_job_is_reckoned_against_a_swing(server: TestServer) {
     assert_eq!(found["saved"]["saved_h"], 4.5);
     let before = report(&job.person, "?from=2026-10-01&to=2026-11-20").await;
     assert_eq!(before["jobs"], json!([]));
-    // What the sea does not confirm has spared no swing.
+    // An adjustment that is not confirmed at sea has not saved a swing.
     let failed = [
         "UPDATE work_orders SET state = 'failed'",
         "UPDATE work_orders SET state = 'closed'",
@@ -149,13 +149,13 @@ async fn the_files_say_what_the_report_says(server: TestServer) {
     assert_eq!(response.headers()["content-type"], "application/pdf");
     let pdf = response.bytes().await.unwrap();
     assert!(pdf.starts_with(b"%PDF-"));
-    // The same report is the same octets.
+    // The same report has the same bytes.
     let request = ada.request(reqwest::Method::GET, "/reports/fleet.pdf");
     assert_eq!(request.send().await.unwrap().bytes().await.unwrap(), pdf);
     server.finish().await;
 }
 
-/// A letter's text and attachments as Python's mail parser reads them.
+/// Parses a letter's text and attachments with Python's mail parser.
 fn parts(letter: &str) -> Value {
     let program = "import email, email.policy, json, sys\n\
         m = email.message_from_bytes(sys.argv[1].encode(), policy=email.policy.default)\n\
@@ -186,7 +186,7 @@ async fn the_report_of_a_month_goes_once_to_those_who_were_on_the_list(server: T
     assert_eq!(said["monthly_to"], kept);
     let fewer = json!({ "monthly_to": ["b@example.com"] });
     put(&ada, "/reports/settings", &fewer).await.good();
-    // October was over before anybody was on the list.
+    // October ended before the list had a recipient.
     assert_eq!(look(&server.app).await.unwrap(), 0);
     server.advance(9.95 * DAY_S);
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;

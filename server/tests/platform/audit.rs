@@ -1,4 +1,4 @@
-//! Who changed what, and what firms read of ships.
+//! The audit log: changes, and reads by firms.
 
 use crate::run;
 use binnacle_platform::audit::forget;
@@ -32,7 +32,7 @@ async fn lines(person: &Person, filter: &str) -> Vec<Value> {
     listed["items"].as_array().unwrap().clone()
 }
 
-/// What was done, in order: method, route, status.
+/// Returns the audited requests, in order: method, route, status.
 fn done(lines: &[Value]) -> Vec<String> {
     let said = |line: &Value| {
         let word = |name: &str| line[name].as_str().unwrap().replace("/api/v1", "");
@@ -175,7 +175,7 @@ async fn what_a_firm_does_and_reads_is_seen_by_the_vessels_operator_alone(server
     }));
     assert_eq!(lines(rosa, &of_order).await.len(), 2);
     assert_eq!(lines(&eve, &of_order).await, Vec::<Value>::new());
-    // The other firm's own attempt, and nothing of whose order it is.
+    // The other firm sees its own attempt, and nothing about the order's owner.
     let tried = lines(&other, &of_order).await;
     assert_eq!(done(&tried), ["POST /work-orders/{id}/accept 404"]);
     assert_eq!(tried[0]["vessel_id"], Value::Null);
@@ -270,7 +270,7 @@ async fn nothing_secret_is_in_it(server: TestServer) {
         .good();
     let hook = json!({ "url": "https://example.com/?key=hidden", "kinds": ["alert.raised"] });
     let hook = ada.post("/webhooks", &hook).await.good();
-    // A secret where an id belongs.
+    // A secret in the place of an id.
     let slip = ApiResponse::of(ada.request(Method::DELETE, &format!("/tokens/{token}"))).await;
     assert_eq!(slip.status, 404);
     let changed = json!({ "current": PASSWORD, "new": "a lantern astern at midnight" });
@@ -341,7 +341,7 @@ async fn lines_go_when_they_are_old(server: TestServer) {
     server.finish().await;
 }
 
-/// Source files below a folder.
+/// Lists the source files below a folder.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {

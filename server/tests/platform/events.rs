@@ -45,7 +45,7 @@ async fn a_broken_line_to_postgres_is_mended_and_what_was_missed_is_told() {
 
 const DAY: &str = "2026-11-15T00:00:00Z";
 
-/// What an event source reads.
+/// A client of live events.
 struct Source {
     stream: futures_util::stream::BoxStream<'static, reqwest::Result<Vec<u8>>>,
     text: String,
@@ -73,7 +73,7 @@ impl Source {
         }
     }
 
-    /// The next event's id and data; `None` when the server has hung up.
+    /// Reads the next event's id and data; `None` when the server has closed the stream.
     async fn next(&mut self) -> Option<(String, String)> {
         let read = timeout(Duration::from_secs(20), self.read());
         read.await.expect("an event within 20 s")
@@ -214,11 +214,11 @@ async fn events_are_forgotten_after_a_day(server: TestServer) {
         .await
         .unwrap();
     nao.put(3, &passage(DAY, 3)).await.good();
-    // No session lasts so long.
+    // The session has expired.
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     let mut source = Source::open(&ada, Some(&seen)).await;
     let (third, _) = source.next().await.unwrap();
-    // Were the second still there, it would have come before.
+    // If the second event were still there, it would come first.
     let (listed,) = left(&server).await;
     assert_eq!(listed, 1, "after {third}");
     server.finish().await;

@@ -1,4 +1,4 @@
-//! What surrounds every answer, and how large and from where a request may be.
+//! Headers of every response, and limits on the size and origin of requests.
 
 use binnacle_server::routes::openapi;
 use binnacle_server_testing::{ApiResponse, Engine, PASSWORD, TestServer};
@@ -28,7 +28,7 @@ async fn every_answer_to_people_says_what_a_browser_may_do() {
         ] {
             assert!(policy.contains(part), "{policy}");
         }
-        // The tests' server is told that people reach it by https.
+        // The tests' server has an https public URL.
         assert_eq!(said("strict-transport-security"), "max-age=31536000");
     }
     server.finish().await;
@@ -54,7 +54,7 @@ async fn another_sites_page_changes_nothing_and_signs_nobody_in() {
         ("sec-fetch-site", "cross-site"),
         ("sec-fetch-site", "same-site"),
     ] {
-        // Even with the cookie and the header of our own pages.
+        // Even with the cookie and the dashboard's own header.
         let asked = ada.request(Method::POST, "/vessels").json(&vessel);
         let refused = ApiResponse::of(asked.header(name, value)).await;
         assert_eq!(refused.problem(), "forbidden", "{name}: {value}");
@@ -131,7 +131,7 @@ async fn headers_without_end_are_refused_and_others_still_served() {
     let long = server.http.get(&page).header("x-long", "x".repeat(600_000));
     match long.send().await {
         Ok(response) => assert_eq!(response.status(), 431),
-        // The connection may be closed before the client has sent it all.
+        // The server may close the connection before the client has sent everything.
         Err(error) => assert!(error.is_request(), "{error:?}"),
     }
     let mut many = server.http.get(&page);

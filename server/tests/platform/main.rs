@@ -1,4 +1,4 @@
-//! The server's accounts, connections and messages as others see it: over real HTTP, on both databases.
+//! Accounts, connections and messages of the server, tested over real HTTP on both databases.
 
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 

@@ -1,4 +1,4 @@
-//! An operator's people: invited, changed, shut out, removed.
+//! An operator's people: invited, changed, blocked, removed.
 
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{ApiResponse, PASSWORD, Person, TestServer, attempt};
@@ -155,7 +155,7 @@ async fn who_forgot_the_password_gets_another_code(server: TestServer) {
     let path = format!("/users/{}/invitation", id.as_str().unwrap());
     let first = ada.post(&path, &json!({})).await.good();
     let second = ada.post(&path, &json!({})).await.good();
-    // Until it is used nothing is otherwise.
+    // Nothing changes until the code is used.
     assert_eq!(viewer.get("/me").await.status, 200);
     let old = accept(&server, first["code"].as_str().unwrap(), GOOD).await;
     assert_eq!(old.problem(), "not-found");
@@ -182,7 +182,7 @@ async fn who_is_removed_is_gone_with_their_tokens(server: TestServer) {
     let request = server.http.get(format!("{}/api/v1/me", server.url));
     let by_token = ApiResponse::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
     assert_eq!(by_token.problem(), "unauthenticated");
-    // The e-mail is free again.
+    // The e-mail address is free again.
     invite(&ada, &viewer.email, "viewer").await;
     server.finish().await;
 }
@@ -190,7 +190,7 @@ async fn who_is_removed_is_gone_with_their_tokens(server: TestServer) {
 async fn an_operator_keeps_an_admin(server: TestServer) {
     let ada = server.admin("ada").await;
     let id = ada.get("/me").await.good()["user_id"].clone();
-    // Who was only invited cannot take the admin's place.
+    // An invited admin does not count as the last admin.
     invite(&ada, "grace@example.com", "admin").await;
     for body in [json!({ "role": "viewer" }), json!({ "disabled": true })] {
         let refused = change(&ada, &id, body).await;
@@ -252,7 +252,7 @@ async fn nobody_sees_another_operators_people(server: TestServer) {
     server.finish().await;
 }
 
-/// Asks with a token of someone's.
+/// A program that sends requests with a token.
 struct Program {
     http: reqwest::Client,
     url: String,
@@ -317,7 +317,7 @@ async fn an_admins_token_makes_nobody_and_becomes_nobody(server: TestServer) {
         let refused = program.ask(method, &path, &body).await;
         assert_eq!(refused.problem(), "forbidden", "{path}");
     }
-    // What a program is for, it may.
+    // The token may do the work of a program.
     assert_eq!(
         program.ask(Method::GET, "/users", &json!({})).await.status,
         200
@@ -348,7 +348,7 @@ async fn another_code_ends_tokens_and_calendars(server: TestServer) {
     assert_eq!(reads().await.status, 200);
     let path = format!("/users/{}/invitation", id.as_str().unwrap());
     let code = ada.post(&path, &json!({})).await.good()["code"].clone();
-    // Until it is used nothing is otherwise.
+    // Nothing changes until the code is used.
     assert_eq!(
         program.ask(Method::GET, "/me", &json!({})).await.status,
         200

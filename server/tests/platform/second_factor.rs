@@ -1,5 +1,5 @@
-//! Codes from an authenticator app: set up, asked for, used once; and the rule that
-//! everyone needs one.
+//! Codes from an authenticator app: setup, sign-in, single use. And the setting that
+//! requires them of everyone.
 
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{ApiResponse, PASSWORD, Person, TestServer, attempt};
@@ -17,7 +17,7 @@ on_both!(
     a_token_cannot_touch_a_factor,
 );
 
-/// The authenticator app: RFC 6238 once more, from the base 32 that is typed in.
+/// Computes the code of an authenticator app (RFC 6238) from the base 32 secret.
 pub(crate) fn app_code(secret: &str, unix_s: i64) -> String {
     let digits = secret.bytes().map(|letter| match letter {
         b'A'..=b'Z' => letter - b'A',
@@ -48,8 +48,8 @@ fn password() -> Value {
     json!({ "password": PASSWORD })
 }
 
-/// Sets a factor up and gives its secret and recovery codes; the clock goes on, so that
-/// the next code is another.
+/// Sets a factor up; returns its secret and recovery codes. The clock advances, so that
+/// the next code differs.
 pub(crate) async fn set_up(server: &TestServer, person: &Person) -> (String, Vec<String>) {
     let begun = person.post("/me/second-factor", &password()).await.good();
     let secret = begun["secret"].as_str().unwrap().to_owned();
@@ -72,7 +72,7 @@ async fn a_code_is_asked_for_once_the_factor_is_confirmed(server: TestServer) {
     let wrong = json!({ "password": "not the password" });
     let refused = ada.post("/me/second-factor", &wrong).await;
     assert_eq!(refused.problem(), "wrong-password");
-    // Begun and never confirmed: nobody is locked out.
+    // A setup that was never confirmed locks nobody out.
     ada.post("/me/second-factor", &password()).await.good();
     let none = json!({ "code": "000000" });
     let refused = ada.post("/me/second-factor/confirm", &none).await;
@@ -111,7 +111,7 @@ async fn a_code_works_once_also_when_it_comes_twice_at_once(server: TestServer) 
         .find(|response| response.status == 401)
         .unwrap();
     assert_eq!(seen.problem(), "wrong-code");
-    // Nor does the one before it, which the clock's tolerance would let pass.
+    // Neither does the code before it, which the clock tolerance would accept.
     let before = app_code(&secret, now_s(&server) - 30);
     let late = sign_in(&server, &ada.email, &before).await;
     assert_eq!(late.problem(), "wrong-code");
@@ -186,7 +186,7 @@ async fn an_operator_may_want_a_factor_of_everyone(server: TestServer) {
     let put = |person: &Person| {
         ApiResponse::of(person.request(Method::PUT, "/sign-in-rules").json(&rule))
     };
-    // Not before the admin has one.
+    // Refused while the admin has no factor.
     assert_eq!(put(&ada).await.problem(), "wrong-state");
     set_up(&server, &ada).await;
     assert_eq!(put(&viewer).await.problem(), "forbidden");

@@ -1,4 +1,4 @@
-//! Nothing secret is in the log, not even in the most talkative one that can be asked for.
+//! No secret in the log, not even at the most verbose level.
 
 use crate::second_factor::app_code;
 use binnacle_platform::clock::Clock;
@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::JoinHandle;
 
-/// The program, with everything that it says.
+/// The running program, with all its output.
 struct Program {
     child: Child,
     url: String,
@@ -67,7 +67,7 @@ fn admin(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.unwrap().stdout).unwrap()
 }
 
-/// What has been secret so far; asks in one's name.
+/// A client that records every secret it has seen.
 struct Drive {
     http: reqwest::Client,
     url: String,
@@ -75,14 +75,14 @@ struct Drive {
 }
 
 impl Drive {
-    /// Notes the secrets of an answer.
+    /// Records the secrets of a response.
     fn keep(&mut self, value: &Value) -> String {
         let secret = value.as_str().unwrap().to_owned();
         self.secrets.push(secret.clone());
         secret
     }
 
-    /// Waits until something was sent, or tried: another process does it.
+    /// Waits until another process has sent a delivery, or tried to.
     async fn until_tried(&self, key: &str, receiver: &str) {
         for _ in 0..5000 {
             let path = format!("{receiver}/deliveries");
@@ -94,7 +94,7 @@ impl Drive {
         panic!("nothing was sent to {receiver}");
     }
 
-    /// Keeps the cookies, and what stands in addresses.
+    /// Signs in through the provider, and records cookies and secrets in addresses.
     async fn signs_in_by_the_provider(&mut self) {
         let there = self.follow("/api/v1/session/provider/start", "").await;
         let cookie = self.secrets.last().unwrap().clone();
@@ -107,7 +107,7 @@ impl Drive {
         assert_eq!(self.follow(path, &cookie).await, "/");
     }
 
-    /// Where it leads; keeps the value of the first cookie that comes with it.
+    /// Returns the redirect target, and records the value of the first cookie.
     async fn follow(&mut self, path: &str, cookie: &str) -> String {
         let url = format!("{}{path}", self.url);
         let asked = self.http.get(url).header("cookie", cookie);
@@ -138,7 +138,7 @@ impl Drive {
     }
 }
 
-/// Whom a new server's first command makes, with the password.
+/// Creates an operator and its first admin; returns what the command prints.
 fn first_admin(folder: &Path) -> Value {
     let operator = admin(folder, &["create", "operator", "--name", "ada"]);
     let operator = operator["operator_id"].as_str().unwrap();

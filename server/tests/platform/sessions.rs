@@ -222,7 +222,7 @@ async fn guessing_is_slowed_down_whether_or_not_the_email_exists(server: TestSer
         attempt(&server, "ada@example.com", PASSWORD).await.status,
         200
     );
-    // Having signed in, one may err again.
+    // A sign-in resets the count of failures.
     assert_eq!(
         attempt(&server, "ada@example.com", "wrong").await.status,
         401
@@ -241,7 +241,7 @@ async fn guesses_sent_at_once_do_not_outrun_the_throttle(server: TestServer) {
         .iter()
         .filter(|response| response.status == 401)
         .count();
-    // The fifth failure begins the wait; one more may have been under way.
+    // The fifth failure starts the wait; one more may have been in flight.
     assert!((5..=6).contains(&judged), "{judged} guesses were judged");
     let odd = attempt(&server, "ada\0@example.com", "wrong").await;
     assert_eq!(odd.problem(), "wrong-password");
@@ -291,7 +291,7 @@ async fn a_token_may_do_what_its_scope_says_until_it_is_revoked(server: TestServ
         assert_eq!(listed.status, 200);
         let created = ask(Method::POST, "/vessels").json(&json!({ "name": "Nao" }));
         assert_eq!(ApiResponse::of(created).await.status, status, "{scope}");
-        // A token that leaked cannot make others to outlive it.
+        // A leaked token cannot create tokens that outlive it.
         let more = ask(Method::POST, "/tokens").json(&json!({ "name": "x", "scope": "read" }));
         assert_eq!(ApiResponse::of(more).await.status, 403);
 

@@ -1,4 +1,4 @@
-//! Nobody sees another operator's fleet, on any route there is.
+//! Isolation of operators on every route.
 
 use binnacle_server::routes::openapi;
 use binnacle_server_testing::binnacles::{binnacle, put};
@@ -16,7 +16,7 @@ on_both!(
     a_method_that_a_path_does_not_know_is_refused_in_words,
 );
 
-/// Every operation of the API's document: method, path, and a body that is right.
+/// Returns every operation of the API document: method, path and a valid body.
 fn operations() -> Vec<(Method, String, Value)> {
     let document = serde_json::to_value(openapi()).unwrap();
     let mut found = Vec::new();
@@ -83,7 +83,7 @@ async fn every_vessel_route_is_blank_to_another_operator(server: TestServer) {
         let theirs = ApiResponse::of(eve.request(method.clone(), &path).json(&body)).await;
         assert_eq!(theirs.problem(), "not-found", "{method} {path}");
         let ours = ApiResponse::of(ada.request(method.clone(), &path).json(&body)).await;
-        // A file is no JSON.
+        // A file is not JSON.
         let file = path.contains("/port-calls.");
         let known = ours.status < 300
             || ours.problem() == "no-model-yet"
@@ -101,7 +101,7 @@ async fn every_route_wants_to_know_who_asks(server: TestServer) {
         .to_owned();
     for (method, path, body) in operations() {
         let open = ["/session", "/agents/enrol", "/invitations/accept"].contains(&path.as_str());
-        // What leads to the sign-in provider and back is for who has not signed in.
+        // The routes to the sign-in provider and back work without sign-in.
         let by_provider = path.starts_with("/session/provider");
         if (open && method == Method::POST) || by_provider {
             continue;

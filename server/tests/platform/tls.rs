@@ -15,7 +15,7 @@ use tokio::time::timeout;
 
 const PATIENCE: Duration = Duration::from_mins(1);
 
-/// A server that answers "ashore", with its certificate in a folder of its own.
+/// A server that responds "ashore", with its certificate in a folder.
 struct Served {
     folder: TempDir,
     url: String,
@@ -37,7 +37,7 @@ fn certificate(folder: &Path) -> Certificate {
     }
 }
 
-/// Writes a new certificate that is its own authority, and returns it.
+/// Writes a new self-signed certificate, and returns it.
 fn renew(folder: &Path) -> String {
     let CertifiedKey { cert, signing_key } =
         generate_simple_self_signed(["localhost".to_owned()]).unwrap();
@@ -62,7 +62,7 @@ async fn serve(folder: TempDir) -> Served {
     }
 }
 
-/// What somebody gets who believes only `authority`.
+/// Sends a request that trusts only `authority`.
 async fn ask(url: &str, authority: &str) -> reqwest::Result<String> {
     let authority = reqwest::Certificate::from_pem(authority.as_bytes())?;
     let client = reqwest::Client::builder().tls_certs_only([authority]);

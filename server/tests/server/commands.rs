@@ -1,4 +1,4 @@
-//! The program itself, run as a user runs it.
+//! Commands of the program, run as a user runs them.
 
 use crate::run;
 use binnacle_server_testing::program::{assert_refused, command, good, samples_csv};

@@ -1,4 +1,4 @@
-//! The dashboard's host, and what surrounds every answer.
+//! The dashboard's host, health and metrics, response headers.
 
 use binnacle_server_testing::{ApiResponse, Engine, TestServer};
 use reqwest::header::HeaderName;
@@ -56,7 +56,7 @@ async fn metrics_are_read_on_the_same_machine_or_with_their_token() {
     };
     let server = TestServer::start(Engine::Sqlite).await;
     assert_eq!(read(&server, ("accept", "text/plain")).await, 200);
-    // Whom a proxy that the server was not told of lets in may be anybody.
+    // A request through an unknown proxy may come from anybody.
     for by in ["x-forwarded-for", "forwarded"] {
         assert_eq!(read(&server, (by, "127.0.0.1")).await, 401, "{by}");
     }

@@ -1,4 +1,4 @@
-//! The API's document.
+//! The OpenAPI document.
 
 use binnacle_server::routes::openapi;
 use binnacle_server_testing::{ApiResponse, Engine, TestServer};

@@ -1,4 +1,4 @@
-//! The examples of docs/: they are read, and do what the pages say.
+//! The examples in docs/ are valid, and do what the pages say.
 
 use crate::run;
 use binnacle_adjustment::binnacle::Binnacle;
@@ -14,7 +14,7 @@ const BINNACLE: &str = include_str!("../../../docs/binnacle.md");
 const PLAN: &str = include_str!("../../../docs/plan.md");
 const WORK_ORDERS: &str = include_str!("../../../docs/work-orders.md");
 
-/// The JSON blocks of a page.
+/// Returns the JSON blocks of a page.
 fn blocks(page: &str) -> Vec<Value> {
     let blocks = page.split("```json\n").skip(1);
     let read = |block: &str| {
@@ -24,7 +24,7 @@ fn blocks(page: &str) -> Vec<Value> {
     blocks.map(read).collect()
 }
 
-/// The binnacle of its page, with what the page says is "as below" and "the same".
+/// Returns the binnacle of its page, with "as below" and "the same" filled in.
 fn binnacle() -> Value {
     let [mut aboard, mut design]: [Value; 2] = blocks(BINNACLE).try_into().unwrap();
     design["athwartship"] = design["fore_and_aft"].clone();
@@ -32,8 +32,8 @@ fn binnacle() -> Value {
     aboard
 }
 
-/// A ship that this binnacle all but corrects, and what is read aboard on the page's
-/// heading.
+/// Returns a ship that this binnacle nearly corrects, and the magnetometer reading on the
+/// page's heading.
 fn ship(binnacle: &Binnacle, berth: &Value) -> (Value, [f64; 3]) {
     let read = &berth["reading"];
     let number = |name: &str| read[name].as_f64().unwrap();
@@ -50,7 +50,7 @@ fn ship(binnacle: &Binnacle, berth: &Value) -> (Value, [f64; 3]) {
         correctors.as_ship(earth.h_nt),
         correctors.as_ship(f64::INFINITY),
     );
-    // The needles turn the spheres' iron for the card, and are out when the bowl is.
+    // The needles magnetise the spheres; they are out when the bowl is.
     let mut bowl_out = wanted;
     for row in 0..3 {
         bowl_out.b_nt[row] += without.b_nt[row] - with.b_nt[row];
@@ -76,7 +76,7 @@ fn ship(binnacle: &Binnacle, berth: &Value) -> (Value, [f64; 3]) {
 fn the_berth_and_the_binnacle_of_the_pages_make_a_plan() {
     let binnacle = binnacle();
     let known: Binnacle = serde_json::from_value(binnacle.clone()).unwrap();
-    // The second block is of the reading after the steps.
+    // The second block is the reading after the steps.
     let [mut berth, _]: [Value; 2] = blocks(PLAN).try_into().unwrap();
     let (model, aboard) = ship(&known, &berth);
     for (name, nt) in ["forward", "starboard", "down"].iter().zip(aboard) {
@@ -91,7 +91,7 @@ fn the_berth_and_the_binnacle_of_the_pages_make_a_plan() {
         let path = folder.path().join(format!("{name}.json"));
         std::fs::write(path, value.to_string()).unwrap();
     }
-    // The very words of the page.
+    // The exact words of the page.
     let words = PLAN.split("```sh\n").nth(1).unwrap();
     let words = words.lines().next().unwrap().split(' ').skip(1);
     let output = run(folder.path(), &words.collect::<Vec<_>>());

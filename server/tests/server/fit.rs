@@ -1,4 +1,4 @@
-//! `fit` with each of its methods.
+//! The command `fit` with each of its methods.
 
 use crate::run;
 use binnacle_compass::angle::MagneticHeading;
@@ -10,7 +10,7 @@ use std::fmt::Write;
 
 const METHODS: [&str; 3] = ["paper", "ols", "robust"];
 
-/// All headings off Biscay and south of the line, with the field as columns.
+/// Returns a CSV of all headings in Biscay and south of the equator, with field columns.
 fn two_latitudes() -> String {
     let mut text = "variation_deg,h_nt,z_nt,compass_deg,reference_deg\n".to_owned();
     for (h_nt, z_nt) in [(24_000.0, 38_500.0), (27_000.0, -15_000.0)] {

@@ -1,4 +1,4 @@
-//! The server's commands and documents as others see it: over real HTTP, on both databases.
+//! Commands and documents of the server, tested as a program and over real HTTP.
 
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 

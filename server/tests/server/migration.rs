@@ -1,4 +1,4 @@
-//! Migrating loses nothing that a database holds, and refuses another version's database.
+//! Migrations keep all data, and refuse a database of another version.
 
 use binnacle_platform::db::{Connection, Db, Pools, Tx};
 use binnacle_platform::secret;
@@ -9,10 +9,10 @@ use sqlx::SqlSafeStr;
 use sqlx::migrate::{Migration, MigrationType, Migrator};
 use uuid::Uuid;
 
-/// 2026-11-21T07:00:00Z, when every test begins, and a day later.
+/// Start time of every test, 2026-11-21T07:00:00Z, and a day later.
 const NOW: i64 = 1_795_244_400_000_000;
 const TOMORROW: i64 = NOW + 86_400_000_000;
-/// People, each with a session and a token.
+/// Number of people, each with a session and a token.
 const PEOPLE: usize = 3;
 
 macro_rules! run {
@@ -44,7 +44,7 @@ async fn on_postgres_a_database_of_another_version_is_refused() {
     another_version_is_refused(Engine::Postgres).await;
 }
 
-/// Refuses an applied migration that is unknown, and one whose text differs.
+/// Checks that an unknown migration and one with another text are refused.
 async fn another_version_is_refused(engine: Engine) {
     for number in [1, 63] {
         let bare = TestServer::bare(engine).await;
@@ -109,14 +109,14 @@ async fn nothing_is_lost(engine: Engine) {
         .await
         .good();
     assert_eq!(webhooks["items"][0]["url"], "https://example.com/hook");
-    // The stored key still finds what it made.
+    // The stored idempotency key still finds its object.
     let vessel = request(Method::POST, "/vessels").json(&json!({ "name": "Other" }));
     let vessel = vessel.header("Idempotency-Key", "old");
     assert_eq!(
         ApiResponse::of(vessel).await.problem(),
         "idempotency-key-reused"
     );
-    // Sessions and tokens refer to their user: who is removed is signed out.
+    // Sessions and tokens refer to their user: a removed user is signed out.
     server.sql("DELETE FROM users WHERE role = 'viewer'").await;
     let gone = server.http.get(url("/me")).bearer_auth("bna_token1");
     assert_eq!(ApiResponse::of(gone).await.problem(), "unauthenticated");
@@ -125,7 +125,7 @@ async fn nothing_is_lost(engine: Engine) {
     server.finish().await;
 }
 
-/// Fills in people of each role, a webhook and an idempotency key.
+/// Inserts people of each role, a webhook and an idempotency key.
 async fn fill(db: &Db, operator: Uuid) {
     let mut tx = db.begin().await.unwrap();
     run!(

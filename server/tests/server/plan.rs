@@ -1,4 +1,4 @@
-//! `plan`, run as a user runs it.
+//! The command `plan`, run as a user runs it.
 
 use crate::run;
 use binnacle_adjustment::binnacle::{Binnacle, SHIPPED, Setting};
@@ -35,7 +35,7 @@ fn binnacle() -> Value {
     })
 }
 
-/// The ship with correctors that stand so, in so strong a field.
+/// Returns the ship with a corrector setting, in a field.
 fn ship_with(setting: &Setting, h_nt: f64) -> ShipMagnetism {
     let binnacle: Binnacle = serde_json::from_value(binnacle()).unwrap();
     let there = effect(&binnacle, setting).as_ship(h_nt);
@@ -52,7 +52,7 @@ fn ship_with(setting: &Setting, h_nt: f64) -> ShipMagnetism {
     ship
 }
 
-/// What is read aboard her on true heading 63.
+/// Returns the magnetometer reading on true heading 63.
 fn read_with(setting: &Setting) -> [f64; 2] {
     // With variation 3 W that is magnetic 66; no needles, bowl out.
     let earth = BERTH.in_ship_axes(66_f64.to_radians());
@@ -60,7 +60,7 @@ fn read_with(setting: &Setting) -> [f64; 2] {
     [forward, starboard]
 }
 
-/// Her model, and what is read aboard her as she is found.
+/// Returns the ship's model, and the first berth reading.
 fn ship() -> (Value, [f64; 2]) {
     let found: Setting = serde_json::from_value(binnacle()["setting"].clone()).unwrap();
     let parameters = ship_with(&found, BERTH.h_nt)
@@ -135,7 +135,7 @@ fn plan_prints_settings_steps_and_what_they_leave() {
         assert!(!step[name].is_null(), "{name}");
     }
     assert_eq!(found["optimality"]["proven"], true);
-    // Her needles were fitted in another field than the mean of these waters.
+    // The needles were fitted in another field than the mean of these waters.
     assert!((found["berth"]["consistency"]["angle_deg"].as_f64().unwrap()).abs() < 0.5);
 }
 
@@ -145,7 +145,7 @@ fn a_refusal_is_an_answer_with_its_cure() {
     let (model, [x, y]) = ship();
     let blind = json!({ "parameters_over_lambda": model["parameters_over_lambda"] });
     let mut against = model.clone();
-    // Her own field undoes the earth's on this heading.
+    // The ship's own field cancels the earth's on this heading.
     let (sin, cos) = 66_f64.to_radians().sin_cos();
     against["parameters_over_lambda"]["bx_nt"] = json!(-BERTH.h_nt * cos);
     against["parameters_over_lambda"]["by_nt"] = json!(BERTH.h_nt * sin);
@@ -233,7 +233,7 @@ fn plan_says_whether_the_field_after_the_steps_is_what_was_planned() {
     let right = said(&after(&planned));
     assert_eq!(right["verdict"], "as_planned", "{right}");
     assert_eq!(right["parts"].as_array().unwrap().len(), 2);
-    // Nobody has turned a hand.
+    // No step was done.
     let found: Setting = serde_json::from_value(binnacle()["setting"].clone()).unwrap();
     let wrong = said(&after(&found));
     assert_ne!(wrong["verdict"], "as_planned", "{wrong}");

@@ -1,10 +1,10 @@
-//! `schedule`, run as a user runs it.
+//! The command `schedule`, run as a user runs it.
 
 use crate::run;
 use binnacle_server_testing::program::{assert_refused, good};
 use serde_json::Value;
 
-/// The first block of JSON of docs/schedule.md.
+/// Returns the first JSON block of docs/schedule.md.
 fn example() -> String {
     let text = include_str!("../../../docs/schedule.md");
     let (_, block) = text.split_once("```json\n").unwrap();

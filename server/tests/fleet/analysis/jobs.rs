@@ -1,4 +1,4 @@
-//! The queue of analyses: when one is due, who does it, and what if it fails.
+//! The queue of analysis jobs: delay, lease, retries.
 
 use super::{A_WHILE_S, DAY};
 use binnacle_fleet::analysis;
@@ -16,7 +16,7 @@ on_both!(
     a_job_that_fails_is_tried_again_and_then_given_up,
 );
 
-/// Takes a job as a worker does that then dies.
+/// Claims a job as a worker that then dies.
 async fn claim(server: &TestServer) -> bool {
     let now = server.app.clock.now().into();
     let job = analysis::claim(&server.app.db, now).await.unwrap();
@@ -66,7 +66,7 @@ async fn the_same_input_makes_no_second_version(server: TestServer) {
 }
 
 async fn another_estimator_analyses_every_vessel_again_at_the_start(server: TestServer) {
-    // It has started once it answers.
+    // It has started once it responds.
     async fn restart(server: TestServer) -> TestServer {
         let server = server.restart().await;
         let health = format!("{}/healthz", server.url);
@@ -92,7 +92,7 @@ async fn another_estimator_analyses_every_vessel_again_at_the_start(server: Test
     let server = restart(server).await;
     assert_eq!(server.work().await, [], "the estimator is the same");
 
-    // As an earlier version left it; for one of the two a job waits already.
+    // As an earlier version left it; one of the two has a waiting job already.
     server
         .sql("UPDATE analyses SET estimator = 'older', input_hash = 'older'")
         .await;
@@ -114,10 +114,10 @@ async fn a_lease_that_ended_goes_to_another_worker(server: TestServer) {
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 300)).await.good();
     server.advance(A_WHILE_S);
-    // A worker takes the job and is never heard of again.
+    // A worker claims the job and dies.
     assert!(claim(&server).await);
     assert_eq!(server.work().await, []);
-    // A batch that comes meanwhile waits: a vessel is analysed by one at a time.
+    // A batch that arrives meanwhile waits: only one worker analyses a vessel.
     nao.put(2, &passage("2026-11-20T00:00:00Z", 3)).await.good();
     server.advance(A_WHILE_S);
     assert_eq!(server.work().await, []);
@@ -145,10 +145,10 @@ async fn a_lease_that_is_renewed_is_not_taken(server: TestServer) {
         analysis::renew(&server.app.db, job, now()).await.unwrap();
     }
     assert_eq!(server.work().await, []);
-    // The worker was killed: within a minute another takes its job.
+    // The worker was killed: within a minute another one claims the job.
     server.advance(60.0);
     assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
-    // Whoever comes back late renews nothing.
+    // A worker that comes back late cannot renew the lease.
     analysis::renew(&server.app.db, job, now()).await.unwrap();
     let left = analysis::count_jobs(&server.app.db).await.unwrap();
     assert_eq!(left, [("queued", 0), ("running", 0), ("dead", 0)]);
@@ -179,7 +179,7 @@ async fn a_job_that_fails_is_tried_again_and_then_given_up(server: TestServer) {
             .unwrap()
             .contains("binnacle_jobs{state=\"dead\"}")
     );
-    // A later batch starts afresh, and its success clears the dead one away.
+    // A later batch makes a new job, and its success removes the dead one.
     nao.put(2, &passage("2026-11-20T00:00:00Z", 3)).await.good();
     server.advance(A_WHILE_S);
     assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));

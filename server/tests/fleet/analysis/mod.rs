@@ -1,4 +1,4 @@
-//! From batches to models, and the queue between.
+//! Analysis: from batches to models.
 
 mod jobs;
 
@@ -55,10 +55,10 @@ async fn a_passage_becomes_a_model_that_foretells_the_deviation(server: TestServ
     assert!(vessel["worst"]["deviation_deg"].as_f64().unwrap().abs() > 2.0);
     assert_eq!(vessel["last_position"]["lat"], 48.0);
 
-    // The ship gets it with her next word, and not again once she has it.
+    // The ship gets it in the next response, and not again once it has it.
     let downlink = nao.downlink("").await;
     assert_eq!(downlink["model"]["id"], model["id"]);
-    // Without what is for the shore alone.
+    // Without the parts that only the server needs.
     let mut for_the_bridge = model["model"].clone();
     let quality = for_the_bridge.as_object_mut().unwrap().remove("quality");
     assert!(quality.unwrap()["effective_samples"].as_f64().unwrap() > 1.0);
@@ -66,7 +66,7 @@ async fn a_passage_becomes_a_model_that_foretells_the_deviation(server: TestServ
     let has = format!("?model={}", model["id"].as_str().unwrap());
     assert!(nao.downlink(&has).await.get("model").is_none());
 
-    // In the compact form, to the same card.
+    // The compact form gives the same card.
     let (compact, octets) = nao.compact("").await;
     assert!(octets < 300, "{octets}");
     let sent = compact.model.unwrap();
@@ -339,7 +339,7 @@ async fn coverage_tells_what_to_sail_next_once_there_is_a_model(server: TestServ
     assert_eq!(coverage["cells"].as_array().unwrap().len(), 24);
     let next = &coverage["sail_next"];
     assert_eq!(next["watch_hours"], 4.0);
-    // Two days in one place tell little of any other.
+    // Two days in one place say little about other places.
     let band = |of: &Value| of["rms_deg"].as_f64().unwrap();
     let elsewhere = &next["elsewhere"];
     assert!(
@@ -367,7 +367,7 @@ async fn fit_reads_the_exported_samples_and_weights_them_once(server: TestServer
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let mut samples = passage(DAY, 300);
-    // One that the analysis gives no full weight.
+    // A sample with less than full weight in the analysis.
     let gyro_deg = samples[150].gyro.unwrap().degrees();
     samples[150].gyro = Some(TrueHeading::new(gyro_deg + 3.0).unwrap());
     nao.put(1, &samples).await.good();

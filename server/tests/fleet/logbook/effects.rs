@@ -1,4 +1,4 @@
-//! What the analysis makes of the logbook.
+//! Effects of the logbook on the analysis.
 
 use super::{A_WHILE_S, DAY};
 use binnacle_server::worker::Worked;
@@ -23,8 +23,8 @@ async fn left_out(person: &Person, ship: &Ship, reason: &str) -> usize {
     samples.iter().filter(|s| s["reason"] == reason).count()
 }
 
-/// A compass's epochs, after seeing that each begins where the one before ends and
-/// says by what it may be steered, or why not.
+/// Returns a compass's epochs, after checking that each begins where the previous one ends
+/// and has either a curve or a refusal.
 async fn sound_epochs(person: &Person, ship: &Ship) -> Vec<Value> {
     let timeline = person.get(&ship.path("/changes")).await.good();
     let epochs = timeline["epochs"].as_array().unwrap().clone();
@@ -148,7 +148,7 @@ async fn words_alone_make_no_new_model(server: TestServer) {
 async fn without_a_model_it_is_said_what_the_logbook_leaves_out(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
-    // Loaded, and nobody wrote down that she was discharged.
+    // Loaded, without an entry about the discharge.
     let cargo = json!({ "kind": "magnetic_cargo", "from": "2026-11-14T00:00:00Z" });
     nao.report(&ada, &cargo).await;
     nao.put(1, &passage(DAY, 60)).await.good();
@@ -176,15 +176,15 @@ async fn entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline(
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     for entry in [
-        // Long before the first sample, and twice the same,
+        // Long before the first sample, and twice the same;
         json!({ "kind": "adjustment", "from": "1987-03-01T00:00:00Z" }),
         json!({ "kind": "adjustment", "from": "1987-03-01T00:00:00Z" }),
         json!({ "kind": "lightning", "from": "1999-12-31T00:00:00Z" }),
-        // two cargoes and a berth that overlap,
+        // two cargoes and a berth that overlap;
         json!({ "kind": "magnetic_cargo", "from": "2026-11-15T02:00:00Z", "to": "2026-11-15T05:55:00Z" }),
         json!({ "kind": "magnetic_cargo", "from": "2026-11-15T04:00:00Z", "to": "2026-11-15T07:55:00Z" }),
         json!({ "kind": "berth", "from": "2026-11-15T03:00:00Z", "to": "2026-11-15T04:55:00Z" }),
-        // a stay without an end from before it all, and work still to come today.
+        // a stay without an end from before all samples, and work still to come today.
         json!({ "kind": "berth", "from": "2000-01-01T00:00:00Z" }),
         json!({ "kind": "dry_docking", "from": "2026-11-21T12:00:00Z", "to": "2027-02-01T00:00:00Z" }),
     ] {
@@ -201,7 +201,7 @@ async fn entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline(
         "{}",
         epochs[1]
     );
-    // Six hours at a sample every ten minutes, each left out once.
+    // Six hours with a sample every ten minutes, each excluded once.
     let out = left_out(&ada, &nao, "magnetic_cargo").await + left_out(&ada, &nao, "berth").await;
     assert_eq!(out, 36);
 

@@ -1,5 +1,4 @@
-//! The logbook: what is reported, amended and withdrawn, ashore and on board, and
-//! what the analysis makes of it.
+//! The logbook: entries reported, amended and withdrawn, ashore and on board.
 
 mod effects;
 
@@ -105,7 +104,7 @@ async fn a_logbook_is_searched_by_kind_and_time(server: TestServer) {
     server.finish().await;
 }
 
-/// How many samples were left out for a reason.
+/// Counts the samples excluded for a reason.
 async fn an_amendment_keeps_what_was_written_before(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
@@ -324,7 +323,7 @@ async fn a_report_from_on_board_counts_once_however_often_it_comes(server: TestS
     let entry = &listed(&ada, &nao, "").await[0];
     assert_eq!(entry["withdrawn_by"], "Li");
 
-    // One that was taken back before it could be sent.
+    // An entry that was withdrawn before it could be sent.
     let id = "01934f2a-7c00-7000-8000-0000000000b2";
     report["withdrawn"] = json!(true);
     assert_eq!(nao.put_report(id, &report).await.good()["withdrawn"], true);

@@ -1,4 +1,4 @@
-//! Firms, their people, and who sees whom.
+//! Firms, their people, and their visibility to operators.
 
 use crate::run;
 use binnacle_platform::ids::FirmId;
@@ -73,7 +73,7 @@ async fn a_firm_that_has_an_order_is_not_parted_with(server: TestServer) {
         assert!(refused.text.contains("asked for one order"), "{refused:?}");
     }
     parties.post(rosa, "/accept", &json!({})).await.good();
-    // Who waits is asked when who has it gives it back.
+    // The waiting firm gets the offer when the first firm gives the order back.
     for firm in [asked, waits] {
         assert_eq!(part(*firm).await.problem(), "wrong-state");
     }
@@ -97,7 +97,7 @@ async fn a_name_is_what_it_shows(server: TestServer) {
         assert_eq!(refused.problem(), "invalid", "{turned:?}");
         assert!(refused.text.contains("direction of writing"), "{refused:?}");
     }
-    // Of any script, and with what joins its letters.
+    // Any script, with its joining characters.
     for name in ["سفينة", "ספינה", "می\u{200c}خواهم"] {
         let made = ada.post("/vessels", &json!({ "name": name })).await;
         assert_eq!(made.good()["name"], name);

@@ -1,4 +1,4 @@
-//! What cannot be done to an order in its state, by the one side and by the other.
+//! Requests that an order's state forbids, for the operator and for the firm.
 
 use binnacle_server_testing::offers::{OfferParties, proposal};
 use binnacle_server_testing::on_both;
@@ -22,8 +22,8 @@ const STATES: [&str; 7] = [
     "cancelled",
 ];
 
-/// What each side may do, in which of the states; everything else is refused. What is done
-/// at the berth has tests of its own.
+/// Allowed requests of each side by state; everything else is refused. Requests at the
+/// berth have tests of their own.
 const OPERATOR: [(&str, &[&str]); 9] = [
     ("/offer", &["planned", "declined"]),
     ("/accept", &["proposed"]),
@@ -114,7 +114,7 @@ async fn what_a_state_forbids_is_refused_and_writes_nothing(server: TestServer) 
         for (side, table) in [(0, OPERATOR), (1, FIRM)] {
             bring_to(&mut parties, state).await;
             let who = [&parties.ada, &parties.firms[0].1][side].clone();
-            // What may be done is done last, on an order of its own.
+            // An allowed request comes last, on an order of its own.
             for (rest, allowed) in table
                 .iter()
                 .filter(|(_, allowed)| !allowed.contains(&state))
@@ -141,7 +141,7 @@ async fn what_a_state_forbids_is_refused_and_writes_nothing(server: TestServer) 
     server.finish().await;
 }
 
-/// A compass has one order under way.
+/// Cancels the order, because a compass has only one under way.
 async fn cancel_if_open(parties: &OfferParties, state: &str) {
     if state != "cancelled" && parties.view_order().await["state"] != "cancelled" {
         let cancel = json!({ "text": "x" });

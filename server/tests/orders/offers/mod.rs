@@ -1,4 +1,4 @@
-//! Work orders between an operator and firms: offered, answered, carried to the ship.
+//! Offers of work orders to firms: accepted, declined, lapsed, withdrawn.
 
 mod forbidden;
 mod races;
@@ -102,7 +102,7 @@ async fn the_next_firm_is_asked_when_one_declines_or_is_silent(server: TestServe
     assert_eq!(parties.view_order().await["state"], "declined");
     assert_eq!(pepa.get("/work-orders").await.good()["items"], json!([]));
 
-    // It is offered again, also to who was silent.
+    // It is offered again, also to the firm that did not respond.
     let again = json!({ "firms": [parties.firms[1].0], "text": "Please." });
     parties.post(&parties.ada, "/offer", &again).await.good();
     assert_eq!(parties.offers().await, ["declined", "lapsed", "open"]);
@@ -111,7 +111,7 @@ async fn the_next_firm_is_asked_when_one_declines_or_is_silent(server: TestServe
     server.finish().await;
 }
 
-/// The job is in 25 hours; each firm could have two days.
+/// Offers a job in 25 hours, with two days for each response.
 async fn silence_leaves_the_next_firms_time_before_the_job(server: TestServer) {
     let parties = OfferParties::planned(&server, 3).await;
     let mut offer = parties.offer();
@@ -128,7 +128,7 @@ async fn silence_leaves_the_next_firms_time_before_the_job(server: TestServer) {
         parties.view_order().await["answer_by"],
         "2026-11-21T23:40:00Z"
     );
-    // What a firm proposes is answered in time for the third.
+    // The operator has to answer a proposal early enough for the third firm.
     let juan = &parties.firms[1].1;
     parties.post(juan, "/propose", &proposal()).await.good();
     assert_eq!(
@@ -179,7 +179,7 @@ async fn nobody_is_asked_for_a_job_whose_time_is_over(server: TestServer) {
     server.finish().await;
 }
 
-/// Juan wants to be asked a day ahead, and Pepa five hours.
+/// Gives Juan a lead time of a day, and Pepa one of five hours.
 async fn a_firm_that_wants_to_be_asked_earlier_is_passed_over(server: TestServer) {
     let parties = OfferParties::planned(&server, 3).await;
     for (firm, hours) in [(&parties.firms[1].0, 24), (&parties.firms[2].0, 5)] {
@@ -191,7 +191,7 @@ async fn a_firm_that_wants_to_be_asked_earlier_is_passed_over(server: TestServer
     let mut offer = parties.offer();
     offer["answer_within_hours"] = json!(48);
     parties.post(&parties.ada, "/offer", &offer).await.good();
-    // Half of the hour until Juan is to be asked.
+    // Half of the hour that is left before Juan's lead time.
     assert_eq!(
         parties.view_order().await["answer_by"],
         "2026-11-21T07:30:00Z"
@@ -256,7 +256,7 @@ async fn a_proposal_that_nobody_answers_lapses(server: TestServer) {
         .await
         .good();
     server.advance(HOUR_S / 2.0 + 1.0);
-    // The operator has an hour of its own.
+    // The operator has an hour to respond.
     assert_eq!(lapse(&server.app).await.unwrap(), 0);
     server.advance(HOUR_S / 2.0);
     let late = parties.post(&parties.ada, "/accept", &json!({})).await;
@@ -353,7 +353,7 @@ async fn an_offer_that_makes_no_sense_is_refused_whole(server: TestServer) {
         assert_eq!(refused.problem(), "invalid", "{bad}");
     }
     assert_eq!(parties.kinds(&parties.ada).await, ["opened"]);
-    // Nor is an order written whose offer is wrong.
+    // An order with an invalid offer is not created.
     parties
         .post(&parties.ada, "/cancel", &json!({ "text": "no" }))
         .await

@@ -1,4 +1,4 @@
-//! Two who want the same at the same moment: one has it.
+//! Concurrent requests on one order: exactly one succeeds.
 
 use binnacle_orders::dispatch::lapse;
 use binnacle_server_testing::HOUR_S;
@@ -60,7 +60,7 @@ async fn an_acceptance_and_a_cancellation_at_once_leave_one_story(server: TestSe
     match (accepted.status, cancelled.status) {
         (200, 409) => assert_eq!(told, ["accepted"]),
         (409, 200) => assert_eq!(told, ["cancelled"]),
-        // The operator saw it accepted, and cancelled it all the same.
+        // The operator cancelled the accepted order.
         (200 | 404, 200) => assert_eq!(told, ["accepted", "cancelled"]),
         _ => panic!("{accepted:?} {cancelled:?}"),
     }
@@ -82,7 +82,7 @@ async fn an_offer_lapses_once_however_many_look(server: TestServer) {
 
 async fn an_answer_and_the_clock_at_once_leave_one_story(server: TestServer) {
     let parties = OfferParties::offered(&server, 2).await;
-    // The last moment: the answer is in time, whatever the clock does meanwhile.
+    // The last moment: the response is in time, whatever the expiry does meanwhile.
     server.advance(HOUR_S);
     let yes = json!({});
     let (accepted, lapsed) = tokio::join!(
@@ -100,7 +100,7 @@ async fn an_order_that_cannot_be_read_holds_up_no_other_orders_clock(server: Tes
     server
         .sql("UPDATE work_order_entries SET line = '{' WHERE seq = 1")
         .await;
-    // Asked after that one, and overdue after it.
+    // Offered after that one, and overdue after it.
     server.advance(1.0);
     let other = parties.ada.create_vessel("Pinta").await;
     let mut order = parties.new_order();

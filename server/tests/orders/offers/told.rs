@@ -1,4 +1,4 @@
-//! How a firm hears of its orders: live, and by webhooks of its own.
+//! Notice of orders to a firm: live events, and the firm's own webhooks.
 
 use axum::http::StatusCode;
 use binnacle_orders::dispatch::lapse;
@@ -206,11 +206,11 @@ async fn a_firm_follows_its_own_orders_live(server: TestServer) {
             .header("last-event-id", nil);
         let mut response = request.send().await.unwrap();
         if heard.is_empty() {
-            // What was missed comes at once.
+            // Missed events come at once.
             let chunk = response.chunk().await.unwrap().unwrap();
             heard.push(String::from_utf8(chunk.to_vec()).unwrap());
         } else {
-            // Nothing was missed: the first to come is of the offer that is made now.
+            // Nothing was missed: the first event is about the new offer.
             parties.post(rosa, "/decline", &json!({})).await;
             let chunk = response.chunk().await.unwrap().unwrap();
             heard.push(String::from_utf8(chunk.to_vec()).unwrap());

@@ -1,4 +1,4 @@
-//! A firm's whole way through an order, by the example program of the documentation.
+//! A whole order by the documentation's example program for firms.
 
 use binnacle_orders::evidence;
 use binnacle_server_testing::offers::OfferParties;
@@ -105,7 +105,7 @@ async fn openssl(folder: &Path, arguments: &[&str]) -> Vec<u8> {
     done.stdout
 }
 
-/// An order offered to a firm of its own, and the firm's adjuster.
+/// Offers an order to a firm of its own; returns the firm's adjuster.
 async fn offered(server: &TestServer) -> (Job, Person) {
     let job = Job::begin(server).await;
     let (firm, rosa) = job.person.adjuster(server, "rosa").await;
@@ -168,7 +168,7 @@ async fn the_example_client_carries_an_order_to_its_end(server: TestServer) {
     for fact in [
         "no signature covers it: rosa had registered it as \"Office\"",
         "no signature covers it: no firm had registered it",
-        // The list of the firms that are asked.
+        // The list of the firms that get the offer.
         "entries 2 are withheld: what they say cannot be looked into",
     ] {
         assert!(facts.contains(fact), "{fact}: {facts}");
@@ -234,7 +234,7 @@ async fn the_example_client_bargains_writes_and_listens(server: TestServer) {
         .good();
     let agreed = client.good(&["order", order]).await;
     assert!(agreed.contains("agreed at 2100.00 euros"), "{agreed}");
-    // All that there was since before the first: offer, proposal, both messages, agreement.
+    // All entries since the start: offer, proposal, both messages, agreement.
     let none = Uuid::nil().to_string();
     let heard = client
         .good(&["events", "--last", &none, "--count", "5"])
@@ -318,14 +318,14 @@ async fn a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked(ser
     let mine = proof(format!("binnacle firm key {firm}")).await;
     let path = format!("/firms/{firm}/keys");
     let theirs = format!("/firms/{others}/keys");
-    // Another firm cannot pass the key off as its own.
+    // Another firm cannot register the key.
     let stolen = other.post(&theirs, &new(&public_key, &mine)).await;
     assert_eq!(stolen.problem(), "invalid");
     for bad in [
         new("00", &mine),
         new(&public_key, "00"),
         new(&"0".repeat(64), &mine),
-        // Of small order: this signature fits every text.
+        // A key of small order: its signature fits every text.
         new(
             &format!("01{}", "00".repeat(31)),
             &format!("01{}", "00".repeat(63)),

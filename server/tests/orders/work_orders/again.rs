@@ -1,4 +1,4 @@
-//! The magnetometer read once more, after the steps.
+//! The second magnetometer reading, after the steps.
 
 use binnacle_server_testing::TestServer;
 use binnacle_server_testing::binnacles::{binnacle, put};
@@ -83,14 +83,14 @@ async fn a_second_reading_that_does_not_fit_holds_back_the_completion(server: Te
     assert!(verdict == "unexplained" || verdict == "slip", "{verdict}");
     let held = job.post("/complete", &completion_details()).await;
     assert_eq!(held.problem(), "wrong-state");
-    // Neither the same plan once more nor a word that they stand so undoes what was read.
+    // Neither the same plan again nor a statement of the setting overrides the reading.
     job.post("/plan", &json!({})).await.good();
     let stand = json!({ "setting": setting });
     let order = job.post("/corrector-settings", &stand).await.good();
     assert_eq!(order["second_reading"]["verdict"], verdict);
     let held = job.post("/complete", &completion_details()).await;
     assert_eq!(held.problem(), "wrong-state");
-    // They were put right, and the field says so.
+    // They were corrected, and the field confirms it.
     let order = job.post("/second-reading", &second_reading(setting)).await;
     let order = order.good();
     assert_eq!(order["second_reading"]["verdict"], "as_planned", "{order}");
@@ -110,7 +110,7 @@ async fn correctors_found_to_stand_otherwise_explain_a_second_reading(server: Te
     let order = job.post("/second-reading", &nothing_done).await.good();
     let said = &order["second_reading"];
     assert_ne!(said["verdict"], "as_planned", "{said}");
-    // They stand as they were found: what was read is explained, and there has to be a plan.
+    // They stand as found: the reading is explained, and a plan is needed.
     let before: Value = serde_json::from_value(binnacle()["setting"].clone()).unwrap();
     let stand = json!({ "setting": before, "compass_deg": reading()["compass_deg"] });
     let order = job.post("/corrector-settings", &stand).await.good();
@@ -151,7 +151,7 @@ async fn what_is_left_beyond_the_limits_is_planned_anew_from_the_second_reading(
     assert_eq!(said["refusals"][0]["refusal"], "residual_too_large");
     let held = job.post("/complete", &completion_details()).await;
     assert_eq!(held.problem(), "wrong-state");
-    // Read once more it may be as planned: what was read before is as if it had not been.
+    // Another reading may agree with the plan, and replaces the earlier one.
     let order = job.post("/second-reading", &second_reading(setting)).await;
     let order = order.good();
     assert_eq!(order["second_reading"]["verdict"], "as_planned");
@@ -160,7 +160,7 @@ async fn what_is_left_beyond_the_limits_is_planned_anew_from_the_second_reading(
     let order = job.follow_plan().await;
     assert!(order["steps_done"].as_u64() > Some(0), "{order}");
     job.post("/complete", &completion_details()).await.good();
-    // The record tells of the adjustment from its first reading on.
+    // The record starts with the first reading of the adjustment.
     let record = job.person.get(&job.path("/record.json")).await.good();
     assert_eq!(record["predicted_before"], before);
     assert_eq!(record["reading"]["forward"], reading()["forward"]);
@@ -172,7 +172,7 @@ async fn steps_that_do_not_add_up_are_completed_by_a_second_reading_only(server:
     job.post("/berth-reading", &reading()).await.good();
     let mut order = job.post("/plan", &json!({})).await.good();
     while let Some(step) = order["next_step"].as_object() {
-        // Each within its own tolerance, and all the same way.
+        // Each within its own tolerance, all in the same direction.
         let off_deg = 0.95 * number(&step["tolerance_deg"]);
         let after_deg = number(&step["expected_compass_deg"]) + off_deg;
         let after = json!({ "after_deg": after_deg.rem_euclid(360.0) });
@@ -199,7 +199,7 @@ async fn a_word_that_explains_nothing_leaves_a_second_reading_open(server: TestS
     let order = job.post("/second-reading", &off).await.good();
     assert_eq!(order["second_reading"]["verdict"], "unexplained");
     assert_eq!(order["looked_since"], false);
-    // One magnet elsewhere makes nothing of so much.
+    // One magnet in another place cannot explain so much.
     let mut other = setting.clone();
     let trays = if other["athwartship"] == json!([]) {
         "fore_and_aft"
@@ -239,7 +239,7 @@ async fn a_compass_that_stands_against_the_field_is_not_confirmed(server: TestSe
         said["could_be"][0],
         "the compass was misread, or its heading mistyped"
     );
-    // A mistake that explains both comes before what the compass alone could have.
+    // A mistake that explains both is listed before one that explains the compass alone.
     let mut swapped = again.clone();
     swapped["compass_deg"] = json!(compass_deg);
     swapped["forward"] = again["starboard"].clone();
@@ -257,7 +257,7 @@ async fn a_compass_that_stands_against_the_field_is_not_confirmed(server: TestSe
     server.finish().await;
 }
 
-/// A ship that wants heeling magnets, adjusted by a reading with its vertical part.
+/// Adjusts a ship that needs heeling magnets, with the vertical part of the reading.
 async fn heeling(server: &TestServer) -> (Job, Value, Value) {
     let job = Job::begin(server).await;
     let path = format!("/compasses/{}/binnacle", job.compass);

@@ -1,4 +1,4 @@
-//! The card after an adjustment: predicted, verified at sea, and over with its epoch.
+//! The card after an adjustment: predicted, verified at sea, ended with its epoch.
 
 use binnacle_compass::sample::Sample;
 use binnacle_server_testing::alerts::limit;
@@ -25,7 +25,7 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
     assert_eq!(card["verified"], Value::Null);
     assert_eq!(card["adjusted_by"]["order"], job.order);
     assert_eq!(card["adjusted_by"]["licence"], "ES-CA-114");
-    // Nothing at sea supports it yet: no term begins, and it says where it comes from.
+    // Nothing at sea supports it yet: no term starts, and the card names its order.
     assert_eq!(card["unverified_order"], job.order);
     assert_eq!(card["next_due"], Value::Null);
     assert!(
@@ -79,7 +79,7 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
     let pdf = job.person.get(&job.ship.path("/card.pdf")).await;
     assert_eq!(pdf.status, 200);
 
-    // A later fit of the same epoch is of the same adjustment.
+    // A later fit of the same epoch belongs to the same adjustment.
     let later = days_at_sea(&ship, "2026-11-28T13:00:00Z", 60.0);
     let later: Vec<Sample> = later.into_iter().step_by(8).collect();
     job.send(&server, 3, &later, 60.5).await;
@@ -87,7 +87,7 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
     assert_eq!(model["foretold_by"], Value::Null, "it has been fitted");
     assert_eq!(model["epoch_from"], by["adjusted_at"]);
     job.expect_card_status("verified").await;
-    // The book has each card as it was then.
+    // The book has the card status of each time.
     let book = job.book_statuses("2026-11-21T12:00:00Z").await;
     let then: Vec<&Value> = book.iter().collect();
     assert_eq!(then.first(), Some(&&json!("predicted")), "{book:?}");
@@ -95,7 +95,7 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
     let after = job.book_statuses("2026-11-28T14:00:00Z").await;
     assert!(after.iter().all(|status| status == "verified"), "{after:?}");
 
-    // A magnet that somebody moved ends it,
+    // A moved magnet ends it,
     let now = server.app.clock.now().to_string();
     let moved = json!({ "kind": "corrector_change", "from": now });
     job.person
@@ -105,7 +105,7 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
     server.work().await;
     let none = job.person.get(&job.ship.path("/card.json")).await;
     assert_eq!(none.problem(), "no-model-yet");
-    // and what is fitted after that is predicted.
+    // and the next fit is predicted.
     let mut other = ship.clone();
     other.parameters_over_lambda.bx_nt += 700.0;
     let since = days_at_sea(&other, "2027-01-28T02:00:00Z", 6.0);
@@ -115,7 +115,7 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
     server.finish().await;
 }
 
-/// A ship that sends no more: her order ends, and nothing says that it was verified.
+/// A ship that stops sending: its order is closed without verification.
 async fn an_order_closed_without_verification_leaves_its_card_predicted(server: TestServer) {
     let mut job = Job::begin(&server).await;
     let ship = predicted_model(&job.complete().await);
@@ -140,7 +140,7 @@ async fn an_order_closed_without_verification_leaves_its_card_predicted(server: 
     let report = job.person.get("/reports/fleet").await.good();
     let jobs = report["jobs"].to_string();
     assert!(jobs.contains("\"closed_unverified\""), "{report}");
-    // Neither what she sends after all nor a second closing changes it.
+    // Neither later samples nor a second closing change it.
     let sent = job.sail(&server, &ship, 2, 6.0).await;
     assert_eq!(sent["state"], "closed_unverified");
     assert_eq!(sent["verification"], Value::Null);

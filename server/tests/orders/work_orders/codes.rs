@@ -1,4 +1,4 @@
-//! Every refusal that an adjustment knows, brought about as it would be at the binnacle.
+//! Every refusal code of an adjustment, caused as at the binnacle.
 
 use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::on_both;
@@ -46,7 +46,7 @@ async fn a_reading_that_cannot_be_is_refused_by_its_word(server: TestServer) {
             with(&json!({ "lat": -64.1, "lon": 136.0 })),
             "field_too_weak",
         ),
-        // In the far south her own field and the earth's undo each other on this heading.
+        // In the far south the ship's own field cancels the earth's on this heading.
         (
             with(&json!({ "lat": -61.2, "lon": 136.0, "heading_true_deg": 225.0 })),
             "ambiguous_headings",
@@ -71,7 +71,7 @@ async fn a_plan_that_would_not_do_is_refused_by_its_word(server: TestServer) {
         (
             json!({ "residual_deg": 0.5, "lambda_sd": 0.005 }),
             &json!({ "magnetometer": "other" }),
-            // Spheres have to stay, and would not lessen what is left of her.
+            // The spheres are fixed, and would not reduce the rest.
             "residual_too_large",
         ),
         (
@@ -79,7 +79,7 @@ async fn a_plan_that_would_not_do_is_refused_by_its_word(server: TestServer) {
             &json!({ "cargo_on_board": true }),
             "cargo_on_board",
         ),
-        // The heading is right, and nobody is sure of that.
+        // The heading is right, but of unknown accuracy.
         (
             json!({}),
             &json!({ "heading_sd_deg": 4.0 }),
@@ -99,7 +99,7 @@ async fn a_plan_that_would_not_do_is_refused_by_its_word(server: TestServer) {
     server.finish().await;
 }
 
-/// As a ship whose magnetism has changed by 2 µT along the needle would make it.
+/// Returns a reading changed by 2 µT along the needle.
 async fn a_lambda_that_the_last_adjustment_contradicts_is_refused_until_the_logbook_explains_it(
     server: TestServer,
 ) {
@@ -187,7 +187,7 @@ async fn what_was_read_before_the_ship_changed_is_read_again(server: TestServer)
     let refused = job.post("/plan", &json!({})).await;
     assert_eq!(refused.problem(), "wrong-state");
     assert!(refused.text.contains("read it again"), "{refused:?}");
-    // And what was read long ago, when she may have lain elsewhere.
+    // Neither does an old reading, when the ship may have lain elsewhere.
     let other = Job::of(&server, server.admin("eve").await).await;
     other.post("/berth-reading", &reading()).await.good();
     server.advance(60.0 * 3600.0);
@@ -212,7 +212,7 @@ async fn correctors_that_are_not_on_board_are_said_to_be_missing(server: TestSer
     let response = put(&job.person, &path, &empty).await;
     assert_eq!(response.problem(), "invalid");
     assert!(response.text.contains("name at least one"), "{response:?}");
-    // One magnet is too few for what she needs.
+    // One magnet is too few for this ship.
     let mut few = binnacle();
     few["aboard"] = json!({ "magnets": [{ "magnet": "200 mm", "count": 1 }] });
     put(&job.person, &path, &few).await.good();

@@ -1,4 +1,4 @@
-//! The log, the photographs and the archive.
+//! Evidence of an order: the log, the photographs, the archive.
 
 use binnacle_orders::evidence;
 use binnacle_orders::work_orders::log_entry::sha256_hex;
@@ -71,7 +71,7 @@ async fn the_record_can_be_had_in_each_form(server: TestServer) {
             _ => {
                 let text = String::from_utf8(bytes.to_vec()).unwrap();
                 assert!(text.starts_with("<svg ") && text.ends_with("</svg>\n"));
-                // Of each sheet, what it is.
+                // Each sheet has the notice.
                 let sheets = text.matches("<g transform").count();
                 assert!(sheets > 0, "{text}");
                 let says = text.matches("A prediction, and no certificate.").count();
@@ -125,7 +125,7 @@ fn unpacked(bytes: &[u8]) -> BTreeMap<String, Vec<u8>> {
         .collect()
 }
 
-/// As the server packs them.
+/// Packs files as the server does.
 fn packed(files: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
     let stored = SimpleFileOptions::default()
@@ -141,7 +141,7 @@ fn packed(files: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
     writer.finish().unwrap().into_inner()
 }
 
-/// Puts the manifest right about a file that was changed, as a forger would.
+/// Replaces a file and corrects the manifest, as a forger would.
 fn forge(files: &mut BTreeMap<String, Vec<u8>>, name: &str, content: Vec<u8>) {
     let mut manifest: Value = serde_json::from_slice(&files["manifest.json"]).unwrap();
     manifest["files"][name] = json!(sha256_hex(&content));
@@ -152,9 +152,9 @@ fn forge(files: &mut BTreeMap<String, Vec<u8>>, name: &str, content: Vec<u8>) {
     );
 }
 
-/// Tries all that a forger can who keeps the manifest right.
+/// Tries every forgery with a correct manifest.
 fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
-    // Whoever puts the manifest right as well is caught by the log,
+    // A changed file with a correct manifest is found by the log,
     for name in files
         .keys()
         .filter(|name| name.starts_with("photos/") || *name == "record.json")
@@ -166,7 +166,7 @@ fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
         let problems = evidence::verify(&packed(&forged)).problems;
         assert_eq!(problems.len(), 1, "{name}: {problems:?}");
     }
-    // who changes what is drawn from the record by the record,
+    // a changed drawing by the record,
     for (name, content) in [
         (
             "predicted.csv",
@@ -183,14 +183,14 @@ fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
         assert_eq!(problems.len(), 1, "{name}: {problems:?}");
         assert!(problems[0].starts_with(name), "{problems:?}");
     }
-    // who adds a file by the form of the archive,
+    // an added file by the form of the archive,
     for name in ["certificate.pdf", "photos/0099.png"] {
         let mut forged = files.clone();
         forge(&mut forged, name, b"CERTIFICATE".to_vec());
         let problems = evidence::verify(&packed(&forged)).problems;
         assert_eq!(problems, [format!("{name} is no part of this evidence")]);
     }
-    // a log that lost a line by its chain, and one that lost its end by its head.
+    // a removed log line by its chain, and a removed end by the head.
     let log = String::from_utf8(files["entries.ndjson"].clone()).unwrap();
     let lines: Vec<&str> = log.lines().collect();
     for left_out in 0..lines.len() {
@@ -203,8 +203,8 @@ fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
     }
 }
 
-/// The archive with a second entry of one name: the same file under another name as long,
-/// renamed in the octets.
+/// Returns the archive with two entries of one name: packs the file under another name
+/// of the same length, and renames it in the bytes.
 fn with_two_of(files: &BTreeMap<String, Vec<u8>>, name: &str, content: &[u8]) -> Vec<u8> {
     let stand_in = "x".repeat(name.len());
     let mut more = files.clone();
@@ -220,7 +220,7 @@ fn with_two_of(files: &BTreeMap<String, Vec<u8>>, name: &str, content: &[u8]) ->
     bytes
 }
 
-/// What an unpacker shows and nobody checks.
+/// Checks archive details that an unpacker shows: comments, times, modes.
 fn what_stands_beside_the_files_is_found_out(files: &BTreeMap<String, Vec<u8>>) {
     let whole = packed(files);
     assert_eq!(evidence::verify(&whole).problems, Vec::<String>::new());
@@ -253,7 +253,7 @@ fn what_stands_beside_the_files_is_found_out(files: &BTreeMap<String, Vec<u8>>) 
     }
 }
 
-/// The files with a log that was changed, its chain and the manifest put right.
+/// Returns the files with a changed log, its chain and the manifest corrected.
 fn with_another_log(
     files: &BTreeMap<String, Vec<u8>>,
     change: &dyn Fn(&mut Vec<Value>),
@@ -284,7 +284,7 @@ fn with_another_log(
     forged
 }
 
-/// What follows from the log alone is told as what the log says.
+/// Checks that statements from the log alone are marked as such.
 fn what_no_signature_covers_is_told_as_such(files: &BTreeMap<String, Vec<u8>>) {
     let with = |change: &dyn Fn(&mut Vec<Value>)| {
         evidence::verify(&packed(&with_another_log(files, change)))
@@ -319,7 +319,7 @@ fn what_no_signature_covers_is_told_as_such(files: &BTreeMap<String, Vec<u8>>) {
     });
     assert_eq!(found.problems.len(), 1, "{found:?}");
     assert!(found.problems[0].contains("small order"), "{found:?}");
-    // Who completed it stands in the record too.
+    // The record names the person who completed it too.
     let found = with(&|log| {
         let mut entries = log.iter_mut();
         let completion = entries.find(|entry| entry["kind"] == "completion");
@@ -396,7 +396,7 @@ async fn evidence_that_was_tampered_with_is_found_out(server: TestServer) {
         );
         let mut changed = files.clone();
         let content = changed.get_mut(name).unwrap();
-        // A digit for another, so that JSON stays JSON; a picture has none.
+        // Another digit, so that JSON stays valid; a picture has none.
         let place = content.iter().rposition(u8::is_ascii_digit);
         let byte = &mut content[place.unwrap_or(0)];
         *byte = if *byte == b'7' { b'8' } else { b'7' };
@@ -408,7 +408,7 @@ async fn evidence_that_was_tampered_with_is_found_out(server: TestServer) {
     what_stands_beside_the_files_is_found_out(&files);
     what_no_signature_covers_is_told_as_such(&files);
     assert!(!evidence::verify(b"not an archive").problems.is_empty());
-    // A photograph that comes after the record is evidence, and nobody has signed it.
+    // A photograph after the record is evidence, and is not signed.
     job.photo(PICTURE).await.good();
     let found = evidence::verify(&job.evidence().await);
     assert_eq!(found.problems, Vec::<String>::new());

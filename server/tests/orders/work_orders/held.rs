@@ -1,5 +1,5 @@
-//! What holds an adjustment back: a ship that swung, a binnacle written
-//! meanwhile, a moment before its own steps, and a prediction that nobody proved.
+//! Conditions that stop an adjustment: a ship that swung, a binnacle changed meanwhile,
+//! a completion dated before the steps, a prediction that is not verified.
 
 use binnacle_server_testing::alerts::report_departure_without_samples;
 use binnacle_server_testing::binnacles::{binnacle, put};
@@ -40,7 +40,7 @@ async fn a_compass_that_turned_by_itself_is_not_read_for_a_step(server: TestServ
         "{swung:?}"
     );
     let order = job.post(&path, &from(now_deg + 1.0)).await.good();
-    // The next one is expected from what the compass reads now.
+    // The next step starts from the present compass reading.
     if let Some(next) = order["next_step"].as_object() {
         let expected = number(&order["compass_deg"]) + number(&next["change_deg"]);
         let off = number(&next["expected_compass_deg"]) - expected.rem_euclid(360.0);
@@ -126,7 +126,7 @@ async fn an_adjustment_is_not_dated_before_its_steps(server: TestServer) {
     server.advance(86_400.0);
     job.person = Person::sign_in(&server, job.person.operator, &job.person.email).await;
     let order = job.follow_plan().await;
-    // The berth was read a day before the steps, and so was this.
+    // This time is before the steps too, like that of the berth reading.
     let again = second_reading(&order["plan"]["plan"]["setting"]);
     let refused = job.post("/second-reading", &again).await;
     assert_eq!(refused.problem(), "invalid");

@@ -1,4 +1,4 @@
-//! What keeps an order within its limits, and its steps at where the compass stands.
+//! Limits of an order, and the compass reading that a step starts from.
 
 use binnacle_server_testing::TestServer;
 use binnacle_server_testing::on_both;
@@ -35,7 +35,7 @@ async fn a_step_starts_from_the_compass_as_it_was_last_read(server: TestServer) 
         turned(number(&next["change_deg"]), from_here).abs() < 1e-6,
         "{next}"
     );
-    // Moved and not read: nobody knows what the compass reads now.
+    // Moved without a reading: the present compass reading is unknown.
     let stand = json!({ "setting": {} });
     let order = job.post("/corrector-settings", &stand).await.good();
     assert_eq!(order["compass_deg"], Value::Null);
@@ -72,7 +72,7 @@ async fn what_was_planned_beyond_the_limits_is_not_completed(server: TestServer)
     let mut job = Job::begin(&server).await;
     job.replace_order(json!({ "residual_deg": 2.9 })).await;
     job.adjust().await;
-    // As if it had been planned when plans beyond the limits were still offered.
+    // As if planned by an earlier version, which offered plans beyond the limits.
     server
         .sql(
             "UPDATE work_order_entries \

@@ -1,4 +1,4 @@
-//! Work orders: from the berth's reading to the evidence and the proof at sea.
+//! Work orders from the berth reading to the verification at sea.
 
 mod again;
 mod card;

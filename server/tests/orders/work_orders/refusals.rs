@@ -1,4 +1,4 @@
-//! What is sent twice, cannot be, or is not the caller's to do.
+//! Repeated, impossible and forbidden requests at the berth.
 
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::work_orders::PICTURE;
@@ -43,7 +43,7 @@ async fn a_request_sent_again_under_its_key_writes_one_entry(server: TestServer)
         assert_eq!((again.status, &again.text), (first.status, &first.text));
         assert_eq!(job.view_order().await["last_seq"], seq, "{rest}");
     }
-    // A step that was sent again is not the next one.
+    // A repeated step is not the next step.
     let step = job.view_order().await["next_step"].clone();
     let path = format!("/steps/{}", step["number"]);
     let read = json!({ "after_deg": step["expected_compass_deg"] });
@@ -61,7 +61,7 @@ async fn what_a_phone_kept_for_days_is_written_once(server: TestServer) {
     let photo = PICTURE.to_vec();
     for days in [0.0, 3.0, 40.0] {
         server.advance(86_400.0 * days);
-        // No session lasts so long.
+        // The session has expired.
         job.person = Person::sign_in(&server, job.person.operator, &job.person.email).await;
         let send = |rest: &str, key: &str| {
             let request = job.person.request(Method::POST, &job.path(rest));
@@ -76,7 +76,7 @@ async fn what_a_phone_kept_for_days_is_written_once(server: TestServer) {
             ApiResponse::of(other).await.problem(),
             "idempotency-key-reused"
         );
-        // Whatever else is written meanwhile under keys of their own.
+        // Other requests meanwhile have keys of their own.
         let another = send("/remarks", &format!("after {days}"));
         let another = another.json(&json!({ "text": "crane gone" }));
         ApiResponse::of(another).await.good();
@@ -168,12 +168,12 @@ async fn a_reading_is_doubted_by_the_port_and_by_the_track(server: TestServer) {
             .extend(changes.as_object().unwrap().clone());
         body
     };
-    // Of a week ago no plan could be made.
+    // A reading a week old is of no use for a plan.
     let old = with(json!({ "at": "2026-11-14T06:30:00Z" }));
     let response = job.post("/berth-reading", &old).await;
     assert_eq!(response.problem(), "invalid");
     assert!(response.text.contains("hours back"), "{response:?}");
-    // East for west; and when by her own track she was at sea.
+    // East for west, and a time at which the ship was at sea by its track.
     for (body, words) in [
         (with(json!({ "lon": 3.04 })), "nautical miles from Bilbao"),
         (
@@ -213,7 +213,7 @@ async fn a_step_that_reads_otherwise_is_planned_anew(server: TestServer) {
     let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let mut order = job.post("/plan", &json!({})).await.good();
-    // The first step with magnets in it, which a heading between the cardinals shows.
+    // The first step with magnets, which an intercardinal heading shows.
     while order["next_step"]["to"]["place"] != "magnets" {
         let step = &order["next_step"];
         let path = format!("/steps/{}", step["number"]);

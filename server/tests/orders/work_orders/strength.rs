@@ -1,4 +1,4 @@
-//! A step that the compass shows otherwise, and what becomes of what was learnt from it.
+//! A step with an unexpected compass reading, and the magnet strength estimated from it.
 
 use binnacle_compass::model::Model;
 use binnacle_server_testing::on_both;
@@ -15,7 +15,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-/// A ship that wants magnets near the card, where holes tell.
+/// Returns a ship that needs magnets near the card, where one hole makes a difference.
 fn ship() -> Model {
     let mut ship = true_model();
     (
@@ -25,7 +25,7 @@ fn ship() -> Model {
     ship
 }
 
-/// What the compass reads at the berth with correctors that stand so, but for its needles.
+/// Returns the compass reading at the berth with a corrector setting, without needle effects.
 fn shown_deg(setting: &Value) -> f64 {
     let field = second_reading_after(&reading_on_ship(&ship()), setting);
     let [forward, starboard] = ["forward", "starboard"].map(|part| number(&field[part]));
@@ -36,7 +36,7 @@ fn turn_deg(from: &Value, to: &Value) -> f64 {
     (shown_deg(to) - shown_deg(from) + 540.0).rem_euclid(360.0) - 180.0
 }
 
-/// The same with the step's tray so many holes off, with its hole; none where it cannot be.
+/// Returns setting and hole with the step's tray some holes off; `None` outside the holes.
 fn miscounted(step: &Value, by: i64) -> Option<(u64, Value)> {
     let to = &step["to"];
     let hole = u64::try_from(to["hole"].as_i64()? + by).ok()?;
@@ -51,8 +51,8 @@ fn miscounted(step: &Value, by: i64) -> Option<(u64, Value)> {
     Some((hole, setting))
 }
 
-/// A job whose last step went three holes off, with the step, how the correctors stand, and
-/// what the compass reads.
+/// Returns a job whose last step was three holes off, with the step, the corrector setting
+/// and the compass reading.
 async fn gone_wrong(server: &TestServer) -> (Job, Value, Value, f64) {
     let person = server.admin("ada").await;
     let job = Job::aboard(server, person, &ship()).await;
@@ -90,7 +90,7 @@ async fn gone_wrong(server: &TestServer) -> (Job, Value, Value, f64) {
     }
 }
 
-/// Follows a new plan: the magnets do what the catalogue has of them.
+/// Follows a new plan with magnets of catalogue strength.
 async fn goes_on(job: &Job, said: &Value) {
     let order = job.post("/corrector-settings", said).await.good();
     assert_eq!(order["last_step"], Value::Null);

@@ -1,4 +1,4 @@
-//! The whole way, from the berth to the sea.
+//! A whole order, from the berth to the verification at sea.
 
 use binnacle_server_testing::alerts;
 use binnacle_server_testing::on_both;
@@ -42,7 +42,7 @@ async fn an_order_goes_from_the_berth_to_a_predicted_model(server: TestServer) {
     let done = job.post("/complete", &completion_details()).await.good();
     assert_eq!(done["state"], "adjusted");
 
-    // The binnacle stands as it was set,
+    // The binnacle has the new setting,
     let path = job
         .ship
         .path(&format!("/compasses/{}/binnacle", job.compass));
@@ -52,7 +52,7 @@ async fn an_order_goes_from_the_berth_to_a_predicted_model(server: TestServer) {
         kept["binnacle"]["setting"],
         order["plan"]["plan"]["setting"]
     );
-    // the logbook has the moment,
+    // the logbook has the time,
     let logbook = job
         .person
         .get(&job.ship.path("/logbook?kind=adjustment"))
@@ -63,7 +63,7 @@ async fn an_order_goes_from_the_berth_to_a_predicted_model(server: TestServer) {
         done["completion"]["logbook_entry"]
     );
     assert_eq!(logbook["items"][0]["compass_id"], job.compass);
-    // and the ship gets what is foretold, before and after the analysis.
+    // and the ship gets the predicted model, before and after the analysis.
     for _ in 0..2 {
         let sent = job.ship.downlink("").await;
         assert_eq!(sent["model"]["id"], done["completion"]["model_id"]);
@@ -130,7 +130,7 @@ async fn a_heading_at_sea_that_does_not_agree_is_an_alert(server: TestServer) {
     let told = job.person.get(path).await.good();
     let text = told["items"][0]["text"].as_str().unwrap();
     assert!(text.contains("off what was foretold"), "{text}");
-    // And the compass is to be adjusted once more.
+    // The compass is due for another adjustment.
     let needs = job.person.get("/needs").await.good();
     let mut causes = needs["items"][0]["causes"].as_array().unwrap().iter();
     let cause = causes.find(|cause| cause["kind"] == "failed_verification");
@@ -138,7 +138,7 @@ async fn a_heading_at_sea_that_does_not_agree_is_an_alert(server: TestServer) {
     assert_eq!(cause["due_on"], "2026-12-22");
     let reason = cause["reason"].as_str().unwrap();
     assert!(reason.contains("failed: headings are"), "{reason}");
-    // To file it away changes nothing of that: the next analysis still raises the alert.
+    // Closing the order does not change that: the next analysis still raises the alert.
     job.post("/close", &json!({ "text": "filed" })).await.good();
     let after = job.person.get("/needs").await.good();
     assert_eq!(after["items"][0]["causes"], needs["items"][0]["causes"]);
@@ -160,7 +160,7 @@ async fn reason_of_need(job: &Job) -> String {
     need["reason"].as_str().unwrap().to_owned()
 }
 
-/// A job that the sea has disproved, on the day after the adjustment.
+/// Returns a job that failed verification on the day after the adjustment.
 async fn disproved(server: &TestServer) -> Job {
     let mut job = Job::begin(server).await;
     let mut ship = predicted_model(&job.complete().await);
@@ -195,7 +195,7 @@ async fn another_orders_adjustment_answers_the_verdict_of_the_first(server: Test
     let mut again = job.new_order();
     again["planned_at"] = json!("2026-11-23T09:00:00Z");
     job.person.post("/work-orders", &again).await.good();
-    // An hour after the first, before the sea's verdict came.
+    // An hour after the first one, before the verification result.
     server
         .sql(
             "UPDATE work_orders SET state = 'adjusted', completed_at =
@@ -250,7 +250,7 @@ async fn an_adjustment_clears_what_was_open_about_the_ship_before_it(server: Tes
         let why = alert["clearing_reason"].as_str().unwrap_or_default();
         assert!(why.contains("the predicted card holds"), "{alert}");
     }
-    // Nor does what the new samples show bring it back within its week.
+    // New samples do not raise it again within its week.
     let ship = predicted_model(&job.view_order().await);
     let mut job = job;
     job.sail(&server, &ship, 9, 2.0).await;

@@ -1,4 +1,4 @@
-//! When a letter goes: at once, after quiet hours, with a digest, or never.
+//! Time of a letter: at once, after quiet hours, with a digest, or never.
 
 use super::{mailed, say};
 use binnacle_planning::notifications::post;
@@ -23,7 +23,7 @@ on_both!(
     who_is_removed_gets_no_more_letters,
 );
 
-/// 08:00 in Madrid when every test begins, in the quiet hours until 09:30.
+/// Returns settings with quiet hours until 09:30 in Madrid, where every test begins at 08:00.
 fn quiet() -> serde_json::Value {
     json!({
         "time_zone": "Europe/Madrid", "quiet_hours": { "from": "21:00", "to": "09:30" },
@@ -58,7 +58,7 @@ async fn quiet_hours_keep_letters_back_and_put_them_together(server: TestServer)
     let text = read["text"].as_str().unwrap();
     let (last, first) = (text.find("juan accepts"), text.find("rosa declines"));
     assert!(last.unwrap() < first.unwrap(), "{text}");
-    // What each has to say, with its own page, as a letter of its own has it.
+    // The text and the link of each, as in a letter of its own.
     let page = format!("https://binnacle.example/work-orders/{}", parties.order);
     assert_eq!(text.matches(&page).count(), 2, "{text}");
     let listed = parties.ada.get("/notifications").await.good();
@@ -105,13 +105,13 @@ async fn a_critical_alert_passes_quiet_hours_and_a_warning_does_not(server: Test
     limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let critical = "Nao: critical, deviation over the limit";
     assert_eq!(mailed(&server, &relay).await, [critical]);
-    // Nor does it wait for a digest.
+    // It does not wait for a digest either.
     settings["ways"] = json!({ "alert": "digest" });
     say(&ada, &settings).await.good();
     limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
     limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     assert_eq!(mailed(&server, &relay).await, [critical; 2]);
-    // Only who wants none of it gets none.
+    // Only a person who turned it off gets none.
     settings["ways"] = json!({ "alert": "off" });
     say(&ada, &settings).await.good();
     limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
@@ -129,7 +129,7 @@ async fn who_was_told_of_an_alert_hears_once_that_it_sank_or_is_over(server: Tes
         .good();
     let vessel = ada.get(&nao.path("")).await.good();
     let worst_deg = vessel["worst"]["deviation_deg"].as_f64().unwrap().abs();
-    // Below the limit, but not by so much that the alert would be over.
+    // Below the limit, but not far enough to clear the alert.
     let sunk_deg = worst_deg + 0.45;
     for deviation_deg in [1.0, 2.9, sunk_deg, 45.0, 2.9, sunk_deg, 2.9, 45.0] {
         limit(

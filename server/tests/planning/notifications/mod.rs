@@ -1,4 +1,4 @@
-//! Notifications: what each person is told, and when, and how.
+//! Notifications to people: in the dashboard and by mail.
 
 mod mailed;
 mod needs;
@@ -22,7 +22,7 @@ on_both!(
     what_was_read_is_marked_and_ones_own,
 );
 
-/// The subjects of a person's notifications, the first first.
+/// Returns the subjects of a person's notifications, oldest first.
 pub(crate) async fn told(person: &Person) -> Vec<String> {
     let listed = person.get("/notifications").await.good();
     let items = listed["items"].as_array().unwrap().iter().rev();
@@ -31,7 +31,7 @@ pub(crate) async fn told(person: &Person) -> Vec<String> {
         .collect()
 }
 
-/// Makes the letters that are due and sends them; the subjects of all there were.
+/// Makes and sends the letters that are due; returns the subjects of all letters so far.
 async fn mailed(server: &TestServer, relay: &Relay) -> Vec<String> {
     post(&server.app).await.unwrap();
     deliver(server, relay).await;
@@ -124,7 +124,7 @@ async fn who_does_something_is_not_told_of_it(server: TestServer) {
     parties.post(rosa, "/accept", &json!({})).await.good();
     let text = json!({ "text": "Is the gangway to port?" });
     parties.post(&parties.ada, "/messages", &text).await;
-    // An admin stands in for the adjuster.
+    // An admin acts for the adjuster.
     parties
         .post(&parties.ada, "/on-board", &json!({}))
         .await

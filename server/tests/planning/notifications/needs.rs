@@ -1,4 +1,4 @@
-//! Needs that press, and due dates that come nearer.
+//! Notifications of due dates.
 
 use super::told;
 use crate::schedule::{due_vessel, put};
@@ -61,7 +61,7 @@ async fn a_due_date_that_is_brought_forward_is_told(server: TestServer) {
         raised["text"].as_str().unwrap().contains("dry-docking"),
         "{raised}"
     );
-    // Adjusted again, it is put off: that is no news.
+    // A new adjustment postpones it, which is not notified.
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-20T08:00:00Z" });
     ada.post(&format!("{path}/logbook"), &adjusted).await.good();
     assert_eq!(look(&server.app).await.unwrap(), 0);
@@ -85,7 +85,7 @@ async fn a_fleet_that_cannot_be_read_holds_up_no_other_fleets_needs(server: Test
     server
         .sql("UPDATE vessel_particulars SET particulars = '{'")
         .await;
-    // Entered after her, and looked through after her.
+    // Created after Ada, and checked after her.
     let eve = server.admin("eve").await;
     due_vessel(&eve, "Pinta").await;
     assert_eq!(look(&server.app).await.unwrap(), 1);

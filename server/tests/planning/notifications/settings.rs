@@ -1,4 +1,4 @@
-//! What a person says of how to be told.
+//! A person's notification settings.
 
 use super::say;
 use binnacle_server_testing::offers::OfferParties;

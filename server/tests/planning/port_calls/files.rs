@@ -1,4 +1,4 @@
-//! Files of port calls: taken whole or not at all.
+//! Files of port calls: imported whole or not at all.
 
 use super::listed;
 use binnacle_server_testing::on_both;
@@ -45,7 +45,7 @@ async fn a_csv_is_taken_once_however_often_it_comes(server: TestServer) {
     let file = format!("{HEADER}{}{}", row("a", "NLRTM", 8), row("b", "BEANR", 10));
     assert_eq!(send(&ada, &csv, &file).await.good(), did(2, 0, 0, 0, 0));
     assert_eq!(send(&ada, &csv, &file).await.good(), did(0, 0, 2, 0, 0));
-    // A call moves into the other's place, and that one away, in one file.
+    // One file moves a port call into the time of another, and that one away.
     let file = format!("{HEADER}{}{}", row("a", "NLRTM", 10), row("b", "BEANR", 12));
     assert_eq!(send(&ada, &csv, &file).await.good(), did(0, 2, 0, 0, 0));
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 10", "BEANR 12"]);
@@ -55,7 +55,7 @@ async fn a_csv_is_taken_once_however_often_it_comes(server: TestServer) {
     server.finish().await;
 }
 
-/// An export that is sent each night still has the call that was left yesterday.
+/// Imports a nightly export that still contains a past port call.
 async fn a_csv_is_taken_when_some_of_its_calls_are_over(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
@@ -150,9 +150,9 @@ async fn a_file_that_replaces_withdraws_what_is_not_in_it_any_more(server: TestS
     send(&ada, &csv, &file).await.good();
     let file = format!("{HEADER}{}", row("c", "DEHAM", 9));
     assert_eq!(send(&ada, &csv, &file).await.good(), did(1, 0, 0, 2, 0));
-    // What somebody entered by hand stays.
+    // Port calls entered by hand stay.
     assert_eq!(listed(&ada, &path(&nao)).await, ["ESBIO 04", "DEHAM 09"]);
-    // What comes back counts again, with its history.
+    // A returning port call is valid again, with its history.
     let file = format!("{HEADER}{}", row("a", "NLRTM", 8));
     assert_eq!(send(&ada, &csv, &file).await.good(), did(0, 1, 0, 1, 0));
     let list = ada.get(&path(&nao)).await.good();
@@ -186,7 +186,7 @@ async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(server: TestServe
     );
     let nobody = send(&ada, "/port-calls.csv", rows(["Nao", "Niña"])).await;
     assert!(nobody.text.contains("line 3: vessel: there is no vessel"));
-    // Whatever is wrong with a row, every other is looked at.
+    // Every row is checked, whatever is wrong with another one.
     let more = format!(
         "{}Nao,c,NLRTM,soon,2026-12-20T00:00:00Z,\nNao,{}",
         rows(["Niña", "Santa"]),

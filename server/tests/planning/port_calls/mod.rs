@@ -1,4 +1,4 @@
-//! Port calls one by one: entered, amended, withdrawn, and how a ship lies alongside.
+//! Single port calls: entered, amended, withdrawn; and the berth heading.
 
 mod files;
 
@@ -133,7 +133,7 @@ async fn calls_of_one_vessel_do_not_overlap(server: TestServer) {
         patch(&ada, &one, &into_first).await.problem(),
         "wrong-state"
     );
-    // Right after the other she may; and into one that is withdrawn.
+    // Right after the other port call it may; and into a withdrawn one.
     let right_after = json!({ "eta": "2026-12-09T18:00:00Z" });
     patch(&ada, &one, &right_after).await.good();
     let withdraw = format!("{}/{}/withdraw", path(&nao), first["id"].as_str().unwrap());
@@ -239,7 +239,7 @@ async fn a_berth_heading_is_learnt_from_the_fleets_earlier_calls(server: TestSer
     let mut next = call("NLRTM", 8);
     next["berth"] = json!("A5");
     let next = ada.post(&path(&pinta), &next).await.good();
-    // She has not been there yet: nobody knows.
+    // The first vessel has not been there yet: the heading is unknown.
     assert_eq!(next["berth_heading"], json!(null));
     server.advance(12.0 * 86_400.0);
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
@@ -247,14 +247,14 @@ async fn a_berth_heading_is_learnt_from_the_fleets_earlier_calls(server: TestSer
     let found = ada.get(&path(&pinta)).await.good();
     let learnt = json!({ "heading_deg": 112.0, "source": "berth" });
     assert_eq!(found["items"][0]["berth_heading"], learnt);
-    // What was given wrongly is put right after the call is over.
+    // A wrong heading can be corrected after the port call.
     let one = format!("{}/{}", path(&nao), known["id"].as_str().unwrap());
     patch(&ada, &one, &json!({ "berth_heading_deg": 292 }))
         .await
         .good();
     let found = ada.get(&path(&pinta)).await.good();
     assert_eq!(found["items"][0]["berth_heading"]["heading_deg"], 292.0);
-    // Another operator's ship learns nothing from it.
+    // Another operator's ship does not use it.
     let santa = eve.create_vessel("Santa").await;
     let theirs = eve.post(&path(&santa), &call("NLRTM", 12)).await.good();
     assert_eq!(theirs["berth_heading"], json!(null));

@@ -1,4 +1,4 @@
-//! A job that a firm has agreed to.
+//! A job that a firm has accepted.
 
 use super::offers::{firm, offer};
 use super::{due_vessel, enter, solve};
@@ -7,13 +7,13 @@ use binnacle_server_testing::port_calls;
 use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use serde_json::{Value, json};
 
-/// A ship in Rotterdam from the fourteenth to the fifteenth, and a firm that has the job.
+/// A ship in Rotterdam from the fourteenth to the fifteenth, and the firm with the job.
 pub(super) struct Agreed {
     pub(super) ada: Person,
     pub(super) rosa: Person,
     pub(super) firm: String,
     pub(super) nao: Value,
-    /// Paths of the order and of the call.
+    /// Path of the order; that of the port call follows.
     pub(super) order: String,
     pub(super) call: String,
 }
@@ -64,7 +64,7 @@ impl Agreed {
     }
 }
 
-/// What the two sides wrote to each other.
+/// Returns the messages of an order.
 pub(super) async fn messages(person: &Person, order: &str) -> Vec<Value> {
     let list = person.get(&format!("{order}/messages")).await.good();
     list["items"].as_array().unwrap().clone()

@@ -1,4 +1,4 @@
-//! An agreed job that can hardly be done in time any more: its alert, and what ends it.
+//! The alert of an agreed job at risk, and its end.
 
 use super::agreed::Agreed;
 use super::offers::{alerts, direct, firm};
@@ -18,7 +18,7 @@ on_both!(
 async fn a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     follow(&server).await;
-    // She is due on the twentieth.
+    // The compass is due on the twentieth.
     agreed
         .moves("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
         .await;
@@ -31,7 +31,7 @@ async fn a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks(server: Te
         summary.contains("agreed with rosa for 2026-12-15"),
         "{summary}"
     );
-    // A new day in the call is late, and agreed on all the same if both want it.
+    // A new day in the port call is late, but both sides may agree on it.
     agreed.retime("2026-12-22T08:00:00Z").await.good();
     agreed.respond(&agreed.rosa, "accept").await.good();
     assert_eq!(agreed.view_order().await["call_fit"], Value::Null);

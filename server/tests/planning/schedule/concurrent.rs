@@ -1,4 +1,4 @@
-//! Solving at once.
+//! Concurrent requests for a schedule.
 
 use super::{due_vessel, enter, planned_firm};
 use binnacle_server_testing::TestServer;

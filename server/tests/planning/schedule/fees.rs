@@ -1,4 +1,4 @@
-//! What a firm is paid: offered as the schedule has it, proposed otherwise, agreed on.
+//! Fees of a job: offered from the schedule, proposed by the firm, agreed.
 
 use super::offers::{firm, offer};
 use super::{due_vessel, enter, put, solve, terms};
@@ -17,7 +17,7 @@ on_both!(
     who_answers_for_another_firm_is_refused,
 );
 
-/// A ship whose job is offered to one firm of two; the order's path.
+/// Offers a ship's job to one firm of two; returns the order's path.
 async fn asked(server: &TestServer) -> (Person, Value, Person, String) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
@@ -64,7 +64,7 @@ async fn an_offer_carries_the_fee_that_the_schedule_saw(server: TestServer) {
         let seen = rosa.get(&path).await.good();
         assert_eq!(seen["fee_eur"], Value::Null, "nothing is agreed on yet");
         fees.push(seen["offers"][0]["fee_eur"].as_f64().unwrap());
-        // Whoever says yes has it at that.
+        // A firm that accepts gets this fee.
         let taken = yes(&rosa, &path).await;
         assert_eq!(taken["fee_eur"], seen["offers"][0]["fee_eur"]);
         let log = ada.get(&format!("{path}/entries")).await.good();
@@ -73,7 +73,7 @@ async fn an_offer_carries_the_fee_that_the_schedule_saw(server: TestServer) {
         assert_eq!(said["entry"]["content"]["fee_eur"], taken["fee_eur"]);
     }
     assert_eq!(fees, [1800.0, 400.5]);
-    // What is offered by hand is offered at the fee for one compass.
+    // An order offered by hand has the fee for one compass.
     let pinta = due_vessel(&ada, "Pinta").await;
     let by_hand = json!({ "vessel_id": pinta["id"], "compass_id": super::compass_of(&pinta),
                           "port": "BEANR", "planned_at": "2026-12-01T08:00:00Z",
@@ -151,7 +151,7 @@ async fn a_fee_that_is_not_agreed_to_leaves_the_next_firm_its_own(server: TestSe
     let seen = juan.get(&order).await.good();
     assert_eq!(seen["offers"][0]["fee_eur"], 1950.0);
     assert!(!seen.to_string().contains("2500"), "{seen}");
-    // A firm that asks for another time only has it at the fee that was offered.
+    // A firm that proposes only another time keeps the offered fee.
     let later = json!({ "planned_at": "2026-12-15T10:00:00Z" });
     propose(&juan, &order, &later).await;
     let agreed = yes(&ada, &order).await;
@@ -174,7 +174,7 @@ async fn a_fee_alone_leaves_what_became_of_the_call(server: TestServer) {
         "nobody agreed on another day"
     );
     assert_eq!(agreed["fee_eur"], 2100.0);
-    // Another time leaves the fee.
+    // Another time does not change the fee.
     let later = json!({ "terms": { "planned_at": "2026-12-17T08:00:00Z" } });
     ada.post(&format!("{order}/retime"), &later).await.good();
     let moved = yes(&rosa, &format!("{order}/retime")).await;

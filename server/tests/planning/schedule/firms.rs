@@ -1,4 +1,4 @@
-//! On what terms firms work for an operator.
+//! Terms of firms with an operator.
 
 use super::{due_vessel, enter, firm, planned_firm, put, solve, terms};
 use binnacle_server_testing::on_both;

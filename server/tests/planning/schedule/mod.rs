@@ -1,4 +1,4 @@
-//! The schedule: what it is made from, and that it follows what changes.
+//! The schedule: its inputs, its jobs, and its updates.
 
 mod agreed;
 mod at_risk;
@@ -23,7 +23,7 @@ use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use reqwest::Method;
 use serde_json::{Value, json};
 
-/// A firm that a person's operator works with.
+/// Creates a firm that works for a person's operator.
 pub(crate) async fn firm(server: &TestServer, person: &Person, name: &str) -> String {
     let now = Time(server.app.clock.now());
     let mut tx = server.app.db.begin().await.unwrap();
@@ -35,7 +35,7 @@ pub(crate) async fn firm(server: &TestServer, person: &Person, name: &str) -> St
     id.to_string()
 }
 
-/// Terms of a firm with one team in Rotterdam and Antwerp, on every day but Sunday.
+/// Returns terms of one team in Rotterdam and Antwerp, on every day but Sunday.
 pub(crate) fn terms() -> Value {
     json!({
         "ports": [{ "port": "NLRTM", "travel_eur": 100 }, { "port": "BEANR", "travel_eur": 400 }],
@@ -47,7 +47,7 @@ pub(crate) async fn put(person: &Person, path: &str, body: &Value) -> ApiRespons
     ApiResponse::of(person.request(Method::PUT, path).json(body)).await
 }
 
-/// A firm with terms.
+/// Creates a firm with terms.
 pub(crate) async fn planned_firm(server: &TestServer, person: &Person, name: &str) -> String {
     let id = firm(server, person, name).await;
     put(person, &format!("/firms/{id}/terms"), &terms())
@@ -56,7 +56,7 @@ pub(crate) async fn planned_firm(server: &TestServer, person: &Person, name: &st
     id
 }
 
-/// A Norwegian vessel, adjusted so long ago that her compass is due on 2026-12-20.
+/// Creates a Norwegian vessel whose compass is due on 2026-12-20.
 pub(crate) async fn due_vessel(person: &Person, name: &str) -> Value {
     let vessel = person.create_vessel(name).await;
     let path = format!("/vessels/{}", vessel["id"].as_str().unwrap());
@@ -73,7 +73,7 @@ pub(crate) async fn due_vessel(person: &Person, name: &str) -> Value {
     vessel
 }
 
-/// A call of hers, entered.
+/// Enters a port call of the vessel.
 pub(crate) async fn enter(person: &Person, vessel: &Value, port: &str, day: u32) -> Value {
     let path = port_calls::path(vessel);
     person
@@ -88,7 +88,7 @@ pub(crate) async fn solve(person: &Person) -> Value {
     solved["plan"].clone()
 }
 
-/// Lets time go by until what has changed is due, and has the worker make a schedule.
+/// Advances until changes are due, and lets the worker make a schedule.
 pub(crate) async fn follow(server: &TestServer) -> Option<OperatorId> {
     server.advance(31.0);
     schedule::step(&server.app, &PlanSlots::default())
@@ -96,7 +96,7 @@ pub(crate) async fn follow(server: &TestServer) -> Option<OperatorId> {
         .unwrap()
 }
 
-/// The first job of a plan: port, day, firm.
+/// Returns the first job of a plan: port, day, firm.
 pub(crate) fn first(plan: &Value) -> (&str, &str, &str) {
     let job = &plan["jobs"][0];
     let text = |field: &str| job[field].as_str().unwrap();

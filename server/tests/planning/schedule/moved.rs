@@ -1,4 +1,4 @@
-//! A port call that moves under an order: both sides are told, and agree on another time.
+//! A moved port call of an order: both sides get a message, and agree on another time.
 
 use super::agreed::{Agreed, messages};
 use super::offers::{alerts, offer};
@@ -49,7 +49,7 @@ async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(server: TestServe
         assert!(said.contains("call has moved since"), "{said}");
         assert!(said.contains("a new day is needed"), "{said}");
     }
-    // What was agreed stands, and says that it does not do.
+    // The agreed time stands, marked as impossible.
     assert_eq!(order["planned_at"], "2026-12-15T07:00:00Z");
     assert_eq!(order["state"], "accepted");
     assert_eq!(order["call_fit"], "needs_new_day");
@@ -87,7 +87,7 @@ async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(server: TestServe
         assert_eq!(call["is"]["eta_local"], "2026-12-16T07:00:00+01:00");
         assert_eq!(body["work_order"]["call_fit"], "needs_new_day");
     }
-    // She comes back to her day, but later on it, and then as she was.
+    // The port call returns to its day, first later on it, then at its old time.
     agreed
         .moves("2026-12-15T12:00:00Z", "2026-12-16T18:00:00Z")
         .await;
@@ -96,7 +96,7 @@ async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(server: TestServe
         .moves("2026-12-15T06:00:00Z", "2026-12-16T18:00:00Z")
         .await;
     assert_eq!(agreed.view_order().await["call_fit"], "fits");
-    // Another berth, or a surer time, is no other time.
+    // Another berth or a more certain time is not another time.
     let berth = json!({ "berth": "A5", "eta_uncertainty_h": 3 });
     patch(&agreed.ada, &agreed.call, &berth).await.good();
     assert_eq!(messages(&agreed.rosa, &agreed.order).await.len(), 3);
@@ -114,7 +114,7 @@ async fn files_that_move_a_call_are_told_as_a_request_is(server: TestServer) {
     let did = post(format!("{calls}.csv"), "text/csv", csv.to_owned()).await;
     assert_eq!(did.good()["amended"], 1);
     assert_eq!(agreed.view_order().await["call_fit"], "needs_new_day");
-    // A list without names, sent whole: the call that is gone is the one that is new.
+    // A whole list without references: the missing port call is the new one.
     let row = |eta: &str, etd: &str| format!("port,eta,etd\nNLRTM,{eta},{etd}\n");
     let again = row("2026-12-15T06:00:00Z", "2026-12-16T18:00:00Z");
     let did = post(format!("{calls}.csv?replace=true"), "text/csv", again)
@@ -127,7 +127,7 @@ async fn files_that_move_a_call_are_told_as_a_request_is(server: TestServer) {
         .await
         .good();
     assert_eq!(agreed.view_order().await["call_fit"], "needs_new_day");
-    // A calendar that says when she really comes, and one that takes the call away.
+    // A calendar with the real arrival, and one without the port call.
     let event = |more: &str| {
         format!(
             "BEGIN:VCALENDAR\r\nVERSION:2.0\r\nPRODID:-//agent//calls//EN\r\nBEGIN:VEVENT\r\n\
@@ -167,7 +167,7 @@ async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(server: TestSe
     assert_eq!(refused["call_fit"], "needs_new_day");
     let none = agreed.respond(&agreed.rosa, "accept").await;
     assert_eq!(none.problem(), "wrong-state");
-    // Asked anew, taken back, and asked anew.
+    // Requested, withdrawn, and requested again.
     agreed.retime("2026-12-16T08:00:00Z").await.good();
     agreed.respond(&agreed.ada, "decline").await.good();
     agreed.retime("2026-12-16T08:00:00Z").await.good();
@@ -184,7 +184,7 @@ async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(server: TestSe
     assert_eq!(first(&plan), ("NLRTM", "2026-12-16", "rosa"));
     assert_eq!(plan["jobs"][0]["state"], "confirmed");
     assert_eq!(alerts(&agreed.ada).await, [] as [Value; 0]);
-    // Once the adjuster is on board nothing is asked any more.
+    // After the adjuster is on board there are no more requests.
     agreed.retime("2026-12-17T08:00:00Z").await.good();
     let aboard = format!("{}/on-board", agreed.order);
     agreed.rosa.post(&aboard, &json!({})).await.good();
@@ -227,7 +227,7 @@ async fn a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team(server: TestS
     }
     let over = agreed.retime("2026-11-20T08:00:00Z").await;
     assert_eq!(over.problem(), "invalid");
-    // It is looked at again when the firm answers: the team may be gone by then.
+    // It is checked again at the response: the team may be taken by then.
     agreed.retime("2026-12-16T08:00:00Z").await.good();
     let mut none = terms();
     none["teams"] = json!(0);
@@ -236,7 +236,7 @@ async fn a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team(server: TestS
     let gone = agreed.respond(&agreed.rosa, "accept").await;
     assert!(gone.text.contains("no team left"), "{gone:?}");
     put(&agreed.ada, &path, &terms()).await.good();
-    // And she may have moved once more.
+    // The port call may have moved again.
     agreed
         .moves("2026-12-19T06:00:00Z", "2026-12-20T18:00:00Z")
         .await;
@@ -263,7 +263,7 @@ async fn another_time_leaves_the_fee_that_was_agreed(server: TestServer) {
     let order = agreed.respond(&agreed.rosa, "accept").await.good();
     assert_eq!(order["planned_at"], "2026-12-17T08:00:00Z");
     assert_eq!(order["offers"][0]["terms"]["fee_eur"], 900.5);
-    // She is at sea then.
+    // The vessel is at sea then.
     let elsewhere = agreed.retime("2026-12-20T08:00:00Z").await;
     assert_eq!(elsewhere.problem(), "wrong-state");
     server.finish().await;
@@ -281,7 +281,7 @@ async fn a_question_that_is_not_answered_leaves_what_was_agreed(server: TestServ
     assert_eq!(order["state"], "accepted");
     assert_eq!(order["firm"], "rosa");
     assert_eq!(order["planned_at"], "2026-12-15T07:00:00Z");
-    // Whoever is asked for another time may still give the order back, or see it cancelled.
+    // The firm may still give the order back, and the operator may cancel it.
     agreed.retime("2026-12-14T08:00:00Z").await.good();
     let cancelled = json!({ "text": "sold" });
     let path = format!("{}/cancel", agreed.order);

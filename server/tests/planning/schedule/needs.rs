@@ -1,4 +1,4 @@
-//! Needs: what brings a compass's due date about.
+//! Due dates of compasses, and the rules behind them.
 
 use super::{due_vessel, enter, put};
 use binnacle_compass::model::Model;
@@ -57,7 +57,7 @@ async fn what_is_known_of_a_vessel_gives_her_time(server: TestServer) {
     let nao = ada.post("/vessels", &flagged).await.good();
     let adjusted = json!({ "kind": "adjustment", "from": "2026-03-01T08:00:00Z" });
     ada.post(&path(&nao, "/logbook"), &adjusted).await.good();
-    // A Panamanian ship that keeps no record has a year.
+    // A Panamanian ship without a record has a year.
     assert_eq!(need(&ada, &nao).await["due_on"], "2027-03-01");
     let kept = json!({ "deviation_record": "kept" });
     put(&ada, &path(&nao, "/particulars"), &kept).await.good();
@@ -153,8 +153,8 @@ async fn what_is_planned_has_not_happened(server: TestServer) {
     server.finish().await;
 }
 
-/// An Australian ship with a kept record of deviation and some days at sea, and how she is
-/// shown. However wide her band may be, no alert comes of it.
+/// Creates an Australian ship with a record of deviations and some days at sea. Its limits
+/// are so wide that the band raises no alert.
 async fn australian(server: &TestServer, ada: &Person, true_model: &Model) -> (Ship, Value) {
     let nao = server.ship(ada, "Nao").await;
     let samples = days_at_sea(true_model, "2026-11-10T00:00:00Z", 6.0);
@@ -170,7 +170,7 @@ async fn australian(server: &TestServer, ada: &Person, true_model: &Model) -> (S
     (nao, vessel)
 }
 
-/// Two weeks from the day on which it was first seen, not from each day anew.
+/// Two weeks from the first sighting, not from each day.
 async fn deviation_over_its_limit_becomes_overdue(server: TestServer) {
     let ada = server.admin("ada").await;
     let mut astray = true_model();
@@ -204,7 +204,7 @@ async fn predicted_deviation_at_a_port_ahead_brings_a_need_forward(server: TestS
         .unwrap();
     assert_eq!(sure["predicted"][0]["place"], "here");
     ada.post(&nao.path("/logbook"), &adjusted).await.good();
-    // Far north the field that holds the compass is weak, and the ship's weighs more.
+    // In the far north the directive field is weak, and the ship's field weighs more.
     enter(&ada, &vessel, "NOTOS", 8).await;
     let need = need(&ada, &vessel).await;
     let ahead = &need["predicted"][1];
@@ -231,7 +231,7 @@ async fn deviation_over_the_vessels_own_limit_brings_a_need_forward(server: Test
     let mut astray = true_model();
     astray.parameters_over_lambda.bx_nt += 3_000.0;
     let (nao, vessel) = australian(&server, &ada, &astray).await;
-    // No rule of her flag limits deviation.
+    // No rule of the vessel's flag limits deviation.
     let known = json!({ "flag_state": "NO", "deviation_record": "kept" });
     put(&ada, &nao.path("/particulars"), &known).await.good();
     let never = need(&ada, &vessel).await;
@@ -268,7 +268,7 @@ async fn deviation_over_the_vessels_own_limit_brings_a_need_forward(server: Test
         settings[figure] = json!(deg);
         settings
     };
-    // Neither below a larger limit, nor of a model that is too unsure to tell.
+    // Neither below a larger limit, nor with a model that is too uncertain.
     for wider in [alerts("deviation_deg", 45.0), alerts("band95_deg", 0.5)] {
         let mut settings = ada.get(&nao.path("/settings")).await.good();
         settings["alerts"] = wider;
@@ -334,7 +334,7 @@ async fn an_operators_own_terms_are_what_counts(server: TestServer) {
         (&later["due_on"], &later["urgency"]),
         (&json!("2026-12-20"), &json!("routine"))
     );
-    // Another operator's stay the usual ones.
+    // Another operator keeps the default rules.
     let eve = server.admin("eve").await;
     let nina = due_vessel(&eve, "Nina").await;
     assert_eq!(need(&eve, &nina).await["urgency"], "soon");
@@ -348,7 +348,7 @@ async fn a_cancelled_order_is_no_adjustment(server: TestServer) {
                         "port": "Rotterdam", "planned_at": "2026-12-01T08:00:00Z" });
     let order = ada.post("/work-orders", &order).await.good();
     let id = order["id"].as_str().unwrap();
-    // As it is written where correctors were moved and left.
+    // The record as it is after moved correctors.
     let left = json!({ "kind": "adjustment", "from": "2026-11-20T08:00:00Z",
                        "note": format!("work order {id}") });
     ada.post(&path(&nao, "/logbook"), &left).await.good();

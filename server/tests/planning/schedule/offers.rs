@@ -1,4 +1,4 @@
-//! From the plan to work orders, and back: offered, agreed, and moved for cause.
+//! Work orders from the plan: offered, agreed, and moved for cause.
 
 use super::agreed::Agreed;
 use super::{compass_of, due_vessel, enter, first, put, solve, terms};
@@ -19,7 +19,7 @@ on_both!(
     an_agreed_job_that_fits_nowhere_names_its_order,
 );
 
-/// A firm with terms, and its adjuster.
+/// Creates a firm with terms, and its adjuster.
 pub(super) async fn firm(server: &TestServer, person: &Person, name: &str) -> (String, Person) {
     let (id, adjuster) = person.adjuster(server, name).await;
     let path = format!("/firms/{id}/terms");
@@ -31,7 +31,7 @@ pub(super) fn offer_of(plan: &Value, vessel: &Value) -> Value {
     json!({ "version": plan["version"], "compass_id": compass_of(vessel) })
 }
 
-/// Offers the vessel's job of the plan; the order's path.
+/// Offers the vessel's job of the plan; returns the order's path.
 pub(super) async fn offer(person: &Person, plan: &Value, vessel: &Value) -> String {
     let offered = person
         .post("/schedule/offer", &offer_of(plan, vessel))
@@ -74,7 +74,7 @@ async fn a_planned_job_is_offered_and_agreed_and_stays_in_the_plan(server: TestS
     rosa.post(&format!("{order}/accept"), &json!({}))
         .await
         .good();
-    // A better call comes, and the job stays where it was agreed.
+    // A better port call appears, and the job stays as agreed.
     enter(&ada, &nao, "NLRTM", 15).await;
     let plan = solve(&ada).await;
     assert_eq!(plan["jobs"][0]["state"], "confirmed");
@@ -90,7 +90,7 @@ async fn an_eta_moved_past_the_due_date_is_told_and_planned_anew(server: TestSer
         ada, nao, order, ..
     } = &agreed;
     solve(ada).await;
-    // Due on the twentieth, and now she comes on the twenty-second.
+    // Due on the twentieth, and the vessel now arrives on the twenty-second.
     agreed
         .moves("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
         .await;
@@ -110,7 +110,7 @@ async fn an_eta_moved_past_the_due_date_is_told_and_planned_anew(server: TestSer
         "{summary}"
     );
     assert!(summary.contains("not long enough"), "{summary}");
-    // Two orders of one compass would book her twice.
+    // Two orders for one compass would book it twice.
     let twice = ada.post("/schedule/offer", &offer_of(&plan, nao)).await;
     assert_eq!(twice.problem(), "wrong-state");
     assert!(twice.text.contains(id), "{twice:?}");
@@ -131,7 +131,7 @@ async fn a_firm_that_said_no_is_not_planned_again(server: TestServer) {
     let (_, rosa) = firm(&server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     let order = offer(&ada, &plan, &nao).await;
-    // What a firm has declined it sees no more.
+    // A firm does not see a declined order.
     let declined = rosa.post(&format!("{order}/decline"), &json!({})).await;
     assert!(declined.status < 300, "{declined:?}");
     let plan = solve(&ada).await;
@@ -143,7 +143,7 @@ async fn a_firm_that_said_no_is_not_planned_again(server: TestServer) {
     assert_eq!(first(&plan).2, "juan");
     let id = order.rsplit('/').next().unwrap();
     assert_eq!(plan["jobs"][0]["instead_of"], json!([id]));
-    // It is offered to the next one as it is planned, and the old order is no more.
+    // It is offered to the next firm as planned, and the old order is cancelled.
     let next = offer(&ada, &plan, &nao).await;
     assert_eq!(ada.get(&order).await.good()["state"], "cancelled");
     assert_eq!(
@@ -153,7 +153,7 @@ async fn a_firm_that_said_no_is_not_planned_again(server: TestServer) {
     server.finish().await;
 }
 
-/// Rosa is the cheaper one.
+/// Makes Rosa the cheaper firm.
 async fn a_no_holds_when_its_order_is_cancelled(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
@@ -174,7 +174,7 @@ async fn a_no_holds_when_its_order_is_cancelled(server: TestServer) {
     let plan = solve(&ada).await;
     assert_eq!(first(&plan), ("NLRTM", "2026-12-15", "juan"));
     assert_eq!(plan["jobs"][0]["instead_of"], json!([]));
-    // Unless she is asked anew.
+    // Unless the firm gets a new offer.
     let anew = direct(&nao, "NLRTM", "2026-12-15T09:00:00Z", &rosas);
     let anew = ada.post("/work-orders", &anew).await.good();
     let anew = format!("/work-orders/{}", anew["id"].as_str().unwrap());
@@ -188,7 +188,7 @@ async fn a_no_holds_when_its_order_is_cancelled(server: TestServer) {
     server.finish().await;
 }
 
-/// The plan that was looked at still has the job in the place of an order that is cancelled.
+/// Offers from a plan that still has the job of a cancelled order.
 async fn an_order_that_is_cancelled_is_in_nobodys_way(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
@@ -243,7 +243,7 @@ async fn a_job_is_offered_whole_or_not_at_all(server: TestServer) {
     firm(&server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     assert_eq!(plan["jobs"][0]["compasses"].as_array().unwrap().len(), 2);
-    // The job's last compass is ordered meanwhile.
+    // The job's last compass gets an order meanwhile.
     let other = &plan["jobs"][0]["compasses"][1]["compass_id"];
     assert!(*other == second["id"] || *other == compass_of(&nao).as_str());
     let order = json!({ "vessel_id": nao["id"], "compass_id": other, "port": "NLRTM",
@@ -261,7 +261,7 @@ async fn an_agreed_job_that_fits_nowhere_names_its_order(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let Agreed { ada, order, .. } = &agreed;
     solve(ada).await;
-    // An hour alongside is not enough for anybody.
+    // An hour alongside is not enough for any firm.
     agreed
         .moves("2026-12-22T09:00:00Z", "2026-12-22T10:00:00Z")
         .await;
@@ -326,7 +326,7 @@ async fn an_order_is_for_a_call_where_calls_at_its_port_are_known(server: TestSe
         .await
         .good();
     let order = format!("/work-orders/{}", made["id"].as_str().unwrap());
-    // Nor is another day proposed on which she is not there.
+    // A day on which the vessel is away cannot be proposed either.
     let later = json!({ "terms": { "planned_at": "2026-12-18T08:00:00Z" } });
     let other = rosa.post(&format!("{order}/propose"), &later).await;
     assert_eq!(other.problem(), "invalid");

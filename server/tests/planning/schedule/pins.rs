@@ -1,4 +1,4 @@
-//! What a person wants as it is stays, and moves only for cause.
+//! Pinned jobs stay in the plan, and move only for cause.
 
 use super::{compass_of, due_vessel, enter, first, planned_firm, put, solve, terms};
 use binnacle_server_testing::on_both;
@@ -99,7 +99,7 @@ async fn what_cannot_be_pinned_is_refused(server: TestServer) {
         let response = ada.post("/schedule/pins", &wrong).await;
         assert_eq!(response.problem(), "not-found", "{wrong}");
     }
-    // A firm that the schedule leaves out: it would give way at once.
+    // A pin to a firm without terms would give way at once.
     let mut idle = terms();
     idle["working_days"] = json!([]);
     put(&ada, &format!("/firms/{firm}/terms"), &idle)

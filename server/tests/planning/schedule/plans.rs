@@ -1,4 +1,4 @@
-//! Plans: made, kept, and made anew when what they rest on changes.
+//! Plans: made, stored, and made again when their input changes.
 
 use super::{compass_of, due_vessel, enter, first, follow, planned_firm, put, solve};
 use binnacle_planning::schedule::{self, PlanSlots};
@@ -51,7 +51,7 @@ async fn a_plan_names_who_goes_where_and_is_made_again_from_its_input(server: Te
     );
     assert_eq!(made["proven_optimal"], true);
     assert_eq!(made["changes"][0]["what"], "new");
-    // The same again is the same plan.
+    // The same input gives the same plan.
     assert_eq!(solve(&ada).await, made);
     assert_eq!(current(&ada).await["plan"], made);
     let again = ada.get("/schedule/input").await;
@@ -66,7 +66,7 @@ async fn what_cannot_be_done_says_why_and_what_would_help(server: TestServer) {
     let nao = due_vessel(&ada, "Nao").await;
     let pinta = due_vessel(&ada, "Pinta").await;
     for vessel in [&nao, &pinta] {
-        // One team, one day: only one of them.
+        // One team and one day suffice for only one of them.
         let call = json!({ "port": "NLRTM", "eta": "2026-12-08T06:00:00Z",
                            "etd": "2026-12-08T20:00:00Z" });
         ada.post(&port_calls::path(vessel), &call).await.good();
@@ -231,7 +231,7 @@ async fn a_compass_with_an_order_under_way_is_beside_the_plan(server: TestServer
     server.finish().await;
 }
 
-/// Calls by the second, beside the one that there is; with a name for each.
+/// SQL that adds 50,000 port calls, one each second.
 macro_rules! many_calls {
     ($id:literal) => {
         concat!(
@@ -287,7 +287,7 @@ async fn settings_weigh_and_are_checked(server: TestServer) {
         ada.get("/schedule/settings").await.good()["horizon_days"],
         180
     );
-    // Longer jobs than the firm has hours.
+    // Jobs longer than the firm's hours.
     let long = json!({ "weights": { "job_h": 11 } });
     put(&ada, "/schedule/settings", &long).await.good();
     let made = solve(&ada).await;

@@ -1,4 +1,4 @@
-//! That a firm is asked for no more than it can do, and for no time that cannot be.
+//! Capacity and opening hours of a firm's teams.
 
 use super::agreed::Agreed;
 use super::offers::{direct, firm, offer, offer_of};
@@ -17,7 +17,7 @@ on_both!(
     an_order_is_for_a_port_and_a_time_that_can_be,
 );
 
-/// By the terms that are said of it, on every day but Sunday from eight to eighteen hours.
+/// Creates a firm with these terms, open from 8 to 18 on every day but Sunday.
 async fn no_firm_is_asked_for_a_time_at_which_it_is_closed(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
@@ -82,7 +82,7 @@ async fn no_firm_is_offered_more_ships_than_it_has_teams(server: TestServer) {
         .map(|job| &job["day"])
         .collect();
     assert_eq!(days, ["2026-12-15", "2026-12-15"]);
-    // One of the teams is lost while both are offered at once.
+    // One of the teams is lost while both orders are offered.
     put(&ada, &path, &terms()).await.good();
     let (one, other) = (offer_of(&plan, &nao), offer_of(&plan, &pinta));
     let (one, other): (ApiResponse, ApiResponse) = tokio::join!(
@@ -113,7 +113,7 @@ async fn a_firm_that_is_asked_at_once_with_others_is_planned_for_no_other_ship_t
     let mut order = direct(&nao, "NLRTM", "2026-12-15T09:00:00Z", &rosa);
     order["offer"] = json!({ "firms": [rosa, juan], "at_once": true });
     ada.post("/work-orders", &order).await.good();
-    // Each of the two may say yes, and has one team.
+    // Each of the two firms may accept, and has one team.
     let plan = solve(&ada).await;
     assert_eq!(plan["jobs"].as_array().unwrap().len(), 1, "{plan}");
     assert_eq!(plan["jobs"][0]["state"], "offered");
@@ -122,7 +122,7 @@ async fn a_firm_that_is_asked_at_once_with_others_is_planned_for_no_other_ship_t
     server.finish().await;
 }
 
-/// As long as an order stands that its job was moved away from, its firm keeps the day.
+/// An order whose job was moved still keeps its day at the firm.
 async fn a_team_that_an_order_still_holds_is_planned_for_no_other_ship(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let Agreed {
@@ -153,7 +153,7 @@ async fn a_team_that_an_order_still_holds_is_planned_for_no_other_ship(server: T
     );
     let why = plan["changes"].to_string();
     assert!(why.contains("not long enough in rosa's hours"), "{why}");
-    // Nothing new was learnt by that.
+    // That brought no new information.
     assert_eq!(solve(ada).await["version"], plan["version"]);
     let asked = direct(&pinta, "NLRTM", "2026-12-15T09:00:00Z", firm);
     let full = ada.post("/work-orders", &asked).await;
@@ -187,7 +187,7 @@ async fn a_firm_is_booked_once_by_all_operators_together(server: TestServer) {
         .await
         .unwrap();
     tx.commit().await.unwrap();
-    // One team; both ask it before it has answered either.
+    // One team gets two offers before it has responded to either.
     let at = "2026-12-15T09:00:00Z";
     let hers = direct(&nao, "NLRTM", at, &id);
     let hers = ada.post("/work-orders", &hers).await.good();
@@ -207,7 +207,7 @@ async fn a_firm_is_booked_once_by_all_operators_together(server: TestServer) {
             .contains("your firm has no team left on 2026-12-15: it goes to"),
         "{refused:?}"
     );
-    // Who asks later is told that, and nothing of whom but of one's own.
+    // The later operator learns that, and sees only its own orders.
     let (late, ship, theirs) = if one.status == 409 {
         (&ada, "Niña", "Hind")
     } else {
@@ -250,7 +250,7 @@ async fn an_order_is_for_a_port_and_a_time_that_can_be(server: TestServer) {
     ] {
         assert_eq!(ask("NLRTM", at).await.status, 422, "{at}");
     }
-    // Two days to answer would be longer than there is.
+    // Two days to respond would be longer than the time left.
     let order = ask("BEANR", "2026-11-21T16:00:00Z").await.good();
     assert_eq!(order["answer_by"], "2026-11-21T16:00:00Z");
     let path = format!("/work-orders/{}", order["id"].as_str().unwrap());

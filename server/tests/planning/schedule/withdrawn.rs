@@ -1,4 +1,4 @@
-//! A port call that is withdrawn under an agreed job, and the job at the next one.
+//! A withdrawn port call of an agreed job, and the job at the next one.
 
 use super::agreed::{Agreed, messages};
 use super::offers::alerts;
@@ -30,7 +30,7 @@ async fn a_call_withdrawn_after_acceptance_is_told_and_done_at_another(server: T
     assert_eq!(alerts(&agreed.ada).await.len(), 1);
     let nowhere = agreed.retime("2026-12-15T08:00:00Z").await;
     assert_eq!(nowhere.problem(), "wrong-state");
-    // In another port the firm would have another journey: that is another order.
+    // Another port means another journey, and thus another order.
     enter(&agreed.ada, &agreed.nao, "BEANR", 14).await;
     let elsewhere = agreed.retime("2026-12-15T08:00:00Z").await;
     assert_eq!(elsewhere.problem(), "wrong-state");
@@ -49,7 +49,7 @@ async fn a_call_entered_anew_has_the_agreed_job_again(server: TestServer) {
     let withdrawn = format!("{}/withdraw", agreed.call);
     agreed.ada.post(&withdrawn, &json!({})).await.good();
     assert_eq!(agreed.view_order().await["call_fit"], "no_call");
-    // One at another port, or at another time, is none of the job's.
+    // A port call at another port or time does not get the job.
     enter(&agreed.ada, &agreed.nao, "NLRTM", 18).await;
     assert_eq!(agreed.view_order().await["call_fit"], "no_call");
     let call = enter(&agreed.ada, &agreed.nao, "NLRTM", 14).await;
@@ -66,7 +66,7 @@ async fn a_call_entered_anew_has_the_agreed_job_again(server: TestServer) {
     let plan = solve(&agreed.ada).await;
     assert_eq!(plan["jobs"][0]["state"], "confirmed", "{plan}");
     assert_eq!(alerts(&agreed.ada).await, [] as [Value; 0]);
-    // So it is in a file that withdraws a call, and in a later one that has it again.
+    // The same holds for a file that withdraws a port call, and a later one with it.
     let file = async |text: &str| {
         let path = format!("{}.csv?replace=true", port_calls::path(&agreed.nao));
         let request = agreed

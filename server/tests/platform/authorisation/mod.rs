@@ -1,4 +1,4 @@
-//! Every route, with every method, as every role, against one's own data and another's.
+//! Every route with every method as every role, on the role's own data and on foreign data.
 
 mod table;
 mod world;
@@ -13,10 +13,10 @@ use world::{Key, ROLES, Side, request, response};
 
 on_both!(every_role_may_do_what_the_table_says_and_nothing_to_others_data);
 
-/// This names in its body what it is about.
+/// Operation that names its subject in the body.
 const IN_BODY: &str = "POST /work-orders";
 
-/// What an operation says of itself in the document.
+/// An operation as the API document describes it.
 struct Operation {
     name: String,
     method: String,
@@ -49,7 +49,7 @@ fn url(path: &str) -> String {
     }
 }
 
-/// The last word of a problem's type; empty for what is none.
+/// Returns the last segment of a problem's type; empty for other bodies.
 fn kind(response: &ApiResponse) -> String {
     let problem: Option<Value> = serde_json::from_str(&response.text).ok();
     let kind = problem
@@ -74,7 +74,7 @@ fn every_operation_has_a_line_in_the_table_and_every_line_an_operation() {
     assert!(TABLE.iter().all(|(_, rule)| rule.len() == ROLES.len()));
 }
 
-/// What takes something away comes last, and what ends sessions after everything.
+/// Sort key of an operation: deletions come late, the end of sessions last.
 fn rank(one: &Operation) -> u8 {
     match (one.method.as_str(), one.path.as_str()) {
         ("GET", _) => 0,
@@ -106,7 +106,7 @@ async fn every_role_may_do_what_the_table_says_and_nothing_to_others_data(server
         faults: Vec::new(),
     };
     let mut all = operations();
-    // Reads come first: what someone has tried stands in their own audit log.
+    // Reads come first, because attempts appear in the person's own audit log.
     all.sort_by_key(rank);
     for one in &all {
         trial.refuses(one).await;
@@ -119,7 +119,7 @@ async fn every_role_may_do_what_the_table_says_and_nothing_to_others_data(server
 }
 
 impl Trial<'_> {
-    /// As someone, of what that role of ada's side has, or of what is nowhere.
+    /// Sends an operation with a key, on data of that role on Ada's side or on unknown ids.
     async fn ask(
         &self,
         one: &Operation,
@@ -143,7 +143,7 @@ impl Trial<'_> {
         }
     }
 
-    /// Nobody, the operator's own people who may not, and everyone of the other's.
+    /// Tries each operation without sign-in, as forbidden roles, and as every foreign role.
     async fn refuses(&mut self, one: &Operation) {
         let rule = rule(one);
         if rule == OPEN {
@@ -165,7 +165,7 @@ impl Trial<'_> {
                     .await;
                 self.expect(own.status == expected, one, role, &own);
             }
-            // A platform admin is of neither side.
+            // A platform admin belongs to neither side.
             if index > 6 {
                 continue;
             }
@@ -183,7 +183,7 @@ impl Trial<'_> {
         }
     }
 
-    /// Whoever asks for what is another's is told just what they are told of nothing.
+    /// Checks that a foreign object and an unknown one give the same response.
     async fn finds_nothing(&mut self, one: &Operation, (key, role): (&Key, usize), who: &str) {
         let theirs = self.ask(one, Some(key), role, true).await;
         for mark in &self.ada.marks {
@@ -199,12 +199,12 @@ impl Trial<'_> {
         let nowhere = self.ask(one, Some(key), role, false).await;
         let same = (theirs.status, kind(&theirs)) == (nowhere.status, kind(&nowhere));
         self.expect(same, one, who, &theirs);
-        // What cannot be read is refused before it is looked for.
+        // An unreadable body is refused before the object is looked up.
         let unread = one.has_body && [400, 415, 422].contains(&theirs.status);
         self.expect(theirs.status == 404 || unread, one, who, &theirs);
     }
 
-    /// The operator's own people who may.
+    /// Tries each operation as the roles that may do it.
     async fn lets(&mut self, one: &Operation) {
         let rule = rule(one);
         if rule == OPEN {
@@ -212,7 +212,7 @@ impl Trial<'_> {
         }
         let mut is_gone = false;
         for (index, role) in ROLES.iter().enumerate() {
-            // The admin's own token has ended her sessions just before.
+            // The admin's own token has just ended her sessions.
             let ended = one.name == "DELETE /session" && index == 0;
             if rule.as_bytes()[index] != b'+' || ended {
                 continue;

@@ -1,40 +1,40 @@
-//! Who may do what: a line for each operation of the API's document.
+//! Permissions: a line for each operation of the API document.
 //!
-//! A rule has a sign for each role, in the order of [`super::world::ROLES`]: `+` may do it,
-//! `1` is told to sign in (401), `3` is told that it may not (403), `4` finds nothing (404).
+//! A rule has a sign for each role, in the order of [`super::world::ROLES`]: `+` is allowed,
+//! `1` has to sign in (401), `3` is forbidden (403), `4` finds nothing (404).
 
-/// Nobody needs to sign in.
+/// Allowed without sign-in.
 pub(super) const OPEN: &str = "+++++++++";
-/// Everyone who has signed in, and tokens, each for themselves.
+/// Allowed for all people and tokens, each for themselves.
 const ANYONE: &str = "++++++1++";
-/// The same, but not a token that only reads.
+/// Allowed for all but tokens that only read.
 const ONESELF: &str = "++3++31+3";
-/// The same, for those of an operator or a firm.
+/// Allowed for people and writing tokens of an operator or a firm.
 const PARTYS_ONESELF: &str = "++3++3133";
-/// Someone's own, by id: it is the admin's.
+/// Allowed for the owner of the id, who is the admin.
 const OWN_BY_ID: &str = "+43+43143";
-/// Someone at a screen: no token.
+/// Allowed in a session, not with a token.
 const IN_PERSON: &str = "++33+31+3";
-/// An operator's admin at a screen.
+/// Allowed for an operator's admin in a session.
 const ADMIN_IN_PERSON: &str = "+33333133";
 const FLEET_READS: &str = "++++33133";
 const FLEET_WRITES: &str = "+33+33133";
-/// What is for an operator's admins to see.
+/// Readable for an operator's admins.
 const ADMIN_READS: &str = "+3++33133";
-/// What operator and firm share, or each has of its own.
+/// Readable for operator and firm: shared, or each has its own.
 const PARTY_READS: &str = "++++++133";
 const PARTY_WRITES: &str = "+33++3133";
-/// Of such things one that is the operator's, by id.
+/// Object that belongs to the operator, by id.
 const OPERATORS_READS: &str = "++++44133";
 const OPERATORS_WRITES: &str = "+33+43133";
-/// Of such things one that is the firm's, by id.
+/// Object that belongs to the firm, by id.
 const FIRM_WRITES: &str = "4334+3133";
 const AUDIT: &str = "+3++++1++";
 const PLATFORM_READS: &str = "3333331++";
 const PLATFORM_WRITES: &str = "3333331+3";
 const AGENT: &str = "111111+11";
 
-/// Method and path, as in the document, and its rule.
+/// Method and path, as in the document, and their rule.
 pub(super) const TABLE: &[(&str, &str)] = &[
     ("POST /agents/enrol", OPEN),
     ("PUT /agents/logbook/{id}", AGENT),

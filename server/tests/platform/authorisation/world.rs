@@ -1,4 +1,4 @@
-//! Two operators, each with people, tokens, a firm and a ship, and something of everything.
+//! Two operators, each with people, tokens, a firm, a ship, and one object of every kind.
 
 use crate::second_factor;
 use binnacle_platform::ids::FirmId;
@@ -13,7 +13,7 @@ use ring::signature::{Ed25519KeyPair, KeyPair};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// In the order of a rule's signs.
+/// Roles, in the order of a rule's signs.
 pub(super) const ROLES: [&str; 9] = [
     "admin",
     "viewer",
@@ -26,26 +26,26 @@ pub(super) const ROLES: [&str; 9] = [
     "platform admin's token that reads",
 ];
 
-/// How someone makes a request.
+/// Credentials of a request.
 #[derive(Clone)]
 pub(super) enum Key {
     Cookie(String),
     Token(String),
 }
 
-/// One operator's side of the world.
+/// One operator with its people, firm and objects.
 pub(super) struct Side {
-    /// In the order of [`ROLES`].
+    /// Credentials in the order of [`ROLES`].
     pub(super) keys: Vec<Key>,
     ids: BTreeMap<&'static str, String>,
-    /// What each role was told: it is theirs alone.
+    /// Id of a notification of each role, which is theirs alone.
     told: BTreeMap<usize, String>,
-    /// What nobody else may ever be told: ids and names.
+    /// Ids and names that nobody else may see.
     pub(super) marks: Vec<String>,
 }
 
 const EVERY_DAY: [&str; 7] = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
-/// Something that is nowhere.
+/// An unknown id.
 const NONE: &str = "019a0000-0000-7000-8000-000000000000";
 
 impl Side {
@@ -112,8 +112,8 @@ impl Side {
         (side, root)
     }
 
-    /// A path of the document with this side's ids, as that role has them, or with such as
-    /// are nowhere.
+    /// Fills a path of the document with this side's ids for a role, or with unknown
+    /// ids.
     pub(super) fn fill(&self, path: &str, role: usize, real: bool) -> String {
         let first = path.split('/').nth(1).unwrap();
         let of_id = match first {
@@ -153,7 +153,7 @@ impl Side {
             .replace("{name}", "class_a_trays")
     }
 
-    /// A body for an operation, with this side's ids.
+    /// Returns a body for an operation, with this side's ids.
     pub(super) fn body(&self, operation: &str) -> Value {
         let (vessel, compass, firm) =
             (&self.ids["vessel"], &self.ids["compass"], &self.ids["firm"]);
@@ -195,7 +195,7 @@ impl Side {
     }
 }
 
-/// Something of everything that is an operator's.
+/// Creates one object of every kind that an operator owns.
 async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'static str, String> {
     let vessel = ship.id.clone();
     let agents = admin.get(&ship.path("/agents")).await.good();
@@ -257,7 +257,7 @@ async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'stat
     ])
 }
 
-/// A key of the firm's, a photograph of an order, and where its job is to stay.
+/// Creates a key of the firm, a photograph of an order, and a pin.
 async fn of_an_order(
     admin: &Person,
     adjuster: &Person,
@@ -297,7 +297,7 @@ fn pin(ids: &BTreeMap<&'static str, String>) -> Value {
     })
 }
 
-/// Someone with a second factor, who can lose it: their id.
+/// Creates a colleague with a second factor that can be removed; returns the id.
 async fn colleague(server: &TestServer, admin: &Person, ship: &Ship) -> String {
     let email = format!("purser-{}@example.com", ship.id);
     Person::create(server, Some(admin.operator.into()), &email, Role::Viewer).await;
@@ -313,7 +313,7 @@ fn text(value: &Value) -> String {
         .to_owned()
 }
 
-/// A token of a person's: its id, and how it is used.
+/// Creates a token; returns its id and credentials.
 async fn token(person: &Person, scope: &str) -> (String, Key) {
     let new = json!({ "name": "ERP", "scope": scope });
     let made = person.post("/tokens", &new).await.good();
@@ -321,7 +321,7 @@ async fn token(person: &Person, scope: &str) -> (String, Key) {
     (made["id"].as_str().unwrap().to_owned(), Key::Token(secret))
 }
 
-/// A request by someone, or by nobody.
+/// Builds a request with credentials, or without.
 pub(super) fn request(
     server: &TestServer,
     key: Option<&Key>,
@@ -339,7 +339,7 @@ pub(super) fn request(
     }
 }
 
-/// What is answered; of live events, which have no end, only that they begin.
+/// Returns the response; of live events, which have no end, only the start.
 pub(super) async fn response(request: RequestBuilder) -> ApiResponse {
     let response = request.send().await.unwrap();
     let (status, headers) = (response.status().as_u16(), response.headers().clone());

@@ -1,4 +1,4 @@
-//! Mail: from an alert to a person's relay.
+//! Alert mail, and its recipients.
 
 mod retries;
 mod tls;
@@ -76,7 +76,7 @@ async fn a_letter_comes_when_an_alert_is_raised_gets_worse_and_is_over(server: T
     let relay = Relay::start().await;
     add(&ada, "bridge@example.com", "notice").await;
     let nao = ship_with_model(&server, &ada).await;
-    // Other words, worse, less bad, as bad as before, over.
+    // New text, worse, better, as bad as before, over.
     for deviation_deg in [2.5, 2.4, 1.0, 2.5, 1.0, 45.0] {
         limit(
             &server,
@@ -105,7 +105,7 @@ async fn a_letter_comes_when_an_alert_is_raised_gets_worse_and_is_over(server: T
             .contains("Cleared by Binnacle: it is over")
     );
 
-    // The same cause again is another alert, and is told again.
+    // The same cause later is another alert, with a letter of its own.
     limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     assert_eq!(deliver(&server, &relay).await, [Sent::Delivered]);
     let alert = ada.get("/alerts?open=true").await.good()["items"][0].clone();
@@ -136,7 +136,7 @@ async fn a_recipient_hears_of_nothing_less_bad_than_asked(server: TestServer) {
     limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     assert_eq!(deliver(&server, &relay).await, []);
     limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
-    // Told of the worst, the master is told once that it is not so bad any more.
+    // After the critical alert the master gets one letter about the lower severity.
     limit(&server, &ada, &nao, json!({ "deviation_deg": 2.9 })).await;
     limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
     assert_eq!(deliver(&server, &relay).await, [Sent::Delivered; 2]);
@@ -151,7 +151,7 @@ async fn a_recipient_hears_of_nothing_less_bad_than_asked(server: TestServer) {
         text.contains("Severity: warning (critical before)"),
         "{text}"
     );
-    // What is as bad as asked until it is over is told to be over.
+    // An alert that was critical until its end gets a letter at its end.
     limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
     deliver(&server, &relay).await;
@@ -269,7 +269,7 @@ async fn another_operators_recipients_are_not_there(server: TestServer) {
         let response = ApiResponse::of(request).await;
         assert_eq!(response.problem(), "not-found", "{method} {rest}");
     }
-    // A webhook's path finds no recipient, nor the other way round.
+    // A webhook's path does not find a recipient.
     let webhook = format!("/webhooks/{}", bridge["id"].as_str().unwrap());
     let removed = ApiResponse::of(ada.request(Method::DELETE, &webhook)).await;
     assert_eq!(removed.problem(), "not-found");

@@ -1,4 +1,4 @@
-//! Mail over relays that are busy, slow, or away.
+//! Retries of mail when the relay is busy, slow or down.
 
 use binnacle_platform::outbox::{self, Sent};
 use binnacle_server_testing::DAY_S;
@@ -25,7 +25,7 @@ async fn a_busy_relay_is_tried_again_and_a_refusal_is_final(server: TestServer) 
     test(&ada, &bridge).await;
     for busy in [
         Behaviour::Reply(Stage::Greeting, "421 too busy"),
-        // No answer to this letter: the relay may be mended.
+        // Not a reply to this letter: the relay may recover.
         Behaviour::Reply(Stage::Greeting, "554 no service here"),
         Behaviour::Reply(Stage::Recipient, "450 greylisted"),
         Behaviour::Reply(Stage::Data, "451 try later"),

@@ -1,4 +1,4 @@
-//! What goes to a mail relay in the clear: nothing that matters.
+//! Mail over TLS, and without it only on the local network.
 
 use binnacle_platform::config;
 use binnacle_platform::mail::Mailer;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio_rustls::TlsAcceptor;
 
-/// Somebody who can prove to be `localhost`, and what to believe for it.
+/// Creates a TLS acceptor for `localhost`, and its self-signed certificate.
 fn identity() -> (TlsAcceptor, String) {
     let _ = rustls::crypto::ring::default_provider().install_default();
     let CertifiedKey { cert, signing_key } =
@@ -38,7 +38,7 @@ fn mailer(url: String, authority: &Path) -> Mailer {
     mailer.with_patience(Duration::from_secs(10))
 }
 
-/// Queues a letter and tries it once.
+/// Queues a letter and tries to send it once.
 async fn send(mailer: &Mailer) -> (Option<Sent>, String) {
     let server = TestServer::start(Engine::Sqlite).await;
     let ada = server.admin("ada").await;

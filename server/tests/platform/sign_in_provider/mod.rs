@@ -1,4 +1,4 @@
-//! Signing in by the word of an OpenID Connect provider.
+//! Sign-in through an OpenID Connect provider.
 
 use crate::second_factor::{app_code, now_s, set_up};
 use binnacle_platform::audit::RequestContext;
@@ -13,7 +13,7 @@ use tokio::net::TcpListener;
 const START: &str = "/api/v1/session/provider/start";
 const PUBLIC: &str = "https://binnacle.example";
 
-/// Each with a provider, and Ada who is an admin.
+/// Runs each test on both databases with a provider and an admin, Ada.
 macro_rules! with_provider {
     ($($test:ident),* $(,)?) => {
         mod sqlite {
@@ -68,7 +68,7 @@ impl World {
         come_back(&self.server, &back, &cookie).await
     }
 
-    /// Whom the provider signs in.
+    /// Signs in through the provider, and returns the account.
     async fn me(&self) -> Value {
         let done = self.sign_in().await;
         assert_eq!(outcome(&done), "/");
@@ -92,7 +92,7 @@ fn cookies(response: &ApiResponse) -> Vec<String> {
         .collect()
 }
 
-/// The cookie of a session, if one was opened.
+/// Returns the session cookie, if a session was opened.
 fn session(response: &ApiResponse) -> Option<String> {
     let all = cookies(response);
     let found = all
@@ -101,20 +101,20 @@ fn session(response: &ApiResponse) -> Option<String> {
     Some(found?.split(';').next().unwrap().to_owned())
 }
 
-/// Where the browser is sent to.
+/// Returns the redirect target.
 fn outcome(response: &ApiResponse) -> &str {
     assert_eq!(response.status, 303, "{response:?}");
     response.headers["location"].to_str().unwrap()
 }
 
-/// The provider's address, and the cookie that the browser keeps.
+/// Returns the provider's address, and the cookie that the browser keeps.
 async fn begin(server: &TestServer) -> (String, String) {
     let response = get(server, START, "").await;
     let cookie = cookies(&response)[0].split(';').next().unwrap().to_owned();
     (outcome(&response).to_owned(), cookie)
 }
 
-/// What the provider sends the browser back to.
+/// Follows the address at the provider; returns the callback address.
 async fn at_provider(server: &TestServer, address: &str) -> String {
     let response = ApiResponse::of(server.http.get(address)).await;
     let back = outcome(&response);
@@ -204,7 +204,7 @@ async fn a_person_stays_who_they_are_whatever_becomes_of_the_email(world: World)
         world.provider.says(changed);
         assert_eq!(world.me().await["email"], "ada@example.com");
     }
-    // The address went over to someone else.
+    // The address now belongs to someone else.
     world.provider.says(json!({ "sub": "person-2" }));
     let done = world.sign_in().await;
     assert_eq!(outcome(&done), "/?sign-in=taken");
@@ -370,7 +370,7 @@ async fn a_one_time_code_forgets_whom_the_provider_means(world: World) {
 
 #[tokio::test]
 async fn a_provider_that_is_down_stands_in_nobodys_way_and_is_tried_again() {
-    // A port that nobody listens at.
+    // A port without a listener.
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);

@@ -1,4 +1,4 @@
-//! Everything that does not hold, and whoever is not let in.
+//! Invalid tokens and sign-ins, and people who may not sign in.
 
 use super::{World, at_provider, begin, come_back, outcome, send_code, session};
 use crate::second_factor::{app_code, now_s, set_up};
@@ -62,7 +62,7 @@ async fn a_sign_in_comes_back_once_to_the_browser_that_began_it(world: World) {
     assert_eq!(outcome(&again), "/?sign-in=over");
     assert_eq!(session(&again), None);
 
-    // A code that was redeemed, with a sign-in that was not.
+    // A redeemed code with an unused sign-in.
     let (there, cookie) = begin(server).await;
     let fresh = at_provider(server, &there).await;
     let (_, state) = fresh.split_once("&state=").unwrap();
@@ -86,7 +86,7 @@ async fn nobody_is_let_in_or_made_by_an_email_that_is_not_verified_or_not_known(
         (json!({ "email": null }), "unverified"),
         (json!({ "email": "eve@example.com" }), "unknown"),
         (json!({ "email": "\u{0}" }), "unknown"),
-        // A Kelvin sign, which is a k in lower case.
+        // A Kelvin sign, whose lower case is k.
         (json!({ "email": "\u{212a}ate@example.com" }), "unknown"),
         (json!({ "sub": "\u{0}" }), "untrusted"),
     ];

@@ -1,4 +1,4 @@
-//! Webhooks: from an alert to a program of the operator's.
+//! Webhooks that deliver alerts to an operator's program.
 
 mod slow_receivers;
 
@@ -27,7 +27,7 @@ on_both!(
     another_operators_webhooks_are_not_there,
 );
 
-/// A vessel falls silent: an alert is raised. The person signs in anew.
+/// Raises an alert by a silent vessel, and signs the person in again.
 async fn raise(server: &TestServer, person: &Person) -> Person {
     server.ship(person, "Nao").await;
     server.advance(4.0 * DAY_S);
@@ -212,7 +212,7 @@ async fn a_redirect_is_a_failure_and_is_not_followed(server: TestServer) {
 async fn nothing_is_sent_to_an_address_within_the_network(server: TestServer) {
     let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
-    // As if it had been made while that was allowed, or its name meant another place.
+    // Such a webhook may be older than the rule, or its name may resolve differently now.
     let by_name = url.replace("http://127.0.0.1", "https://localhost");
     for url in [url, by_name] {
         let webhook = make(&ada, &url, &["alert.raised"]).await;
@@ -234,7 +234,7 @@ async fn nothing_is_sent_to_an_address_within_the_network(server: TestServer) {
 
 async fn a_webhook_is_made_once_changed_and_removed(server: TestServer) {
     let ada = server.admin("ada").await;
-    // A blank comes along when an address is copied.
+    // A copied address may bring blanks along.
     let new =
         json!({ "url": " https://example.com/a\n", "kinds": ["alert.raised", "alert.raised"] });
     let twice = || {

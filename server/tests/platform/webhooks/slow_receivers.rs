@@ -1,4 +1,4 @@
-//! Receivers of messages that take a call and do not answer.
+//! Receivers that accept a connection and do not respond.
 
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::ids::{DeliveryId, OrderId};
@@ -17,7 +17,7 @@ on_both!(
     a_receiver_that_does_not_answer_is_called_upon_once_at_a_time,
 );
 
-/// A program that hears of connections and answers none of them until it is told to hang up.
+/// A program that accepts connections and does not respond until the test closes them.
 struct Silent {
     heard: mpsc::Receiver<TcpStream>,
     kept: Vec<TcpStream>,
@@ -39,14 +39,14 @@ impl Silent {
         (Silent { heard, kept }, url)
     }
 
-    /// Waits until someone calls.
+    /// Waits for a connection.
     async fn hear(&mut self) {
         let stream = self.heard.recv().await.unwrap();
         self.kept.push(stream);
     }
 }
 
-/// Has a worker make one delivery beside the test.
+/// Runs one delivery in the background.
 fn begin(server: &TestServer) -> JoinHandle<Option<Sent>> {
     let app = server.app.clone();
     tokio::spawn(async move {
@@ -69,7 +69,7 @@ async fn receivers_that_do_not_answer_keep_no_other_operators_waiting(server: Te
     for _ in &waiting {
         silent.hear().await;
     }
-    // The third of Ada's is not called upon while two of hers hold workers up.
+    // Ada's third delivery waits while two of hers occupy workers.
     assert_eq!(deliver(&server).await, [Sent::Delivered]);
     assert_eq!(receiver.received().len(), 1);
     drop(silent);
@@ -84,7 +84,7 @@ async fn a_receiver_that_does_not_answer_is_called_upon_once_at_a_time(server: T
     let (mut silent, nowhere) = Silent::start().await;
     let webhook = make(&ada, &nowhere, &["order.updated"]).await;
     let receiver = webhook["id"].as_str().unwrap().parse().unwrap();
-    // Of two orders: neither has to wait for the other one's turn.
+    // They are of two orders, so neither waits for the other.
     for _ in 0..2 {
         let message = Message {
             id: DeliveryId::new(),
@@ -102,7 +102,7 @@ async fn a_receiver_that_does_not_answer_is_called_upon_once_at_a_time(server: T
     assert_eq!(deliver(&server).await, []);
     drop(silent);
     assert_eq!(first.await.unwrap(), Some(Sent::Failed));
-    // Then it is the other's turn.
+    // Then the other one follows.
     assert_eq!(deliver(&server).await, [Sent::Failed]);
     server.finish().await;
 }
