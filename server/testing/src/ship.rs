@@ -69,10 +69,10 @@ impl Ship {
         let response = self.request(reqwest::Method::GET, &path).send().await;
         let response = response.unwrap();
         assert_eq!(response.headers().get("content-type"), None);
-        let octets = response.bytes().await.unwrap();
+        let bytes = response.bytes().await.unwrap();
         (
-            binnacle_wire::downlink::decode(&octets).unwrap(),
-            octets.len(),
+            binnacle_wire::downlink::decode(&bytes).unwrap(),
+            bytes.len(),
         )
     }
 

@@ -39,15 +39,15 @@ pub struct Job {
 impl Job {
     pub async fn begin(server: &TestServer) -> Job {
         let person = server.admin("ada").await;
-        Job::of(server, person).await
+        Job::for_person(server, person).await
     }
 
-    pub async fn of(server: &TestServer, person: Person) -> Job {
-        Job::aboard(server, person, &true_model()).await
+    pub async fn for_person(server: &TestServer, person: Person) -> Job {
+        Job::on_ship(server, person, &true_model()).await
     }
 
     /// Creates the order for a ship with this magnetism.
-    pub async fn aboard(server: &TestServer, person: Person, true_model: &Model) -> Job {
+    pub async fn on_ship(server: &TestServer, person: Person, true_model: &Model) -> Job {
         let mut samples = days_at_sea(true_model, "2026-11-01T00:00:00Z", 10.0);
         samples.extend(days_in_waters(
             (10.0, -25.0),
@@ -56,11 +56,11 @@ impl Job {
             5.0,
         ));
         samples.extend(days_at_sea(true_model, "2026-11-16T00:00:00Z", 4.0));
-        Job::after(server, person, &samples).await
+        Job::with_samples(server, person, &samples).await
     }
 
     /// Creates the order for a ship that has sent these samples.
-    pub async fn after(server: &TestServer, person: Person, samples: &[Sample]) -> Job {
+    pub async fn with_samples(server: &TestServer, person: Person, samples: &[Sample]) -> Job {
         let ship = server.ship(&person, "Nao").await;
         ship.put(1, samples).await.good();
         server.advance(60.0);
@@ -250,8 +250,8 @@ pub fn second_reading(setting: &Value) -> Value {
 /// Returns the second reading with this corrector setting, after another first reading.
 pub fn second_reading_after(first: &Value, setting: &Value) -> Value {
     let setting: Setting = serde_json::from_value(setting.clone()).unwrap();
-    let aboard: Binnacle = serde_json::from_value(binnacle()).unwrap();
-    let of_correctors = effect(&aboard, &setting);
+    let binnacle_on_board: Binnacle = serde_json::from_value(binnacle()).unwrap();
+    let of_correctors = effect(&binnacle_on_board, &setting);
     let (magnetic_deg, earth) = at_berth();
     let earth = earth.in_ship_axes(magnetic_deg.to_radians());
     let part = |name: &str, axis: usize| {

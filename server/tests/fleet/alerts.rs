@@ -348,8 +348,8 @@ async fn after_an_adjustment_the_old_card_is_withdrawn_at_once(server: TestServe
     }
     let withdrawn = json!({ "since": "2026-11-18T06:00:00Z", "reason": "adjustment" });
     assert_eq!(response.json()["card_withdrawn"], withdrawn);
-    let told = nao.downlink(&has).await;
-    assert_eq!(told["card_withdrawn"], withdrawn);
+    let downlink = nao.downlink(&has).await;
+    assert_eq!(downlink["card_withdrawn"], withdrawn);
     assert_eq!(nao.downlink("").await.get("card_withdrawn"), None);
     let missed = server.events().await;
     assert_eq!(
@@ -364,9 +364,9 @@ async fn after_an_adjustment_the_old_card_is_withdrawn_at_once(server: TestServe
     server.work().await;
     let again = ada.get(&nao.path("/model")).await.good();
     assert_eq!(again["model"], model["model"]);
-    let told = nao.downlink(&has).await;
+    let downlink = nao.downlink(&has).await;
     assert_eq!(
-        (&told["model"]["id"], told.get("card_withdrawn")),
+        (&downlink["model"]["id"], downlink.get("card_withdrawn")),
         (&again["id"], None)
     );
     server.finish().await;

@@ -100,9 +100,9 @@ async fn a_card_says_what_the_model_predicts_and_what_it_is_worth(server: TestSe
     );
 
     amend(&ada, &nao.path(""), json!({ "degaussing": " coils off " })).await;
-    let told = ada.get(&nao.path("/card.json")).await.good();
-    assert_eq!(told["degaussing"], "coils off");
-    assert!(!told["not_recorded"].to_string().contains("degaussing"));
+    let recorded = ada.get(&nao.path("/card.json")).await.good();
+    assert_eq!(recorded["degaussing"], "coils off");
+    assert!(!recorded["not_recorded"].to_string().contains("degaussing"));
     amend(&ada, &nao.path(""), json!({ "degaussing": null })).await;
 
     let steel =
@@ -112,8 +112,8 @@ async fn a_card_says_what_the_model_predicts_and_what_it_is_worth(server: TestSe
         .get(&nao.path("/card.json?at=2026-11-19T12:00:00Z"))
         .await
         .good();
-    let aboard = json!([{ "since": "2026-11-19T00:00:00Z", "cargo": "steel" }]);
-    assert_eq!(laden["cargo"], aboard);
+    let cargo = json!([{ "since": "2026-11-19T00:00:00Z", "cargo": "steel" }]);
+    assert_eq!(laden["cargo"], cargo);
     assert!(
         laden["notes"].to_string().contains("magnetic cargo"),
         "{laden}"
@@ -322,7 +322,7 @@ async fn there_is_no_card_of_a_compass_that_is_suspected(server: TestServer) {
     let nao = modelled(&server, &ada).await;
     ada.get(&nao.path("/card.json")).await.good();
     let since = Timestamp::parse("2026-11-20T04:00:00Z").unwrap();
-    let mut aboard = ShipAlert {
+    let mut agent_alert = ShipAlert {
         id: Uuid::from_u128(1),
         revision: 1,
         state: ShipAlertState::Open,
@@ -333,13 +333,17 @@ async fn there_is_no_card_of_a_compass_that_is_suspected(server: TestServer) {
         limit_deg: 3.9,
         model_version: 1,
     };
-    nao.put_bytes(2, reporting(&nao, 2, aboard)).await.good();
+    nao.put_bytes(2, reporting(&nao, 2, agent_alert))
+        .await
+        .good();
     let (status, problem, detail) = refusal(&ada, &nao, "").await;
     assert_eq!((status, problem.as_str()), (409, "compass-suspected"));
     assert!(detail.contains("parted by 28°"), "{detail}");
     // There is a card again after compass and gyro have agreed for some hours.
-    (aboard.revision, aboard.state) = (2, ShipAlertState::Agree);
-    nao.put_bytes(3, reporting(&nao, 3, aboard)).await.good();
+    (agent_alert.revision, agent_alert.state) = (2, ShipAlertState::Agree);
+    nao.put_bytes(3, reporting(&nao, 3, agent_alert))
+        .await
+        .good();
     let (status, _, detail) = refusal(&ada, &nao, "").await;
     assert_eq!(status, 409);
     assert!(detail.contains("they agree"), "{detail}");

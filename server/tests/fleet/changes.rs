@@ -116,7 +116,7 @@ async fn open_alerts(person: &Person) -> Vec<Value> {
 }
 
 /// Returns the downlink of an agent that has the model of an earlier response, or none.
-async fn told(ship: &Ship, has: &Value) -> Value {
+async fn downlink_with(ship: &Ship, has: &Value) -> Value {
     let query = has["id"].as_str().map(|id| format!("?model={id}"));
     ship.downlink(&query.unwrap_or_default()).await
 }
@@ -150,10 +150,13 @@ async fn a_struck_ship_raises_one_alert_that_follows_what_is_known(server: TestS
     let raised = of_lightning(open_alerts(&ada).await);
     assert_eq!(raised.len(), 1, "{raised:?}");
     assert_eq!(raised[0]["severity"], "critical", "{raised:?}");
-    let told = |alert: &Value, field: &str| alert[field].as_str().unwrap().to_owned();
-    assert!(told(&raised[0], "advice").contains("azimuth"), "{raised:?}");
-    assert!(told(&raised[0], "summary").contains("lightning or a shock"));
-    assert!(told(&raised[0], "since").as_str() > "2026-11-08T20");
+    let field_of = |alert: &Value, field: &str| alert[field].as_str().unwrap().to_owned();
+    assert!(
+        field_of(&raised[0], "advice").contains("azimuth"),
+        "{raised:?}"
+    );
+    assert!(field_of(&raised[0], "summary").contains("lightning or a shock"));
+    assert!(field_of(&raised[0], "since").as_str() > "2026-11-08T20");
     for day in 0..3 {
         let samples = &model_after_step[36 + 144 * day..36 + 144 * (day + 1)];
         send(&server, &nao, 3 + day as u64, samples).await;
@@ -162,13 +165,13 @@ async fn a_struck_ship_raises_one_alert_that_follows_what_is_known(server: TestS
     assert_eq!(later.len(), 1, "{later:?}");
     assert_eq!(later[0]["id"], raised[0]["id"], "updated, not repeated");
     assert_eq!(later[0]["severity"], "warning", "{later:?}");
-    assert!(told(&later[0], "advice").contains("Put up a new card"));
+    assert!(field_of(&later[0], "advice").contains("Put up a new card"));
     // A compass changed by lightning needs an adjustment.
     let needs = ada.get(&nao.path("/needs")).await.good();
     let mut causes = needs["items"][0]["causes"].as_array().unwrap().iter();
     let change = causes.find(|cause| cause["kind"] == "change");
     let change = change.unwrap_or_else(|| panic!("{needs}"));
-    let reason = told(change, "reason");
+    let reason = field_of(change, "reason");
     assert!(
         reason.contains("magnetism changed on 2026-11-08"),
         "{reason}"
@@ -210,7 +213,7 @@ async fn a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first(s
     let known = ada.get(&path).await.good();
     assert_eq!(known["state"], "acknowledged", "{known}");
     mail::deliver(&server, &relay).await;
-    let told = mail::subjects(&relay).len();
+    let sent_before = mail::subjects(&relay).len();
 
     send(&server, &nao, 4, &struck_again(2.0)).await;
     let open = of_lightning(&ada, "?open=true").await;
@@ -234,7 +237,7 @@ async fn a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first(s
         "another event of the same cause followed"
     );
     mail::deliver(&server, &relay).await;
-    let subjects = mail::subjects(&relay).split_off(told);
+    let subjects = mail::subjects(&relay).split_off(sent_before);
     let lightning: Vec<&String> = subjects
         .iter()
         .filter(|s| s.contains("lightning"))
@@ -280,11 +283,11 @@ async fn a_strike_before_a_person_cleared_the_last_ones_alert_is_told_when_it_ar
 async fn a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = well_known(&server, &ada).await;
-    let base = told(&nao, &Value::Null).await["model"].take();
+    let base = downlink_with(&nao, &Value::Null).await["model"].take();
     assert_eq!(base.get("replaces"), None);
     let model_after_step = days_at_sea(&model_after_step(3000.0, 2000.0), HIT, 4.0);
     send(&server, &nao, 2, &model_after_step[..36]).await;
-    let interim = told(&nao, &base).await["model"].take();
+    let interim = downlink_with(&nao, &base).await["model"].take();
     assert_eq!(
         interim["replaces"]["reason"], "lightning_or_shock",
         "{interim}"
@@ -294,7 +297,7 @@ async fn a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band(server: T
     assert!(after > 1.2 * before, "{before} and then {after}");
     // The band contains the ship's present deviation.
     send(&server, &nao, 3, &model_after_step[36..]).await;
-    let later = told(&nao, &interim).await["model"].take();
+    let later = downlink_with(&nao, &interim).await["model"].take();
     assert!(widest_band_deg(&later) < after);
     server.finish().await;
 }
@@ -302,7 +305,7 @@ async fn a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band(server: T
 async fn after_discharge_the_base_model_is_back_on_the_bridge(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = well_known(&server, &ada).await;
-    let base = told(&nao, &Value::Null).await["model"].take();
+    let base = downlink_with(&nao, &Value::Null).await["model"].take();
     // Loaded for eight hours, at sea for five days, discharged.
     let loaded = days_at_sea(
         &model_after_step(2500.0, -2500.0),
@@ -310,7 +313,7 @@ async fn after_discharge_the_base_model_is_back_on_the_bridge(server: TestServer
         5.0,
     );
     send(&server, &nao, 2, &loaded).await;
-    let with_cargo = told(&nao, &base).await["model"].take();
+    let with_cargo = downlink_with(&nao, &base).await["model"].take();
     assert_eq!(
         with_cargo["replaces"]["reason"], "magnetic_cargo",
         "{with_cargo}"
@@ -330,7 +333,7 @@ async fn after_discharge_the_base_model_is_back_on_the_bridge(server: TestServer
         timeline["changes"]
     );
     assert_eq!(timeline["changes"][0]["epoch_ended"], 2);
-    let back = told(&nao, &with_cargo).await["model"].take();
+    let back = downlink_with(&nao, &with_cargo).await["model"].take();
     assert_eq!(back["replaces"]["reason"], "ship_as_before");
     assert!(widest_band_deg(&back) < 1.2 * widest_band_deg(&base));
     let open = open_alerts(&ada).await;
@@ -344,12 +347,12 @@ async fn after_discharge_the_base_model_is_back_on_the_bridge(server: TestServer
 async fn work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = well_known(&server, &ada).await;
-    let base = told(&nao, &Value::Null).await["model"].take();
+    let base = downlink_with(&nao, &Value::Null).await["model"].take();
     let repair = json!({ "kind": "repair", "from": "2026-11-09T00:00:00Z" });
     ada.post(&nao.path("/logbook"), &repair).await.good();
     server.work().await;
     // No sample since: the card is withdrawn, and the ship learns it at once.
-    let withdrawn = told(&nao, &base).await["card_withdrawn"].take();
+    let withdrawn = downlink_with(&nao, &base).await["card_withdrawn"].take();
     assert_eq!(withdrawn["reason"], "repair");
     let after = days_at_sea(
         &model_after_step(3000.0, 2000.0),
@@ -372,25 +375,25 @@ async fn work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert(server: 
 }
 
 /// Returns thirty days at sea with the compass deflected for some hours before the end.
-fn astray(place: (f64, f64), from_h: usize, to_h: usize, deg: Swing) -> Vec<Sample> {
+fn deflected(place: (f64, f64), from_h: usize, to_h: usize, deg: Swing) -> Vec<Sample> {
     let mut samples = days_in_waters(place, &true_model(), "2026-10-21T00:00:00Z", 30.0);
     let place = |hours| samples.len() - 6 * hours;
     let (from, to) = (place(from_h), place(to_h));
     for (i, sample) in samples[from..to].iter_mut().enumerate() {
-        let astray_deg = sample.compass.degrees() + deg(i as f64);
-        sample.compass = CompassHeading::new(astray_deg).unwrap();
+        let deflected_deg = sample.compass.degrees() + deg(i as f64);
+        sample.compass = CompassHeading::new(deflected_deg).unwrap();
     }
     samples
 }
 
 /// A deflection of two hours, the same on two headings.
 fn passed(place: (f64, f64), hours_ago: usize) -> Vec<Sample> {
-    astray(place, hours_ago + 2, hours_ago, |_| 3.0)
+    deflected(place, hours_ago + 2, hours_ago, |_| 3.0)
 }
 
 /// An oscillating deflection in the last six hours.
 fn passing(place: (f64, f64)) -> Vec<Sample> {
-    astray(place, 6, 0, |i| 6.0 * (0.7 * i).sin())
+    deflected(place, 6, 0, |i| 6.0 * (0.7 * i).sin())
 }
 
 async fn last_change(person: &Person, ship: &Ship) -> Value {
@@ -420,12 +423,12 @@ async fn two_ships_in_one_storm_name_it_and_one_alone_does_not(server: TestServe
     send(&server, &gaviota, 1, &passed((58.0, -20.0), 14)).await;
     let stormy = last_change(&ada, &nao).await;
     assert_eq!(stormy["cause"], "magnetic_storm", "{stormy}");
-    let told = stormy.to_string();
+    let text = stormy.to_string();
     assert!(
-        told.contains("1 other ship was disturbed in the same hours"),
-        "{told}"
+        text.contains("1 other ship was disturbed in the same hours"),
+        "{text}"
     );
-    assert!(!told.contains("Gaviota"));
+    assert!(!text.contains("Gaviota"));
     assert_eq!(last_change(&eve, &gaviota).await["cause"], "magnetic_storm");
     server.finish().await;
 }
@@ -476,7 +479,7 @@ async fn however_far_the_needle_swings_one_alert_says_so(server: TestServer) {
     let mut causes = Vec::new();
     for (name, swing) in swings {
         let ship = server.ship(&ada, name).await;
-        send(&server, &ship, 1, &astray((48.0, -6.0), 6, 0, swing)).await;
+        send(&server, &ship, 1, &deflected((48.0, -6.0), 6, 0, swing)).await;
         let open = open_alerts(&ada).await;
         let of_her: Vec<&Value> = open.iter().filter(|a| a["vessel_name"] == name).collect();
         assert_eq!(of_her.len(), 1, "{name}: {open:?}");

@@ -114,21 +114,22 @@ async fn how_the_link_did_in_the_last_week_is_told(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let path = format!("/vessels/{}/agents", nao.id);
-    let told = async |who: &Person| who.get(&path).await.good()["items"][0]["last_week"].clone();
+    let last_week =
+        async |who: &Person| who.get(&path).await.good()["items"][0]["last_week"].clone();
     let nothing = json!({ "batches": 0, "octets": 0, "longest_wait_s": null });
-    assert_eq!(told(&ada).await, nothing);
-    let mut octets = 0;
+    assert_eq!(last_week(&ada).await, nothing);
+    let mut bytes = 0;
     for (seq, waited_s) in [(1, 60.0), (2, 7200.0), (3, 600.0)] {
         let taken = server.app.clock.now().plus_seconds(-waited_s);
         let batch = binnacle_server_testing::frame(nao.stream, seq, &[sample(taken, 90.0)]);
-        octets += batch.len();
+        bytes += batch.len();
         nao.put_bytes(seq, batch).await.good();
     }
-    let week = json!({ "batches": 3, "octets": octets, "longest_wait_s": 7200 });
-    assert_eq!(told(&ada).await, week);
+    let week = json!({ "batches": 3, "octets": bytes, "longest_wait_s": 7200 });
+    assert_eq!(last_week(&ada).await, week);
     server.advance(8.0 * 86_400.0);
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
-    assert_eq!(told(&ada).await, nothing);
+    assert_eq!(last_week(&ada).await, nothing);
     server.finish().await;
 }
 
@@ -136,8 +137,8 @@ async fn what_waits_on_board_and_a_budget_that_is_short_are_told(server: TestSer
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let path = nao.path("/agents");
-    let told = async || ada.get(&path).await.good()["items"][0]["aboard"].clone();
-    assert_eq!(told().await, Value::Null);
+    let status_on_board = async || ada.get(&path).await.good()["items"][0]["aboard"].clone();
+    assert_eq!(status_on_board().await, Value::Null);
     let send = async |seq: u64, said: &str| {
         let taken = [sample(server.app.clock.now(), 90.0)];
         let batch = binnacle_server_testing::frame(nao.stream, seq, &taken);
@@ -146,15 +147,15 @@ async fn what_waits_on_board_and_a_budget_that_is_short_are_told(server: TestSer
         ApiResponse::of(put).await.good();
     };
     send(1, "").await;
-    assert_eq!(told().await, Value::Null, "it was not said");
+    assert_eq!(status_on_board().await, Value::Null, "it was not said");
     let now = || server.app.clock.now().to_string();
     send(2, "?waits=12&budget=-40").await;
     let short = json!({ "batches_waiting": 12, "budget_left_percent": -40, "at": now() });
-    assert_eq!(told().await, short);
+    assert_eq!(status_on_board().await, short);
     server.advance(3600.0);
     send(3, "?wait=1").await;
     let well = json!({ "batches_waiting": 0, "budget_left_percent": null, "at": now() });
-    assert_eq!(told().await, well);
+    assert_eq!(status_on_board().await, well);
     server.finish().await;
 }
 

@@ -125,9 +125,9 @@ fn a_message_that_is_damaged_is_named_and_the_exit_code_says_so() {
     assert_eq!(output.status.code(), Some(2));
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(errors.contains("1.sbd: the message is damaged"), "{errors}");
-    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(
-        (&told["stored"], &told["refused"][0]["message"]),
+        (&result["stored"], &result["refused"][0]["message"]),
         (&json!(0), &json!("1.sbd"))
     );
 }

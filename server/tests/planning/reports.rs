@@ -255,7 +255,7 @@ async fn a_job_that_was_sent_after_its_month_is_in_the_next_report(server: TestS
              WHERE completion_received_at >= completed_at",
         )
         .await;
-    let mut told = Vec::new();
+    let mut rows = Vec::new();
     // The first of December, of January and of February.
     for days in [10.0, 31.0, 31.0] {
         server.advance(days * DAY_S);
@@ -266,9 +266,9 @@ async fn a_job_that_was_sent_after_its_month_is_in_the_next_report(server: TestS
         let jobs = files.as_object().unwrap().iter();
         let mut jobs = jobs.filter(|(name, _)| name.starts_with("compass-jobs"));
         let csv = jobs.next().unwrap().1[1].as_str().unwrap().to_owned();
-        told.push(csv.lines().count() - 1);
+        rows.push(csv.lines().count() - 1);
     }
-    assert_eq!(told, [0, 1, 0]);
+    assert_eq!(rows, [0, 1, 0]);
     server.finish().await;
 }
 

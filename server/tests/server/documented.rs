@@ -26,10 +26,10 @@ fn blocks(page: &str) -> Vec<Value> {
 
 /// Returns the binnacle of its page, with "as below" and "the same" filled in.
 fn binnacle() -> Value {
-    let [mut aboard, mut design]: [Value; 2] = blocks(BINNACLE).try_into().unwrap();
+    let [mut binnacle, mut design]: [Value; 2] = blocks(BINNACLE).try_into().unwrap();
     design["athwartship"] = design["fore_and_aft"].clone();
-    aboard["type"] = design;
-    aboard
+    binnacle["type"] = design;
+    binnacle
 }
 
 /// Returns a ship that this binnacle nearly corrects, and the magnetometer reading on the
@@ -59,7 +59,7 @@ fn ship(binnacle: &Binnacle, berth: &Value) -> (Value, [f64; 3]) {
         }
     }
     let magnetic_deg = number("heading_true_deg") - found.declination().degrees_east();
-    let aboard = bowl_out.field_at_compass(earth.in_ship_axes(magnetic_deg.to_radians()));
+    let field_nt = bowl_out.field_at_compass(earth.in_ship_axes(magnetic_deg.to_radians()));
     let mut covariance = [[0.0; 8]; 8];
     for (index, sd) in [60.0_f64, 1.5e-3, 50.0, 1.5e-3, 2e-3, 2e-3, 2e-3, 0.3]
         .iter()
@@ -69,7 +69,7 @@ fn ship(binnacle: &Binnacle, berth: &Value) -> (Value, [f64; 3]) {
     }
     let parameters = wanted.parameters_over_lambda().unwrap();
     let model = json!({ "parameters_over_lambda": parameters, "covariance": covariance });
-    (model, aboard)
+    (model, field_nt)
 }
 
 #[test]
@@ -78,8 +78,8 @@ fn the_berth_and_the_binnacle_of_the_pages_make_a_plan() {
     let known: Binnacle = serde_json::from_value(binnacle.clone()).unwrap();
     // The second block is the reading after the steps.
     let [mut berth, _]: [Value; 2] = blocks(PLAN).try_into().unwrap();
-    let (model, aboard) = ship(&known, &berth);
-    for (name, nt) in ["forward", "starboard", "down"].iter().zip(aboard) {
+    let (model, field_nt) = ship(&known, &berth);
+    for (name, nt) in ["forward", "starboard", "down"].iter().zip(field_nt) {
         berth["reading"][name] = json!(nt / 1000.0);
     }
     let folder = tempfile::tempdir().unwrap();

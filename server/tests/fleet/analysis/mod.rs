@@ -67,8 +67,8 @@ async fn a_passage_becomes_a_model_that_foretells_the_deviation(server: TestServ
     assert!(nao.downlink(&has).await.get("model").is_none());
 
     // The compact form gives the same card.
-    let (compact, octets) = nao.compact("").await;
-    assert!(octets < 300, "{octets}");
+    let (compact, bytes) = nao.compact("").await;
+    assert!(bytes < 300, "{bytes}");
     let sent = compact.model.unwrap();
     assert_eq!(sent.id.to_string(), model["id"].as_str().unwrap());
     let field = |name: &str| table[name].as_f64().unwrap();
@@ -79,18 +79,18 @@ async fn a_passage_becomes_a_model_that_foretells_the_deviation(server: TestServ
     for row in rows {
         let of = |name: &str| row[name].as_f64().unwrap();
         let compass = CompassHeading::new(of("compass_deg")).unwrap();
-        let aboard = sent.model.deviation(compass, earth).unwrap();
-        let apart = aboard.deviation.degrees_east() - of("deviation_deg");
+        let on_board = sent.model.deviation(compass, earth).unwrap();
+        let apart = on_board.deviation.degrees_east() - of("deviation_deg");
         assert!(apart.abs() < 0.01, "{row}: {apart}");
-        let apart = aboard.band95_deg.unwrap() - of("band95_deg");
+        let apart = on_board.band95_deg.unwrap() - of("band95_deg");
         assert!(apart.abs() < 0.02, "{row}: {apart}");
     }
-    let (bare, octets) = nao.compact(&has.replace('?', "&")).await;
+    let (bare, bytes) = nao.compact(&has.replace('?', "&")).await;
     assert_eq!(
         (bare.contiguous_seq, bare.model),
         (compact.contiguous_seq, None)
     );
-    assert!(octets < 20, "{octets}");
+    assert!(bytes < 20, "{bytes}");
     server.finish().await;
 }
 

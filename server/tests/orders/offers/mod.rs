@@ -56,8 +56,8 @@ async fn a_firm_accepts_and_goes_on_board(server: TestServer) {
     assert_eq!(accepted["firm"], "rosa");
     assert_eq!(accepted["adjuster_name"], "M. Etxeberria");
     assert_eq!(accepted["answer_by"], Value::Null);
-    let aboard = parties.post(rosa, "/on-board", &json!({})).await.good();
-    assert_eq!(aboard["state"], "on_board");
+    let on_board = parties.post(rosa, "/on-board", &json!({})).await.good();
+    assert_eq!(on_board["state"], "on_board");
     let all = ["opened", "offered", "asked", "accepted", "on_board"];
     assert_eq!(parties.kinds(&parties.ada).await, all);
     let theirs = ["opened", "-", "asked", "accepted", "on_board"];

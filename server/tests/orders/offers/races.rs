@@ -56,12 +56,12 @@ async fn an_acceptance_and_a_cancellation_at_once_leave_one_story(server: TestSe
         parties.post(&parties.ada, "/cancel", &why),
     );
     let kinds = parties.kinds(&parties.ada).await;
-    let told: Vec<&str> = kinds[3..].iter().map(String::as_str).collect();
+    let outcome: Vec<&str> = kinds[3..].iter().map(String::as_str).collect();
     match (accepted.status, cancelled.status) {
-        (200, 409) => assert_eq!(told, ["accepted"]),
-        (409, 200) => assert_eq!(told, ["cancelled"]),
+        (200, 409) => assert_eq!(outcome, ["accepted"]),
+        (409, 200) => assert_eq!(outcome, ["cancelled"]),
         // The operator cancelled the accepted order.
-        (200 | 404, 200) => assert_eq!(told, ["accepted", "cancelled"]),
+        (200 | 404, 200) => assert_eq!(outcome, ["accepted", "cancelled"]),
         _ => panic!("{accepted:?} {cancelled:?}"),
     }
     server.finish().await;

@@ -86,14 +86,14 @@ async fn the_operators_webhook_hears_of_every_answer(server: TestServer) {
         .await
         .good();
     deliver(&server).await;
-    let told = [
+    let kinds = [
         "order.offered",
         "order.lapsed",
         "order.offered",
         "order.answered",
         "order.cancelled",
     ];
-    assert_eq!(receiver.kinds(), told);
+    assert_eq!(receiver.kinds(), kinds);
     let (_, answered) = receiver.received()[3].clone();
     let answered: Value = serde_json::from_str(&answered).unwrap();
     assert_eq!(answered["entry"]["kind"], "accepted");
@@ -133,7 +133,7 @@ async fn a_message_that_is_not_taken_holds_up_its_own_order_only(server: TestSer
     receiver.respond_next(StatusCode::INTERNAL_SERVER_ERROR);
     let done = deliver(&server).await;
     assert_eq!(done, [Sent::Failed, Sent::Delivered, Sent::Delivered]);
-    let told = || {
+    let delivered = || {
         let got = receiver.received().into_iter().skip(1);
         let read = got.map(|(_, body)| serde_json::from_str::<Value>(&body).unwrap());
         let of = |body: Value| (body["work_order"]["id"].clone(), body["kind"].clone());
@@ -141,10 +141,10 @@ async fn a_message_that_is_not_taken_holds_up_its_own_order_only(server: TestSer
     };
     let both =
         |order: &str| ["order.offered", "order.message"].map(|kind| (json!(order), json!(kind)));
-    assert_eq!(told(), both(&parties.order));
+    assert_eq!(delivered(), both(&parties.order));
     server.advance(13.0);
     assert_eq!(deliver(&server).await, [Sent::Delivered; 2]);
-    assert_eq!(told()[2..], both(&first));
+    assert_eq!(delivered()[2..], both(&first));
     server.finish().await;
 }
 

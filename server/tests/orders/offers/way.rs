@@ -302,9 +302,9 @@ async fn a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked(ser
         &["pkey", "-in", "firm.pem", "-pubout", "-outform", "DER"],
     )
     .await;
-    let hex = |octets: &[u8]| {
-        let digits = |text: String, octet: &u8| text + &format!("{octet:02x}");
-        octets.iter().fold(String::new(), digits)
+    let hex = |bytes: &[u8]| {
+        let digits = |text: String, byte: &u8| text + &format!("{byte:02x}");
+        bytes.iter().fold(String::new(), digits)
     };
     let public_key = hex(&key[key.len() - 32..]);
     let proof = async |text: String| {

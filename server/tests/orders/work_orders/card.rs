@@ -134,9 +134,9 @@ async fn an_order_closed_without_verification_leaves_its_card_predicted(server: 
     let said = "closed without verification: sold for scrap";
     assert!(log.to_string().contains(said), "{log}");
     let audit = job.person.get("/audit").await.good();
-    let is_told = |line: &Value| line["route"] == "/api/v1/work-orders/{id}/close";
+    let is_closing = |line: &Value| line["route"] == "/api/v1/work-orders/{id}/close";
     let lines = audit["items"].as_array().unwrap();
-    assert!(lines.iter().any(is_told), "{audit}");
+    assert!(lines.iter().any(is_closing), "{audit}");
     let report = job.person.get("/reports/fleet").await.good();
     let jobs = report["jobs"].to_string();
     assert!(jobs.contains("\"closed_unverified\""), "{report}");

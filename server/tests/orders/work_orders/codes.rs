@@ -99,7 +99,7 @@ async fn a_plan_that_would_not_do_is_refused_by_its_word(server: TestServer) {
     server.finish().await;
 }
 
-/// Returns a reading changed by 2 µT along the needle.
+/// The reading is that of a ship whose magnetism changed by 2 µT along the needle.
 async fn a_lambda_that_the_last_adjustment_contradicts_is_refused_until_the_logbook_explains_it(
     server: TestServer,
 ) {
@@ -188,7 +188,7 @@ async fn what_was_read_before_the_ship_changed_is_read_again(server: TestServer)
     assert_eq!(refused.problem(), "wrong-state");
     assert!(refused.text.contains("read it again"), "{refused:?}");
     // Neither does an old reading, when the ship may have lain elsewhere.
-    let other = Job::of(&server, server.admin("eve").await).await;
+    let other = Job::for_person(&server, server.admin("eve").await).await;
     other.post("/berth-reading", &reading()).await.good();
     server.advance(60.0 * 3600.0);
     let person = Person::sign_in(&server, other.person.operator, &other.person.email);

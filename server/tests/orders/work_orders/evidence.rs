@@ -220,7 +220,7 @@ fn with_two_of(files: &BTreeMap<String, Vec<u8>>, name: &str, content: &[u8]) ->
     bytes
 }
 
-/// Checks archive details that an unpacker shows: comments, times, modes.
+/// Checks that data beside the files is found: a repeated name, comments, times.
 fn what_stands_beside_the_files_is_found_out(files: &BTreeMap<String, Vec<u8>>) {
     let whole = packed(files);
     assert_eq!(evidence::verify(&whole).problems, Vec::<String>::new());
@@ -284,8 +284,8 @@ fn with_another_log(
     forged
 }
 
-/// Checks that statements from the log alone are marked as such.
-fn what_no_signature_covers_is_told_as_such(files: &BTreeMap<String, Vec<u8>>) {
+/// Checks that facts without a signature are reported as statements of the log.
+fn facts_without_signature_are_marked(files: &BTreeMap<String, Vec<u8>>) {
     let with = |change: &dyn Fn(&mut Vec<Value>)| {
         evidence::verify(&packed(&with_another_log(files, change)))
     };
@@ -297,8 +297,8 @@ fn what_no_signature_covers_is_told_as_such(files: &BTreeMap<String, Vec<u8>>) {
         log.push(entry);
     });
     assert_eq!(found.problems, Vec::<String>::new());
-    let told = "the log says, and no signature covers it: at sea, 30 headings agree";
-    assert!(found.facts.iter().any(|fact| fact == told), "{found:?}");
+    let fact = "the log says, and no signature covers it: at sea, 30 headings agree";
+    assert!(found.facts.iter().any(|found| found == fact), "{found:?}");
     let found = with(&|log| {
         log.last_mut().unwrap()["content"]["key"] = json!({
             "id": Uuid::nil(), "name": "Head office", "firm_id": Uuid::nil(),
@@ -306,9 +306,9 @@ fn what_no_signature_covers_is_told_as_such(files: &BTreeMap<String, Vec<u8>>) {
         });
     });
     assert_eq!(found.problems, Vec::<String>::new());
-    let told = "no signature covers it: Lloyd's had registered it as \"Head office\"";
+    let fact = "no signature covers it: Lloyd's had registered it as \"Head office\"";
     assert!(
-        found.facts.iter().any(|fact| fact.contains(told)),
+        found.facts.iter().any(|found| found.contains(fact)),
         "{found:?}"
     );
     // One signature by this key fits every text.
@@ -366,7 +366,7 @@ async fn evidence_that_was_tampered_with_is_found_out(server: TestServer) {
     assert_eq!(
         whole,
         job.evidence().await,
-        "the same state makes the same octets"
+        "the same state gives the same bytes"
     );
     let found = evidence::verify(&whole);
     assert_eq!(found.problems, Vec::<String>::new());
@@ -406,7 +406,7 @@ async fn evidence_that_was_tampered_with_is_found_out(server: TestServer) {
 
     forgeries_are_found_out(&files);
     what_stands_beside_the_files_is_found_out(&files);
-    what_no_signature_covers_is_told_as_such(&files);
+    facts_without_signature_are_marked(&files);
     assert!(!evidence::verify(b"not an archive").problems.is_empty());
     // A photograph after the record is evidence, and is not signed.
     job.photo(PICTURE).await.good();

@@ -55,7 +55,7 @@ fn miscounted(step: &Value, by: i64) -> Option<(u64, Value)> {
 /// and the compass reading.
 async fn gone_wrong(server: &TestServer) -> (Job, Value, Value, f64) {
     let person = server.admin("ada").await;
-    let job = Job::aboard(server, person, &ship()).await;
+    let job = Job::on_ship(server, person, &ship()).await;
     let read = reading_on_ship(&ship());
     job.post("/berth-reading", &read).await.good();
     let mut order = job.post("/plan", &json!({})).await.good();

@@ -101,10 +101,10 @@ async fn headings_at_sea_verify_an_adjustment(server: TestServer) {
     let reason = reason_of_need(&job).await;
     assert!(!reason.contains(not_verified), "{reason}");
     assert_eq!(job.open_alerts().await, Vec::<Value>::new());
-    let told = job.person.get("/notifications?kind=verified").await.good();
-    let subject = &told["items"][0]["subject"];
+    let notifications = job.person.get("/notifications?kind=verified").await.good();
+    let subject = &notifications["items"][0]["subject"];
     assert_eq!(subject, "Nao: verified at sea at Bilbao");
-    assert_eq!(told["items"].as_array().unwrap().len(), 1);
+    assert_eq!(notifications["items"].as_array().unwrap().len(), 1);
     let closed = job.post("/close", &json!({ "text": "done" })).await.good();
     assert_eq!(
         (&closed["state"], &closed["standing"]),
@@ -127,8 +127,8 @@ async fn a_heading_at_sea_that_does_not_agree_is_an_alert(server: TestServer) {
     let ours = ours.unwrap_or_else(|| panic!("{alerts:?}"));
     assert_eq!(ours["severity"], "critical");
     let path = "/notifications?kind=verification_failed";
-    let told = job.person.get(path).await.good();
-    let text = told["items"][0]["text"].as_str().unwrap();
+    let notifications = job.person.get(path).await.good();
+    let text = notifications["items"][0]["text"].as_str().unwrap();
     assert!(text.contains("off what was foretold"), "{text}");
     // The compass is due for another adjustment.
     let needs = job.person.get("/needs").await.good();
@@ -223,7 +223,7 @@ async fn an_adjustment_clears_what_was_open_about_the_ship_before_it(server: Tes
         7.0,
     ));
     samples.extend(days_at_sea(&now, "2026-11-15T00:00:00Z", 5.0));
-    let job = Job::after(&server, person, &samples).await;
+    let job = Job::with_samples(&server, person, &samples).await;
     alerts::report_departure_without_samples(&job.ship, 2).await;
     server.work().await;
     let causes = |alerts: &[Value]| -> Vec<String> {

@@ -162,7 +162,7 @@ async fn who_is_on_the_mailing_list_gets_no_second_letter_of_an_alert(server: Te
     limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let all = mailed(&server, &relay).await;
     assert_eq!(all, ["Nao: warning, deviation over the limit"]);
-    assert_eq!(super::told(&ada).await, all);
+    assert_eq!(super::subjects_of(&ada).await, all);
     server.finish().await;
 }
 

@@ -23,7 +23,7 @@ on_both!(
 );
 
 /// Returns the subjects of a person's notifications, oldest first.
-pub(crate) async fn told(person: &Person) -> Vec<String> {
+pub(crate) async fn subjects_of(person: &Person) -> Vec<String> {
     let listed = person.get("/notifications").await.good();
     let items = listed["items"].as_array().unwrap().iter().rev();
     items
@@ -50,7 +50,7 @@ async fn an_offer_and_its_answers_reach_the_other_side(server: TestServer) {
         unreachable!("there are two")
     };
     let offered = "Nao: a job is offered to you at Bilbao";
-    assert_eq!(told(rosa).await, [offered]);
+    assert_eq!(subjects_of(rosa).await, [offered]);
     assert_eq!(mailed(&server, &relay).await, [offered]);
     let letter = relay.letters().remove(0);
     assert_eq!(letter.to, ["<rosa@adjusters.example>"]);
@@ -77,7 +77,7 @@ async fn an_offer_and_its_answers_reach_the_other_side(server: TestServer) {
         "Nao: rosa declines the job at Bilbao",
         "Nao: juan proposes other terms at Bilbao",
     ];
-    assert_eq!(told(&parties.ada).await, answers);
+    assert_eq!(subjects_of(&parties.ada).await, answers);
     let listed = parties.ada.get("/notifications?kind=answered").await.good();
     let newest = &listed["items"][0];
     assert_eq!(newest["order_id"], parties.order.as_str());
@@ -90,10 +90,10 @@ async fn an_offer_and_its_answers_reach_the_other_side(server: TestServer) {
         .good();
     parties.post(juan, "/on-board", &json!({})).await.good();
     assert_eq!(
-        told(juan).await,
+        subjects_of(juan).await,
         [offered, "Nao: your terms are agreed to at Bilbao"]
     );
-    let all = told(&parties.ada).await;
+    let all = subjects_of(&parties.ada).await;
     assert_eq!(
         all.last().unwrap(),
         "Nao: the adjuster is on board at Bilbao"
@@ -105,9 +105,9 @@ async fn an_answer_that_is_late_is_told_to_both_sides(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     server.advance(HOUR_S + 1.0);
     assert_eq!(lapse(&server.app).await.unwrap(), 1);
-    let late = told(&parties.ada).await;
+    let late = subjects_of(&parties.ada).await;
     assert_eq!(late, ["Nao: no answer in time from rosa at Bilbao"]);
-    let theirs = told(&parties.firms[0].1).await;
+    let theirs = subjects_of(&parties.firms[0].1).await;
     assert_eq!(theirs[1], "Nao: you have not answered in time at Bilbao");
     assert_eq!(theirs.len(), 2);
     server.finish().await;
@@ -130,15 +130,15 @@ async fn who_does_something_is_not_told_of_it(server: TestServer) {
         .await
         .good();
     assert_eq!(
-        told(&parties.ada).await,
+        subjects_of(&parties.ada).await,
         ["Nao: rosa accepts the job at Bilbao"]
     );
-    let others = told(&viewer).await;
+    let others = subjects_of(&viewer).await;
     assert_eq!(
         others.last().unwrap(),
         "Nao: the adjuster is on board at Bilbao"
     );
-    let theirs = told(rosa).await;
+    let theirs = subjects_of(rosa).await;
     let expected = [
         "Nao: a job is offered to you at Bilbao",
         "Nao: the operator writes at Bilbao",

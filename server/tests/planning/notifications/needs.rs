@@ -1,6 +1,6 @@
 //! Notifications of due dates.
 
-use super::told;
+use super::subjects_of;
 use crate::schedule::{due_vessel, put};
 use binnacle_planning::notifications::look;
 use binnacle_server_testing::on_both;
@@ -23,15 +23,15 @@ async fn each_step_towards_the_due_date_is_told_once(server: TestServer) {
     assert_eq!(look(&server.app).await.unwrap(), 1);
     assert_eq!(look(&server.app).await.unwrap(), 0);
     let soon = "Nao: Standard compass to be adjusted soon, by 2026-12-20";
-    assert_eq!(told(&ada).await, [soon]);
-    assert_eq!(told(&eve).await, [""; 0]);
+    assert_eq!(subjects_of(&ada).await, [soon]);
+    assert_eq!(subjects_of(&eve).await, [""; 0]);
     assert!(server.events().await.contains(&"need".to_owned()));
     for (days, steps) in [(14.0, 0), (2.0, 1), (1.0, 0), (12.0, 0), (1.0, 1), (9.0, 0)] {
         server.advance(days * DAY_S);
         assert_eq!(look(&server.app).await.unwrap(), steps, "{days}");
     }
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
-    let all = told(&ada).await;
+    let all = subjects_of(&ada).await;
     let overdue = "Nao: Standard compass overdue for adjusting, by 2026-12-20";
     assert_eq!(all, [soon, soon, overdue]);
     server.finish().await;
@@ -74,7 +74,7 @@ async fn two_servers_tell_of_a_need_once(server: TestServer) {
     let other = server.second().await;
     let (one, two) = tokio::join!(look(&server.app), look(&other));
     assert_eq!(one.unwrap() + two.unwrap(), 1);
-    assert_eq!(told(&ada).await.len(), 1);
+    assert_eq!(subjects_of(&ada).await.len(), 1);
     other.db.close().await;
     server.finish().await;
 }
@@ -90,6 +90,6 @@ async fn a_fleet_that_cannot_be_read_holds_up_no_other_fleets_needs(server: Test
     due_vessel(&eve, "Pinta").await;
     assert_eq!(look(&server.app).await.unwrap(), 1);
     let soon = "Pinta: Standard compass to be adjusted soon, by 2026-12-20";
-    assert_eq!(told(&eve).await, [soon]);
+    assert_eq!(subjects_of(&eve).await, [soon]);
     server.finish().await;
 }

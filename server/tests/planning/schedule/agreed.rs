@@ -13,8 +13,9 @@ pub(super) struct Agreed {
     pub(super) rosa: Person,
     pub(super) firm: String,
     pub(super) nao: Value,
-    /// Path of the order; that of the port call follows.
+    /// Path of the order.
     pub(super) order: String,
+    /// Path of the port call.
     pub(super) call: String,
 }
 

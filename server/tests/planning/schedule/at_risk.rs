@@ -24,9 +24,9 @@ async fn a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks(server: Te
         .await;
     assert_eq!(agreed.view_order().await["call_fit"], "needs_new_day");
     assert_eq!(follow(&server).await, Some(agreed.ada.operator));
-    let told = alerts(&agreed.ada).await;
-    assert_eq!(told.len(), 1, "{told:?}");
-    let summary = told[0]["summary"].as_str().unwrap();
+    let raised = alerts(&agreed.ada).await;
+    assert_eq!(raised.len(), 1, "{raised:?}");
+    let summary = raised[0]["summary"].as_str().unwrap();
     assert!(
         summary.contains("agreed with rosa for 2026-12-15"),
         "{summary}"
@@ -36,8 +36,12 @@ async fn a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks(server: Te
     agreed.respond(&agreed.rosa, "accept").await.good();
     assert_eq!(agreed.view_order().await["call_fit"], Value::Null);
     follow(&server).await;
-    let told = alerts(&agreed.ada).await;
-    assert_eq!(told.len(), 1, "it is still after the due date: {told:?}");
+    let raised = alerts(&agreed.ada).await;
+    assert_eq!(
+        raised.len(),
+        1,
+        "it is still after the due date: {raised:?}"
+    );
     server.finish().await;
 }
 
@@ -84,9 +88,9 @@ async fn an_agreed_job_whose_firm_has_no_teams_any_more_is_at_risk(server: TestS
     none["teams"] = json!(0);
     put(&agreed.ada, &path, &none).await.good();
     solve(&agreed.ada).await;
-    let told = alerts(&agreed.ada).await;
-    assert_eq!(told.len(), 1, "{told:?}");
-    let summary = told[0]["summary"].as_str().unwrap();
+    let raised = alerts(&agreed.ada).await;
+    assert_eq!(raised.len(), 1, "{raised:?}");
+    let summary = raised[0]["summary"].as_str().unwrap();
     assert!(
         summary.contains("a firm without teams does nothing"),
         "{summary}"
@@ -111,8 +115,8 @@ async fn an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known(server
     assert_eq!(alerts(&ada).await, [] as [Value; 0]);
     enter(&ada, &nao, "BEANR", 14).await;
     solve(&ada).await;
-    let told = alerts(&ada).await;
-    let summary = told[0]["summary"].as_str().unwrap();
+    let raised = alerts(&ada).await;
+    let summary = raised[0]["summary"].as_str().unwrap();
     assert!(summary.contains("no port call is known"), "{summary}");
     enter(&ada, &nao, "NLRTM", 16).await;
     solve(&ada).await;

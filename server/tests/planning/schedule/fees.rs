@@ -102,8 +102,11 @@ async fn a_firm_proposes_another_fee_alone_and_the_operator_agrees(server: TestS
     assert_eq!(seen["offers"][0]["fee_eur"], 1800.0);
     let asked = json!({ "planned_at": before["planned_at"], "fee_eur": 2100.0 });
     assert_eq!(seen["offers"][0]["terms"], asked);
-    let told = ada.get("/notifications?kind=answered").await.good();
-    assert!(told.to_string().contains("for 2100.00 euros"), "{told}");
+    let notifications = ada.get("/notifications?kind=answered").await.good();
+    assert!(
+        notifications.to_string().contains("for 2100.00 euros"),
+        "{notifications}"
+    );
     let agreed = yes(&ada, &order).await;
     assert_eq!(agreed["state"], "accepted");
     for (field, is) in [

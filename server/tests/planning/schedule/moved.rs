@@ -4,7 +4,7 @@ use super::agreed::{Agreed, messages};
 use super::offers::{alerts, offer};
 use super::{due_vessel, enter, first, put, solve, terms};
 use crate::calendar::events;
-use crate::notifications::told;
+use crate::notifications::subjects_of;
 use binnacle_orders::dispatch::lapse;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::patch;
@@ -159,7 +159,7 @@ async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(server: TestSe
     assert_eq!(asked["state"], "accepted");
     let new = &asked["offers"][0]["new_terms"]["planned_at"];
     assert_eq!(new, "2026-12-17T08:00:00Z");
-    let last = told(&agreed.rosa).await.pop().unwrap();
+    let last = subjects_of(&agreed.rosa).await.pop().unwrap();
     assert!(last.contains("another time is asked of you"), "{last}");
     let refused = agreed.respond(&agreed.rosa, "decline").await.good();
     assert_eq!(refused["planned_at"], "2026-12-15T07:00:00Z");
@@ -178,7 +178,7 @@ async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(server: TestSe
     assert_eq!(order["call_fit"], Value::Null);
     assert_eq!(order["offers"][0]["new_terms"], Value::Null);
     assert_eq!(order["answer_by"], Value::Null);
-    let last = told(&agreed.ada).await.pop().unwrap();
+    let last = subjects_of(&agreed.ada).await.pop().unwrap();
     assert!(last.contains("rosa agrees to another time"), "{last}");
     let plan = solve(&agreed.ada).await;
     assert_eq!(first(&plan), ("NLRTM", "2026-12-16", "rosa"));
@@ -186,8 +186,8 @@ async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(server: TestSe
     assert_eq!(alerts(&agreed.ada).await, [] as [Value; 0]);
     // After the adjuster is on board there are no more requests.
     agreed.retime("2026-12-17T08:00:00Z").await.good();
-    let aboard = format!("{}/on-board", agreed.order);
-    agreed.rosa.post(&aboard, &json!({})).await.good();
+    let on_board = format!("{}/on-board", agreed.order);
+    agreed.rosa.post(&on_board, &json!({})).await.good();
     let order = agreed.view_order().await;
     assert_eq!(order["answer_by"], Value::Null);
     assert_eq!(order["offers"][0]["new_terms"], Value::Null);

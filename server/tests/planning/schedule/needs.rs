@@ -153,8 +153,8 @@ async fn what_is_planned_has_not_happened(server: TestServer) {
     server.finish().await;
 }
 
-/// Creates an Australian ship with a record of deviations and some days at sea. Its limits
-/// are so wide that the band raises no alert.
+/// Creates an Australian ship with a record of deviations and some days at sea. Its band
+/// limit is so wide that it raises no alert.
 async fn australian(server: &TestServer, ada: &Person, true_model: &Model) -> (Ship, Value) {
     let nao = server.ship(ada, "Nao").await;
     let samples = days_at_sea(true_model, "2026-11-10T00:00:00Z", 6.0);
@@ -173,9 +173,9 @@ async fn australian(server: &TestServer, ada: &Person, true_model: &Model) -> (S
 /// Two weeks from the first sighting, not from each day.
 async fn deviation_over_its_limit_becomes_overdue(server: TestServer) {
     let ada = server.admin("ada").await;
-    let mut astray = true_model();
-    astray.parameters_over_lambda.bx_nt += 3_000.0;
-    let (nao, vessel) = australian(&server, &ada, &astray).await;
+    let mut strong = true_model();
+    strong.parameters_over_lambda.bx_nt += 3_000.0;
+    let (nao, vessel) = australian(&server, &ada, &strong).await;
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-01T08:00:00Z" });
     ada.post(&nao.path("/logbook"), &adjusted).await.good();
     look(&server.app).await.unwrap();
@@ -228,9 +228,9 @@ async fn predicted_deviation_at_a_port_ahead_brings_a_need_forward(server: TestS
 
 async fn deviation_over_the_vessels_own_limit_brings_a_need_forward(server: TestServer) {
     let ada = server.admin("ada").await;
-    let mut astray = true_model();
-    astray.parameters_over_lambda.bx_nt += 3_000.0;
-    let (nao, vessel) = australian(&server, &ada, &astray).await;
+    let mut strong = true_model();
+    strong.parameters_over_lambda.bx_nt += 3_000.0;
+    let (nao, vessel) = australian(&server, &ada, &strong).await;
     // No rule of the vessel's flag limits deviation.
     let known = json!({ "flag_state": "NO", "deviation_record": "kept" });
     put(&ada, &nao.path("/particulars"), &known).await.good();

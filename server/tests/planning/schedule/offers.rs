@@ -103,8 +103,8 @@ async fn an_eta_moved_past_the_due_date_is_told_and_planned_anew(server: TestSer
         (&job["orders"], &job["instead_of"]),
         (&json!([]), &json!([id]))
     );
-    let told = alerts(ada).await;
-    let summary = told[0]["summary"].as_str().unwrap();
+    let raised = alerts(ada).await;
+    let summary = raised[0]["summary"].as_str().unwrap();
     assert!(
         summary.contains("agreed with rosa for 2026-12-15"),
         "{summary}"

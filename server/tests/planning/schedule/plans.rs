@@ -135,8 +135,8 @@ async fn a_moved_eta_makes_another_plan_that_says_what_it_costs(server: TestServ
         .collect();
     assert_eq!(versions, [2, 1]);
     assert_eq!(ada.get("/schedule/plans/1").await.good(), before);
-    let told = server.events().await;
-    assert_eq!(told.iter().filter(|kind| *kind == "schedule").count(), 2);
+    let events = server.events().await;
+    assert_eq!(events.iter().filter(|kind| *kind == "schedule").count(), 2);
     server.finish().await;
 }
 

@@ -3,7 +3,7 @@
 use super::agreed::{Agreed, messages};
 use super::offers::alerts;
 use super::{enter, first, follow, solve};
-use crate::notifications::told;
+use crate::notifications::subjects_of;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::port_calls;
 use binnacle_server_testing::{ApiResponse, TestServer};
@@ -24,7 +24,7 @@ async fn a_call_withdrawn_after_acceptance_is_told_and_done_at_another(server: T
     assert_eq!(order["call_fit"], "no_call");
     assert_eq!(order["call_change"]["is"], Value::Null);
     assert_eq!(order["state"], "accepted");
-    let last = told(&agreed.rosa).await.pop().unwrap();
+    let last = subjects_of(&agreed.rosa).await.pop().unwrap();
     assert!(last.contains("the port call is withdrawn"), "{last}");
     follow(&server).await;
     assert_eq!(alerts(&agreed.ada).await.len(), 1);

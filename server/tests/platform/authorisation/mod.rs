@@ -137,8 +137,8 @@ impl Trial<'_> {
 
     fn expect(&mut self, holds: bool, one: &Operation, who: &str, response: &ApiResponse) {
         if !holds {
-            let told: String = response.text.chars().take(160).collect();
-            let fault = format!("{} as {who}: {} {told}", one.name, response.status);
+            let excerpt: String = response.text.chars().take(160).collect();
+            let fault = format!("{} as {who}: {} {excerpt}", one.name, response.status);
             self.faults.push(fault);
         }
     }

@@ -39,7 +39,7 @@ pub(super) struct Side {
     pub(super) keys: Vec<Key>,
     ids: BTreeMap<&'static str, String>,
     /// Id of a notification of each role, which is theirs alone.
-    told: BTreeMap<usize, String>,
+    notifications: BTreeMap<usize, String>,
     /// Ids and names that nobody else may see.
     pub(super) marks: Vec<String>,
 }
@@ -86,10 +86,10 @@ impl Side {
         let sessions = admin.get("/sessions").await.good();
         let session = sessions["items"][1]["id"].as_str().unwrap();
         ids.insert("session", session.to_owned());
-        let mut told = BTreeMap::new();
+        let mut notifications = BTreeMap::new();
         for (role, person) in [(0, &admin), (1, &viewer), (3, &admin), (4, &adjuster)] {
             let listed = person.get("/notifications").await.good();
-            told.insert(role, text(&listed["items"][0]["id"]));
+            notifications.insert(role, text(&listed["items"][0]["id"]));
         }
         let keys = vec![
             Key::Cookie(admin.cookie),
@@ -106,7 +106,7 @@ impl Side {
         let side = Side {
             keys,
             ids,
-            told,
+            notifications,
             marks,
         };
         (side, root)
@@ -141,8 +141,11 @@ impl Side {
                 ("delivery", "mail-recipients") => "letter",
                 _ => name,
             };
-            let told = self.told.get(&role).filter(|_| key == "notification");
-            let id = told.or_else(|| self.ids.get(key)).filter(|_| real);
+            let notification = self
+                .notifications
+                .get(&role)
+                .filter(|_| key == "notification");
+            let id = notification.or_else(|| self.ids.get(key)).filter(|_| real);
             let id = id.map_or(NONE, String::as_str);
             filled = filled.replace(&format!("{{{name}}}"), id);
         }
@@ -224,8 +227,8 @@ async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'stat
         "planned_at": "2026-11-22T08:00:00Z", "offer": { "firms": [firm] },
     });
     let order = admin.post("/work-orders", &order).await.good();
-    let told = format!("/webhooks/{}/deliveries", text(&webhook["id"]));
-    let told = admin.get(&told).await.good();
+    let deliveries = format!("/webhooks/{}/deliveries", text(&webhook["id"]));
+    let deliveries = admin.get(&deliveries).await.good();
     admin.post("/schedule/solve", &json!({})).await.good();
     let recipient = json!({ "address": format!("office-{vessel}@example.com") });
     let recipient = admin.post("/mail-recipients", &recipient).await.good();
@@ -248,7 +251,7 @@ async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'stat
         ("call", text(&port_call["id"])),
         ("order", text(&order["id"])),
         ("webhook", text(&webhook["id"])),
-        ("delivery", text(&told["items"][0]["id"])),
+        ("delivery", text(&deliveries["items"][0]["id"])),
         ("recipient", text(&recipient["id"])),
         ("letter", text(&letters["items"][0]["id"])),
         ("alert", text(&alerts["items"][0]["id"])),

@@ -299,12 +299,12 @@ async fn an_email_may_be_told_only_to_who_asks_for_it(world: World) {
     world
         .provider
         .says(json!({ "email": null, "email_verified": null }));
-    let told = |subject: &str, verified: bool| json!({ "sub": subject, "email": "ada@example.com", "email_verified": verified });
-    world.provider.tells(told("person-2", true));
+    let user_info = |subject: &str, verified: bool| json!({ "sub": subject, "email": "ada@example.com", "email_verified": verified });
+    world.provider.tells(user_info("person-2", true));
     assert_eq!(outcome(&world.sign_in().await), "/?sign-in=unverified");
-    world.provider.tells(told("person-1", false));
+    world.provider.tells(user_info("person-1", false));
     assert_eq!(outcome(&world.sign_in().await), "/?sign-in=unverified");
-    world.provider.tells(told("person-1", true));
+    world.provider.tells(user_info("person-1", true));
     assert_eq!(world.me().await["email"], "ada@example.com");
     world.server.finish().await;
 }
