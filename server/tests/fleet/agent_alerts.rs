@@ -12,13 +12,13 @@ use std::collections::BTreeMap;
 use uuid::Uuid;
 
 on_both!(
-    a_ships_alert_is_the_vessels_at_once_and_her_samples_are_analysed_at_once,
-    revisions_in_any_order_and_again_end_alike,
-    an_analysis_does_not_clear_what_the_ship_says,
-    an_alert_of_a_spool_that_was_lost_does_not_stay_open,
-    what_parts_again_and_again_within_hours_is_one_alert,
-    what_a_person_cleared_is_another_alert_when_it_parts_anew,
-    what_was_thinned_on_board_is_counted,
+    an_agent_alert_is_raised_and_its_samples_analysed_at_once,
+    revisions_in_any_order_and_repeated_give_the_same_state,
+    an_analysis_does_not_clear_an_agent_alert,
+    an_alert_of_a_lost_spool_is_closed,
+    repeated_departures_within_hours_are_one_alert,
+    a_new_departure_after_a_clearing_is_another_alert,
+    samples_thinned_on_board_are_counted,
 );
 
 const DAY: &str = "2026-11-20T00:00:00Z";
@@ -34,9 +34,7 @@ async fn list(person: &Person) -> Vec<Value> {
     listed["items"].as_array().unwrap().clone()
 }
 
-async fn a_ships_alert_is_the_vessels_at_once_and_her_samples_are_analysed_at_once(
-    server: TestServer,
-) {
+async fn an_agent_alert_is_raised_and_its_samples_analysed_at_once(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 6)).await.good();
@@ -59,7 +57,7 @@ async fn a_ships_alert_is_the_vessels_at_once_and_her_samples_are_analysed_at_on
     server.finish().await;
 }
 
-async fn revisions_in_any_order_and_again_end_alike(server: TestServer) {
+async fn revisions_in_any_order_and_repeated_give_the_same_state(server: TestServer) {
     use ShipAlertState::{Agree, Open};
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
@@ -87,7 +85,7 @@ async fn revisions_in_any_order_and_again_end_alike(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_analysis_does_not_clear_what_the_ship_says(server: TestServer) {
+async fn an_analysis_does_not_clear_an_agent_alert(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let open = agent_alert(1, 1, ShipAlertState::Open);
@@ -104,7 +102,7 @@ async fn an_analysis_does_not_clear_what_the_ship_says(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_alert_of_a_spool_that_was_lost_does_not_stay_open(server: TestServer) {
+async fn an_alert_of_a_lost_spool_is_closed(server: TestServer) {
     use ShipAlertState::{NotJudged, Open};
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
@@ -121,7 +119,7 @@ async fn an_alert_of_a_spool_that_was_lost_does_not_stay_open(server: TestServer
     server.finish().await;
 }
 
-async fn what_parts_again_and_again_within_hours_is_one_alert(server: TestServer) {
+async fn repeated_departures_within_hours_are_one_alert(server: TestServer) {
     use ShipAlertState::{Agree, Open};
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
@@ -168,7 +166,7 @@ async fn what_parts_again_and_again_within_hours_is_one_alert(server: TestServer
     server.finish().await;
 }
 
-async fn what_a_person_cleared_is_another_alert_when_it_parts_anew(server: TestServer) {
+async fn a_new_departure_after_a_clearing_is_another_alert(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let since = Timestamp::parse("2026-11-21T04:00:00Z").unwrap();
@@ -201,7 +199,7 @@ async fn what_a_person_cleared_is_another_alert_when_it_parts_anew(server: TestS
     server.finish().await;
 }
 
-async fn what_was_thinned_on_board_is_counted(server: TestServer) {
+async fn samples_thinned_on_board_are_counted(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let batch = Batch {

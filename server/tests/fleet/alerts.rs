@@ -10,17 +10,17 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    an_alert_follows_the_vessels_limits_and_is_updated_not_repeated,
+    an_alert_follows_the_vessels_limits_and_is_updated_in_place,
     an_alert_is_acknowledged_once_with_a_note,
-    an_alert_that_got_worse_wants_to_be_acknowledged_again,
-    what_a_person_cleared_comes_back_only_when_it_gets_worse,
-    a_silent_agent_is_an_alert_until_it_sends_again,
-    two_servers_that_look_at_once_raise_one_alert,
-    references_that_part_are_an_alert_and_not_the_compasss_fault,
+    a_worse_alert_needs_another_acknowledgement,
+    a_cleared_alert_is_raised_again_only_when_it_gets_worse,
+    a_silent_agent_raises_an_alert_until_it_sends_again,
+    two_servers_checking_at_once_raise_one_alert,
+    diverging_references_raise_a_reference_fault_alert,
     the_list_filters_and_pages,
-    another_operators_alerts_are_not_there,
-    after_an_adjustment_the_old_card_is_withdrawn_at_once,
-    without_a_model_an_alert_is_not_said_to_be_over,
+    another_operators_alerts_are_not_found,
+    an_adjustment_withdraws_the_old_card_at_once,
+    without_a_model_a_cleared_alert_is_not_reported_as_over,
 );
 
 const DAY: &str = "2026-11-15T00:00:00Z";
@@ -35,7 +35,7 @@ fn path(alert: &Value, rest: &str) -> String {
     format!("/alerts/{}{rest}", alert["id"].as_str().unwrap())
 }
 
-async fn an_alert_follows_the_vessels_limits_and_is_updated_not_repeated(server: TestServer) {
+async fn an_alert_follows_the_vessels_limits_and_is_updated_in_place(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
     assert_eq!(list(&ada, "").await, Vec::<Value>::new());
@@ -128,7 +128,7 @@ async fn an_alert_is_acknowledged_once_with_a_note(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_alert_that_got_worse_wants_to_be_acknowledged_again(server: TestServer) {
+async fn a_worse_alert_needs_another_acknowledgement(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
     limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
@@ -148,7 +148,7 @@ async fn an_alert_that_got_worse_wants_to_be_acknowledged_again(server: TestServ
     server.finish().await;
 }
 
-async fn what_a_person_cleared_comes_back_only_when_it_gets_worse(server: TestServer) {
+async fn a_cleared_alert_is_raised_again_only_when_it_gets_worse(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
     limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
@@ -176,7 +176,7 @@ async fn what_a_person_cleared_comes_back_only_when_it_gets_worse(server: TestSe
     server.finish().await;
 }
 
-async fn a_silent_agent_is_an_alert_until_it_sends_again(server: TestServer) {
+async fn a_silent_agent_raises_an_alert_until_it_sends_again(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 3)).await.good();
@@ -206,7 +206,7 @@ async fn a_silent_agent_is_an_alert_until_it_sends_again(server: TestServer) {
     server.finish().await;
 }
 
-async fn two_servers_that_look_at_once_raise_one_alert(server: TestServer) {
+async fn two_servers_checking_at_once_raise_one_alert(server: TestServer) {
     let ada = server.admin("ada").await;
     server.ship(&ada, "Nao").await;
     let second = server.second().await;
@@ -223,7 +223,7 @@ async fn two_servers_that_look_at_once_raise_one_alert(server: TestServer) {
     server.finish().await;
 }
 
-async fn references_that_part_are_an_alert_and_not_the_compasss_fault(server: TestServer) {
+async fn diverging_references_raise_a_reference_fault_alert(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let mut samples = passage(DAY, 400);
@@ -280,7 +280,7 @@ async fn the_list_filters_and_pages(server: TestServer) {
     server.finish().await;
 }
 
-async fn another_operators_alerts_are_not_there(server: TestServer) {
+async fn another_operators_alerts_are_not_found(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     server.ship(&ada, "Nao").await;
@@ -302,7 +302,7 @@ async fn another_operators_alerts_are_not_there(server: TestServer) {
     server.finish().await;
 }
 
-async fn without_a_model_an_alert_is_not_said_to_be_over(server: TestServer) {
+async fn without_a_model_a_cleared_alert_is_not_reported_as_over(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
     limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
@@ -320,7 +320,7 @@ async fn without_a_model_an_alert_is_not_said_to_be_over(server: TestServer) {
     server.finish().await;
 }
 
-async fn after_an_adjustment_the_old_card_is_withdrawn_at_once(server: TestServer) {
+async fn an_adjustment_withdraws_the_old_card_at_once(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
     let model = ada.get(&nao.path("/model")).await.good();

@@ -7,13 +7,13 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    the_types_that_are_shipped_can_be_read,
-    a_binnacle_is_kept_in_every_revision,
-    what_is_exported_can_be_written_again,
-    a_binnacle_sent_again_under_its_key_is_one_revision,
-    what_is_no_binnacle_is_refused_by_its_field_and_leaves_nothing,
-    a_viewer_reads_a_binnacle_and_does_not_write,
-    the_fleet_says_what_each_compass_stands_in_and_which_stand_in_nothing,
+    shipped_binnacle_types_can_be_read,
+    every_revision_of_a_binnacle_is_kept,
+    an_exported_binnacle_can_be_imported,
+    a_binnacle_repeated_under_its_key_is_one_revision,
+    an_invalid_binnacle_is_refused_by_field_and_not_stored,
+    a_viewer_can_read_but_not_write_a_binnacle,
+    the_fleet_lists_each_compass_with_or_without_its_binnacle,
 );
 
 /// Creates a vessel; returns the path of its standard compass's binnacle.
@@ -24,7 +24,7 @@ async fn place(person: &Person) -> String {
     format!("/vessels/{id}/compasses/{compass}/binnacle")
 }
 
-async fn the_types_that_are_shipped_can_be_read(server: TestServer) {
+async fn shipped_binnacle_types_can_be_read(server: TestServer) {
     let ada = server.admin("ada").await;
     let list = ada.get("/binnacle-types").await.good();
     let types = list["items"].as_array().unwrap();
@@ -40,7 +40,7 @@ async fn the_types_that_are_shipped_can_be_read(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_binnacle_is_kept_in_every_revision(server: TestServer) {
+async fn every_revision_of_a_binnacle_is_kept(server: TestServer) {
     let ada = server.admin("ada").await;
     let path = place(&ada).await;
     assert_eq!(ada.get(&path).await.problem(), "not-found");
@@ -75,7 +75,7 @@ async fn a_binnacle_is_kept_in_every_revision(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_is_exported_can_be_written_again(server: TestServer) {
+async fn an_exported_binnacle_can_be_imported(server: TestServer) {
     let ada = server.admin("ada").await;
     let path = place(&ada).await;
     put(&ada, &path, &binnacle()).await.good();
@@ -87,7 +87,7 @@ async fn what_is_exported_can_be_written_again(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_binnacle_sent_again_under_its_key_is_one_revision(server: TestServer) {
+async fn a_binnacle_repeated_under_its_key_is_one_revision(server: TestServer) {
     let ada = server.admin("ada").await;
     let path = place(&ada).await;
     let mut other = binnacle();
@@ -108,7 +108,7 @@ async fn a_binnacle_sent_again_under_its_key_is_one_revision(server: TestServer)
     server.finish().await;
 }
 
-async fn what_is_no_binnacle_is_refused_by_its_field_and_leaves_nothing(server: TestServer) {
+async fn an_invalid_binnacle_is_refused_by_field_and_not_stored(server: TestServer) {
     let ada = server.admin("ada").await;
     let path = place(&ada).await;
     let tray = |hole: u16| json!([{ "hole": hole, "magnet": "200 mm", "count": 1, "red": "port" }]);
@@ -143,7 +143,7 @@ async fn what_is_no_binnacle_is_refused_by_its_field_and_leaves_nothing(server: 
     server.finish().await;
 }
 
-async fn a_viewer_reads_a_binnacle_and_does_not_write(server: TestServer) {
+async fn a_viewer_can_read_but_not_write_a_binnacle(server: TestServer) {
     let ada = server.admin("ada").await;
     let path = place(&ada).await;
     put(&ada, &path, &binnacle()).await.good();
@@ -153,7 +153,7 @@ async fn a_viewer_reads_a_binnacle_and_does_not_write(server: TestServer) {
     server.finish().await;
 }
 
-async fn the_fleet_says_what_each_compass_stands_in_and_which_stand_in_nothing(server: TestServer) {
+async fn the_fleet_lists_each_compass_with_or_without_its_binnacle(server: TestServer) {
     let ada = server.admin("ada").await;
     let mut paths = Vec::new();
     for name in ["Nao", "Pinta", "Niña"] {

@@ -16,16 +16,16 @@ use std::collections::BTreeMap;
 use uuid::Uuid;
 
 on_both!(
-    a_card_says_what_the_model_predicts_and_what_it_is_worth,
-    the_four_forms_of_a_card_agree_and_are_the_same_each_time,
-    a_card_is_for_the_place_and_the_date_that_are_asked_for,
-    each_compass_has_a_card_of_its_own,
-    a_card_tells_how_the_correctors_were_last_recorded,
-    what_cannot_be_asked_is_refused_by_its_field,
-    there_is_no_card_where_it_would_mislead,
-    there_is_no_card_where_headings_are_ambiguous,
-    there_is_no_card_of_a_compass_that_is_suspected,
-    a_card_from_after_a_change_says_that_no_older_one_holds,
+    a_card_shows_prediction_and_uncertainty,
+    the_four_forms_of_a_card_agree_and_are_reproducible,
+    a_card_is_for_the_requested_place_and_date,
+    each_compass_has_its_own_card,
+    a_card_shows_the_last_recorded_correctors,
+    an_invalid_query_is_refused_by_field,
+    a_misleading_card_is_refused,
+    a_card_with_ambiguous_headings_is_refused,
+    a_card_of_a_suspected_compass_is_refused,
+    a_card_after_a_change_invalidates_older_ones,
 );
 
 const FROM: &str = "2026-11-15T00:00:00Z";
@@ -49,7 +49,7 @@ async fn amend(ada: &Person, path: &str, body: Value) {
         .good();
 }
 
-async fn a_card_says_what_the_model_predicts_and_what_it_is_worth(server: TestServer) {
+async fn a_card_shows_prediction_and_uncertainty(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = modelled(&server, &ada).await;
     let vessel = json!({ "imo_number": "9074729", "call_sign": "EAVN", "flag": "Spain" });
@@ -121,7 +121,7 @@ async fn a_card_says_what_the_model_predicts_and_what_it_is_worth(server: TestSe
     server.finish().await;
 }
 
-async fn the_four_forms_of_a_card_agree_and_are_the_same_each_time(server: TestServer) {
+async fn the_four_forms_of_a_card_agree_and_are_reproducible(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = modelled(&server, &ada).await;
     amend(
@@ -177,7 +177,7 @@ async fn the_four_forms_of_a_card_agree_and_are_the_same_each_time(server: TestS
     server.finish().await;
 }
 
-async fn a_card_is_for_the_place_and_the_date_that_are_asked_for(server: TestServer) {
+async fn a_card_is_for_the_requested_place_and_date(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = modelled(&server, &ada).await;
     let here = ada.get(&nao.path("/card.json")).await.good();
@@ -196,7 +196,7 @@ async fn a_card_is_for_the_place_and_the_date_that_are_asked_for(server: TestSer
     server.finish().await;
 }
 
-async fn each_compass_has_a_card_of_its_own(server: TestServer) {
+async fn each_compass_has_its_own_card(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = modelled(&server, &ada).await;
     let element = json!({ "name": "Element", "role": "transmitting", "serial_number": "7" });
@@ -213,7 +213,7 @@ async fn each_compass_has_a_card_of_its_own(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_card_tells_how_the_correctors_were_last_recorded(server: TestServer) {
+async fn a_card_shows_the_last_recorded_correctors(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = modelled(&server, &ada).await;
     let card = ada.get(&nao.path("/card.json")).await.good();
@@ -239,7 +239,7 @@ async fn a_card_tells_how_the_correctors_were_last_recorded(server: TestServer) 
     server.finish().await;
 }
 
-async fn what_cannot_be_asked_is_refused_by_its_field(server: TestServer) {
+async fn an_invalid_query_is_refused_by_field(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = modelled(&server, &ada).await;
     for (wrong, problem) in [
@@ -265,7 +265,7 @@ async fn refusal(ada: &Person, nao: &Ship, query: &str) -> (u16, String, String)
     (response.status, response.problem(), detail)
 }
 
-async fn there_is_no_card_where_it_would_mislead(server: TestServer) {
+async fn a_misleading_card_is_refused(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = modelled(&server, &ada).await;
     let refused = async |query: &str| {
@@ -299,7 +299,7 @@ async fn there_is_no_card_where_it_would_mislead(server: TestServer) {
     server.finish().await;
 }
 
-async fn there_is_no_card_where_headings_are_ambiguous(server: TestServer) {
+async fn a_card_with_ambiguous_headings_is_refused(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     // A field of the ship's own that is small against the earth's in Biscay, and larger in the
@@ -317,7 +317,7 @@ async fn there_is_no_card_where_headings_are_ambiguous(server: TestServer) {
     server.finish().await;
 }
 
-async fn there_is_no_card_of_a_compass_that_is_suspected(server: TestServer) {
+async fn a_card_of_a_suspected_compass_is_refused(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = modelled(&server, &ada).await;
     ada.get(&nao.path("/card.json")).await.good();
@@ -366,7 +366,7 @@ fn reporting(ship: &Ship, seq: u64, alert: ShipAlert) -> Vec<u8> {
     binnacle_wire::encode(&batch).unwrap()
 }
 
-async fn a_card_from_after_a_change_says_that_no_older_one_holds(server: TestServer) {
+async fn a_card_after_a_change_invalidates_older_ones(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let mut samples = days_at_sea(&true_model(), "2026-11-01T00:00:00Z", 10.0);

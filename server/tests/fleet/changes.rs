@@ -13,17 +13,17 @@ use binnacle_server_testing::{
 use serde_json::{Value, json};
 
 on_both!(
-    a_struck_ships_timeline_has_both_epochs_with_their_curves,
+    the_timeline_after_a_strike_has_both_epochs_with_curves,
     before_the_first_analysis_the_timeline_is_empty,
-    a_struck_ship_raises_one_alert_that_follows_what_is_known,
-    a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first,
-    a_strike_before_a_person_cleared_the_last_ones_alert_is_told_when_it_arrives,
-    a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band,
-    after_discharge_the_base_model_is_back_on_the_bridge,
-    work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert,
-    two_ships_in_one_storm_name_it_and_one_alone_does_not,
-    an_alert_follows_what_other_ships_show_without_another_fit,
-    however_far_the_needle_swings_one_alert_says_so,
+    a_strike_raises_one_alert_that_is_updated,
+    a_second_strike_raises_an_alert_after_the_first_was_acknowledged,
+    a_strike_dated_before_the_last_clearing_raises_an_alert,
+    after_a_strike_the_agent_gets_an_interim_model_with_a_wider_band,
+    after_discharge_the_agent_gets_the_base_model_again,
+    logged_work_opens_an_epoch_without_an_alert,
+    a_storm_is_named_when_two_ships_were_disturbed,
+    an_alert_is_updated_by_other_ships_without_a_new_fit,
+    a_swinging_compass_raises_one_alert_whatever_the_amplitude,
 );
 
 const A_WHILE_S: f64 = 10.0;
@@ -32,7 +32,7 @@ const BASE: &str = "2026-10-20T00:00:00Z";
 /// and their end.
 const HIT: &str = "2026-11-09T00:00:00Z";
 
-async fn a_struck_ships_timeline_has_both_epochs_with_their_curves(server: TestServer) {
+async fn the_timeline_after_a_strike_has_both_epochs_with_curves(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = well_known(&server, &ada).await;
     let calm = ada.get(&nao.path("/changes")).await.good();
@@ -136,7 +136,7 @@ fn widest_band_deg(model: &Value) -> f64 {
         .fold(0.0, f64::max)
 }
 
-async fn a_struck_ship_raises_one_alert_that_follows_what_is_known(server: TestServer) {
+async fn a_strike_raises_one_alert_that_is_updated(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = well_known(&server, &ada).await;
     assert_eq!(open_alerts(&ada).await, Vec::<Value>::new());
@@ -194,7 +194,7 @@ fn struck_again(days: f64) -> Vec<Sample> {
     days_at_sea(&model_after_step(1200.0, 3200.0), HIT_AGAIN, days)
 }
 
-async fn a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first(server: TestServer) {
+async fn a_second_strike_raises_an_alert_after_the_first_was_acknowledged(server: TestServer) {
     let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     mail::add(&ada, "bridge@example.com", "notice").await;
@@ -252,9 +252,7 @@ async fn a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first(s
     server.finish().await;
 }
 
-async fn a_strike_before_a_person_cleared_the_last_ones_alert_is_told_when_it_arrives(
-    server: TestServer,
-) {
+async fn a_strike_dated_before_the_last_clearing_raises_an_alert(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = well_known(&server, &ada).await;
     let first = days_at_sea(&model_after_step(3000.0, 2000.0), HIT, 5.0);
@@ -280,7 +278,7 @@ async fn a_strike_before_a_person_cleared_the_last_ones_alert_is_told_when_it_ar
     server.finish().await;
 }
 
-async fn a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band(server: TestServer) {
+async fn after_a_strike_the_agent_gets_an_interim_model_with_a_wider_band(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = well_known(&server, &ada).await;
     let base = downlink_with(&nao, &Value::Null).await["model"].take();
@@ -302,7 +300,7 @@ async fn a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band(server: T
     server.finish().await;
 }
 
-async fn after_discharge_the_base_model_is_back_on_the_bridge(server: TestServer) {
+async fn after_discharge_the_agent_gets_the_base_model_again(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = well_known(&server, &ada).await;
     let base = downlink_with(&nao, &Value::Null).await["model"].take();
@@ -344,7 +342,7 @@ async fn after_discharge_the_base_model_is_back_on_the_bridge(server: TestServer
     server.finish().await;
 }
 
-async fn work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert(server: TestServer) {
+async fn logged_work_opens_an_epoch_without_an_alert(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = well_known(&server, &ada).await;
     let base = downlink_with(&nao, &Value::Null).await["model"].take();
@@ -406,7 +404,7 @@ async fn last_change(person: &Person, ship: &Ship) -> Value {
         .clone()
 }
 
-async fn two_ships_in_one_storm_name_it_and_one_alone_does_not(server: TestServer) {
+async fn a_storm_is_named_when_two_ships_were_disturbed(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     let nao = server.ship(&ada, "Nao").await;
     send(&server, &nao, 1, &passed((48.0, -6.0), 14)).await;
@@ -433,7 +431,7 @@ async fn two_ships_in_one_storm_name_it_and_one_alone_does_not(server: TestServe
     server.finish().await;
 }
 
-async fn an_alert_follows_what_other_ships_show_without_another_fit(server: TestServer) {
+async fn an_alert_is_updated_by_other_ships_without_a_new_fit(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     let nao = server.ship(&ada, "Nao").await;
     send(&server, &nao, 1, &passing((48.0, -6.0))).await;
@@ -468,7 +466,7 @@ async fn an_alert_follows_what_other_ships_show_without_another_fit(server: Test
 /// Deflection in degrees by the number of the sample.
 type Swing = fn(f64) -> f64;
 
-async fn however_far_the_needle_swings_one_alert_says_so(server: TestServer) {
+async fn a_swinging_compass_raises_one_alert_whatever_the_amplitude(server: TestServer) {
     let ada = server.admin("ada").await;
     let swings: [(&str, Swing); 4] = [
         ("Pinta", |i| 6.0 * (0.7 * i).sin()),

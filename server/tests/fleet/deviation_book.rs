@@ -6,11 +6,11 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    the_book_has_each_watch_and_each_large_alteration,
-    the_book_pages_and_filters_without_losing_an_entry,
-    a_card_counts_only_from_when_it_was_made_until_it_was_withdrawn,
-    a_book_without_entries_is_an_empty_book,
-    what_is_no_range_is_refused_by_its_field,
+    the_book_has_an_entry_for_each_watch_and_large_alteration,
+    paging_and_filtering_lose_no_entry_of_the_book,
+    a_card_is_valid_from_its_making_to_its_withdrawal,
+    a_vessel_without_entries_has_an_empty_book,
+    an_invalid_range_is_refused_by_field,
 );
 
 const FROM: &str = "2026-11-15T00:00:00Z";
@@ -21,7 +21,7 @@ fn entries(book: &Value) -> Vec<Value> {
     book["items"].as_array().unwrap().clone()
 }
 
-async fn the_book_has_each_watch_and_each_large_alteration(server: TestServer) {
+async fn the_book_has_an_entry_for_each_watch_and_large_alteration(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     // Legs of three hours: three of four watches contain an alteration.
@@ -87,7 +87,7 @@ async fn the_book_has_each_watch_and_each_large_alteration(server: TestServer) {
     server.finish().await;
 }
 
-async fn the_book_pages_and_filters_without_losing_an_entry(server: TestServer) {
+async fn paging_and_filtering_lose_no_entry_of_the_book(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     // Samples are kept in rows of 30 days: one begins on the third.
@@ -126,7 +126,7 @@ async fn the_book_pages_and_filters_without_losing_an_entry(server: TestServer) 
     server.finish().await;
 }
 
-async fn a_card_counts_only_from_when_it_was_made_until_it_was_withdrawn(server: TestServer) {
+async fn a_card_is_valid_from_its_making_to_its_withdrawal(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &days_at_sea(&true_model(), FROM, 5.0))
@@ -183,7 +183,7 @@ async fn a_card_counts_only_from_when_it_was_made_until_it_was_withdrawn(server:
     server.finish().await;
 }
 
-async fn a_book_without_entries_is_an_empty_book(server: TestServer) {
+async fn a_vessel_without_entries_has_an_empty_book(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let empty = json!({ "items": [], "next": null });
@@ -195,7 +195,7 @@ async fn a_book_without_entries_is_an_empty_book(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_is_no_range_is_refused_by_its_field(server: TestServer) {
+async fn an_invalid_range_is_refused_by_field(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     for form in ["", ".csv", ".pdf"] {

@@ -10,15 +10,15 @@ use serde_json::{Value, json};
 on_both!(
     a_code_works_once,
     a_code_expires,
-    a_code_may_be_typed_carelessly,
+    a_code_may_be_typed_in_any_case_with_separators,
     a_code_for_another_vessels_compass_is_refused,
     an_agent_reaches_only_its_own_streams,
-    how_the_link_did_in_the_last_week_is_told,
-    what_waits_on_board_and_a_budget_that_is_short_are_told,
-    a_token_is_replaced_by_one_that_was_made_for_the_agent_and_not_before,
-    a_revoked_agent_is_known_no_more_and_what_it_sent_stays,
-    a_second_computer_with_an_agents_files_is_an_alert_until_the_agent_is_revoked,
-    two_computers_are_no_alert_any_more_when_nothing_has_shown_them_for_a_week,
+    the_agents_list_reports_last_weeks_traffic,
+    the_agents_list_reports_the_spool_and_a_short_budget,
+    a_token_is_replaced_only_by_one_made_for_the_agent,
+    a_revoked_agent_loses_access_and_its_batches_stay,
+    a_duplicate_agent_raises_an_alert_until_it_is_revoked,
+    the_duplicate_agent_alert_ends_after_a_week_without_evidence,
 );
 
 async fn a_code_works_once(server: TestServer) {
@@ -61,7 +61,7 @@ async fn a_code_expires(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_code_may_be_typed_carelessly(server: TestServer) {
+async fn a_code_may_be_typed_in_any_case_with_separators(server: TestServer) {
     let ada = server.admin("ada").await;
     let vessel = ada.create_vessel("Nao").await;
     let path = format!("/vessels/{}/agents", vessel["id"].as_str().unwrap());
@@ -110,7 +110,7 @@ async fn an_agent_reaches_only_its_own_streams(server: TestServer) {
     server.finish().await;
 }
 
-async fn how_the_link_did_in_the_last_week_is_told(server: TestServer) {
+async fn the_agents_list_reports_last_weeks_traffic(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let path = format!("/vessels/{}/agents", nao.id);
@@ -133,7 +133,7 @@ async fn how_the_link_did_in_the_last_week_is_told(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_waits_on_board_and_a_budget_that_is_short_are_told(server: TestServer) {
+async fn the_agents_list_reports_the_spool_and_a_short_budget(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let path = nao.path("/agents");
@@ -159,7 +159,7 @@ async fn what_waits_on_board_and_a_budget_that_is_short_are_told(server: TestSer
     server.finish().await;
 }
 
-async fn a_token_is_replaced_by_one_that_was_made_for_the_agent_and_not_before(server: TestServer) {
+async fn a_token_is_replaced_only_by_one_made_for_the_agent(server: TestServer) {
     let ada = server.admin("ada").await;
     let mut nao = server.ship(&ada, "Nao").await;
     let other = server.ship(&ada, "Arrano").await;
@@ -192,7 +192,7 @@ async fn revoke(person: &Person, ship: &Ship) -> ApiResponse {
     ApiResponse::of(person.request(Method::DELETE, &path)).await
 }
 
-async fn a_revoked_agent_is_known_no_more_and_what_it_sent_stays(server: TestServer) {
+async fn a_revoked_agent_loses_access_and_its_batches_stay(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let now = server.app.clock.now();
@@ -229,9 +229,7 @@ async fn clones(person: &Person) -> Vec<Value> {
     alerts
 }
 
-async fn a_second_computer_with_an_agents_files_is_an_alert_until_the_agent_is_revoked(
-    server: TestServer,
-) {
+async fn a_duplicate_agent_raises_an_alert_until_it_is_revoked(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     put_in(&nao, nao.stream, 1).await;
@@ -261,9 +259,7 @@ async fn a_second_computer_with_an_agents_files_is_an_alert_until_the_agent_is_r
     server.finish().await;
 }
 
-async fn two_computers_are_no_alert_any_more_when_nothing_has_shown_them_for_a_week(
-    server: TestServer,
-) {
+async fn the_duplicate_agent_alert_ends_after_a_week_without_evidence(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let second = another_stream(&nao).await;

@@ -14,19 +14,19 @@ on_both!(
     other_bytes_under_the_same_number_fork_the_stream,
     batches_out_of_order_are_acknowledged_up_to_the_gap,
     a_batch_without_samples_counts_its_windows,
-    a_late_batch_does_not_move_the_ship_back,
-    a_date_to_come_does_not_say_where_the_ship_was_last,
-    a_position_from_a_day_to_come_is_replaced,
-    what_is_not_the_batch_named_is_refused_and_not_stored,
-    what_was_acknowledged_outlives_the_server,
-    batches_of_one_stream_at_once_are_all_stored,
-    the_answer_that_waits_tells_what_the_samples_showed,
-    a_wait_without_a_worker_ends,
+    a_late_batch_does_not_move_the_last_position_back,
+    a_future_sample_does_not_set_the_last_position,
+    a_stored_future_position_is_replaced,
+    a_batch_under_a_wrong_name_is_refused_and_not_stored,
+    an_acknowledged_batch_survives_a_restart,
+    concurrent_batches_of_one_stream_are_all_stored,
+    a_waiting_response_contains_the_new_model,
+    waiting_without_a_worker_times_out,
 );
 
 const DAY: &str = "2026-11-20T00:00:00Z";
 
-async fn the_answer_that_waits_tells_what_the_samples_showed(server: TestServer) {
+async fn a_waiting_response_contains_the_new_model(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let samples = days_at_sea(&true_model(), "2026-11-10T00:00:00Z", 6.0);
@@ -45,7 +45,7 @@ async fn the_answer_that_waits_tells_what_the_samples_showed(server: TestServer)
     server.finish().await;
 }
 
-async fn a_wait_without_a_worker_ends(server: TestServer) {
+async fn waiting_without_a_worker_times_out(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let path = format!("/streams/{}/batches/1?wait=0", nao.stream);
@@ -106,7 +106,7 @@ async fn a_batch_without_samples_counts_its_windows(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_late_batch_does_not_move_the_ship_back(server: TestServer) {
+async fn a_late_batch_does_not_move_the_last_position_back(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(2, &passage("2026-11-20T12:00:00Z", 1)).await.good();
@@ -116,7 +116,7 @@ async fn a_late_batch_does_not_move_the_ship_back(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_date_to_come_does_not_say_where_the_ship_was_last(server: TestServer) {
+async fn a_future_sample_does_not_set_the_last_position(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let at = async || ada.get(&nao.path("")).await.good()["last_position"]["at"].clone();
@@ -134,7 +134,7 @@ async fn a_date_to_come_does_not_say_where_the_ship_was_last(server: TestServer)
     server.finish().await;
 }
 
-async fn a_position_from_a_day_to_come_is_replaced(server: TestServer) {
+async fn a_stored_future_position_is_replaced(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 1)).await.good();
@@ -148,7 +148,7 @@ async fn a_position_from_a_day_to_come_is_replaced(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_is_not_the_batch_named_is_refused_and_not_stored(server: TestServer) {
+async fn a_batch_under_a_wrong_name_is_refused_and_not_stored(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let good = frame(nao.stream, 1, &passage(DAY, 6));
@@ -185,7 +185,7 @@ async fn what_is_not_the_batch_named_is_refused_and_not_stored(server: TestServe
     server.finish().await;
 }
 
-async fn what_was_acknowledged_outlives_the_server(server: TestServer) {
+async fn an_acknowledged_batch_survives_a_restart(server: TestServer) {
     let ada = server.admin("ada").await;
     let mut nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 40)).await.good();
@@ -201,7 +201,7 @@ async fn what_was_acknowledged_outlives_the_server(server: TestServer) {
     server.finish().await;
 }
 
-async fn batches_of_one_stream_at_once_are_all_stored(server: TestServer) {
+async fn concurrent_batches_of_one_stream_are_all_stored(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let samples = passage(DAY, 2);
@@ -218,7 +218,7 @@ async fn batches_of_one_stream_at_once_are_all_stored(server: TestServer) {
 
 /// SQLite rolls a transaction back itself when the disk is full.
 #[tokio::test]
-async fn a_disk_that_was_full_takes_batches_again() {
+async fn batches_are_accepted_again_after_a_full_disk() {
     let server = TestServer::start(Engine::Sqlite).await;
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;

@@ -6,14 +6,14 @@ use binnacle_server_testing::on_both;
 use serde_json::{Value, json};
 
 on_both!(
-    a_glance_says_what_a_vessels_own_page_says,
-    a_glance_looks_ahead_to_the_next_port_call,
-    a_glance_can_be_of_one_vessel_and_is_never_of_another_operators,
+    the_overview_agrees_with_the_vessels_page,
+    the_overview_predicts_for_the_next_port_call,
+    the_overview_of_one_vessel_is_its_operators_alone,
 );
 
 const HOUR_S: f64 = 3_600.0;
 
-async fn a_glance_says_what_a_vessels_own_page_says(server: TestServer) {
+async fn the_overview_agrees_with_the_vessels_page(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
     limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
@@ -56,7 +56,7 @@ async fn a_glance_says_what_a_vessels_own_page_says(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_glance_looks_ahead_to_the_next_port_call(server: TestServer) {
+async fn the_overview_predicts_for_the_next_port_call(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
     for (port, eta, etd) in [("FIHEL", "22T06", "22T18"), ("NLRTM", "21T08", "21T10")] {
@@ -89,7 +89,7 @@ async fn a_glance_looks_ahead_to_the_next_port_call(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_glance_can_be_of_one_vessel_and_is_never_of_another_operators(server: TestServer) {
+async fn the_overview_of_one_vessel_is_its_operators_alone(server: TestServer) {
     let ada = server.admin("ada").await;
     ada.create_vessel("Nao").await;
     let kogge = ada.create_vessel("Kogge").await;

@@ -13,9 +13,9 @@ use tempfile::TempDir;
 use uuid::Uuid;
 
 on_both!(
-    messages_become_the_batches_that_they_were_cut_from_and_once,
-    what_is_no_message_or_no_batch_of_the_vessel_keeps_nothing_else_back,
-    other_bytes_under_a_number_that_is_there_are_refused,
+    messages_are_reassembled_into_batches_stored_once,
+    an_invalid_message_does_not_block_the_others,
+    other_bytes_under_a_stored_number_are_refused,
 );
 
 const DAY: &str = "2026-11-20T00:00:00Z";
@@ -38,7 +38,7 @@ async fn brought(server: &TestServer, ship: &Ship, messages: &[Vec<u8>]) -> Impo
     import(&server.app.db, vessel, &named, now).await.unwrap()
 }
 
-async fn messages_become_the_batches_that_they_were_cut_from_and_once(server: TestServer) {
+async fn messages_are_reassembled_into_batches_stored_once(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let passage_1 = long_passage(&nao);
@@ -67,7 +67,7 @@ async fn messages_become_the_batches_that_they_were_cut_from_and_once(server: Te
     server.finish().await;
 }
 
-async fn what_is_no_message_or_no_batch_of_the_vessel_keeps_nothing_else_back(server: TestServer) {
+async fn an_invalid_message_does_not_block_the_others(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let other = server.ship(&ada, "Arrano").await;
@@ -95,7 +95,7 @@ async fn what_is_no_message_or_no_batch_of_the_vessel_keeps_nothing_else_back(se
     server.finish().await;
 }
 
-async fn other_bytes_under_a_number_that_is_there_are_refused(server: TestServer) {
+async fn other_bytes_under_a_stored_number_are_refused(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 6)).await.good();
@@ -108,7 +108,7 @@ async fn other_bytes_under_a_number_that_is_there_are_refused(server: TestServer
 }
 
 #[test]
-fn a_file_that_cannot_be_read_stops_the_command_before_anything_is_stored() {
+fn an_unreadable_file_stops_the_command_before_anything_is_stored() {
     let folder = TempDir::new().unwrap();
     let vessel = Uuid::from_u128(1).to_string();
     let refused = run(folder.path(), &["bursts", "--vessel", &vessel, "no.sbd"]);
@@ -117,7 +117,7 @@ fn a_file_that_cannot_be_read_stops_the_command_before_anything_is_stored() {
 }
 
 #[test]
-fn a_message_that_is_damaged_is_named_and_the_exit_code_says_so() {
+fn a_damaged_message_is_named_and_sets_the_exit_code() {
     let folder = TempDir::new().unwrap();
     std::fs::write(folder.path().join("1.sbd"), b"\xb1 damaged").unwrap();
     let vessel = Uuid::from_u128(1).to_string();

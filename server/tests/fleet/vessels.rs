@@ -6,14 +6,14 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    vessels_page_in_the_order_they_were_entered,
-    a_create_request_sent_again_creates_nothing_more,
-    what_is_no_vessel_is_refused_by_its_field,
-    a_vessel_may_have_more_compasses,
-    what_is_written_of_a_vessel_and_her_compass_can_be_amended,
+    vessels_are_paged_in_order_of_creation,
+    a_repeated_create_request_creates_nothing,
+    an_invalid_vessel_is_refused_by_field,
+    a_vessel_may_have_several_compasses,
+    vessel_and_compass_details_can_be_amended,
 );
 
-async fn vessels_page_in_the_order_they_were_entered(server: TestServer) {
+async fn vessels_are_paged_in_order_of_creation(server: TestServer) {
     let ada = server.admin("ada").await;
     for name in ["A", "B", "C"] {
         ada.create_vessel(name).await;
@@ -36,7 +36,7 @@ async fn vessels_page_in_the_order_they_were_entered(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_create_request_sent_again_creates_nothing_more(server: TestServer) {
+async fn a_repeated_create_request_creates_nothing(server: TestServer) {
     let ada = server.admin("ada").await;
     let create = async |body: Value| {
         let request = ada.request(Method::POST, "/vessels");
@@ -60,7 +60,7 @@ async fn a_create_request_sent_again_creates_nothing_more(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_is_no_vessel_is_refused_by_its_field(server: TestServer) {
+async fn an_invalid_vessel_is_refused_by_field(server: TestServer) {
     let ada = server.admin("ada").await;
     let long = "x".repeat(201);
     for (body, field) in [
@@ -83,7 +83,7 @@ async fn what_is_no_vessel_is_refused_by_its_field(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_vessel_may_have_more_compasses(server: TestServer) {
+async fn a_vessel_may_have_several_compasses(server: TestServer) {
     let ada = server.admin("ada").await;
     let vessel = ada.create_vessel("Nao").await;
     let path = format!("/vessels/{}/compasses", vessel["id"].as_str().unwrap());
@@ -102,7 +102,7 @@ async fn a_vessel_may_have_more_compasses(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_is_written_of_a_vessel_and_her_compass_can_be_amended(server: TestServer) {
+async fn vessel_and_compass_details_can_be_amended(server: TestServer) {
     let ada = server.admin("ada").await;
     let body = json!({ "name": "Nao", "imo_number": "9074729", "flag": "Spain" });
     let vessel = ada.post("/vessels", &body).await.good();

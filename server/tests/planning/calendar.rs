@@ -13,13 +13,13 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 on_both!(
-    a_calendar_is_read_by_its_secret_address_until_it_is_removed,
+    a_calendar_is_readable_by_its_secret_address_until_removed,
     an_event_keeps_its_uid_and_its_sequence_grows,
     a_firms_calendar_shows_what_the_firm_sees,
     a_vessels_calendar_shows_that_vessel,
-    long_and_strange_words_come_through,
-    a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them,
-    a_fleets_calendar_has_every_vessels_and_a_firms_none,
+    long_and_unusual_text_is_unchanged,
+    a_vessels_calendar_follows_its_port_calls_and_due_dates,
+    a_fleet_calendar_covers_all_vessels_and_a_firms_only_its_orders,
 );
 
 /// Returns the unfolded lines of a calendar, after checking their form.
@@ -80,7 +80,7 @@ async fn read(server: &TestServer, made: &Value) -> ApiResponse {
     ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await
 }
 
-async fn a_calendar_is_read_by_its_secret_address_until_it_is_removed(server: TestServer) {
+async fn a_calendar_is_readable_by_its_secret_address_until_removed(server: TestServer) {
     let parties = OfferParties::planned(&server, 0).await;
     let made = feed(&parties.ada, &json!({ "name": "Our fleet" })).await;
     let found = read(&server, &made).await;
@@ -179,7 +179,7 @@ async fn a_vessels_calendar_shows_that_vessel(server: TestServer) {
     server.finish().await;
 }
 
-async fn long_and_strange_words_come_through(server: TestServer) {
+async fn long_and_unusual_text_is_unchanged(server: TestServer) {
     let parties = OfferParties::planned(&server, 0).await;
     parties
         .post(&parties.ada, "/cancel", &json!({ "text": "x" }))
@@ -221,7 +221,7 @@ fn sequence(event: &icalendar::Event) -> u32 {
     event.property_value("SEQUENCE").unwrap().parse().unwrap()
 }
 
-async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(server: TestServer) {
+async fn a_vessels_calendar_follows_its_port_calls_and_due_dates(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let call = enter(&ada, &nao, "NLRTM", 8).await;
@@ -280,7 +280,7 @@ async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(server:
     server.finish().await;
 }
 
-async fn a_fleets_calendar_has_every_vessels_and_a_firms_none(server: TestServer) {
+async fn a_fleet_calendar_covers_all_vessels_and_a_firms_only_its_orders(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     let pinta = due_vessel(&parties.ada, "Pinta").await;
     enter(&parties.ada, &pinta, "BEANR", 8).await;

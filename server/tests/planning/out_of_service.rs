@@ -8,10 +8,10 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    a_vessel_out_of_service_is_in_no_list_and_calls_for_no_alert,
-    what_her_agents_still_send_is_kept_and_back_in_service_she_is_as_before,
+    a_vessel_out_of_service_is_unlisted_and_raises_no_alert,
+    batches_sent_out_of_service_are_kept_for_the_return,
     a_vessel_with_an_order_under_way_stays_in_service,
-    only_an_admin_of_hers_takes_a_vessel_out_of_service,
+    only_its_operators_admin_takes_a_vessel_out_of_service,
     a_vessel_out_of_service_leaves_the_plan_and_comes_back_into_it,
 );
 
@@ -39,7 +39,7 @@ async fn over_her_limit(server: &TestServer, person: &Person) -> Ship {
     nao
 }
 
-async fn a_vessel_out_of_service_is_in_no_list_and_calls_for_no_alert(server: TestServer) {
+async fn a_vessel_out_of_service_is_unlisted_and_raises_no_alert(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = over_her_limit(&server, &ada).await;
     let kogge = server.ship(&ada, "Kogge").await;
@@ -88,9 +88,7 @@ async fn a_vessel_out_of_service_is_in_no_list_and_calls_for_no_alert(server: Te
     server.finish().await;
 }
 
-async fn what_her_agents_still_send_is_kept_and_back_in_service_she_is_as_before(
-    server: TestServer,
-) {
+async fn batches_sent_out_of_service_are_kept_for_the_return(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = over_her_limit(&server, &ada).await;
     set(&ada, &nao.path(""), false).await.good();
@@ -138,7 +136,7 @@ async fn a_vessel_with_an_order_under_way_stays_in_service(server: TestServer) {
     server.finish().await;
 }
 
-async fn only_an_admin_of_hers_takes_a_vessel_out_of_service(server: TestServer) {
+async fn only_its_operators_admin_takes_a_vessel_out_of_service(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let eve = server.admin("eve").await;

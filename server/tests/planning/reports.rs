@@ -11,14 +11,14 @@ use serde_json::{Value, json};
 use std::process::Command;
 
 on_both!(
-    a_report_says_what_is_due_and_how_bad_it_is,
-    a_job_is_reckoned_against_a_swing,
-    the_files_say_what_the_report_says,
-    the_report_of_a_month_goes_once_to_those_who_were_on_the_list,
-    a_report_that_cannot_be_made_holds_up_no_other_operators,
-    a_job_that_was_sent_after_its_month_is_in_the_next_report,
-    settings_and_times_that_make_no_sense_are_refused,
-    another_operators_fleet_is_in_no_report,
+    a_report_lists_due_dates_and_deviations,
+    a_job_is_compared_with_a_swing,
+    the_report_files_agree_with_the_report,
+    a_monthly_report_goes_once_to_its_recipients,
+    a_failing_report_does_not_block_other_operators,
+    a_job_received_after_its_month_is_in_the_next_report,
+    invalid_settings_and_times_are_refused,
+    a_report_contains_no_other_operators_fleet,
 );
 
 const DAY_S: f64 = 86_400.0;
@@ -27,7 +27,7 @@ async fn report(person: &Person, query: &str) -> Value {
     person.get(&format!("/reports/fleet{query}")).await.good()
 }
 
-async fn a_report_says_what_is_due_and_how_bad_it_is(server: TestServer) {
+async fn a_report_lists_due_dates_and_deviations(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
     let santa = due_vessel(&ada, "Santa").await;
@@ -72,7 +72,7 @@ async fn a_report_says_what_is_due_and_how_bad_it_is(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_job_is_reckoned_against_a_swing(server: TestServer) {
+async fn a_job_is_compared_with_a_swing(server: TestServer) {
     let job = Job::begin(&server).await;
     job.complete().await;
     let found = report(&job.person, "").await;
@@ -115,7 +115,7 @@ async fn a_job_is_reckoned_against_a_swing(server: TestServer) {
     server.finish().await;
 }
 
-async fn the_files_say_what_the_report_says(server: TestServer) {
+async fn the_report_files_agree_with_the_report(server: TestServer) {
     let ada = server.admin("ada").await;
     due_vessel(&ada, "=HYPERLINK(\"x\"), Nao").await;
     let due = ada.get("/reports/fleet.csv").await;
@@ -175,7 +175,7 @@ fn parts(letter: &str) -> Value {
     serde_json::from_slice(&done.stdout).unwrap()
 }
 
-async fn the_report_of_a_month_goes_once_to_those_who_were_on_the_list(server: TestServer) {
+async fn a_monthly_report_goes_once_to_its_recipients(server: TestServer) {
     let relay = Relay::start().await;
     let ada = server.admin("ada").await;
     due_vessel(&ada, "Nao").await;
@@ -224,7 +224,7 @@ async fn the_report_of_a_month_goes_once_to_those_who_were_on_the_list(server: T
     server.finish().await;
 }
 
-async fn a_report_that_cannot_be_made_holds_up_no_other_operators(server: TestServer) {
+async fn a_failing_report_does_not_block_other_operators(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     due_vessel(&ada, "Nao").await;
     server
@@ -240,7 +240,7 @@ async fn a_report_that_cannot_be_made_holds_up_no_other_operators(server: TestSe
     server.finish().await;
 }
 
-async fn a_job_that_was_sent_after_its_month_is_in_the_next_report(server: TestServer) {
+async fn a_job_received_after_its_month_is_in_the_next_report(server: TestServer) {
     let relay = Relay::start().await;
     let job = Job::begin(&server).await;
     let ada = &job.person;
@@ -272,7 +272,7 @@ async fn a_job_that_was_sent_after_its_month_is_in_the_next_report(server: TestS
     server.finish().await;
 }
 
-async fn settings_and_times_that_make_no_sense_are_refused(server: TestServer) {
+async fn invalid_settings_and_times_are_refused(server: TestServer) {
     let ada = server.admin("ada").await;
     let many: Vec<String> = (0..21).map(|n| format!("a{n}@example.com")).collect();
     for bad in [
@@ -300,7 +300,7 @@ async fn settings_and_times_that_make_no_sense_are_refused(server: TestServer) {
     server.finish().await;
 }
 
-async fn another_operators_fleet_is_in_no_report(server: TestServer) {
+async fn a_report_contains_no_other_operators_fleet(server: TestServer) {
     let job = Job::begin(&server).await;
     job.complete().await;
     let eve = server.admin("eve").await;

@@ -12,17 +12,17 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 on_both!(
-    a_change_has_its_line,
-    a_change_that_is_refused_has_its_line_too,
-    there_is_no_change_without_its_line,
-    a_firm_reads_nothing_without_its_line,
-    what_a_firm_does_and_reads_is_seen_by_the_vessels_operator_alone,
-    each_sees_their_own_part_and_a_viewer_none,
-    an_agents_enrolment_has_its_line,
-    an_invitation_that_is_taken_has_its_line,
-    nothing_secret_is_in_it,
-    it_is_searched_and_comes_in_pages_and_as_a_file,
-    lines_go_when_they_are_old,
+    each_change_has_an_audit_line,
+    a_refused_change_has_an_audit_line_too,
+    a_change_without_an_audit_line_fails,
+    each_read_by_a_firm_has_an_audit_line,
+    a_firms_audit_lines_are_visible_to_the_vessels_operator_alone,
+    each_party_sees_its_own_audit_lines_and_a_viewer_none,
+    an_agents_enrolment_has_an_audit_line,
+    an_accepted_invitation_has_an_audit_line,
+    the_audit_log_contains_no_secret,
+    the_audit_log_is_searched_paged_and_exported,
+    old_audit_lines_are_deleted,
 );
 
 const DAY_S: f64 = 86_400.0;
@@ -41,7 +41,7 @@ fn done(lines: &[Value]) -> Vec<String> {
     lines.iter().rev().map(said).collect()
 }
 
-async fn a_change_has_its_line(server: TestServer) {
+async fn each_change_has_an_audit_line(server: TestServer) {
     let ada = server.admin("ada").await;
     let made = ada.post("/vessels", &json!({ "name": "Nao" })).await;
     let id = made.good()["id"].clone();
@@ -75,7 +75,7 @@ async fn a_change_has_its_line(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_change_that_is_refused_has_its_line_too(server: TestServer) {
+async fn a_refused_change_has_an_audit_line_too(server: TestServer) {
     let ada = server.admin("ada").await;
     let viewer = ada.viewer(&server).await;
     let eve = server.admin("eve").await;
@@ -98,7 +98,7 @@ async fn a_change_that_is_refused_has_its_line_too(server: TestServer) {
     server.finish().await;
 }
 
-async fn there_is_no_change_without_its_line(server: TestServer) {
+async fn a_change_without_an_audit_line_fails(server: TestServer) {
     let ada = server.admin("ada").await;
     server
         .sql("ALTER TABLE audit_lines RENAME TO elsewhere")
@@ -115,7 +115,7 @@ async fn there_is_no_change_without_its_line(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_firm_reads_nothing_without_its_line(server: TestServer) {
+async fn each_read_by_a_firm_has_an_audit_line(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     let rosa = &parties.firms[0].1;
     server
@@ -130,7 +130,7 @@ async fn a_firm_reads_nothing_without_its_line(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_a_firm_does_and_reads_is_seen_by_the_vessels_operator_alone(server: TestServer) {
+async fn a_firms_audit_lines_are_visible_to_the_vessels_operator_alone(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     let (firm, rosa) = &parties.firms[0];
     let eve = server.admin("eve").await;
@@ -184,7 +184,7 @@ async fn what_a_firm_does_and_reads_is_seen_by_the_vessels_operator_alone(server
     server.finish().await;
 }
 
-async fn each_sees_their_own_part_and_a_viewer_none(server: TestServer) {
+async fn each_party_sees_its_own_audit_lines_and_a_viewer_none(server: TestServer) {
     let ada = server.admin("ada").await;
     let viewer = ada.viewer(&server).await;
     let eve = server.admin("eve").await;
@@ -216,7 +216,7 @@ async fn each_sees_their_own_part_and_a_viewer_none(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_agents_enrolment_has_its_line(server: TestServer) {
+async fn an_agents_enrolment_has_an_audit_line(server: TestServer) {
     let ada = server.admin("ada").await;
     let ship = server.ship(&ada, "Nao").await;
     ship.put(
@@ -239,7 +239,7 @@ async fn an_agents_enrolment_has_its_line(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_invitation_that_is_taken_has_its_line(server: TestServer) {
+async fn an_accepted_invitation_has_an_audit_line(server: TestServer) {
     let ada = server.admin("ada").await;
     let bob = json!({ "email": "bob@example.com", "name": "Bob", "role": "viewer" });
     let bob = ada.post("/users", &bob).await.good();
@@ -256,7 +256,7 @@ async fn an_invitation_that_is_taken_has_its_line(server: TestServer) {
     server.finish().await;
 }
 
-async fn nothing_secret_is_in_it(server: TestServer) {
+async fn the_audit_log_contains_no_secret(server: TestServer) {
     let ada = server.admin("ada").await;
     let made = ada
         .post("/tokens", &json!({ "name": "ERP", "scope": "write" }))
@@ -296,7 +296,7 @@ async fn nothing_secret_is_in_it(server: TestServer) {
     server.finish().await;
 }
 
-async fn it_is_searched_and_comes_in_pages_and_as_a_file(server: TestServer) {
+async fn the_audit_log_is_searched_paged_and_exported(server: TestServer) {
     let ada = server.admin("ada").await;
     for name in ["=1+1", "Pinta", "Niña"] {
         server.advance(60.0);
@@ -327,7 +327,7 @@ async fn it_is_searched_and_comes_in_pages_and_as_a_file(server: TestServer) {
     server.finish().await;
 }
 
-async fn lines_go_when_they_are_old(server: TestServer) {
+async fn old_audit_lines_are_deleted(server: TestServer) {
     let ada = server.admin("ada").await;
     ada.create_vessel("Nao").await;
     server.advance(1094.0 * DAY_S);
@@ -356,7 +356,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn no_handler_begins_a_transaction_without_its_request() {
+fn every_handler_begins_its_transaction_from_its_request() {
     let mut handlers = 0;
     let server = Path::new(env!("CARGO_MANIFEST_DIR"));
     let crates = [
@@ -383,7 +383,7 @@ fn no_handler_begins_a_transaction_without_its_request() {
 }
 
 #[tokio::test]
-async fn what_the_command_line_changes_has_its_line() {
+async fn changes_by_the_command_line_have_an_audit_line() {
     let server = TestServer::start(Engine::Sqlite).await;
     let ada = server.admin("ada").await;
     let url = server.app.config.database.database_url.clone();

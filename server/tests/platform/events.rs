@@ -11,17 +11,17 @@ use std::time::Duration;
 use tokio::time::timeout;
 
 on_both!(
-    a_dashboard_hears_of_a_batch_and_a_model,
-    a_dashboard_hears_of_a_report,
-    a_dashboard_that_comes_back_gets_what_it_missed,
-    nobody_hears_of_another_operators_fleet,
-    a_revoked_token_and_an_ended_session_hear_no_more,
-    a_stopping_server_lets_its_dashboards_go,
-    events_are_forgotten_after_a_day,
+    a_dashboard_gets_events_of_a_batch_and_a_model,
+    a_dashboard_gets_an_event_of_a_logbook_entry,
+    a_reconnecting_dashboard_gets_missed_events,
+    events_stay_within_an_operator,
+    a_revoked_token_and_an_ended_session_get_no_more_events,
+    a_stopping_server_closes_its_event_streams,
+    events_are_deleted_after_a_day,
 );
 
 #[tokio::test]
-async fn a_broken_line_to_postgres_is_mended_and_what_was_missed_is_told() {
+async fn a_lost_postgres_connection_is_restored_and_missed_events_are_sent() {
     let server = TestServer::start(Engine::Postgres).await;
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
@@ -100,7 +100,7 @@ impl Source {
     }
 }
 
-async fn a_dashboard_hears_of_a_batch_and_a_model(server: TestServer) {
+async fn a_dashboard_gets_events_of_a_batch_and_a_model(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let mut source = Source::open(&ada, None).await;
@@ -117,7 +117,7 @@ async fn a_dashboard_hears_of_a_batch_and_a_model(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_dashboard_hears_of_a_report(server: TestServer) {
+async fn a_dashboard_gets_an_event_of_a_logbook_entry(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let mut source = Source::open(&ada, None).await;
@@ -128,7 +128,7 @@ async fn a_dashboard_hears_of_a_report(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_dashboard_that_comes_back_gets_what_it_missed(server: TestServer) {
+async fn a_reconnecting_dashboard_gets_missed_events(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let mut source = Source::open(&ada, None).await;
@@ -143,7 +143,7 @@ async fn a_dashboard_that_comes_back_gets_what_it_missed(server: TestServer) {
     server.finish().await;
 }
 
-async fn nobody_hears_of_another_operators_fleet(server: TestServer) {
+async fn events_stay_within_an_operator(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let nao = server.ship(&ada, "Nao").await;
@@ -156,7 +156,7 @@ async fn nobody_hears_of_another_operators_fleet(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_revoked_token_and_an_ended_session_hear_no_more(server: TestServer) {
+async fn a_revoked_token_and_an_ended_session_get_no_more_events(server: TestServer) {
     let ada = server.admin("ada").await;
     let grace = ada.viewer(&server).await;
     let nao = server.ship(&ada, "Nao").await;
@@ -185,7 +185,7 @@ async fn a_revoked_token_and_an_ended_session_hear_no_more(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_stopping_server_lets_its_dashboards_go(server: TestServer) {
+async fn a_stopping_server_closes_its_event_streams(server: TestServer) {
     let ada = server.admin("ada").await;
     let mut source = Source::open(&ada, None).await;
     server.app.stopping.cancel();
@@ -202,7 +202,7 @@ async fn left(server: &TestServer) -> (i64,) {
     .unwrap()
 }
 
-async fn events_are_forgotten_after_a_day(server: TestServer) {
+async fn events_are_deleted_after_a_day(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let mut source = Source::open(&ada, None).await;

@@ -6,7 +6,7 @@ use reqwest::Method;
 use serde_json::json;
 
 #[tokio::test]
-async fn every_answer_to_people_says_what_a_browser_may_do() {
+async fn every_response_to_people_has_browser_security_headers() {
     let server = TestServer::start(Engine::Sqlite).await;
     for path in ["/", "/api/docs", "/api/v1/vessels", "/api/none", "/healthz"] {
         let response = ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await;
@@ -35,7 +35,7 @@ async fn every_answer_to_people_says_what_a_browser_may_do() {
 }
 
 #[tokio::test]
-async fn only_a_server_on_https_says_that_nothing_else_will_do() {
+async fn a_plain_http_server_sends_no_strict_transport_security() {
     let plain = ["--public-url", "http://binnacle.example"];
     let server = TestServer::start_with(Engine::Sqlite, &plain).await;
     let response = ApiResponse::of(server.http.get(format!("{}/", server.url))).await;
@@ -44,7 +44,7 @@ async fn only_a_server_on_https_says_that_nothing_else_will_do() {
 }
 
 #[tokio::test]
-async fn another_sites_page_changes_nothing_and_signs_nobody_in() {
+async fn a_cross_site_request_changes_nothing_and_cannot_sign_in() {
     let server = TestServer::start(Engine::Sqlite).await;
     let ada = server.admin("ada").await;
     let vessel = json!({ "name": "Nao" });
@@ -78,7 +78,7 @@ async fn another_sites_page_changes_nothing_and_signs_nobody_in() {
 }
 
 #[tokio::test]
-async fn a_body_that_is_too_large_is_refused_in_words_wherever_json_is_taken() {
+async fn an_oversized_body_is_refused_with_a_problem_on_every_json_route() {
     let server = TestServer::start(Engine::Sqlite).await;
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
@@ -125,7 +125,7 @@ async fn a_body_that_is_too_large_is_refused_in_words_wherever_json_is_taken() {
 }
 
 #[tokio::test]
-async fn headers_without_end_are_refused_and_others_still_served() {
+async fn endless_headers_are_refused_while_others_are_served() {
     let server = TestServer::start(Engine::Sqlite).await;
     let page = format!("{}/healthz", server.url);
     let long = server.http.get(&page).header("x-long", "x".repeat(600_000));

@@ -6,19 +6,19 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    who_is_invited_sets_a_password_and_signs_in,
+    an_invited_person_sets_a_password_and_signs_in,
     a_code_works_once_and_for_a_week,
-    a_weak_password_is_refused_and_the_code_stays_good,
-    an_e_mail_has_one_account,
-    who_is_shut_out_is_out_at_once,
-    who_forgot_the_password_gets_another_code,
-    who_is_removed_is_gone_with_their_tokens,
-    an_operator_keeps_an_admin,
+    a_weak_password_is_refused_and_the_code_stays_valid,
+    an_e_mail_address_has_one_account,
+    blocking_a_person_ends_access_at_once,
+    a_person_with_a_forgotten_password_gets_a_new_code,
+    a_removed_persons_tokens_are_revoked,
+    an_operator_keeps_at_least_one_admin,
     two_admins_cannot_remove_each_other,
-    nobody_sees_another_operators_people,
-    an_admins_token_makes_nobody_and_becomes_nobody,
-    another_code_ends_tokens_and_calendars,
-    a_calendar_ends_with_who_made_it,
+    another_operators_people_are_not_found,
+    an_admins_token_cannot_manage_people,
+    a_new_code_ends_tokens_and_calendars,
+    a_calendar_ends_with_its_creator,
 );
 
 const GOOD: &str = "seven gulls over the quay";
@@ -46,7 +46,7 @@ async fn remove(admin: &Person, id: &Value) -> ApiResponse {
     ApiResponse::of(admin.request(Method::DELETE, &path)).await
 }
 
-async fn who_is_invited_sets_a_password_and_signs_in(server: TestServer) {
+async fn an_invited_person_sets_a_password_and_signs_in(server: TestServer) {
     let ada = server.admin("ada").await;
     let invited = invite(&ada, " Grace@Example.com ", "viewer").await;
     let code = invited["invitation"]["code"].as_str().unwrap();
@@ -87,7 +87,7 @@ async fn a_code_works_once_and_for_a_week(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_weak_password_is_refused_and_the_code_stays_good(server: TestServer) {
+async fn a_weak_password_is_refused_and_the_code_stays_valid(server: TestServer) {
     let ada = server.admin("ada").await;
     let invited = invite(&ada, "grace@example.com", "viewer").await;
     let code = invited["invitation"]["code"].as_str().unwrap();
@@ -110,7 +110,7 @@ async fn a_weak_password_is_refused_and_the_code_stays_good(server: TestServer) 
     server.finish().await;
 }
 
-async fn an_e_mail_has_one_account(server: TestServer) {
+async fn an_e_mail_address_has_one_account(server: TestServer) {
     let ada = server.admin("ada").await;
     let new = json!({ "email": "ADA@example.com", "name": "Ada", "role": "viewer" });
     assert_eq!(ada.post("/users", &new).await.problem(), "wrong-state");
@@ -123,7 +123,7 @@ async fn an_e_mail_has_one_account(server: TestServer) {
     server.finish().await;
 }
 
-async fn who_is_shut_out_is_out_at_once(server: TestServer) {
+async fn blocking_a_person_ends_access_at_once(server: TestServer) {
     let ada = server.admin("ada").await;
     let viewer = ada.viewer(&server).await;
     let token = json!({ "name": "ERP", "scope": "read" });
@@ -148,7 +148,7 @@ async fn who_is_shut_out_is_out_at_once(server: TestServer) {
     server.finish().await;
 }
 
-async fn who_forgot_the_password_gets_another_code(server: TestServer) {
+async fn a_person_with_a_forgotten_password_gets_a_new_code(server: TestServer) {
     let ada = server.admin("ada").await;
     let viewer = ada.viewer(&server).await;
     let id = viewer.get("/me").await.good()["user_id"].clone();
@@ -169,7 +169,7 @@ async fn who_forgot_the_password_gets_another_code(server: TestServer) {
     server.finish().await;
 }
 
-async fn who_is_removed_is_gone_with_their_tokens(server: TestServer) {
+async fn a_removed_persons_tokens_are_revoked(server: TestServer) {
     let ada = server.admin("ada").await;
     let viewer = ada.viewer(&server).await;
     let token = json!({ "name": "ERP", "scope": "read" });
@@ -187,7 +187,7 @@ async fn who_is_removed_is_gone_with_their_tokens(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_operator_keeps_an_admin(server: TestServer) {
+async fn an_operator_keeps_at_least_one_admin(server: TestServer) {
     let ada = server.admin("ada").await;
     let id = ada.get("/me").await.good()["user_id"].clone();
     // An invited admin does not count as the last admin.
@@ -233,7 +233,7 @@ async fn two_admins_cannot_remove_each_other(server: TestServer) {
     server.finish().await;
 }
 
-async fn nobody_sees_another_operators_people(server: TestServer) {
+async fn another_operators_people_are_not_found(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let id = ada.get("/me").await.good()["user_id"].clone();
@@ -276,7 +276,7 @@ impl Program {
     }
 }
 
-async fn an_admins_token_makes_nobody_and_becomes_nobody(server: TestServer) {
+async fn an_admins_token_cannot_manage_people(server: TestServer) {
     let ada = server.admin("ada").await;
     let viewer = ada.viewer(&server).await;
     let other = viewer.get("/me").await.good()["user_id"].clone();
@@ -336,7 +336,7 @@ async fn calendar(server: &TestServer, person: &Person) -> String {
     url.replace("https://binnacle.example", &server.url)
 }
 
-async fn another_code_ends_tokens_and_calendars(server: TestServer) {
+async fn a_new_code_ends_tokens_and_calendars(server: TestServer) {
     let ada = server.admin("ada").await;
     let grace = ada.viewer(&server).await;
     let id = grace.get("/me").await.good()["user_id"].clone();
@@ -360,7 +360,7 @@ async fn another_code_ends_tokens_and_calendars(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_calendar_ends_with_who_made_it(server: TestServer) {
+async fn a_calendar_ends_with_its_creator(server: TestServer) {
     let ada = server.admin("ada").await;
     let grace = ada.viewer(&server).await;
     let id = grace.get("/me").await.good()["user_id"].clone();

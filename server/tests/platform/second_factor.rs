@@ -8,13 +8,13 @@ use ring::hmac;
 use serde_json::{Value, json};
 
 on_both!(
-    a_code_is_asked_for_once_the_factor_is_confirmed,
-    a_code_works_once_also_when_it_comes_twice_at_once,
-    guessing_codes_is_slowed_down_like_guessing_passwords,
+    a_confirmed_factor_requires_a_code,
+    a_code_works_once_even_when_sent_twice_at_once,
+    guessed_codes_are_rate_limited_like_passwords,
     each_recovery_code_signs_in_once,
     a_factor_is_removed_with_the_password_or_by_an_admin,
-    an_operator_may_want_a_factor_of_everyone,
-    a_token_cannot_touch_a_factor,
+    an_operator_may_require_a_factor_of_everyone,
+    a_token_cannot_change_a_factor,
 );
 
 /// Computes the code of an authenticator app (RFC 6238) from the base 32 secret.
@@ -67,7 +67,7 @@ pub(crate) async fn sign_in(server: &TestServer, email: &str, code: &str) -> Api
     ApiResponse::of(server.http.post(url).json(&body)).await
 }
 
-async fn a_code_is_asked_for_once_the_factor_is_confirmed(server: TestServer) {
+async fn a_confirmed_factor_requires_a_code(server: TestServer) {
     let ada = server.admin("ada").await;
     let wrong = json!({ "password": "not the password" });
     let refused = ada.post("/me/second-factor", &wrong).await;
@@ -97,7 +97,7 @@ async fn a_code_is_asked_for_once_the_factor_is_confirmed(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_code_works_once_also_when_it_comes_twice_at_once(server: TestServer) {
+async fn a_code_works_once_even_when_sent_twice_at_once(server: TestServer) {
     let ada = server.admin("ada").await;
     let (secret, _) = set_up(&server, &ada).await;
     let code = app_code(&secret, now_s(&server));
@@ -118,7 +118,7 @@ async fn a_code_works_once_also_when_it_comes_twice_at_once(server: TestServer) 
     server.finish().await;
 }
 
-async fn guessing_codes_is_slowed_down_like_guessing_passwords(server: TestServer) {
+async fn guessed_codes_are_rate_limited_like_passwords(server: TestServer) {
     let ada = server.admin("ada").await;
     let (secret, _) = set_up(&server, &ada).await;
     let right = app_code(&secret, now_s(&server));
@@ -177,7 +177,7 @@ async fn a_factor_is_removed_with_the_password_or_by_an_admin(server: TestServer
     server.finish().await;
 }
 
-async fn an_operator_may_want_a_factor_of_everyone(server: TestServer) {
+async fn an_operator_may_require_a_factor_of_everyone(server: TestServer) {
     let ada = server.admin("ada").await;
     let viewer = ada.viewer(&server).await;
     let token = json!({ "name": "ERP", "scope": "read" });
@@ -211,7 +211,7 @@ async fn an_operator_may_want_a_factor_of_everyone(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_token_cannot_touch_a_factor(server: TestServer) {
+async fn a_token_cannot_change_a_factor(server: TestServer) {
     let ada = server.admin("ada").await;
     let token = json!({ "name": "ERP", "scope": "write" });
     let made = ada.post("/tokens", &token).await.good();

@@ -149,7 +149,7 @@ fn first_admin(folder: &Path) -> Value {
 }
 
 #[tokio::test]
-async fn no_password_token_key_code_or_cookie_is_in_the_most_talkative_log() {
+async fn no_secret_is_in_the_most_verbose_log() {
     let _ = rustls::crypto::ring::default_provider().install_default();
     let provider = Provider::start().await;
     let folder = tempfile::tempdir().unwrap();

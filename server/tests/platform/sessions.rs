@@ -7,21 +7,21 @@ use serde_json::json;
 
 on_both!(
     a_session_lasts_until_the_user_signs_out,
-    a_session_ends_by_itself,
-    an_idle_session_ends_sooner,
-    one_sees_and_ends_ones_own_sessions,
-    another_password_ends_all_other_sessions,
-    another_password_needs_the_one_before,
-    guesses_from_one_address_are_slowed_down_whatever_the_email,
-    the_cookie_is_out_of_reach_of_scripts_and_other_sites,
-    a_change_with_a_cookie_needs_the_header_of_our_own_pages,
-    guessing_is_slowed_down_whether_or_not_the_email_exists,
-    guesses_sent_at_once_do_not_outrun_the_throttle,
-    what_is_not_a_sign_in_is_refused_in_words,
-    a_token_may_do_what_its_scope_says_until_it_is_revoked,
-    a_token_ends_by_itself,
-    a_viewer_may_see_and_not_change,
-    a_platform_admin_has_no_fleet,
+    a_session_expires,
+    an_idle_session_expires_sooner,
+    people_see_and_end_their_own_sessions,
+    a_new_password_ends_all_other_sessions,
+    a_new_password_needs_the_current_one,
+    guesses_from_one_address_are_rate_limited_whatever_the_email,
+    the_cookie_is_inaccessible_to_scripts_and_other_sites,
+    a_change_with_a_cookie_needs_the_dashboards_header,
+    guesses_are_rate_limited_whether_or_not_the_email_exists,
+    concurrent_guesses_cannot_bypass_the_rate_limit,
+    an_invalid_sign_in_is_refused_with_a_problem,
+    a_token_has_its_scope_until_revoked,
+    a_token_expires,
+    a_viewer_can_read_but_not_change,
+    a_platform_admin_cannot_read_a_fleet,
 );
 
 async fn a_session_lasts_until_the_user_signs_out(server: TestServer) {
@@ -36,7 +36,7 @@ async fn a_session_lasts_until_the_user_signs_out(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_session_ends_by_itself(server: TestServer) {
+async fn a_session_expires(server: TestServer) {
     let ada = server.admin("ada").await;
     for _ in 0..3 {
         server.advance(24.0 * 3600.0 - 1.0);
@@ -47,7 +47,7 @@ async fn a_session_ends_by_itself(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_idle_session_ends_sooner(server: TestServer) {
+async fn an_idle_session_expires_sooner(server: TestServer) {
     let ada = server.admin("ada").await;
     server.advance(24.0 * 3600.0);
     assert_eq!(ada.get("/me").await.problem(), "unauthenticated");
@@ -57,7 +57,7 @@ async fn an_idle_session_ends_sooner(server: TestServer) {
     server.finish().await;
 }
 
-async fn one_sees_and_ends_ones_own_sessions(server: TestServer) {
+async fn people_see_and_end_their_own_sessions(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let telephone = Person::sign_in(&server, ada.operator, &ada.email).await;
@@ -94,7 +94,7 @@ async fn put_password(person: &Person, current: &str, new: &str) -> ApiResponse 
     ApiResponse::of(person.request(Method::PUT, "/me/password").json(&body)).await
 }
 
-async fn another_password_ends_all_other_sessions(server: TestServer) {
+async fn a_new_password_ends_all_other_sessions(server: TestServer) {
     let ada = server.admin("ada").await;
     let stolen = Person::sign_in(&server, ada.operator, &ada.email).await;
     assert_eq!(put_password(&ada, PASSWORD, NEW).await.status, 204);
@@ -105,7 +105,7 @@ async fn another_password_ends_all_other_sessions(server: TestServer) {
     server.finish().await;
 }
 
-async fn another_password_needs_the_one_before(server: TestServer) {
+async fn a_new_password_needs_the_current_one(server: TestServer) {
     let ada = server.admin("ada").await;
     for weak in ["short", "ada@example.com", "qwertyuiop12"] {
         assert_eq!(
@@ -136,7 +136,7 @@ async fn another_password_needs_the_one_before(server: TestServer) {
     server.finish().await;
 }
 
-async fn guesses_from_one_address_are_slowed_down_whatever_the_email(server: TestServer) {
+async fn guesses_from_one_address_are_rate_limited_whatever_the_email(server: TestServer) {
     server.admin("ada").await;
     for guess in 0..50 {
         let email = format!("nobody-{guess}@example.com");
@@ -152,7 +152,7 @@ async fn guesses_from_one_address_are_slowed_down_whatever_the_email(server: Tes
 }
 
 #[tokio::test]
-async fn behind_proxies_of_ones_own_the_clients_address_counts() {
+async fn behind_trusted_proxies_the_clients_address_counts() {
     let server = TestServer::start_with(Engine::Sqlite, &["--proxies", "1"]).await;
     let ada = server.admin("ada").await;
     let body = json!({ "email": ada.email, "password": PASSWORD });
@@ -165,7 +165,7 @@ async fn behind_proxies_of_ones_own_the_clients_address_counts() {
 }
 
 #[tokio::test]
-async fn over_https_alone_no_other_host_can_plant_the_cookie() {
+async fn over_https_the_cookie_has_the_host_prefix() {
     let server = TestServer::start_with(Engine::Sqlite, &["--secure-cookies"]).await;
     let ada = server.admin("ada").await;
     let response = attempt(&server, &ada.email, PASSWORD).await;
@@ -183,7 +183,7 @@ async fn over_https_alone_no_other_host_can_plant_the_cookie() {
     server.finish().await;
 }
 
-async fn the_cookie_is_out_of_reach_of_scripts_and_other_sites(server: TestServer) {
+async fn the_cookie_is_inaccessible_to_scripts_and_other_sites(server: TestServer) {
     server.admin("ada").await;
     let response = attempt(&server, "ADA@example.com ", PASSWORD).await;
     let cookie = response.headers["set-cookie"].to_str().unwrap();
@@ -194,7 +194,7 @@ async fn the_cookie_is_out_of_reach_of_scripts_and_other_sites(server: TestServe
     server.finish().await;
 }
 
-async fn a_change_with_a_cookie_needs_the_header_of_our_own_pages(server: TestServer) {
+async fn a_change_with_a_cookie_needs_the_dashboards_header(server: TestServer) {
     let ada = server.admin("ada").await;
     let forged = server
         .http
@@ -206,7 +206,7 @@ async fn a_change_with_a_cookie_needs_the_header_of_our_own_pages(server: TestSe
     server.finish().await;
 }
 
-async fn guessing_is_slowed_down_whether_or_not_the_email_exists(server: TestServer) {
+async fn guesses_are_rate_limited_whether_or_not_the_email_exists(server: TestServer) {
     server.admin("ada").await;
     for email in ["ada@example.com", "nobody@example.com"] {
         for _ in 0..5 {
@@ -234,7 +234,7 @@ async fn guessing_is_slowed_down_whether_or_not_the_email_exists(server: TestSer
     server.finish().await;
 }
 
-async fn guesses_sent_at_once_do_not_outrun_the_throttle(server: TestServer) {
+async fn concurrent_guesses_cannot_bypass_the_rate_limit(server: TestServer) {
     let guesses = (0..30).map(|_| attempt(&server, "ada@example.com", "wrong"));
     let answers = futures_util::future::join_all(guesses).await;
     let judged = answers
@@ -248,7 +248,7 @@ async fn guesses_sent_at_once_do_not_outrun_the_throttle(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_is_not_a_sign_in_is_refused_in_words(server: TestServer) {
+async fn an_invalid_sign_in_is_refused_with_a_problem(server: TestServer) {
     let url = format!("{}/api/v1/session", server.url);
     let json = |body: &'static str| {
         server
@@ -273,7 +273,7 @@ async fn what_is_not_a_sign_in_is_refused_in_words(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_token_may_do_what_its_scope_says_until_it_is_revoked(server: TestServer) {
+async fn a_token_has_its_scope_until_revoked(server: TestServer) {
     let ada = server.admin("ada").await;
     for (scope, status) in [("read", 403), ("write", 201)] {
         let made = ada
@@ -312,7 +312,7 @@ async fn a_token_may_do_what_its_scope_says_until_it_is_revoked(server: TestServ
     server.finish().await;
 }
 
-async fn a_token_ends_by_itself(server: TestServer) {
+async fn a_token_expires(server: TestServer) {
     let ada = server.admin("ada").await;
     let wanted = json!({ "name": "ERP", "scope": "read", "expires_at": "2026-11-21T08:00:00Z" });
     let made = ada.post("/tokens", &wanted).await.good();
@@ -331,7 +331,7 @@ async fn a_token_ends_by_itself(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_viewer_may_see_and_not_change(server: TestServer) {
+async fn a_viewer_can_read_but_not_change(server: TestServer) {
     let ada = server.admin("ada").await;
     let vessel = ada.create_vessel("Nao").await;
     let viewer = ada.viewer(&server).await;
@@ -353,7 +353,7 @@ async fn a_viewer_may_see_and_not_change(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_platform_admin_has_no_fleet(server: TestServer) {
+async fn a_platform_admin_cannot_read_a_fleet(server: TestServer) {
     let ada = server.admin("ada").await;
     let root = ada.platform_admin(&server).await;
     assert_eq!(root.get("/me").await.good()["operator_id"], json!(null));

@@ -9,11 +9,11 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    every_vessel_route_is_blank_to_another_operator,
-    every_route_wants_to_know_who_asks,
+    every_vessel_route_is_not_found_for_another_operator,
+    every_route_needs_authentication,
     another_operators_lists_are_empty,
-    an_id_that_is_none_is_not_found,
-    a_method_that_a_path_does_not_know_is_refused_in_words,
+    a_malformed_id_is_not_found,
+    an_unknown_method_of_a_path_is_refused_with_a_problem,
 );
 
 /// Returns every operation of the API document: method, path and a valid body.
@@ -57,7 +57,7 @@ fn settings() -> Value {
     })
 }
 
-async fn every_vessel_route_is_blank_to_another_operator(server: TestServer) {
+async fn every_vessel_route_is_not_found_for_another_operator(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let id = server.ship(&ada, "Nao").await.id;
@@ -93,7 +93,7 @@ async fn every_vessel_route_is_blank_to_another_operator(server: TestServer) {
     server.finish().await;
 }
 
-async fn every_route_wants_to_know_who_asks(server: TestServer) {
+async fn every_route_needs_authentication(server: TestServer) {
     let ada = server.admin("ada").await;
     let id = ada.create_vessel("Nao").await["id"]
         .as_str()
@@ -145,7 +145,7 @@ async fn another_operators_lists_are_empty(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_id_that_is_none_is_not_found(server: TestServer) {
+async fn a_malformed_id_is_not_found(server: TestServer) {
     let ada = server.admin("ada").await;
     for path in [
         "/vessels/1",
@@ -157,7 +157,7 @@ async fn an_id_that_is_none_is_not_found(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_method_that_a_path_does_not_know_is_refused_in_words(server: TestServer) {
+async fn an_unknown_method_of_a_path_is_refused_with_a_problem(server: TestServer) {
     let ada = server.admin("ada").await;
     for path in ["/vessels", "/agents/enrol", "/streams"] {
         let response = ApiResponse::of(ada.request(Method::PATCH, path)).await;

@@ -70,7 +70,7 @@ async fn ask(url: &str, authority: &str) -> reqwest::Result<String> {
 }
 
 #[tokio::test]
-async fn who_believes_its_authority_is_answered_and_plain_http_is_not() {
+async fn clients_trusting_the_authority_are_served_and_plain_http_is_not() {
     let folder = tempfile::tempdir().unwrap();
     let authority = renew(folder.path());
     let stranger = renew(tempfile::tempdir().unwrap().path());
@@ -82,7 +82,7 @@ async fn who_believes_its_authority_is_answered_and_plain_http_is_not() {
 }
 
 #[tokio::test]
-async fn a_handshake_that_never_ends_keeps_nobody_waiting() {
+async fn an_endless_handshake_does_not_delay_others() {
     let folder = tempfile::tempdir().unwrap();
     let authority = renew(folder.path());
     let served = serve(folder).await;
@@ -93,7 +93,7 @@ async fn a_handshake_that_never_ends_keeps_nobody_waiting() {
 }
 
 #[tokio::test]
-async fn a_hang_up_has_the_certificate_read_anew_unless_it_cannot_be_used() {
+async fn sighup_reloads_a_usable_certificate() {
     let folder = tempfile::tempdir().unwrap();
     let first = renew(folder.path());
     let served = serve(folder).await;
@@ -112,7 +112,7 @@ async fn a_hang_up_has_the_certificate_read_anew_unless_it_cannot_be_used() {
 }
 
 #[tokio::test]
-async fn a_certificate_that_cannot_be_used_is_refused_with_its_files_name() {
+async fn an_unusable_certificate_is_refused_by_file_name() {
     let _ = rustls::crypto::ring::default_provider().install_default();
     let folder = tempfile::tempdir().unwrap();
     let files = certificate(folder.path());

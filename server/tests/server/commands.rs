@@ -21,7 +21,7 @@ fn field_prints_the_earths_field() {
 }
 
 #[test]
-fn what_fit_prints_deviation_reads() {
+fn deviation_reads_the_output_of_fit() {
     let folder = tempfile::tempdir().unwrap();
     samples_csv(folder.path());
     let table = run(folder.path(), &["fit", "samples.csv"]);
@@ -44,7 +44,7 @@ fn what_fit_prints_deviation_reads() {
 }
 
 #[test]
-fn parameters_alone_are_a_model() {
+fn a_model_file_may_have_parameters_alone() {
     let folder = tempfile::tempdir().unwrap();
     let model = json!({ "parameters_over_lambda": {
         "bx_nt": 2060.0, "chi13": -0.0215, "by_nt": -2930.0, "chi23": 0.0022,
@@ -60,7 +60,7 @@ fn parameters_alone_are_a_model() {
 }
 
 #[test]
-fn analyse_does_offline_what_the_server_does() {
+fn analyse_gives_the_servers_analysis_offline() {
     let folder = tempfile::tempdir().unwrap();
     samples_csv(folder.path());
     let book = r#"[{"from":"2026-11-16T00:00:00Z","kind":"adjustment"}]"#;
@@ -77,7 +77,7 @@ fn analyse_does_offline_what_the_server_does() {
 }
 
 #[test]
-fn a_logbook_that_cannot_be_is_refused_by_file_line_and_field() {
+fn an_invalid_logbook_is_refused_by_file_line_and_field() {
     let folder = tempfile::tempdir().unwrap();
     samples_csv(folder.path());
     let good = r#"{"from": "2026-11-16T00:00:00Z", "kind": "adjustment"}"#;
@@ -127,7 +127,7 @@ fn a_logbook_that_cannot_be_is_refused_by_file_line_and_field() {
 }
 
 #[test]
-fn a_logbook_as_the_api_answers_it_is_read_without_what_was_withdrawn() {
+fn a_logbook_from_the_api_is_read_without_withdrawn_entries() {
     let folder = tempfile::tempdir().unwrap();
     samples_csv(folder.path());
     let item = |from: &str, withdrawn_at: Value| {
@@ -155,7 +155,7 @@ fn a_logbook_as_the_api_answers_it_is_read_without_what_was_withdrawn() {
 }
 
 #[test]
-fn a_reader_who_has_seen_enough_is_no_error() {
+fn a_closed_output_pipe_is_not_an_error() {
     let folder = tempfile::tempdir().unwrap();
     samples_csv(folder.path());
     let created = ["admin", "create", "operator", "--name", "Nao"];
@@ -295,7 +295,7 @@ fn bad_input_is_refused_by_file_line_and_field() {
 }
 
 #[test]
-fn admin_creates_who_may_sign_in() {
+fn admin_creates_operators_and_users() {
     let folder = tempfile::tempdir().unwrap();
     let made = good(&run(
         folder.path(),
@@ -330,7 +330,7 @@ fn admin_creates_who_may_sign_in() {
 }
 
 #[test]
-fn a_database_of_another_kind_is_refused() {
+fn an_unsupported_database_url_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), &["migrate", "--database-url", "mysql://x/y"]);
     let errors = String::from_utf8_lossy(&output.stderr);

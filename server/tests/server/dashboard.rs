@@ -4,7 +4,7 @@ use binnacle_server_testing::{ApiResponse, Engine, TestServer};
 use reqwest::header::HeaderName;
 
 #[tokio::test]
-async fn any_path_but_the_apis_answers_with_a_page() {
+async fn every_path_outside_the_api_serves_the_dashboard() {
     let server = TestServer::start(Engine::Sqlite).await;
     for path in ["/", "/vessels/1", "/index.html"] {
         let page = ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await;
@@ -32,7 +32,7 @@ async fn any_path_but_the_apis_answers_with_a_page() {
 }
 
 #[tokio::test]
-async fn the_operations_routes_tell_how_the_server_is() {
+async fn the_health_routes_report_the_servers_state() {
     let server = TestServer::start(Engine::Sqlite).await;
     for (path, text) in [("/healthz", "ok"), ("/readyz", "ready")] {
         let response = ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await;
@@ -47,7 +47,7 @@ async fn the_operations_routes_tell_how_the_server_is() {
 }
 
 #[tokio::test]
-async fn metrics_are_read_on_the_same_machine_or_with_their_token() {
+async fn metrics_need_the_local_machine_or_a_token() {
     let read = async |server: &TestServer, header: (&str, &str)| {
         let asked = server.http.get(format!("{}/metrics", server.url));
         ApiResponse::of(asked.header(header.0, header.1))
@@ -81,7 +81,7 @@ async fn metrics_are_read_on_the_same_machine_or_with_their_token() {
 }
 
 #[tokio::test]
-async fn an_agents_answer_carries_no_header_that_it_does_not_need() {
+async fn responses_to_agents_have_only_necessary_headers() {
     let server = TestServer::start(Engine::Sqlite).await;
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;

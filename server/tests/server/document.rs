@@ -5,7 +5,7 @@ use binnacle_server_testing::{ApiResponse, Engine, TestServer};
 use serde_json::Value;
 
 #[test]
-fn the_committed_document_is_the_servers() {
+fn the_committed_document_is_current() {
     let committed = include_str!("../../openapi.json");
     let current = openapi().to_pretty_json().unwrap();
     assert!(
@@ -15,7 +15,7 @@ fn the_committed_document_is_the_servers() {
 }
 
 #[test]
-fn every_answer_is_described_and_every_problem_is_one() {
+fn every_response_is_described_and_every_error_is_a_problem() {
     let document = serde_json::to_value(openapi()).unwrap();
     for (path, operations) in document["paths"].as_object().unwrap() {
         for (method, operation) in operations.as_object().unwrap() {
@@ -30,7 +30,7 @@ fn every_answer_is_described_and_every_problem_is_one() {
 }
 
 #[tokio::test]
-async fn the_document_and_its_page_are_served_to_anyone() {
+async fn the_document_and_its_page_need_no_sign_in() {
     let server = TestServer::start(Engine::Sqlite).await;
     let document =
         ApiResponse::of(server.http.get(format!("{}/api/openapi.json", server.url))).await;

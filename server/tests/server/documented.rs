@@ -73,7 +73,7 @@ fn ship(binnacle: &Binnacle, berth: &Value) -> (Value, [f64; 3]) {
 }
 
 #[test]
-fn the_berth_and_the_binnacle_of_the_pages_make_a_plan() {
+fn the_documented_berth_and_binnacle_give_a_plan() {
     let binnacle = binnacle();
     let known: Binnacle = serde_json::from_value(binnacle.clone()).unwrap();
     // The second block is the reading after the steps.
@@ -101,7 +101,7 @@ fn the_berth_and_the_binnacle_of_the_pages_make_a_plan() {
 }
 
 #[test]
-fn every_request_of_the_work_orders_page_is_in_the_document() {
+fn every_request_in_the_work_orders_page_is_in_the_openapi_document() {
     let document: Value = serde_json::from_str(include_str!("../../openapi.json")).unwrap();
     let paths = document["paths"].as_object().unwrap();
     let quoted = WORK_ORDERS.split('`').skip(1).step_by(2);

@@ -28,7 +28,7 @@ fn two_latitudes() -> String {
 }
 
 #[test]
-fn every_method_finds_the_ship_of_a_perfect_swing() {
+fn every_method_fits_a_perfect_swing() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("swing.csv"), two_latitudes()).unwrap();
     let fields = [(24_000.0, 38_500.0), (18_000.0, 45_000.0)];
@@ -51,7 +51,7 @@ fn every_method_finds_the_ship_of_a_perfect_swing() {
 }
 
 #[test]
-fn at_one_latitude_only_the_products_method_has_an_answer() {
+fn at_one_latitude_only_the_robust_method_fits() {
     let folder = tempfile::tempdir().unwrap();
     let one = two_latitudes()
         .lines()
@@ -71,7 +71,7 @@ fn at_one_latitude_only_the_products_method_has_an_answer() {
 }
 
 #[test]
-fn help_says_what_the_methods_are() {
+fn help_describes_the_methods() {
     let folder = tempfile::tempdir().unwrap();
     let help = good(&run(folder.path(), &["fit", "--help"]));
     for word in METHODS

@@ -25,12 +25,12 @@ macro_rules! run {
 }
 
 #[tokio::test]
-async fn on_sqlite_every_token_and_webhook_is_there_afterwards() {
+async fn on_sqlite_migrations_keep_tokens_and_webhooks() {
     nothing_is_lost(Engine::Sqlite).await;
 }
 
 #[tokio::test]
-async fn on_postgres_every_token_and_webhook_is_there_afterwards() {
+async fn on_postgres_migrations_keep_tokens_and_webhooks() {
     nothing_is_lost(Engine::Postgres).await;
 }
 

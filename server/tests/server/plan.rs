@@ -115,7 +115,7 @@ fn plan(folder: &Path, model: &Value, binnacle: &Value, berth: &Value) -> Output
 }
 
 #[test]
-fn plan_prints_settings_steps_and_what_they_leave() {
+fn plan_prints_settings_steps_and_residuals() {
     let folder = tempfile::tempdir().unwrap();
     let (model, read) = ship();
     let output = plan(folder.path(), &model, &binnacle(), &berth(read));
@@ -140,7 +140,7 @@ fn plan_prints_settings_steps_and_what_they_leave() {
 }
 
 #[test]
-fn a_refusal_is_an_answer_with_its_cure() {
+fn a_refusal_is_a_result_with_its_cure() {
     let folder = tempfile::tempdir().unwrap();
     let (model, [x, y]) = ship();
     let blind = json!({ "parameters_over_lambda": model["parameters_over_lambda"] });
@@ -206,7 +206,7 @@ fn a_refusal_is_an_answer_with_its_cure() {
 }
 
 #[test]
-fn plan_says_whether_the_field_after_the_steps_is_what_was_planned() {
+fn plan_checks_the_field_after_the_steps() {
     let folder = tempfile::tempdir().unwrap();
     let (model, read) = ship();
     let output = plan(folder.path(), &model, &binnacle(), &berth(read));
@@ -260,7 +260,7 @@ fn plan_says_whether_the_field_after_the_steps_is_what_was_planned() {
 }
 
 #[test]
-fn mistakes_at_the_berth_are_bad_input_by_file_and_field() {
+fn invalid_berth_readings_are_refused_by_file_and_field() {
     let folder = tempfile::tempdir().unwrap();
     let (model, [x, y]) = ship();
     let refused = |berth: &Value, words: &[&str]| {
@@ -307,7 +307,7 @@ fn mistakes_at_the_berth_are_bad_input_by_file_and_field() {
 }
 
 #[test]
-fn a_binnacle_that_cannot_be_is_bad_input_by_file_and_field() {
+fn an_invalid_binnacle_is_refused_by_file_and_field() {
     let folder = tempfile::tempdir().unwrap();
     let (model, read) = ship();
     let refused = |binnacle: &Value, words: &[&str]| {

@@ -23,7 +23,7 @@ fn schedule_plans_the_documented_example() {
 }
 
 #[test]
-fn schedule_names_file_and_path_of_what_is_wrong() {
+fn schedule_names_file_and_path_of_invalid_input() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("fleet.json");
     let refused = |text: &str, words: &[&str]| {

@@ -10,10 +10,10 @@ use serde_json::json;
 on_both!(
     many_batches_make_one_job_that_waits_for_more,
     the_same_input_makes_no_second_version,
-    another_estimator_analyses_every_vessel_again_at_the_start,
-    a_lease_that_ended_goes_to_another_worker,
-    a_lease_that_is_renewed_is_not_taken,
-    a_job_that_fails_is_tried_again_and_then_given_up,
+    a_new_estimator_version_reanalyses_every_vessel_at_startup,
+    an_expired_lease_goes_to_another_worker,
+    a_renewed_lease_stays_with_its_worker,
+    a_failing_job_is_retried_and_then_dead,
 );
 
 /// Claims a job as a worker that then dies.
@@ -65,7 +65,7 @@ async fn the_same_input_makes_no_second_version(server: TestServer) {
     server.finish().await;
 }
 
-async fn another_estimator_analyses_every_vessel_again_at_the_start(server: TestServer) {
+async fn a_new_estimator_version_reanalyses_every_vessel_at_startup(server: TestServer) {
     // It has started once it responds.
     async fn restart(server: TestServer) -> TestServer {
         let server = server.restart().await;
@@ -109,7 +109,7 @@ async fn another_estimator_analyses_every_vessel_again_at_the_start(server: Test
     server.finish().await;
 }
 
-async fn a_lease_that_ended_goes_to_another_worker(server: TestServer) {
+async fn an_expired_lease_goes_to_another_worker(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 300)).await.good();
@@ -130,7 +130,7 @@ async fn a_lease_that_ended_goes_to_another_worker(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_lease_that_is_renewed_is_not_taken(server: TestServer) {
+async fn a_renewed_lease_stays_with_its_worker(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 30)).await.good();
@@ -155,7 +155,7 @@ async fn a_lease_that_is_renewed_is_not_taken(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_job_that_fails_is_tried_again_and_then_given_up(server: TestServer) {
+async fn a_failing_job_is_retried_and_then_dead(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 30)).await.good();

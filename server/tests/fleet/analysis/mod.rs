@@ -11,15 +11,15 @@ use binnacle_server_testing::{TestServer, passage};
 use serde_json::{Value, json};
 
 on_both!(
-    a_passage_becomes_a_model_that_foretells_the_deviation,
-    without_enough_headings_the_answer_says_what_is_missing,
-    gyro_and_satellite_compass_are_compared_and_their_quarrel_is_a_refusal,
+    a_passage_becomes_a_model_that_predicts_the_deviation,
+    without_enough_headings_the_response_names_what_is_missing,
+    disagreement_of_gyro_and_satellite_compass_refuses_samples,
     the_order_of_batches_does_not_change_the_model,
-    samples_of_one_instant_are_all_listed,
-    a_change_of_settings_makes_a_new_version_and_reaches_the_ship,
-    samples_page_and_filter_and_come_as_files,
-    a_picture_of_samples_says_what_their_list_says,
-    coverage_tells_what_to_sail_next_once_there_is_a_model,
+    samples_with_equal_times_are_all_listed,
+    changed_settings_make_a_new_version_and_reach_the_ship,
+    samples_are_paged_filtered_and_exported,
+    the_picture_of_samples_agrees_with_their_list,
+    coverage_recommends_headings_once_there_is_a_model,
     fit_reads_the_exported_samples_and_weights_them_once,
 );
 
@@ -27,7 +27,7 @@ pub(crate) const DAY: &str = "2026-11-15T00:00:00Z";
 /// Longer than the delay before an analysis.
 pub(crate) const A_WHILE_S: f64 = 10.0;
 
-async fn a_passage_becomes_a_model_that_foretells_the_deviation(server: TestServer) {
+async fn a_passage_becomes_a_model_that_predicts_the_deviation(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     assert_eq!(ada.get(&nao.path("/model")).await.problem(), "no-model-yet");
@@ -94,7 +94,7 @@ async fn a_passage_becomes_a_model_that_foretells_the_deviation(server: TestServ
     server.finish().await;
 }
 
-async fn without_enough_headings_the_answer_says_what_is_missing(server: TestServer) {
+async fn without_enough_headings_the_response_names_what_is_missing(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 3)).await.good();
@@ -116,9 +116,7 @@ async fn without_enough_headings_the_answer_says_what_is_missing(server: TestSer
     server.finish().await;
 }
 
-async fn gyro_and_satellite_compass_are_compared_and_their_quarrel_is_a_refusal(
-    server: TestServer,
-) {
+async fn disagreement_of_gyro_and_satellite_compass_refuses_samples(server: TestServer) {
     let ada = server.admin("ada").await;
     for (satellite_behind_deg, refused) in [(0.4, false), (12.0, true)] {
         let nao = server.ship(&ada, "Nao").await;
@@ -178,7 +176,7 @@ async fn the_order_of_batches_does_not_change_the_model(server: TestServer) {
     server.finish().await;
 }
 
-async fn samples_of_one_instant_are_all_listed(server: TestServer) {
+async fn samples_with_equal_times_are_all_listed(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let mut samples = passage(DAY, 7);
@@ -204,7 +202,7 @@ async fn samples_of_one_instant_are_all_listed(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_change_of_settings_makes_a_new_version_and_reaches_the_ship(server: TestServer) {
+async fn changed_settings_make_a_new_version_and_reach_the_ship(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 300)).await.good();
@@ -232,7 +230,7 @@ async fn a_change_of_settings_makes_a_new_version_and_reaches_the_ship(server: T
     server.finish().await;
 }
 
-async fn a_picture_of_samples_says_what_their_list_says(server: TestServer) {
+async fn the_picture_of_samples_agrees_with_their_list(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 300)).await.good();
@@ -272,7 +270,7 @@ async fn a_picture_of_samples_says_what_their_list_says(server: TestServer) {
     server.finish().await;
 }
 
-async fn samples_page_and_filter_and_come_as_files(server: TestServer) {
+async fn samples_are_paged_filtered_and_exported(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 100)).await.good();
@@ -327,7 +325,7 @@ async fn samples_page_and_filter_and_come_as_files(server: TestServer) {
     server.finish().await;
 }
 
-async fn coverage_tells_what_to_sail_next_once_there_is_a_model(server: TestServer) {
+async fn coverage_recommends_headings_once_there_is_a_model(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let before = ada.get(&nao.path("/coverage")).await.good();

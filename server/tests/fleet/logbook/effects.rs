@@ -8,13 +8,13 @@ use binnacle_server_testing::{Person, Ship, TestServer, passage};
 use serde_json::{Value, json};
 
 on_both!(
-    samples_with_magnetic_cargo_are_left_out_until_the_report_is_withdrawn,
-    an_adjustment_opens_an_epoch_of_its_own_compass,
-    an_adjustment_that_is_planned_withdraws_the_card_when_it_comes,
-    words_alone_make_no_new_model,
-    without_a_model_it_is_said_what_the_logbook_leaves_out,
-    entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline,
-    a_thousand_entries_are_one_analysis,
+    samples_with_magnetic_cargo_are_excluded_until_the_entry_is_withdrawn,
+    an_adjustment_opens_an_epoch_of_its_compass_alone,
+    a_planned_adjustment_withdraws_the_card_at_its_time,
+    a_changed_note_makes_no_new_model,
+    without_a_model_the_response_counts_samples_excluded_by_the_logbook,
+    overlapping_and_outlying_entries_keep_the_timeline_consistent,
+    a_thousand_entries_cause_one_analysis,
 );
 
 async fn left_out(person: &Person, ship: &Ship, reason: &str) -> usize {
@@ -47,9 +47,7 @@ async fn sound_epochs(person: &Person, ship: &Ship) -> Vec<Value> {
     epochs
 }
 
-async fn samples_with_magnetic_cargo_are_left_out_until_the_report_is_withdrawn(
-    server: TestServer,
-) {
+async fn samples_with_magnetic_cargo_are_excluded_until_the_entry_is_withdrawn(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 90)).await.good();
@@ -84,7 +82,7 @@ async fn samples_with_magnetic_cargo_are_left_out_until_the_report_is_withdrawn(
     server.finish().await;
 }
 
-async fn an_adjustment_opens_an_epoch_of_its_own_compass(server: TestServer) {
+async fn an_adjustment_opens_an_epoch_of_its_compass_alone(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let aft = json!({ "name": "Aft", "role": "steering" });
@@ -106,7 +104,7 @@ async fn an_adjustment_opens_an_epoch_of_its_own_compass(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_adjustment_that_is_planned_withdraws_the_card_when_it_comes(server: TestServer) {
+async fn a_planned_adjustment_withdraws_the_card_at_its_time(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 200)).await.good();
@@ -126,7 +124,7 @@ async fn an_adjustment_that_is_planned_withdraws_the_card_when_it_comes(server: 
     server.finish().await;
 }
 
-async fn words_alone_make_no_new_model(server: TestServer) {
+async fn a_changed_note_makes_no_new_model(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 90)).await.good();
@@ -145,7 +143,7 @@ async fn words_alone_make_no_new_model(server: TestServer) {
     server.finish().await;
 }
 
-async fn without_a_model_it_is_said_what_the_logbook_leaves_out(server: TestServer) {
+async fn without_a_model_the_response_counts_samples_excluded_by_the_logbook(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     // Loaded, without an entry about the discharge.
@@ -170,9 +168,7 @@ async fn without_a_model_it_is_said_what_the_logbook_leaves_out(server: TestServ
     server.finish().await;
 }
 
-async fn entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline(
-    server: TestServer,
-) {
+async fn overlapping_and_outlying_entries_keep_the_timeline_consistent(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     for entry in [
@@ -220,7 +216,7 @@ fn begun_by(epochs: &[Value]) -> Vec<&Value> {
     epochs.iter().map(|epoch| &epoch["begun_by"]).collect()
 }
 
-async fn a_thousand_entries_are_one_analysis(server: TestServer) {
+async fn a_thousand_entries_cause_one_analysis(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 300)).await.good();

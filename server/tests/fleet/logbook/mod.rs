@@ -9,16 +9,16 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    what_happened_last_comes_first_on_every_page,
+    entries_are_paged_latest_first,
     a_logbook_is_searched_by_kind_and_time,
-    an_amendment_keeps_what_was_written_before,
-    a_withdrawn_entry_stays_and_is_changed_no_more,
-    what_is_no_entry_is_refused_by_its_field_and_leaves_nothing,
-    a_report_sent_again_under_its_key_is_one_entry,
-    a_viewer_reads_and_does_not_write,
+    an_amendment_keeps_the_earlier_revision,
+    a_withdrawn_entry_stays_and_cannot_be_changed,
+    an_invalid_entry_is_refused_by_field_and_not_stored,
+    a_report_repeated_under_its_key_is_one_entry,
+    a_viewer_can_read_but_not_write,
     an_entry_is_found_with_its_own_vessel_only,
-    a_report_from_on_board_counts_once_however_often_it_comes,
-    a_ship_reaches_only_what_she_reported_herself,
+    a_repeated_report_from_on_board_is_one_entry,
+    an_agent_can_change_only_its_own_reports,
 );
 
 pub(crate) const DAY: &str = "2026-11-15T00:00:00Z";
@@ -36,7 +36,7 @@ fn notes(entries: &[Value]) -> Vec<&str> {
         .collect()
 }
 
-async fn what_happened_last_comes_first_on_every_page(server: TestServer) {
+async fn entries_are_paged_latest_first(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     for (note, from) in [
@@ -105,7 +105,7 @@ async fn a_logbook_is_searched_by_kind_and_time(server: TestServer) {
 }
 
 /// Counts the samples excluded for a reason.
-async fn an_amendment_keeps_what_was_written_before(server: TestServer) {
+async fn an_amendment_keeps_the_earlier_revision(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let cargo = json!({
@@ -149,7 +149,7 @@ async fn an_amendment_keeps_what_was_written_before(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_withdrawn_entry_stays_and_is_changed_no_more(server: TestServer) {
+async fn a_withdrawn_entry_stays_and_cannot_be_changed(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let entry = nao
@@ -174,7 +174,7 @@ async fn a_withdrawn_entry_stays_and_is_changed_no_more(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_is_no_entry_is_refused_by_its_field_and_leaves_nothing(server: TestServer) {
+async fn an_invalid_entry_is_refused_by_field_and_not_stored(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let kogge = server.ship(&ada, "Kogge").await;
@@ -228,7 +228,7 @@ async fn what_is_no_entry_is_refused_by_its_field_and_leaves_nothing(server: Tes
     server.finish().await;
 }
 
-async fn a_report_sent_again_under_its_key_is_one_entry(server: TestServer) {
+async fn a_report_repeated_under_its_key_is_one_entry(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let report = async |note: &str| {
@@ -244,7 +244,7 @@ async fn a_report_sent_again_under_its_key_is_one_entry(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_viewer_reads_and_does_not_write(server: TestServer) {
+async fn a_viewer_can_read_but_not_write(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let entry = json!({ "kind": "welding", "from": DAY });
@@ -284,7 +284,7 @@ async fn an_entry_is_found_with_its_own_vessel_only(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_report_from_on_board_counts_once_however_often_it_comes(server: TestServer) {
+async fn a_repeated_report_from_on_board_is_one_entry(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let id = "01934f2a-7c00-7000-8000-0000000000b1";
@@ -331,7 +331,7 @@ async fn a_report_from_on_board_counts_once_however_often_it_comes(server: TestS
     server.finish().await;
 }
 
-async fn a_ship_reaches_only_what_she_reported_herself(server: TestServer) {
+async fn an_agent_can_change_only_its_own_reports(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let kogge = server.ship(&ada, "Kogge").await;

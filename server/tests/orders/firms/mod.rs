@@ -10,14 +10,14 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    a_platform_admin_brings_an_operator_and_a_firm_together,
+    a_platform_admin_engages_a_firm_for_an_operator,
     only_a_platform_admin_manages_operators_and_firms,
-    a_firm_that_has_an_order_is_not_parted_with,
-    a_name_is_what_it_shows,
-    an_operator_sees_the_firms_that_it_works_with,
-    a_firm_that_is_entered_twice_under_one_key_is_one,
-    an_adjuster_has_no_fleet,
-    a_token_that_only_reads_enters_no_firm,
+    a_firm_with_an_open_order_cannot_be_disengaged,
+    names_with_direction_overrides_are_refused,
+    an_operator_sees_its_engaged_firms,
+    a_firm_repeated_under_its_key_is_created_once,
+    an_adjuster_cannot_read_a_fleet,
+    a_read_token_cannot_create_a_firm,
 );
 
 fn names(list: &Value) -> Vec<&str> {
@@ -28,7 +28,7 @@ fn names(list: &Value) -> Vec<&str> {
         .collect()
 }
 
-async fn a_platform_admin_brings_an_operator_and_a_firm_together(server: TestServer) {
+async fn a_platform_admin_engages_a_firm_for_an_operator(server: TestServer) {
     let ada = server.admin("ada").await;
     let root = ada.platform_admin(&server).await;
     let operators = root.get("/operators").await.good();
@@ -57,7 +57,7 @@ async fn a_platform_admin_brings_an_operator_and_a_firm_together(server: TestSer
     server.finish().await;
 }
 
-async fn a_firm_that_has_an_order_is_not_parted_with(server: TestServer) {
+async fn a_firm_with_an_open_order_cannot_be_disengaged(server: TestServer) {
     let parties = OfferParties::offered(&server, 2).await;
     let root = parties.ada.platform_admin(&server).await;
     let part = async |firm: FirmId| {
@@ -85,7 +85,7 @@ async fn a_firm_that_has_an_order_is_not_parted_with(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_name_is_what_it_shows(server: TestServer) {
+async fn names_with_direction_overrides_are_refused(server: TestServer) {
     let ada = server.admin("ada").await;
     for turned in [
         "Nao \u{202e}tsoC",
@@ -137,7 +137,7 @@ async fn only_a_platform_admin_manages_operators_and_firms(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_operator_sees_the_firms_that_it_works_with(server: TestServer) {
+async fn an_operator_sees_its_engaged_firms(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let (firm, rosa) = ada.adjuster(&server, "rosa").await;
@@ -155,7 +155,7 @@ async fn an_operator_sees_the_firms_that_it_works_with(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_firm_that_is_entered_twice_under_one_key_is_one(server: TestServer) {
+async fn a_firm_repeated_under_its_key_is_created_once(server: TestServer) {
     let ada = server.admin("ada").await;
     let root = ada.platform_admin(&server).await;
     let new = json!({ "name": "Nervión Compass" });
@@ -170,7 +170,7 @@ async fn a_firm_that_is_entered_twice_under_one_key_is_one(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_adjuster_has_no_fleet(server: TestServer) {
+async fn an_adjuster_cannot_read_a_fleet(server: TestServer) {
     let ada = server.admin("ada").await;
     let (firm, rosa) = ada.adjuster(&server, "rosa").await;
     let me = rosa.get("/me").await.good();
@@ -188,7 +188,7 @@ async fn an_adjuster_has_no_fleet(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_token_that_only_reads_enters_no_firm(server: TestServer) {
+async fn a_read_token_cannot_create_a_firm(server: TestServer) {
     let ada = server.admin("ada").await;
     let root = ada.platform_admin(&server).await;
     let token = json!({ "name": "ERP", "scope": "read" });

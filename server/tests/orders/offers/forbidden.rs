@@ -7,9 +7,9 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    what_a_state_forbids_is_refused_and_writes_nothing,
-    a_firm_does_not_do_what_is_the_operators,
-    a_token_that_only_reads_answers_no_offer,
+    a_request_forbidden_in_a_state_is_refused_and_writes_nothing,
+    a_firm_cannot_act_for_the_operator,
+    a_read_token_cannot_respond_to_an_offer,
 );
 
 const STATES: [&str; 7] = [
@@ -106,7 +106,7 @@ fn body(parties: &OfferParties, rest: &str) -> Value {
     }
 }
 
-async fn what_a_state_forbids_is_refused_and_writes_nothing(server: TestServer) {
+async fn a_request_forbidden_in_a_state_is_refused_and_writes_nothing(server: TestServer) {
     let mut parties = OfferParties::planned(&server, 1).await;
     let cancel = json!({ "text": "x" });
     parties.post(&parties.ada, "/cancel", &cancel).await.good();
@@ -149,7 +149,7 @@ async fn cancel_if_open(parties: &OfferParties, state: &str) {
     }
 }
 
-async fn a_firm_does_not_do_what_is_the_operators(server: TestServer) {
+async fn a_firm_cannot_act_for_the_operator(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     let rosa = &parties.firms[0].1;
     for rest in ["/offer", "/cancel", "/close"] {
@@ -167,7 +167,7 @@ async fn a_firm_does_not_do_what_is_the_operators(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_token_that_only_reads_answers_no_offer(server: TestServer) {
+async fn a_read_token_cannot_respond_to_an_offer(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     let rosa = &parties.firms[0].1;
     let token = |scope: &str| json!({ "name": "ERP", "scope": scope });

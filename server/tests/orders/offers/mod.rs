@@ -15,16 +15,16 @@ use serde_json::{Value, json};
 
 on_both!(
     a_firm_accepts_and_goes_on_board,
-    the_next_firm_is_asked_when_one_declines_or_is_silent,
-    silence_leaves_the_next_firms_time_before_the_job,
-    nobody_is_asked_for_a_job_whose_time_is_over,
-    a_firm_that_wants_to_be_asked_earlier_is_passed_over,
+    the_next_firm_gets_the_offer_when_one_declines_or_is_silent,
+    a_silent_firm_leaves_the_next_ones_time_before_the_job,
+    a_past_job_is_offered_to_nobody,
+    a_firm_with_a_longer_lead_time_is_skipped,
     a_firm_proposes_other_terms_and_the_operator_agrees,
-    terms_that_the_operator_does_not_want_go_to_the_next_firm,
-    a_proposal_that_nobody_answers_lapses,
+    after_declined_terms_the_next_firm_gets_the_offer,
+    an_unanswered_proposal_lapses,
     a_firm_gives_an_order_back,
-    messages_are_between_the_operator_and_one_firm,
-    an_offer_that_makes_no_sense_is_refused_whole,
+    messages_are_visible_to_the_operator_and_one_firm,
+    an_invalid_offer_is_refused_whole,
 );
 
 async fn a_firm_accepts_and_goes_on_board(server: TestServer) {
@@ -65,7 +65,7 @@ async fn a_firm_accepts_and_goes_on_board(server: TestServer) {
     server.finish().await;
 }
 
-async fn the_next_firm_is_asked_when_one_declines_or_is_silent(server: TestServer) {
+async fn the_next_firm_gets_the_offer_when_one_declines_or_is_silent(server: TestServer) {
     let parties = OfferParties::offered(&server, 3).await;
     let [(_, rosa), (_, juan), (_, pepa)] = &parties.firms[..] else {
         unreachable!("there are three")
@@ -112,7 +112,7 @@ async fn the_next_firm_is_asked_when_one_declines_or_is_silent(server: TestServe
 }
 
 /// Offers a job in 25 hours, with two days for each response.
-async fn silence_leaves_the_next_firms_time_before_the_job(server: TestServer) {
+async fn a_silent_firm_leaves_the_next_ones_time_before_the_job(server: TestServer) {
     let parties = OfferParties::planned(&server, 3).await;
     let mut offer = parties.offer();
     offer["answer_within_hours"] = json!(48);
@@ -144,7 +144,7 @@ async fn silence_leaves_the_next_firms_time_before_the_job(server: TestServer) {
     server.finish().await;
 }
 
-async fn nobody_is_asked_for_a_job_whose_time_is_over(server: TestServer) {
+async fn a_past_job_is_offered_to_nobody(server: TestServer) {
     let mut parties = OfferParties::planned(&server, 2).await;
     let cancel = json!({ "text": "another time" });
     parties.post(&parties.ada, "/cancel", &cancel).await.good();
@@ -180,7 +180,7 @@ async fn nobody_is_asked_for_a_job_whose_time_is_over(server: TestServer) {
 }
 
 /// Gives Juan a lead time of a day, and Pepa one of five hours.
-async fn a_firm_that_wants_to_be_asked_earlier_is_passed_over(server: TestServer) {
+async fn a_firm_with_a_longer_lead_time_is_skipped(server: TestServer) {
     let parties = OfferParties::planned(&server, 3).await;
     for (firm, hours) in [(&parties.firms[1].0, 24), (&parties.firms[2].0, 5)] {
         let terms = json!({ "fee_eur": 1800, "working_days": ["Sun"], "lead_time_h": hours });
@@ -227,7 +227,7 @@ async fn a_firm_proposes_other_terms_and_the_operator_agrees(server: TestServer)
     server.finish().await;
 }
 
-async fn terms_that_the_operator_does_not_want_go_to_the_next_firm(server: TestServer) {
+async fn after_declined_terms_the_next_firm_gets_the_offer(server: TestServer) {
     let parties = OfferParties::offered(&server, 2).await;
     parties
         .post(&parties.firms[0].1, "/propose", &proposal())
@@ -248,7 +248,7 @@ async fn terms_that_the_operator_does_not_want_go_to_the_next_firm(server: TestS
     server.finish().await;
 }
 
-async fn a_proposal_that_nobody_answers_lapses(server: TestServer) {
+async fn an_unanswered_proposal_lapses(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     server.advance(HOUR_S / 2.0);
     parties
@@ -290,7 +290,7 @@ async fn a_firm_gives_an_order_back(server: TestServer) {
     server.finish().await;
 }
 
-async fn messages_are_between_the_operator_and_one_firm(server: TestServer) {
+async fn messages_are_visible_to_the_operator_and_one_firm(server: TestServer) {
     let parties = OfferParties::planned(&server, 2).await;
     let [(rosas, rosa), (_, juan)] = &parties.firms[..] else {
         unreachable!("there are two")
@@ -336,7 +336,7 @@ async fn messages_are_between_the_operator_and_one_firm(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_offer_that_makes_no_sense_is_refused_whole(server: TestServer) {
+async fn an_invalid_offer_is_refused_whole(server: TestServer) {
     let parties = OfferParties::planned(&server, 1).await;
     let eve = server.admin("eve").await;
     let (strange, _) = eve.adjuster(&server, "other").await;

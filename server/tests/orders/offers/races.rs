@@ -8,14 +8,14 @@ use binnacle_server_testing::on_both;
 use serde_json::json;
 
 on_both!(
-    of_two_firms_that_accept_at_once_one_has_it,
-    an_acceptance_and_a_cancellation_at_once_leave_one_story,
-    an_offer_lapses_once_however_many_look,
-    an_answer_and_the_clock_at_once_leave_one_story,
-    an_order_that_cannot_be_read_holds_up_no_other_orders_clock,
+    one_of_two_firms_accepting_at_once_gets_the_order,
+    concurrent_acceptance_and_cancellation_leave_a_consistent_log,
+    an_offer_checked_by_many_servers_lapses_once,
+    concurrent_response_and_expiry_leave_a_consistent_log,
+    an_unreadable_order_does_not_block_expiry_of_others,
 );
 
-async fn of_two_firms_that_accept_at_once_one_has_it(server: TestServer) {
+async fn one_of_two_firms_accepting_at_once_gets_the_order(server: TestServer) {
     let parties = OfferParties::planned(&server, 3).await;
     let mut offer = parties.offer();
     offer["at_once"] = json!(true);
@@ -48,7 +48,7 @@ async fn of_two_firms_that_accept_at_once_one_has_it(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_acceptance_and_a_cancellation_at_once_leave_one_story(server: TestServer) {
+async fn concurrent_acceptance_and_cancellation_leave_a_consistent_log(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     let (yes, why) = (json!({}), json!({ "text": "sold" }));
     let (accepted, cancelled) = tokio::join!(
@@ -67,7 +67,7 @@ async fn an_acceptance_and_a_cancellation_at_once_leave_one_story(server: TestSe
     server.finish().await;
 }
 
-async fn an_offer_lapses_once_however_many_look(server: TestServer) {
+async fn an_offer_checked_by_many_servers_lapses_once(server: TestServer) {
     let parties = OfferParties::offered(&server, 2).await;
     let second = server.second().await;
     server.advance(HOUR_S + 1.0);
@@ -80,7 +80,7 @@ async fn an_offer_lapses_once_however_many_look(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_answer_and_the_clock_at_once_leave_one_story(server: TestServer) {
+async fn concurrent_response_and_expiry_leave_a_consistent_log(server: TestServer) {
     let parties = OfferParties::offered(&server, 2).await;
     // The last moment: the response is in time, whatever the expiry does meanwhile.
     server.advance(HOUR_S);
@@ -95,7 +95,7 @@ async fn an_answer_and_the_clock_at_once_leave_one_story(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_order_that_cannot_be_read_holds_up_no_other_orders_clock(server: TestServer) {
+async fn an_unreadable_order_does_not_block_expiry_of_others(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     server
         .sql("UPDATE work_order_entries SET line = '{' WHERE seq = 1")

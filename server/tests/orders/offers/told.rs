@@ -13,12 +13,12 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    a_firms_webhook_hears_of_its_orders_signed_and_in_order,
-    the_operators_webhook_hears_of_every_answer,
-    a_message_that_is_not_taken_holds_up_its_own_order_only,
-    a_dead_letter_of_a_firms_is_sent_again,
-    a_firm_has_no_webhook_for_alerts_and_sees_only_its_own,
-    a_firm_follows_its_own_orders_live,
+    a_firms_webhook_gets_signed_events_of_its_orders_in_order,
+    the_operators_webhook_gets_every_response,
+    a_failing_delivery_delays_only_its_own_order,
+    a_firm_can_resend_its_dead_letter,
+    a_firm_cannot_subscribe_to_alerts_and_sees_only_its_webhooks,
+    a_firm_gets_live_events_of_its_orders,
 );
 
 const ALL: [&str; 11] = [
@@ -35,7 +35,7 @@ const ALL: [&str; 11] = [
     "order.cancelled",
 ];
 
-async fn a_firms_webhook_hears_of_its_orders_signed_and_in_order(server: TestServer) {
+async fn a_firms_webhook_gets_signed_events_of_its_orders_in_order(server: TestServer) {
     let parties = OfferParties::planned(&server, 2).await;
     let [(_, rosa), (_, juan)] = &parties.firms[..] else {
         unreachable!("there are two")
@@ -69,7 +69,7 @@ async fn a_firms_webhook_hears_of_its_orders_signed_and_in_order(server: TestSer
     server.finish().await;
 }
 
-async fn the_operators_webhook_hears_of_every_answer(server: TestServer) {
+async fn the_operators_webhook_gets_every_response(server: TestServer) {
     let parties = OfferParties::planned(&server, 2).await;
     let (receiver, url) = Receiver::start().await;
     make(&parties.ada, &url, &ALL).await;
@@ -102,7 +102,7 @@ async fn the_operators_webhook_hears_of_every_answer(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_message_that_is_not_taken_holds_up_its_own_order_only(server: TestServer) {
+async fn a_failing_delivery_delays_only_its_own_order(server: TestServer) {
     let mut parties = OfferParties::planned(&server, 1).await;
     let rosa = parties.firms[0].1.clone();
     let (receiver, url) = Receiver::start().await;
@@ -148,7 +148,7 @@ async fn a_message_that_is_not_taken_holds_up_its_own_order_only(server: TestSer
     server.finish().await;
 }
 
-async fn a_dead_letter_of_a_firms_is_sent_again(server: TestServer) {
+async fn a_firm_can_resend_its_dead_letter(server: TestServer) {
     let parties = OfferParties::planned(&server, 1).await;
     let rosa = parties.firms[0].1.clone();
     let (receiver, url) = Receiver::start().await;
@@ -175,7 +175,7 @@ async fn a_dead_letter_of_a_firms_is_sent_again(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_firm_has_no_webhook_for_alerts_and_sees_only_its_own(server: TestServer) {
+async fn a_firm_cannot_subscribe_to_alerts_and_sees_only_its_webhooks(server: TestServer) {
     let parties = OfferParties::planned(&server, 2).await;
     let [(_, rosa), (_, juan)] = &parties.firms[..] else {
         unreachable!("there are two")
@@ -193,7 +193,7 @@ async fn a_firm_has_no_webhook_for_alerts_and_sees_only_its_own(server: TestServ
     server.finish().await;
 }
 
-async fn a_firm_follows_its_own_orders_live(server: TestServer) {
+async fn a_firm_gets_live_events_of_its_orders(server: TestServer) {
     let parties = OfferParties::offered(&server, 2).await;
     let [(_, rosa), (_, juan)] = &parties.firms[..] else {
         unreachable!("there are two")

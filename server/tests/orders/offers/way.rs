@@ -15,11 +15,11 @@ use tokio::process::Command;
 use uuid::Uuid;
 
 on_both!(
-    the_example_client_carries_an_order_to_its_end,
-    the_example_client_asks_what_the_compass_reads_before_the_first_step,
-    the_example_client_bargains_writes_and_listens,
-    a_firm_reads_of_the_ship_only_while_the_order_is_open,
-    a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked,
+    the_example_client_completes_an_order,
+    the_example_client_asks_for_the_compass_reading_before_the_first_step,
+    the_example_client_negotiates_sends_messages_and_gets_events,
+    a_firm_can_read_ship_data_only_while_the_order_is_open,
+    a_key_needs_proof_of_possession_and_signs_until_revoked,
 );
 
 const CLIENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/firm_client.py");
@@ -70,7 +70,7 @@ impl<'a> Client<'a> {
     }
 }
 
-async fn the_example_client_asks_what_the_compass_reads_before_the_first_step(server: TestServer) {
+async fn the_example_client_asks_for_the_compass_reading_before_the_first_step(server: TestServer) {
     let (job, rosa) = offered(&server).await;
     let folder = tempfile::tempdir().unwrap();
     let client = Client::of(&server, &rosa, folder.path()).await;
@@ -114,7 +114,7 @@ async fn offered(server: &TestServer) -> (Job, Person) {
     (job, rosa)
 }
 
-async fn the_example_client_carries_an_order_to_its_end(server: TestServer) {
+async fn the_example_client_completes_an_order(server: TestServer) {
     let (job, rosa) = offered(&server).await;
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
@@ -200,7 +200,7 @@ async fn the_example_client_carries_an_order_to_its_end(server: TestServer) {
     server.finish().await;
 }
 
-async fn the_example_client_bargains_writes_and_listens(server: TestServer) {
+async fn the_example_client_negotiates_sends_messages_and_gets_events(server: TestServer) {
     let parties = OfferParties::planned(&server, 1).await;
     let (firm, rosa) = &parties.firms[0];
     let terms = json!({ "fee_eur": 1800, "working_days": ["Sun"] });
@@ -244,7 +244,7 @@ async fn the_example_client_bargains_writes_and_listens(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_firm_reads_of_the_ship_only_while_the_order_is_open(server: TestServer) {
+async fn a_firm_can_read_ship_data_only_while_the_order_is_open(server: TestServer) {
     let (job, rosa) = offered(&server).await;
     let (_, other) = job.person.adjuster(&server, "other").await;
     let paths = ["/model", "/binnacle"].map(|rest| job.path(rest));
@@ -286,7 +286,7 @@ async fn a_firm_reads_of_the_ship_only_while_the_order_is_open(server: TestServe
     server.finish().await;
 }
 
-async fn a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked(server: TestServer) {
+async fn a_key_needs_proof_of_possession_and_signs_until_revoked(server: TestServer) {
     let ada = server.admin("ada").await;
     let (firm, rosa) = ada.adjuster(&server, "rosa").await;
     let (others, other) = ada.adjuster(&server, "other").await;

@@ -9,23 +9,23 @@ use binnacle_server_testing::work_orders::{
 use serde_json::{Value, json};
 
 on_both!(
-    the_magnetometer_read_again_confirms_an_adjustment,
-    a_second_reading_that_does_not_fit_holds_back_the_completion,
-    correctors_found_to_stand_otherwise_explain_a_second_reading,
-    what_is_left_beyond_the_limits_is_planned_anew_from_the_second_reading,
-    steps_that_do_not_add_up_are_completed_by_a_second_reading_only,
-    a_word_that_explains_nothing_leaves_a_second_reading_open,
-    a_compass_that_stands_against_the_field_is_not_confirmed,
-    what_the_vertical_part_disproved_is_not_confirmed_without_it,
-    heeling_magnets_are_confirmed_by_the_vertical_part_alone,
-    a_reading_of_correctors_that_no_plan_led_to_is_one_to_plan_from,
+    a_second_reading_confirms_an_adjustment,
+    an_inconsistent_second_reading_stops_the_completion,
+    a_found_corrector_setting_explains_a_second_reading,
+    residuals_over_the_limits_are_planned_again_from_the_second_reading,
+    inconsistent_steps_need_a_second_reading_for_completion,
+    an_unhelpful_explanation_leaves_a_second_reading_open,
+    a_compass_reading_against_the_field_is_not_confirmed,
+    a_vertical_mismatch_needs_another_vertical_reading,
+    heeling_magnets_are_confirmed_only_by_the_vertical_part,
+    a_reading_of_an_unplanned_setting_is_a_basis_for_a_plan,
 );
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-async fn the_magnetometer_read_again_confirms_an_adjustment(server: TestServer) {
+async fn a_second_reading_confirms_an_adjustment(server: TestServer) {
     let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let order = job.post("/plan", &json!({})).await.good();
@@ -59,7 +59,7 @@ async fn the_magnetometer_read_again_confirms_an_adjustment(server: TestServer) 
     server.finish().await;
 }
 
-async fn a_second_reading_that_does_not_fit_holds_back_the_completion(server: TestServer) {
+async fn an_inconsistent_second_reading_stops_the_completion(server: TestServer) {
     let job = Job::begin(&server).await;
     let order = job.adjust().await;
     let setting = &order["plan"]["plan"]["setting"];
@@ -102,7 +102,7 @@ async fn a_second_reading_that_does_not_fit_holds_back_the_completion(server: Te
     server.finish().await;
 }
 
-async fn correctors_found_to_stand_otherwise_explain_a_second_reading(server: TestServer) {
+async fn a_found_corrector_setting_explains_a_second_reading(server: TestServer) {
     let job = Job::begin(&server).await;
     job.adjust().await;
     let nothing_done = json!({ "at": AT, "unit": "microtesla",
@@ -121,9 +121,7 @@ async fn correctors_found_to_stand_otherwise_explain_a_second_reading(server: Te
     server.finish().await;
 }
 
-async fn what_is_left_beyond_the_limits_is_planned_anew_from_the_second_reading(
-    server: TestServer,
-) {
+async fn residuals_over_the_limits_are_planned_again_from_the_second_reading(server: TestServer) {
     let mut job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let offer = job.person.get(&job.path("/plan")).await.good();
@@ -167,7 +165,7 @@ async fn what_is_left_beyond_the_limits_is_planned_anew_from_the_second_reading(
     server.finish().await;
 }
 
-async fn steps_that_do_not_add_up_are_completed_by_a_second_reading_only(server: TestServer) {
+async fn inconsistent_steps_need_a_second_reading_for_completion(server: TestServer) {
     let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let mut order = job.post("/plan", &json!({})).await.good();
@@ -190,7 +188,7 @@ async fn steps_that_do_not_add_up_are_completed_by_a_second_reading_only(server:
     server.finish().await;
 }
 
-async fn a_word_that_explains_nothing_leaves_a_second_reading_open(server: TestServer) {
+async fn an_unhelpful_explanation_leaves_a_second_reading_open(server: TestServer) {
     let job = Job::begin(&server).await;
     let order = job.adjust().await;
     let setting = &order["plan"]["plan"]["setting"];
@@ -225,7 +223,7 @@ async fn a_word_that_explains_nothing_leaves_a_second_reading_open(server: TestS
     server.finish().await;
 }
 
-async fn a_compass_that_stands_against_the_field_is_not_confirmed(server: TestServer) {
+async fn a_compass_reading_against_the_field_is_not_confirmed(server: TestServer) {
     let job = Job::begin(&server).await;
     let order = job.adjust().await;
     let compass_deg = number(&order["compass_deg"]);
@@ -280,7 +278,7 @@ fn without_down(reading: &Value) -> Value {
     reading
 }
 
-async fn what_the_vertical_part_disproved_is_not_confirmed_without_it(server: TestServer) {
+async fn a_vertical_mismatch_needs_another_vertical_reading(server: TestServer) {
     let (job, first, setting) = heeling(&server).await;
     let mut truly = setting.clone();
     truly["heeling"] = Value::Null;
@@ -301,7 +299,7 @@ async fn what_the_vertical_part_disproved_is_not_confirmed_without_it(server: Te
     server.finish().await;
 }
 
-async fn heeling_magnets_are_confirmed_by_the_vertical_part_alone(server: TestServer) {
+async fn heeling_magnets_are_confirmed_only_by_the_vertical_part(server: TestServer) {
     let (job, first, setting) = heeling(&server).await;
     let blind = without_down(&second_reading_after(&first, &setting));
     let said = job.post("/second-reading", &blind).await.good()["second_reading"].clone();
@@ -321,7 +319,7 @@ async fn heeling_magnets_are_confirmed_by_the_vertical_part_alone(server: TestSe
     server.finish().await;
 }
 
-async fn a_reading_of_correctors_that_no_plan_led_to_is_one_to_plan_from(server: TestServer) {
+async fn a_reading_of_an_unplanned_setting_is_a_basis_for_a_plan(server: TestServer) {
     let job = Job::begin(&server).await;
     let order = job.adjust().await;
     let mut other = order["plan"]["plan"]["setting"].clone();

@@ -9,9 +9,9 @@ use serde_json::{Value, json};
 
 on_both!(
     a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_epoch,
-    an_adjustment_that_failed_at_sea_leaves_its_card_predicted,
-    an_order_closed_without_verification_leaves_its_card_predicted,
-    a_card_right_after_an_adjustment_bears_no_alert_from_before_it,
+    an_adjustment_failing_at_sea_keeps_its_card_predicted,
+    an_order_closed_without_verification_keeps_its_card_predicted,
+    a_card_after_an_adjustment_has_no_earlier_alert,
 );
 
 async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_epoch(
@@ -116,7 +116,7 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
 }
 
 /// A ship that stops sending: its order is closed without verification.
-async fn an_order_closed_without_verification_leaves_its_card_predicted(server: TestServer) {
+async fn an_order_closed_without_verification_keeps_its_card_predicted(server: TestServer) {
     let mut job = Job::begin(&server).await;
     let ship = predicted_model(&job.complete().await);
     let early = job.post("/close", &json!({ "text": "filed" })).await;
@@ -156,7 +156,7 @@ async fn an_order_closed_without_verification_leaves_its_card_predicted(server: 
     server.finish().await;
 }
 
-async fn an_adjustment_that_failed_at_sea_leaves_its_card_predicted(server: TestServer) {
+async fn an_adjustment_failing_at_sea_keeps_its_card_predicted(server: TestServer) {
     let mut job = Job::begin(&server).await;
     let mut ship = predicted_model(&job.complete().await);
     ship.parameters_over_lambda.bx_nt += 4000.0;
@@ -169,7 +169,7 @@ async fn an_adjustment_that_failed_at_sea_leaves_its_card_predicted(server: Test
     server.finish().await;
 }
 
-async fn a_card_right_after_an_adjustment_bears_no_alert_from_before_it(server: TestServer) {
+async fn a_card_after_an_adjustment_has_no_earlier_alert(server: TestServer) {
     let job = Job::begin(&server).await;
     limit(
         &server,

@@ -10,13 +10,13 @@ use binnacle_server_testing::{Person, TestServer};
 use serde_json::{Value, json};
 
 on_both!(
-    a_reading_that_cannot_be_is_refused_by_its_word,
-    a_plan_that_would_not_do_is_refused_by_its_word,
-    a_lambda_that_the_last_adjustment_contradicts_is_refused_until_the_logbook_explains_it,
-    limits_that_nobody_may_ask_for_are_refused,
-    one_of_two_browsers_does_a_step,
-    what_was_read_before_the_ship_changed_is_read_again,
-    correctors_that_are_not_on_board_are_said_to_be_missing,
+    an_impossible_reading_is_refused_with_its_code,
+    an_insufficient_plan_is_refused_with_its_code,
+    a_lambda_contradicting_the_last_adjustment_needs_a_logbook_entry,
+    invalid_limits_are_refused,
+    a_step_is_done_by_one_of_two_browsers,
+    a_reading_from_before_a_change_must_be_repeated,
+    missing_correctors_are_named,
 );
 
 fn with(changes: &Value) -> Value {
@@ -26,7 +26,7 @@ fn with(changes: &Value) -> Value {
     body
 }
 
-async fn a_reading_that_cannot_be_is_refused_by_its_word(server: TestServer) {
+async fn an_impossible_reading_is_refused_with_its_code(server: TestServer) {
     let job = Job::begin(&server).await;
     let good = reading();
     let part = |name: &str, times: f64| json!(times * good[name].as_f64().unwrap());
@@ -61,7 +61,7 @@ async fn a_reading_that_cannot_be_is_refused_by_its_word(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_plan_that_would_not_do_is_refused_by_its_word(server: TestServer) {
+async fn an_insufficient_plan_is_refused_with_its_code(server: TestServer) {
     let mut job = Job::begin(&server).await;
     let none = json!({});
     for (limits, body, word) in [
@@ -100,9 +100,7 @@ async fn a_plan_that_would_not_do_is_refused_by_its_word(server: TestServer) {
 }
 
 /// The reading is that of a ship whose magnetism changed by 2 µT along the needle.
-async fn a_lambda_that_the_last_adjustment_contradicts_is_refused_until_the_logbook_explains_it(
-    server: TestServer,
-) {
+async fn a_lambda_contradicting_the_last_adjustment_needs_a_logbook_entry(server: TestServer) {
     let mut job = Job::begin(&server).await;
     let done = job.complete().await;
     let setting = done["plan"]["plan"]["setting"].clone();
@@ -139,7 +137,7 @@ async fn a_lambda_that_the_last_adjustment_contradicts_is_refused_until_the_logb
     server.finish().await;
 }
 
-async fn limits_that_nobody_may_ask_for_are_refused(server: TestServer) {
+async fn invalid_limits_are_refused(server: TestServer) {
     let job = Job::begin(&server).await;
     job.post("/cancel", &json!({ "text": "another" }))
         .await
@@ -160,7 +158,7 @@ async fn limits_that_nobody_may_ask_for_are_refused(server: TestServer) {
     server.finish().await;
 }
 
-async fn one_of_two_browsers_does_a_step(server: TestServer) {
+async fn a_step_is_done_by_one_of_two_browsers(server: TestServer) {
     let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let order = job.post("/plan", &json!({})).await.good();
@@ -175,7 +173,7 @@ async fn one_of_two_browsers_does_a_step(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_was_read_before_the_ship_changed_is_read_again(server: TestServer) {
+async fn a_reading_from_before_a_change_must_be_repeated(server: TestServer) {
     let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let welded = json!({ "kind": "welding", "from": "2026-11-21T06:45:00Z" });
@@ -202,7 +200,7 @@ async fn what_was_read_before_the_ship_changed_is_read_again(server: TestServer)
     server.finish().await;
 }
 
-async fn correctors_that_are_not_on_board_are_said_to_be_missing(server: TestServer) {
+async fn missing_correctors_are_named(server: TestServer) {
     let job = Job::begin(&server).await;
     let path = job
         .ship

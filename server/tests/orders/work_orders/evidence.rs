@@ -17,9 +17,9 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 on_both!(
     each_entry_names_the_hash_of_the_one_before,
-    only_a_picture_is_a_photograph,
-    evidence_that_was_tampered_with_is_found_out,
-    the_record_can_be_had_in_each_form,
+    only_an_image_is_accepted_as_a_photograph,
+    tampered_evidence_is_detected,
+    the_record_is_available_in_each_form,
 );
 
 async fn each_entry_names_the_hash_of_the_one_before(server: TestServer) {
@@ -38,7 +38,7 @@ async fn each_entry_names_the_hash_of_the_one_before(server: TestServer) {
     server.finish().await;
 }
 
-async fn the_record_can_be_had_in_each_form(server: TestServer) {
+async fn the_record_is_available_in_each_form(server: TestServer) {
     let job = Job::begin(&server).await;
     let forms = [
         ("pdf", "application/pdf"),
@@ -82,7 +82,7 @@ async fn the_record_can_be_had_in_each_form(server: TestServer) {
     server.finish().await;
 }
 
-async fn only_a_picture_is_a_photograph(server: TestServer) {
+async fn only_an_image_is_accepted_as_a_photograph(server: TestServer) {
     let job = Job::begin(&server).await;
     let page = job.photo(b"<html><script>alert(1)</script>").await;
     assert_eq!(
@@ -329,7 +329,7 @@ fn facts_without_signature_are_marked(files: &BTreeMap<String, Vec<u8>>) {
     assert!(found.problems[0].contains("another adjuster"), "{found:?}");
 }
 
-async fn evidence_that_was_tampered_with_is_found_out(server: TestServer) {
+async fn tampered_evidence_is_detected(server: TestServer) {
     let job = Job::begin(&server).await;
     job.photo(PICTURE).await.good();
     let done = job.complete().await;

@@ -9,20 +9,20 @@ use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use serde_json::{Value, json};
 
 on_both!(
-    a_compass_that_turned_by_itself_is_not_read_for_a_step,
-    a_binnacle_written_meanwhile_is_noticed,
-    cargo_that_is_logged_after_the_reading_holds_the_work_back,
-    cargo_that_was_withdrawn_from_the_logbook_refuses_no_new_reading,
-    an_adjustment_is_not_dated_before_its_steps,
-    a_prediction_that_nothing_proved_does_not_count_as_fresh,
-    an_alert_about_the_compass_is_told_with_the_plan,
+    a_compass_that_turned_by_itself_does_not_count_as_a_step,
+    a_binnacle_changed_meanwhile_is_detected,
+    cargo_logged_after_the_reading_stops_the_work,
+    a_withdrawn_cargo_entry_allows_a_new_reading,
+    a_completion_cannot_be_dated_before_its_steps,
+    an_unverified_prediction_does_not_count_as_recent,
+    a_plan_lists_open_alerts_of_the_compass,
 );
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-async fn a_compass_that_turned_by_itself_is_not_read_for_a_step(server: TestServer) {
+async fn a_compass_that_turned_by_itself_does_not_count_as_a_step(server: TestServer) {
     let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let order = job.post("/plan", &json!({})).await.good();
@@ -49,7 +49,7 @@ async fn a_compass_that_turned_by_itself_is_not_read_for_a_step(server: TestServ
     server.finish().await;
 }
 
-async fn a_binnacle_written_meanwhile_is_noticed(server: TestServer) {
+async fn a_binnacle_changed_meanwhile_is_detected(server: TestServer) {
     let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let path = job
@@ -69,7 +69,7 @@ async fn a_binnacle_written_meanwhile_is_noticed(server: TestServer) {
     server.finish().await;
 }
 
-async fn cargo_that_is_logged_after_the_reading_holds_the_work_back(server: TestServer) {
+async fn cargo_logged_after_the_reading_stops_the_work(server: TestServer) {
     let since = "2026-11-21T06:45:00Z";
     let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
@@ -103,7 +103,7 @@ async fn cargo_that_is_logged_after_the_reading_holds_the_work_back(server: Test
     server.finish().await;
 }
 
-async fn cargo_that_was_withdrawn_from_the_logbook_refuses_no_new_reading(server: TestServer) {
+async fn a_withdrawn_cargo_entry_allows_a_new_reading(server: TestServer) {
     let job = Job::begin(&server).await;
     let steel = job.load_steel("2026-11-21T06:00:00Z").await;
     job.post("/berth-reading", &reading()).await.good();
@@ -120,7 +120,7 @@ async fn cargo_that_was_withdrawn_from_the_logbook_refuses_no_new_reading(server
     server.finish().await;
 }
 
-async fn an_adjustment_is_not_dated_before_its_steps(server: TestServer) {
+async fn a_completion_cannot_be_dated_before_its_steps(server: TestServer) {
     let mut job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     server.advance(86_400.0);
@@ -140,7 +140,7 @@ async fn an_adjustment_is_not_dated_before_its_steps(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_prediction_that_nothing_proved_does_not_count_as_fresh(server: TestServer) {
+async fn an_unverified_prediction_does_not_count_as_recent(server: TestServer) {
     let mut job = Job::begin(&server).await;
     let done = job.complete().await;
     let record = job.person.get(&job.path("/record.json")).await.good();
@@ -175,7 +175,7 @@ async fn a_prediction_that_nothing_proved_does_not_count_as_fresh(server: TestSe
     server.finish().await;
 }
 
-async fn an_alert_about_the_compass_is_told_with_the_plan(server: TestServer) {
+async fn a_plan_lists_open_alerts_of_the_compass(server: TestServer) {
     let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let notes = async || job.person.get(&job.path("/plan")).await.good()["notes"].to_string();

@@ -6,9 +6,9 @@ use binnacle_server_testing::work_orders::{Job, completion_details, reading};
 use serde_json::{Value, json};
 
 on_both!(
-    a_step_starts_from_the_compass_as_it_was_last_read,
+    a_step_starts_from_the_last_compass_reading,
     no_plan_beyond_the_limits_is_offered,
-    what_was_planned_beyond_the_limits_is_not_completed,
+    a_plan_beyond_the_limits_cannot_be_completed,
 );
 
 fn number(value: &Value) -> f64 {
@@ -19,7 +19,7 @@ fn turned(from_deg: f64, to_deg: f64) -> f64 {
     (to_deg - from_deg + 540.0).rem_euclid(360.0) - 180.0
 }
 
-async fn a_step_starts_from_the_compass_as_it_was_last_read(server: TestServer) {
+async fn a_step_starts_from_the_last_compass_reading(server: TestServer) {
     let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let order = job.post("/plan", &json!({})).await.good();
@@ -68,7 +68,7 @@ async fn no_plan_beyond_the_limits_is_offered(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_was_planned_beyond_the_limits_is_not_completed(server: TestServer) {
+async fn a_plan_beyond_the_limits_cannot_be_completed(server: TestServer) {
     let mut job = Job::begin(&server).await;
     job.replace_order(json!({ "residual_deg": 2.9 })).await;
     job.adjust().await;

@@ -8,19 +8,19 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    a_request_sent_again_under_its_key_writes_one_entry,
-    what_a_phone_kept_for_days_is_written_once,
-    a_bad_reading_is_kept_and_refused_with_what_could_be_wrong,
-    a_reading_is_doubted_by_the_port_and_by_the_track,
-    what_was_moved_can_be_put_back_and_the_berth_read_again,
-    a_step_that_reads_otherwise_is_planned_anew,
-    what_cannot_be_done_in_a_state_is_refused_and_writes_nothing,
-    a_compass_has_one_order_under_way,
-    a_viewer_reads_an_order_and_does_not_write,
-    an_order_is_blank_to_another_operator,
+    a_request_repeated_under_its_key_writes_one_entry,
+    a_request_delayed_for_days_is_written_once,
+    a_bad_reading_is_logged_and_refused_with_likely_causes,
+    a_reading_is_checked_against_the_port_and_the_track,
+    correctors_can_be_restored_and_the_berth_read_again,
+    a_step_with_an_unexpected_reading_is_planned_again,
+    a_request_invalid_in_a_state_is_refused_and_writes_nothing,
+    a_compass_has_one_open_order,
+    a_viewer_can_read_but_not_change_an_order,
+    an_order_is_not_found_for_another_operator,
 );
 
-async fn a_request_sent_again_under_its_key_writes_one_entry(server: TestServer) {
+async fn a_request_repeated_under_its_key_writes_one_entry(server: TestServer) {
     let job = Job::begin(&server).await;
     let send = |rest: &str, body: Value, key: &str| {
         let request = job.person.request(Method::POST, &job.path(rest));
@@ -56,7 +56,7 @@ async fn a_request_sent_again_under_its_key_writes_one_entry(server: TestServer)
     server.finish().await;
 }
 
-async fn what_a_phone_kept_for_days_is_written_once(server: TestServer) {
+async fn a_request_delayed_for_days_is_written_once(server: TestServer) {
     let mut job = Job::begin(&server).await;
     let photo = PICTURE.to_vec();
     for days in [0.0, 3.0, 40.0] {
@@ -91,7 +91,7 @@ async fn what_a_phone_kept_for_days_is_written_once(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_bad_reading_is_kept_and_refused_with_what_could_be_wrong(server: TestServer) {
+async fn a_bad_reading_is_logged_and_refused_with_likely_causes(server: TestServer) {
     let job = Job::begin(&server).await;
     let good = reading();
     let part = |name: &str| good[name].as_f64().unwrap();
@@ -159,7 +159,7 @@ async fn a_bad_reading_is_kept_and_refused_with_what_could_be_wrong(server: Test
     server.finish().await;
 }
 
-async fn a_reading_is_doubted_by_the_port_and_by_the_track(server: TestServer) {
+async fn a_reading_is_checked_against_the_port_and_the_track(server: TestServer) {
     let job = Job::begin(&server).await;
     let with = |changes: Value| {
         let mut body = reading();
@@ -191,7 +191,7 @@ async fn a_reading_is_doubted_by_the_port_and_by_the_track(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_was_moved_can_be_put_back_and_the_berth_read_again(server: TestServer) {
+async fn correctors_can_be_restored_and_the_berth_read_again(server: TestServer) {
     let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let order = job.post("/plan", &json!({})).await.good();
@@ -209,7 +209,7 @@ async fn what_was_moved_can_be_put_back_and_the_berth_read_again(server: TestSer
     server.finish().await;
 }
 
-async fn a_step_that_reads_otherwise_is_planned_anew(server: TestServer) {
+async fn a_step_with_an_unexpected_reading_is_planned_again(server: TestServer) {
     let job = Job::begin(&server).await;
     job.post("/berth-reading", &reading()).await.good();
     let mut order = job.post("/plan", &json!({})).await.good();
@@ -246,7 +246,7 @@ async fn a_step_that_reads_otherwise_is_planned_anew(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_cannot_be_done_in_a_state_is_refused_and_writes_nothing(server: TestServer) {
+async fn a_request_invalid_in_a_state_is_refused_and_writes_nothing(server: TestServer) {
     let job = Job::begin(&server).await;
     let refused = |response: ApiResponse| {
         assert_eq!(
@@ -294,7 +294,7 @@ async fn what_cannot_be_done_in_a_state_is_refused_and_writes_nothing(server: Te
     server.finish().await;
 }
 
-async fn a_compass_has_one_order_under_way(server: TestServer) {
+async fn a_compass_has_one_open_order(server: TestServer) {
     let job = Job::begin(&server).await;
     let second = job.person.post("/work-orders", &job.new_order()).await;
     assert_eq!(
@@ -323,7 +323,7 @@ async fn a_compass_has_one_order_under_way(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_viewer_reads_an_order_and_does_not_write(server: TestServer) {
+async fn a_viewer_can_read_but_not_change_an_order(server: TestServer) {
     let job = Job::begin(&server).await;
     let bob = job.person.viewer(&server).await;
     assert_eq!(bob.get(&job.path("")).await.good()["state"], "planned");
@@ -354,7 +354,7 @@ async fn a_viewer_reads_an_order_and_does_not_write(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_order_is_blank_to_another_operator(server: TestServer) {
+async fn an_order_is_not_found_for_another_operator(server: TestServer) {
     let job = Job::begin(&server).await;
     let eve = server.admin("eve").await;
     for rest in ["", "/entries", "/plan", "/evidence.zip", "/record.json"] {

@@ -7,8 +7,8 @@ use binnacle_server_testing::{TestServer, true_model};
 use serde_json::{Value, json};
 
 on_both!(
-    a_tray_in_another_hole_leaves_no_stronger_magnets_behind,
-    a_tray_that_was_put_right_leaves_no_stronger_magnets_behind,
+    a_tray_in_a_wrong_hole_does_not_change_the_magnet_strength,
+    a_corrected_tray_does_not_change_the_magnet_strength,
 );
 
 fn number(value: &Value) -> f64 {
@@ -110,7 +110,7 @@ async fn goes_on(job: &Job, said: &Value) {
     }
 }
 
-async fn a_tray_in_another_hole_leaves_no_stronger_magnets_behind(server: TestServer) {
+async fn a_tray_in_a_wrong_hole_does_not_change_the_magnet_strength(server: TestServer) {
     let (job, _, setting, compass_deg) = gone_wrong(&server).await;
     let said = json!({
         "setting": setting, "compass_deg": compass_deg, "note": "counted from the top",
@@ -119,7 +119,7 @@ async fn a_tray_in_another_hole_leaves_no_stronger_magnets_behind(server: TestSe
     server.finish().await;
 }
 
-async fn a_tray_that_was_put_right_leaves_no_stronger_magnets_behind(server: TestServer) {
+async fn a_corrected_tray_does_not_change_the_magnet_strength(server: TestServer) {
     let (job, step, setting, compass_deg) = gone_wrong(&server).await;
     let as_planned = &step["setting_after"];
     let compass_deg = compass_deg + turn_deg(&setting, as_planned);

@@ -11,15 +11,15 @@ use binnacle_server_testing::{
 use serde_json::{Value, json};
 
 on_both!(
-    an_order_goes_from_the_berth_to_a_predicted_model,
+    a_completed_order_gives_a_predicted_model,
     headings_at_sea_verify_an_adjustment,
-    a_heading_at_sea_that_does_not_agree_is_an_alert,
-    an_adjustment_after_the_verdict_answers_it_on_its_very_day,
-    another_orders_adjustment_answers_the_verdict_of_the_first,
-    an_adjustment_clears_what_was_open_about_the_ship_before_it,
+    a_disagreeing_heading_at_sea_raises_an_alert,
+    an_adjustment_after_a_failed_verification_resolves_it_on_its_day,
+    another_orders_adjustment_resolves_a_failed_verification,
+    an_adjustment_clears_earlier_alerts_of_the_ship,
 );
 
-async fn an_order_goes_from_the_berth_to_a_predicted_model(server: TestServer) {
+async fn a_completed_order_gives_a_predicted_model(server: TestServer) {
     let job = Job::begin(&server).await;
     let order = job.view_order().await;
     assert_eq!(order["state"], "planned");
@@ -113,7 +113,7 @@ async fn headings_at_sea_verify_an_adjustment(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_heading_at_sea_that_does_not_agree_is_an_alert(server: TestServer) {
+async fn a_disagreeing_heading_at_sea_raises_an_alert(server: TestServer) {
     let mut job = Job::begin(&server).await;
     let mut ship = predicted_model(&job.complete().await);
     ship.parameters_over_lambda.bx_nt += 4000.0;
@@ -177,7 +177,7 @@ async fn is_failed(job: &Job) -> bool {
     causes.any(|cause| cause["kind"] == "failed_verification")
 }
 
-async fn an_adjustment_after_the_verdict_answers_it_on_its_very_day(server: TestServer) {
+async fn an_adjustment_after_a_failed_verification_resolves_it_on_its_day(server: TestServer) {
     let job = disproved(&server).await;
     // The last heading at sea was at 11:50 on that day.
     let before = json!({ "kind": "adjustment", "from": "2026-11-22T09:00:00Z" });
@@ -190,7 +190,7 @@ async fn an_adjustment_after_the_verdict_answers_it_on_its_very_day(server: Test
     server.finish().await;
 }
 
-async fn another_orders_adjustment_answers_the_verdict_of_the_first(server: TestServer) {
+async fn another_orders_adjustment_resolves_a_failed_verification(server: TestServer) {
     let job = disproved(&server).await;
     let mut again = job.new_order();
     again["planned_at"] = json!("2026-11-23T09:00:00Z");
@@ -212,7 +212,7 @@ async fn another_orders_adjustment_answers_the_verdict_of_the_first(server: Test
     server.finish().await;
 }
 
-async fn an_adjustment_clears_what_was_open_about_the_ship_before_it(server: TestServer) {
+async fn an_adjustment_clears_earlier_alerts_of_the_ship(server: TestServer) {
     let person = server.admin("ada").await;
     let now = model_after_step(3000.0, 2000.0);
     let mut samples = days_at_sea(&true_model(), "2026-10-27T00:00:00Z", 12.0);

@@ -12,15 +12,15 @@ use reqwest::Method;
 use serde_json::json;
 
 on_both!(
-    quiet_hours_keep_letters_back_and_put_them_together,
-    what_is_read_in_quiet_hours_is_not_mailed_after_them,
+    letters_of_quiet_hours_are_sent_together_afterwards,
+    notifications_read_in_quiet_hours_are_not_mailed,
     a_critical_alert_passes_quiet_hours_and_a_warning_does_not,
-    who_was_told_of_an_alert_hears_once_that_it_sank_or_is_over,
-    who_is_on_the_mailing_list_gets_no_second_letter_of_an_alert,
-    a_digest_has_what_came_since_the_last_one,
+    a_notified_person_gets_one_letter_when_an_alert_sinks_or_ends,
+    a_person_on_the_mailing_list_gets_one_letter_of_an_alert,
+    a_digest_contains_everything_since_the_last_one,
     two_servers_make_one_letter,
-    what_waits_follows_the_new_settings,
-    who_is_removed_gets_no_more_letters,
+    waiting_letters_follow_new_settings,
+    a_removed_person_gets_no_more_letters,
 );
 
 /// Returns settings with quiet hours until 09:30 in Madrid, where every test begins at 08:00.
@@ -31,7 +31,7 @@ fn quiet() -> serde_json::Value {
     })
 }
 
-async fn quiet_hours_keep_letters_back_and_put_them_together(server: TestServer) {
+async fn letters_of_quiet_hours_are_sent_together_afterwards(server: TestServer) {
     let relay = Relay::start().await;
     let parties = OfferParties::planned(&server, 2).await;
     say(&parties.ada, &quiet()).await.good();
@@ -76,7 +76,7 @@ async fn quiet_hours_keep_letters_back_and_put_them_together(server: TestServer)
     server.finish().await;
 }
 
-async fn what_is_read_in_quiet_hours_is_not_mailed_after_them(server: TestServer) {
+async fn notifications_read_in_quiet_hours_are_not_mailed(server: TestServer) {
     let relay = Relay::start().await;
     let parties = OfferParties::offered(&server, 1).await;
     say(&parties.ada, &quiet()).await.good();
@@ -120,7 +120,7 @@ async fn a_critical_alert_passes_quiet_hours_and_a_warning_does_not(server: Test
     server.finish().await;
 }
 
-async fn who_was_told_of_an_alert_hears_once_that_it_sank_or_is_over(server: TestServer) {
+async fn a_notified_person_gets_one_letter_when_an_alert_sinks_or_ends(server: TestServer) {
     let relay = Relay::start().await;
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
@@ -151,7 +151,7 @@ async fn who_was_told_of_an_alert_hears_once_that_it_sank_or_is_over(server: Tes
     server.finish().await;
 }
 
-async fn who_is_on_the_mailing_list_gets_no_second_letter_of_an_alert(server: TestServer) {
+async fn a_person_on_the_mailing_list_gets_one_letter_of_an_alert(server: TestServer) {
     let relay = Relay::start().await;
     let ada = server.admin("ada").await;
     add(&ada, "Ada@example.com", "warning").await;
@@ -166,7 +166,7 @@ async fn who_is_on_the_mailing_list_gets_no_second_letter_of_an_alert(server: Te
     server.finish().await;
 }
 
-async fn a_digest_has_what_came_since_the_last_one(server: TestServer) {
+async fn a_digest_contains_everything_since_the_last_one(server: TestServer) {
     let relay = Relay::start().await;
     let parties = OfferParties::offered(&server, 1).await;
     let rosa = &parties.firms[0].1;
@@ -202,7 +202,7 @@ async fn two_servers_make_one_letter(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_waits_follows_the_new_settings(server: TestServer) {
+async fn waiting_letters_follow_new_settings(server: TestServer) {
     let relay = Relay::start().await;
     let parties = OfferParties::offered(&server, 1).await;
     say(&parties.ada, &quiet()).await.good();
@@ -217,7 +217,7 @@ async fn what_waits_follows_the_new_settings(server: TestServer) {
     server.finish().await;
 }
 
-async fn who_is_removed_gets_no_more_letters(server: TestServer) {
+async fn a_removed_person_gets_no_more_letters(server: TestServer) {
     let relay = Relay::start().await;
     let parties = OfferParties::offered(&server, 1).await;
     let viewer = parties.ada.viewer(&server).await;

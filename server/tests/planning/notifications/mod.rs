@@ -15,11 +15,11 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    an_offer_and_its_answers_reach_the_other_side,
-    an_answer_that_is_late_is_told_to_both_sides,
-    who_does_something_is_not_told_of_it,
-    an_offer_that_is_withdrawn_is_told_without_a_reason,
-    what_was_read_is_marked_and_ones_own,
+    an_offer_and_its_responses_notify_the_other_side,
+    a_lapsed_offer_notifies_both_sides,
+    a_person_is_not_notified_of_their_own_action,
+    a_withdrawn_offer_is_notified_without_a_reason,
+    reading_marks_only_ones_own_notifications,
 );
 
 /// Returns the subjects of a person's notifications, oldest first.
@@ -43,7 +43,7 @@ async fn say(person: &Person, settings: &Value) -> ApiResponse {
     ApiResponse::of(request.json(settings)).await
 }
 
-async fn an_offer_and_its_answers_reach_the_other_side(server: TestServer) {
+async fn an_offer_and_its_responses_notify_the_other_side(server: TestServer) {
     let relay = Relay::start().await;
     let parties = OfferParties::offered(&server, 2).await;
     let [(_, rosa), (_, juan)] = &parties.firms[..] else {
@@ -101,7 +101,7 @@ async fn an_offer_and_its_answers_reach_the_other_side(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_answer_that_is_late_is_told_to_both_sides(server: TestServer) {
+async fn a_lapsed_offer_notifies_both_sides(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     server.advance(HOUR_S + 1.0);
     assert_eq!(lapse(&server.app).await.unwrap(), 1);
@@ -113,7 +113,7 @@ async fn an_answer_that_is_late_is_told_to_both_sides(server: TestServer) {
     server.finish().await;
 }
 
-async fn who_does_something_is_not_told_of_it(server: TestServer) {
+async fn a_person_is_not_notified_of_their_own_action(server: TestServer) {
     let parties = OfferParties::planned(&server, 1).await;
     let viewer = parties.ada.viewer(&server).await;
     parties
@@ -147,7 +147,7 @@ async fn who_does_something_is_not_told_of_it(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_offer_that_is_withdrawn_is_told_without_a_reason(server: TestServer) {
+async fn a_withdrawn_offer_is_notified_without_a_reason(server: TestServer) {
     let parties = OfferParties::planned(&server, 2).await;
     let [(_, rosa), (_, juan)] = &parties.firms[..] else {
         unreachable!("there are two")
@@ -168,7 +168,7 @@ async fn an_offer_that_is_withdrawn_is_told_without_a_reason(server: TestServer)
     server.finish().await;
 }
 
-async fn what_was_read_is_marked_and_ones_own(server: TestServer) {
+async fn reading_marks_only_ones_own_notifications(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     let rosa = &parties.firms[0].1;
     parties.post(rosa, "/accept", &json!({})).await.good();

@@ -8,15 +8,15 @@ use binnacle_server_testing::{Person, TestServer};
 use serde_json::json;
 
 on_both!(
-    each_step_towards_the_due_date_is_told_once,
-    a_due_date_that_is_brought_forward_is_told,
-    two_servers_tell_of_a_need_once,
-    a_fleet_that_cannot_be_read_holds_up_no_other_fleets_needs,
+    each_stage_before_the_due_date_is_notified_once,
+    an_earlier_due_date_is_notified,
+    two_servers_notify_a_due_date_once,
+    an_unreadable_fleet_does_not_block_other_fleets_notifications,
 );
 
 const DAY_S: f64 = 86_400.0;
 
-async fn each_step_towards_the_due_date_is_told_once(server: TestServer) {
+async fn each_stage_before_the_due_date_is_notified_once(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     due_vessel(&ada, "Nao").await;
@@ -37,7 +37,7 @@ async fn each_step_towards_the_due_date_is_told_once(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_due_date_that_is_brought_forward_is_told(server: TestServer) {
+async fn an_earlier_due_date_is_notified(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let path = format!("/vessels/{}", nao["id"].as_str().unwrap());
@@ -68,7 +68,7 @@ async fn a_due_date_that_is_brought_forward_is_told(server: TestServer) {
     server.finish().await;
 }
 
-async fn two_servers_tell_of_a_need_once(server: TestServer) {
+async fn two_servers_notify_a_due_date_once(server: TestServer) {
     let ada = server.admin("ada").await;
     due_vessel(&ada, "Nao").await;
     let other = server.second().await;
@@ -79,7 +79,7 @@ async fn two_servers_tell_of_a_need_once(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_fleet_that_cannot_be_read_holds_up_no_other_fleets_needs(server: TestServer) {
+async fn an_unreadable_fleet_does_not_block_other_fleets_notifications(server: TestServer) {
     let ada = server.admin("ada").await;
     due_vessel(&ada, "Nao").await;
     server

@@ -8,12 +8,12 @@ use reqwest::Method;
 use serde_json::json;
 
 on_both!(
-    each_is_told_in_the_usual_way_until_they_say_otherwise,
-    settings_that_make_no_sense_are_refused,
-    a_token_that_may_only_read_changes_no_settings,
+    the_default_settings_apply_until_changed,
+    invalid_settings_are_refused,
+    a_read_token_cannot_change_settings,
 );
 
-async fn each_is_told_in_the_usual_way_until_they_say_otherwise(server: TestServer) {
+async fn the_default_settings_apply_until_changed(server: TestServer) {
     let parties = OfferParties::planned(&server, 1).await;
     let usual = parties.ada.get("/me/notifications").await.good();
     assert_eq!(usual["settings"]["time_zone"], "UTC");
@@ -46,7 +46,7 @@ async fn each_is_told_in_the_usual_way_until_they_say_otherwise(server: TestServ
     server.finish().await;
 }
 
-async fn settings_that_make_no_sense_are_refused(server: TestServer) {
+async fn invalid_settings_are_refused(server: TestServer) {
     let ada = server.admin("ada").await;
     for bad in [
         json!({ "time_zone": "Europe/Atlantis" }),
@@ -67,7 +67,7 @@ async fn settings_that_make_no_sense_are_refused(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_token_that_may_only_read_changes_no_settings(server: TestServer) {
+async fn a_read_token_cannot_change_settings(server: TestServer) {
     let ada = server.admin("ada").await;
     let token = json!({ "name": "ERP", "scope": "read" });
     let token = ada.post("/tokens", &token).await.good()["token"].clone();

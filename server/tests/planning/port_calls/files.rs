@@ -8,16 +8,16 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    a_csv_is_taken_once_however_often_it_comes,
-    a_csv_is_taken_when_some_of_its_calls_are_over,
-    a_csv_of_a_european_spreadsheet_is_taken,
-    a_csv_with_one_wrong_line_leaves_nothing,
-    a_file_that_replaces_withdraws_what_is_not_in_it_any_more,
+    a_csv_sent_repeatedly_is_imported_once,
+    a_csv_with_past_port_calls_is_imported,
+    a_csv_of_a_european_spreadsheet_is_imported,
+    a_csv_with_one_invalid_line_changes_nothing,
+    a_replacing_file_withdraws_missing_port_calls,
     a_csv_of_the_fleet_names_vessels_by_number_name_or_id,
-    a_calendar_is_taken_and_what_it_cancels_is_withdrawn,
-    fifty_megabytes_are_refused_in_words,
-    what_is_exported_reads_back,
-    a_file_is_for_ones_own_vessels_only,
+    a_calendar_is_imported_and_its_cancellations_withdraw,
+    a_file_of_fifty_megabytes_is_refused_with_a_problem,
+    an_exported_file_can_be_imported,
+    a_file_may_name_only_ones_own_vessels,
 );
 
 const HEADER: &str = "id,port,eta,etd,berth\n";
@@ -38,7 +38,7 @@ fn row(id: &str, port: &str, day: u32) -> String {
     format!("{id},{port},{},{},A5\n", at("eta"), at("etd"))
 }
 
-async fn a_csv_is_taken_once_however_often_it_comes(server: TestServer) {
+async fn a_csv_sent_repeatedly_is_imported_once(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let csv = format!("{}.csv", path(&nao));
@@ -56,7 +56,7 @@ async fn a_csv_is_taken_once_however_often_it_comes(server: TestServer) {
 }
 
 /// Imports a nightly export that still contains a past port call.
-async fn a_csv_is_taken_when_some_of_its_calls_are_over(server: TestServer) {
+async fn a_csv_with_past_port_calls_is_imported(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let csv = format!("{}.csv", path(&nao));
@@ -71,7 +71,7 @@ async fn a_csv_is_taken_when_some_of_its_calls_are_over(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_csv_of_a_european_spreadsheet_is_taken(server: TestServer) {
+async fn a_csv_of_a_european_spreadsheet_is_imported(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let csv = format!("{}.csv", path(&nao));
@@ -100,7 +100,7 @@ async fn a_csv_of_a_european_spreadsheet_is_taken(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_csv_with_one_wrong_line_leaves_nothing(server: TestServer) {
+async fn a_csv_with_one_invalid_line_changes_nothing(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     ada.post(&path(&nao), &call("NLRTM", 20)).await.good();
@@ -141,7 +141,7 @@ async fn a_csv_with_one_wrong_line_leaves_nothing(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_file_that_replaces_withdraws_what_is_not_in_it_any_more(server: TestServer) {
+async fn a_replacing_file_withdraws_missing_port_calls(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     ada.post(&path(&nao), &call("ESBIO", 4)).await.good();
@@ -221,7 +221,7 @@ fn event(id: &str, port: &str, day: &str, more: &str) -> String {
     )
 }
 
-async fn a_calendar_is_taken_and_what_it_cancels_is_withdrawn(server: TestServer) {
+async fn a_calendar_is_imported_and_its_cancellations_withdraw(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let ics = format!("{}.ics", path(&nao));
@@ -251,7 +251,7 @@ async fn a_calendar_is_taken_and_what_it_cancels_is_withdrawn(server: TestServer
     server.finish().await;
 }
 
-async fn fifty_megabytes_are_refused_in_words(server: TestServer) {
+async fn a_file_of_fifty_megabytes_is_refused_with_a_problem(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let line = row("a", "NLRTM", 8);
@@ -265,7 +265,7 @@ async fn fifty_megabytes_are_refused_in_words(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_is_exported_reads_back(server: TestServer) {
+async fn an_exported_file_can_be_imported(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let mut formula = call("NLRTM", 8);
@@ -280,7 +280,7 @@ async fn what_is_exported_reads_back(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_file_is_for_ones_own_vessels_only(server: TestServer) {
+async fn a_file_may_name_only_ones_own_vessels(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let nao = ada.create_vessel("Nao").await;

@@ -9,14 +9,14 @@ use binnacle_server_testing::{Person, TestServer};
 use serde_json::json;
 
 on_both!(
-    a_call_is_entered_amended_and_withdrawn_and_each_revision_is_kept,
-    what_is_no_call_is_refused_by_its_field_and_leaves_nothing,
-    calls_of_one_vessel_do_not_overlap,
-    a_call_sent_again_under_its_key_is_one_call,
-    calls_are_listed_in_order_of_time_by_fleet_and_by_vessel,
-    a_call_is_found_with_its_own_vessel_only,
-    a_viewer_reads_and_does_not_write,
-    a_berth_heading_is_learnt_from_the_fleets_earlier_calls,
+    each_revision_of_a_port_call_is_kept,
+    an_invalid_port_call_is_refused_by_field_and_not_stored,
+    port_calls_of_one_vessel_cannot_overlap,
+    a_port_call_repeated_under_its_key_is_stored_once,
+    port_calls_are_listed_by_time_for_fleet_and_vessel,
+    a_port_call_is_found_under_its_own_vessel_only,
+    a_viewer_can_read_but_not_write,
+    a_berth_heading_comes_from_the_fleets_earlier_port_calls,
     ports_are_found_by_name_and_by_code,
 );
 
@@ -31,7 +31,7 @@ async fn listed(person: &Person, path: &str) -> Vec<String> {
         .collect()
 }
 
-async fn a_call_is_entered_amended_and_withdrawn_and_each_revision_is_kept(server: TestServer) {
+async fn each_revision_of_a_port_call_is_kept(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let mut new = call("NLRTM", 8);
@@ -81,7 +81,7 @@ async fn a_call_is_entered_amended_and_withdrawn_and_each_revision_is_kept(serve
     server.finish().await;
 }
 
-async fn what_is_no_call_is_refused_by_its_field_and_leaves_nothing(server: TestServer) {
+async fn an_invalid_port_call_is_refused_by_field_and_not_stored(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     for (field, value, said) in [
@@ -117,7 +117,7 @@ async fn what_is_no_call_is_refused_by_its_field_and_leaves_nothing(server: Test
     server.finish().await;
 }
 
-async fn calls_of_one_vessel_do_not_overlap(server: TestServer) {
+async fn port_calls_of_one_vessel_cannot_overlap(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let first = ada.post(&path(&nao), &call("NLRTM", 8)).await.good();
@@ -145,7 +145,7 @@ async fn calls_of_one_vessel_do_not_overlap(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_call_sent_again_under_its_key_is_one_call(server: TestServer) {
+async fn a_port_call_repeated_under_its_key_is_stored_once(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let mut ids = Vec::new();
@@ -166,7 +166,7 @@ async fn a_call_sent_again_under_its_key_is_one_call(server: TestServer) {
     server.finish().await;
 }
 
-async fn calls_are_listed_in_order_of_time_by_fleet_and_by_vessel(server: TestServer) {
+async fn port_calls_are_listed_by_time_for_fleet_and_vessel(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     let pinta = ada.create_vessel("Pinta").await;
@@ -192,7 +192,7 @@ async fn calls_are_listed_in_order_of_time_by_fleet_and_by_vessel(server: TestSe
     server.finish().await;
 }
 
-async fn a_call_is_found_with_its_own_vessel_only(server: TestServer) {
+async fn a_port_call_is_found_under_its_own_vessel_only(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let nao = ada.create_vessel("Nao").await;
@@ -214,7 +214,7 @@ async fn a_call_is_found_with_its_own_vessel_only(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_viewer_reads_and_does_not_write(server: TestServer) {
+async fn a_viewer_can_read_but_not_write(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
     ada.post(&path(&nao), &call("NLRTM", 8)).await.good();
@@ -225,7 +225,7 @@ async fn a_viewer_reads_and_does_not_write(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_berth_heading_is_learnt_from_the_fleets_earlier_calls(server: TestServer) {
+async fn a_berth_heading_comes_from_the_fleets_earlier_port_calls(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let nao = ada.create_vessel("Nao").await;

@@ -9,13 +9,13 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks,
-    an_agreed_job_stays_at_risk_when_its_firm_is_left_out,
-    an_agreed_job_whose_firm_has_no_teams_any_more_is_at_risk,
-    an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known,
+    a_port_call_moved_past_the_due_date_puts_its_job_at_risk_at_once,
+    an_agreed_job_at_risk_stays_so_without_its_firm,
+    an_agreed_job_is_at_risk_when_its_firm_has_no_teams,
+    an_agreed_job_without_a_port_call_is_at_risk_once_port_calls_are_known,
 );
 
-async fn a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks(server: TestServer) {
+async fn a_port_call_moved_past_the_due_date_puts_its_job_at_risk_at_once(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     follow(&server).await;
     // The compass is due on the twentieth.
@@ -45,7 +45,7 @@ async fn a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks(server: Te
     server.finish().await;
 }
 
-async fn an_agreed_job_stays_at_risk_when_its_firm_is_left_out(server: TestServer) {
+async fn an_agreed_job_at_risk_stays_so_without_its_firm(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let ada = &agreed.ada;
     solve(ada).await;
@@ -81,7 +81,7 @@ async fn an_agreed_job_stays_at_risk_when_its_firm_is_left_out(server: TestServe
     server.finish().await;
 }
 
-async fn an_agreed_job_whose_firm_has_no_teams_any_more_is_at_risk(server: TestServer) {
+async fn an_agreed_job_is_at_risk_when_its_firm_has_no_teams(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let path = format!("/firms/{}/terms", agreed.firm);
     let mut none = terms();
@@ -101,7 +101,9 @@ async fn an_agreed_job_whose_firm_has_no_teams_any_more_is_at_risk(server: TestS
     server.finish().await;
 }
 
-async fn an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known(server: TestServer) {
+async fn an_agreed_job_without_a_port_call_is_at_risk_once_port_calls_are_known(
+    server: TestServer,
+) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let (id, rosa) = firm(&server, &ada, "rosa").await;

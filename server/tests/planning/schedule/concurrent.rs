@@ -5,9 +5,9 @@ use binnacle_server_testing::TestServer;
 use binnacle_server_testing::on_both;
 use serde_json::{Value, json};
 
-on_both!(who_solves_at_once_agrees_on_one_plan);
+on_both!(concurrent_solves_give_one_plan);
 
-async fn who_solves_at_once_agrees_on_one_plan(server: TestServer) {
+async fn concurrent_solves_give_one_plan(server: TestServer) {
     let ada = server.admin("ada").await;
     planned_firm(&server, &ada, "Maas Compass").await;
     for name in ["Nao", "Pinta", "Santa"] {

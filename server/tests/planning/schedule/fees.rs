@@ -10,11 +10,11 @@ use binnacle_server_testing::{Person, TestServer};
 use serde_json::{Value, json};
 
 on_both!(
-    an_offer_carries_the_fee_that_the_schedule_saw,
+    an_offer_has_the_fee_of_the_schedule,
     a_firm_proposes_another_fee_alone_and_the_operator_agrees,
-    a_fee_that_is_not_agreed_to_leaves_the_next_firm_its_own,
-    a_fee_alone_leaves_what_became_of_the_call,
-    who_answers_for_another_firm_is_refused,
+    a_declined_fee_does_not_change_the_next_firms_fee,
+    a_fee_alone_does_not_settle_the_moved_port_call,
+    responding_for_another_firm_is_refused,
 );
 
 /// Offers a ship's job to one firm of two; returns the order's path.
@@ -39,7 +39,7 @@ async fn yes(who: &Person, order: &str) -> Value {
         .good()
 }
 
-async fn an_offer_carries_the_fee_that_the_schedule_saw(server: TestServer) {
+async fn an_offer_has_the_fee_of_the_schedule(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let path = format!("/vessels/{}/compasses", nao["id"].as_str().unwrap());
@@ -129,7 +129,7 @@ async fn a_firm_proposes_another_fee_alone_and_the_operator_agrees(server: TestS
     server.finish().await;
 }
 
-async fn a_fee_that_is_not_agreed_to_leaves_the_next_firm_its_own(server: TestServer) {
+async fn a_declined_fee_does_not_change_the_next_firms_fee(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
@@ -163,7 +163,7 @@ async fn a_fee_that_is_not_agreed_to_leaves_the_next_firm_its_own(server: TestSe
     server.finish().await;
 }
 
-async fn a_fee_alone_leaves_what_became_of_the_call(server: TestServer) {
+async fn a_fee_alone_does_not_settle_the_moved_port_call(server: TestServer) {
     let (ada, nao, rosa, order) = asked(&server).await;
     let calls = ada.get(&port_calls::path(&nao)).await.good();
     let call = calls["items"][0]["id"].as_str().unwrap();
@@ -186,7 +186,7 @@ async fn a_fee_alone_leaves_what_became_of_the_call(server: TestServer) {
     server.finish().await;
 }
 
-async fn who_answers_for_another_firm_is_refused(server: TestServer) {
+async fn responding_for_another_firm_is_refused(server: TestServer) {
     let (ada, _, rosa, order) = asked(&server).await;
     let (other, _) = firm(&server, &ada, "juan").await;
     let theirs = json!({ "firm_id": other });

@@ -7,13 +7,13 @@ use reqwest::Method;
 use serde_json::json;
 
 on_both!(
-    a_firm_without_days_is_kept_and_said_to_be_of_no_use,
-    wrong_terms_are_refused_by_their_field,
-    terms_are_an_operators_own,
-    a_firm_without_terms_is_not_planned_with,
+    a_firm_without_working_days_is_kept_and_reported_as_unusable,
+    invalid_terms_are_refused_by_field,
+    terms_belong_to_one_operator,
+    a_firm_without_terms_is_not_in_the_plan,
 );
 
-async fn a_firm_without_days_is_kept_and_said_to_be_of_no_use(server: TestServer) {
+async fn a_firm_without_working_days_is_kept_and_reported_as_unusable(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
@@ -33,7 +33,7 @@ async fn a_firm_without_days_is_kept_and_said_to_be_of_no_use(server: TestServer
     server.finish().await;
 }
 
-async fn wrong_terms_are_refused_by_their_field(server: TestServer) {
+async fn invalid_terms_are_refused_by_field(server: TestServer) {
     let ada = server.admin("ada").await;
     let id = firm(&server, &ada, "Maas Compass").await;
     let path = format!("/firms/{id}/terms");
@@ -62,7 +62,7 @@ async fn wrong_terms_are_refused_by_their_field(server: TestServer) {
     server.finish().await;
 }
 
-async fn terms_are_an_operators_own(server: TestServer) {
+async fn terms_belong_to_one_operator(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let id = planned_firm(&server, &ada, "Maas Compass").await;
@@ -79,7 +79,7 @@ async fn terms_are_an_operators_own(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_firm_without_terms_is_not_planned_with(server: TestServer) {
+async fn a_firm_without_terms_is_not_in_the_plan(server: TestServer) {
     let ada = server.admin("ada").await;
     due_vessel(&ada, "Nao").await;
     firm(&server, &ada, "Maas Compass").await;

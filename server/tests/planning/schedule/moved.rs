@@ -16,16 +16,16 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    an_eta_that_moves_is_told_to_both_sides_in_both_times,
-    files_that_move_a_call_are_told_as_a_request_is,
-    a_new_day_is_agreed_on_and_the_old_one_stands_until_then,
-    a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team,
-    another_time_leaves_the_fee_that_was_agreed,
-    a_question_that_is_not_answered_leaves_what_was_agreed,
-    what_nobody_is_asked_for_moves_in_silence,
+    a_moved_eta_is_reported_to_both_sides_with_old_and_new_time,
+    port_calls_moved_by_a_file_are_reported_like_those_by_a_request,
+    the_old_day_stands_until_a_new_one_is_agreed,
+    a_new_day_is_within_the_port_call_and_the_firms_capacity,
+    another_time_keeps_the_agreed_fee,
+    an_unanswered_request_keeps_the_agreement,
+    a_moved_port_call_without_an_order_notifies_nobody,
 );
 
-async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(server: TestServer) {
+async fn a_moved_eta_is_reported_to_both_sides_with_old_and_new_time(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let (ours, our_url) = Receiver::start().await;
     let (theirs, their_url) = Receiver::start().await;
@@ -103,7 +103,7 @@ async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(server: TestServe
     server.finish().await;
 }
 
-async fn files_that_move_a_call_are_told_as_a_request_is(server: TestServer) {
+async fn port_calls_moved_by_a_file_are_reported_like_those_by_a_request(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let post = |path: String, kind: &'static str, text: String| {
         let request = agreed.ada.request(Method::POST, &path).body(text);
@@ -149,7 +149,7 @@ async fn files_that_move_a_call_are_told_as_a_request_is(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(server: TestServer) {
+async fn the_old_day_stands_until_a_new_one_is_agreed(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     agreed
         .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
@@ -196,7 +196,7 @@ async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(server: TestSe
     server.finish().await;
 }
 
-async fn a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team(server: TestServer) {
+async fn a_new_day_is_within_the_port_call_and_the_firms_capacity(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let pinta = due_vessel(&agreed.ada, "Pinta").await;
     enter(&agreed.ada, &pinta, "NLRTM", 17).await;
@@ -249,7 +249,7 @@ async fn a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team(server: TestS
     server.finish().await;
 }
 
-async fn another_time_leaves_the_fee_that_was_agreed(server: TestServer) {
+async fn another_time_keeps_the_agreed_fee(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     agreed
         .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
@@ -269,7 +269,7 @@ async fn another_time_leaves_the_fee_that_was_agreed(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_question_that_is_not_answered_leaves_what_was_agreed(server: TestServer) {
+async fn an_unanswered_request_keeps_the_agreement(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     agreed.retime("2026-12-14T08:00:00Z").await.good();
     server.advance(3601.0);
@@ -292,7 +292,7 @@ async fn a_question_that_is_not_answered_leaves_what_was_agreed(server: TestServ
     server.finish().await;
 }
 
-async fn what_nobody_is_asked_for_moves_in_silence(server: TestServer) {
+async fn a_moved_port_call_without_an_order_notifies_nobody(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let other = enter(&agreed.ada, &agreed.nao, "BEANR", 20).await;
     let other = format!(

@@ -9,17 +9,17 @@ use serde_json::{Value, json};
 
 on_both!(
     a_compass_without_a_record_is_due_today_and_says_by_which_rule,
-    what_is_known_of_a_vessel_gives_her_time,
-    the_first_due_comes_first_on_every_page,
-    work_on_the_ship_and_a_transit_bring_a_need_forward,
-    a_compass_that_was_moved_is_due_like_a_new_one,
-    what_is_planned_has_not_happened,
+    known_particulars_postpone_the_due_date,
+    needs_are_paged_by_due_date,
+    ship_work_and_a_canal_transit_bring_a_due_date_forward,
+    a_moved_compass_is_due_like_a_new_one,
+    planned_work_does_not_count_as_done,
     deviation_over_its_limit_becomes_overdue,
-    predicted_deviation_at_a_port_ahead_brings_a_need_forward,
-    deviation_over_the_vessels_own_limit_brings_a_need_forward,
-    particulars_are_checked_and_ones_own,
-    a_cancelled_order_is_no_adjustment,
-    an_operators_own_terms_are_what_counts,
+    predicted_deviation_at_a_next_port_brings_a_due_date_forward,
+    deviation_over_the_vessels_own_limit_brings_a_due_date_forward,
+    particulars_are_validated_and_belong_to_the_operator,
+    a_cancelled_order_does_not_count_as_an_adjustment,
+    an_operators_own_terms_apply_to_it_alone,
 );
 
 const A_WHILE_S: f64 = 60.0;
@@ -51,7 +51,7 @@ async fn a_compass_without_a_record_is_due_today_and_says_by_which_rule(server: 
     server.finish().await;
 }
 
-async fn what_is_known_of_a_vessel_gives_her_time(server: TestServer) {
+async fn known_particulars_postpone_the_due_date(server: TestServer) {
     let ada = server.admin("ada").await;
     let flagged = json!({ "name": "Nao", "flag": "Panama" });
     let nao = ada.post("/vessels", &flagged).await.good();
@@ -71,7 +71,7 @@ async fn what_is_known_of_a_vessel_gives_her_time(server: TestServer) {
     server.finish().await;
 }
 
-async fn the_first_due_comes_first_on_every_page(server: TestServer) {
+async fn needs_are_paged_by_due_date(server: TestServer) {
     let ada = server.admin("ada").await;
     due_vessel(&ada, "Nao").await;
     ada.create_vessel("Pinta").await;
@@ -96,7 +96,7 @@ async fn the_first_due_comes_first_on_every_page(server: TestServer) {
     server.finish().await;
 }
 
-async fn work_on_the_ship_and_a_transit_bring_a_need_forward(server: TestServer) {
+async fn ship_work_and_a_canal_transit_bring_a_due_date_forward(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     assert_eq!(need(&ada, &nao).await["due_on"], "2026-12-20");
@@ -122,7 +122,7 @@ async fn work_on_the_ship_and_a_transit_bring_a_need_forward(server: TestServer)
     server.finish().await;
 }
 
-async fn a_compass_that_was_moved_is_due_like_a_new_one(server: TestServer) {
+async fn a_moved_compass_is_due_like_a_new_one(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let moved = json!({ "kind": "compass_moved", "from": "2026-11-05T00:00:00Z" });
@@ -133,7 +133,7 @@ async fn a_compass_that_was_moved_is_due_like_a_new_one(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_is_planned_has_not_happened(server: TestServer) {
+async fn planned_work_does_not_count_as_done(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let docking = json!({ "kind": "dry_docking", "from": "2026-11-21T20:00:00Z",
@@ -194,7 +194,7 @@ async fn deviation_over_its_limit_becomes_overdue(server: TestServer) {
     server.finish().await;
 }
 
-async fn predicted_deviation_at_a_port_ahead_brings_a_need_forward(server: TestServer) {
+async fn predicted_deviation_at_a_next_port_brings_a_due_date_forward(server: TestServer) {
     let ada = server.admin("ada").await;
     let (nao, vessel) = australian(&server, &ada, &true_model()).await;
     let adjusted = json!({ "kind": "adjustment", "from": "2025-12-01T08:00:00Z" });
@@ -226,7 +226,7 @@ async fn predicted_deviation_at_a_port_ahead_brings_a_need_forward(server: TestS
     server.finish().await;
 }
 
-async fn deviation_over_the_vessels_own_limit_brings_a_need_forward(server: TestServer) {
+async fn deviation_over_the_vessels_own_limit_brings_a_due_date_forward(server: TestServer) {
     let ada = server.admin("ada").await;
     let mut strong = true_model();
     strong.parameters_over_lambda.bx_nt += 3_000.0;
@@ -279,7 +279,7 @@ async fn deviation_over_the_vessels_own_limit_brings_a_need_forward(server: Test
     server.finish().await;
 }
 
-async fn particulars_are_checked_and_ones_own(server: TestServer) {
+async fn particulars_are_validated_and_belong_to_the_operator(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let nao = ada.create_vessel("Nao").await;
@@ -310,7 +310,7 @@ async fn particulars_are_checked_and_ones_own(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_operators_own_terms_are_what_counts(server: TestServer) {
+async fn an_operators_own_terms_apply_to_it_alone(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let docked = json!({ "kind": "dry_docking", "from": "2026-11-10T00:00:00Z" });
@@ -341,7 +341,7 @@ async fn an_operators_own_terms_are_what_counts(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_cancelled_order_is_no_adjustment(server: TestServer) {
+async fn a_cancelled_order_does_not_count_as_an_adjustment(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let order = json!({ "vessel_id": nao["id"], "compass_id": super::compass_of(&nao),

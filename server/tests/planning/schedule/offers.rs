@@ -7,16 +7,16 @@ use binnacle_server_testing::{Person, TestServer};
 use serde_json::{Value, json};
 
 on_both!(
-    a_planned_job_is_offered_and_agreed_and_stays_in_the_plan,
-    an_eta_moved_past_the_due_date_is_told_and_planned_anew,
-    a_firm_that_said_no_is_not_planned_again,
-    no_firm_is_asked_that_may_not_adjust_her,
-    an_order_is_for_a_call_where_calls_at_its_port_are_known,
-    a_no_holds_when_its_order_is_cancelled,
-    an_order_that_is_cancelled_is_in_nobodys_way,
-    an_offer_is_of_the_plan_that_was_looked_at,
-    a_job_is_offered_whole_or_not_at_all,
-    an_agreed_job_that_fits_nowhere_names_its_order,
+    an_agreed_job_stays_in_the_plan,
+    an_eta_moved_past_the_due_date_raises_an_alert_and_a_new_plan,
+    a_declining_firm_is_not_planned_again,
+    a_firm_not_authorised_for_the_vessel_gets_no_order,
+    an_order_at_a_port_with_known_port_calls_needs_one_of_them,
+    a_refusal_stands_after_its_order_is_cancelled,
+    a_cancelled_order_does_not_block_a_new_one,
+    an_offer_names_its_plan_version,
+    a_job_of_several_compasses_is_offered_whole,
+    an_agreed_job_without_a_place_names_its_order,
 );
 
 /// Creates a firm with terms, and its adjuster.
@@ -54,7 +54,7 @@ pub(super) async fn alerts(person: &Person) -> Vec<Value> {
         .collect()
 }
 
-async fn a_planned_job_is_offered_and_agreed_and_stays_in_the_plan(server: TestServer) {
+async fn an_agreed_job_stays_in_the_plan(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "BEANR", 8).await;
@@ -84,7 +84,7 @@ async fn a_planned_job_is_offered_and_agreed_and_stays_in_the_plan(server: TestS
     server.finish().await;
 }
 
-async fn an_eta_moved_past_the_due_date_is_told_and_planned_anew(server: TestServer) {
+async fn an_eta_moved_past_the_due_date_raises_an_alert_and_a_new_plan(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let Agreed {
         ada, nao, order, ..
@@ -124,7 +124,7 @@ async fn an_eta_moved_past_the_due_date_is_told_and_planned_anew(server: TestSer
     server.finish().await;
 }
 
-async fn a_firm_that_said_no_is_not_planned_again(server: TestServer) {
+async fn a_declining_firm_is_not_planned_again(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
@@ -154,7 +154,7 @@ async fn a_firm_that_said_no_is_not_planned_again(server: TestServer) {
 }
 
 /// Makes Rosa the cheaper firm.
-async fn a_no_holds_when_its_order_is_cancelled(server: TestServer) {
+async fn a_refusal_stands_after_its_order_is_cancelled(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
@@ -189,7 +189,7 @@ async fn a_no_holds_when_its_order_is_cancelled(server: TestServer) {
 }
 
 /// Offers from a plan that still has the job of a cancelled order.
-async fn an_order_that_is_cancelled_is_in_nobodys_way(server: TestServer) {
+async fn a_cancelled_order_does_not_block_a_new_one(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
@@ -205,7 +205,7 @@ async fn an_order_that_is_cancelled_is_in_nobodys_way(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_offer_is_of_the_plan_that_was_looked_at(server: TestServer) {
+async fn an_offer_names_its_plan_version(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let nao = due_vessel(&ada, "Nao").await;
@@ -233,7 +233,7 @@ async fn orders(person: &Person) -> usize {
     list["items"].as_array().unwrap().len()
 }
 
-async fn a_job_is_offered_whole_or_not_at_all(server: TestServer) {
+async fn a_job_of_several_compasses_is_offered_whole(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let path = format!("/vessels/{}/compasses", nao["id"].as_str().unwrap());
@@ -257,7 +257,7 @@ async fn a_job_is_offered_whole_or_not_at_all(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_agreed_job_that_fits_nowhere_names_its_order(server: TestServer) {
+async fn an_agreed_job_without_a_place_names_its_order(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let Agreed { ada, order, .. } = &agreed;
     solve(ada).await;
@@ -273,7 +273,7 @@ async fn an_agreed_job_that_fits_nowhere_names_its_order(server: TestServer) {
     server.finish().await;
 }
 
-async fn no_firm_is_asked_that_may_not_adjust_her(server: TestServer) {
+async fn a_firm_not_authorised_for_the_vessel_gets_no_order(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let (firm_id, _) = firm(&server, &ada, "rosa").await;
@@ -309,7 +309,7 @@ async fn no_firm_is_asked_that_may_not_adjust_her(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_order_is_for_a_call_where_calls_at_its_port_are_known(server: TestServer) {
+async fn an_order_at_a_port_with_known_port_calls_needs_one_of_them(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;

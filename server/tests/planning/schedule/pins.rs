@@ -8,9 +8,9 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    a_pinned_job_stays_where_it_is_until_it_is_let_go,
-    a_pin_gives_way_for_cause_and_the_plan_says_which,
-    what_cannot_be_pinned_is_refused,
+    a_pinned_job_stays_until_it_is_unpinned,
+    an_impossible_pin_is_dropped_with_its_reason,
+    an_invalid_pin_is_refused,
 );
 
 fn pin(vessel: &Value, call: &Value, firm: &str, day: &str) -> Value {
@@ -18,7 +18,7 @@ fn pin(vessel: &Value, call: &Value, firm: &str, day: &str) -> Value {
             "day": day, "note": "agreed by telephone" })
 }
 
-async fn a_pinned_job_stays_where_it_is_until_it_is_let_go(server: TestServer) {
+async fn a_pinned_job_stays_until_it_is_unpinned(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
@@ -49,7 +49,7 @@ async fn a_pinned_job_stays_where_it_is_until_it_is_let_go(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_pin_gives_way_for_cause_and_the_plan_says_which(server: TestServer) {
+async fn an_impossible_pin_is_dropped_with_its_reason(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
@@ -78,7 +78,7 @@ async fn a_pin_gives_way_for_cause_and_the_plan_says_which(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_cannot_be_pinned_is_refused(server: TestServer) {
+async fn an_invalid_pin_is_refused(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let nao = due_vessel(&ada, "Nao").await;

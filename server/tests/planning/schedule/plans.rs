@@ -10,23 +10,23 @@ use binnacle_server_testing::{Person, TestServer};
 use serde_json::{Value, json};
 
 on_both!(
-    a_plan_names_who_goes_where_and_is_made_again_from_its_input,
-    what_cannot_be_done_says_why_and_what_would_help,
-    a_moved_eta_makes_another_plan_that_says_what_it_costs,
-    a_storm_of_changes_makes_one_plan_after_half_a_minute,
-    a_plan_is_made_anew_each_day,
-    an_operator_without_firms_gets_no_plan_by_itself,
-    a_compass_with_an_order_under_way_is_beside_the_plan,
-    a_fleet_that_is_too_large_to_be_planned_is_told_so,
-    settings_weigh_and_are_checked,
-    schedules_are_an_operators_own,
+    a_plan_is_reproducible_from_its_input,
+    an_unplanned_job_has_its_reason_and_remedy,
+    a_moved_eta_makes_a_new_plan_with_its_cost,
+    many_changes_make_one_plan_after_half_a_minute,
+    a_new_plan_is_made_each_day,
+    an_operator_without_firms_gets_no_automatic_plan,
+    a_compass_with_an_open_order_is_listed_beside_the_plan,
+    a_fleet_too_large_to_plan_gets_an_error,
+    weights_in_settings_apply_and_are_validated,
+    schedules_belong_to_one_operator,
 );
 
 async fn current(person: &Person) -> Value {
     person.get("/schedule").await.good()
 }
 
-async fn a_plan_names_who_goes_where_and_is_made_again_from_its_input(server: TestServer) {
+async fn a_plan_is_reproducible_from_its_input(server: TestServer) {
     let ada = server.admin("ada").await;
     let none = json!({ "plan": null, "outdated_since": null, "problem": null });
     assert_eq!(current(&ada).await, none);
@@ -61,7 +61,7 @@ async fn a_plan_names_who_goes_where_and_is_made_again_from_its_input(server: Te
     server.finish().await;
 }
 
-async fn what_cannot_be_done_says_why_and_what_would_help(server: TestServer) {
+async fn an_unplanned_job_has_its_reason_and_remedy(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let pinta = due_vessel(&ada, "Pinta").await;
@@ -86,7 +86,7 @@ async fn what_cannot_be_done_says_why_and_what_would_help(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_moved_eta_makes_another_plan_that_says_what_it_costs(server: TestServer) {
+async fn a_moved_eta_makes_a_new_plan_with_its_cost(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let call = enter(&ada, &nao, "NLRTM", 8).await;
@@ -140,7 +140,7 @@ async fn a_moved_eta_makes_another_plan_that_says_what_it_costs(server: TestServ
     server.finish().await;
 }
 
-async fn a_storm_of_changes_makes_one_plan_after_half_a_minute(server: TestServer) {
+async fn many_changes_make_one_plan_after_half_a_minute(server: TestServer) {
     let ada = server.admin("ada").await;
     planned_firm(&server, &ada, "Maas Compass").await;
     let nao = due_vessel(&ada, "Nao").await;
@@ -174,7 +174,7 @@ async fn a_storm_of_changes_makes_one_plan_after_half_a_minute(server: TestServe
     server.finish().await;
 }
 
-async fn a_plan_is_made_anew_each_day(server: TestServer) {
+async fn a_new_plan_is_made_each_day(server: TestServer) {
     let ada = server.admin("ada").await;
     planned_firm(&server, &ada, "Maas Compass").await;
     let nao = due_vessel(&ada, "Nao").await;
@@ -201,7 +201,7 @@ async fn a_plan_is_made_anew_each_day(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_operator_without_firms_gets_no_plan_by_itself(server: TestServer) {
+async fn an_operator_without_firms_gets_no_automatic_plan(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
@@ -211,7 +211,7 @@ async fn an_operator_without_firms_gets_no_plan_by_itself(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_compass_with_an_order_under_way_is_beside_the_plan(server: TestServer) {
+async fn a_compass_with_an_open_order_is_listed_beside_the_plan(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
@@ -248,7 +248,7 @@ macro_rules! many_calls {
     };
 }
 
-async fn a_fleet_that_is_too_large_to_be_planned_is_told_so(server: TestServer) {
+async fn a_fleet_too_large_to_plan_gets_an_error(server: TestServer) {
     let ada = server.admin("ada").await;
     planned_firm(&server, &ada, "Maas Compass").await;
     let nao = due_vessel(&ada, "Nao").await;
@@ -268,7 +268,7 @@ async fn a_fleet_that_is_too_large_to_be_planned_is_told_so(server: TestServer) 
     server.finish().await;
 }
 
-async fn settings_weigh_and_are_checked(server: TestServer) {
+async fn weights_in_settings_apply_and_are_validated(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
@@ -300,7 +300,7 @@ async fn settings_weigh_and_are_checked(server: TestServer) {
     server.finish().await;
 }
 
-async fn schedules_are_an_operators_own(server: TestServer) {
+async fn schedules_belong_to_one_operator(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     due_vessel(&ada, "Nao").await;

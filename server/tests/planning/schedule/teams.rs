@@ -9,16 +9,16 @@ use binnacle_server_testing::{ApiResponse, TestServer};
 use serde_json::{Value, json};
 
 on_both!(
-    no_firm_is_asked_for_a_time_at_which_it_is_closed,
-    no_firm_is_offered_more_ships_than_it_has_teams,
-    a_team_that_an_order_still_holds_is_planned_for_no_other_ship,
-    a_firm_that_is_asked_at_once_with_others_is_planned_for_no_other_ship_then,
-    a_firm_is_booked_once_by_all_operators_together,
-    an_order_is_for_a_port_and_a_time_that_can_be,
+    no_offer_is_made_for_a_time_outside_opening_hours,
+    a_firm_is_offered_no_more_ships_than_it_has_teams,
+    a_team_booked_by_an_order_is_planned_for_no_other_ship,
+    a_firm_with_a_simultaneous_offer_is_planned_for_no_other_ship_then,
+    a_firms_team_is_booked_once_across_operators,
+    an_order_needs_a_valid_port_and_time,
 );
 
 /// Creates a firm with these terms, open from 8 to 18 on every day but Sunday.
-async fn no_firm_is_asked_for_a_time_at_which_it_is_closed(server: TestServer) {
+async fn no_offer_is_made_for_a_time_outside_opening_hours(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;
@@ -60,7 +60,7 @@ async fn no_firm_is_asked_for_a_time_at_which_it_is_closed(server: TestServer) {
     server.finish().await;
 }
 
-async fn no_firm_is_offered_more_ships_than_it_has_teams(server: TestServer) {
+async fn a_firm_is_offered_no_more_ships_than_it_has_teams(server: TestServer) {
     let ada = server.admin("ada").await;
     let (nao, pinta) = (
         due_vessel(&ada, "Nao").await,
@@ -95,9 +95,7 @@ async fn no_firm_is_offered_more_ships_than_it_has_teams(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_firm_that_is_asked_at_once_with_others_is_planned_for_no_other_ship_then(
-    server: TestServer,
-) {
+async fn a_firm_with_a_simultaneous_offer_is_planned_for_no_other_ship_then(server: TestServer) {
     let ada = server.admin("ada").await;
     let (nao, pinta) = (
         due_vessel(&ada, "Nao").await,
@@ -123,7 +121,7 @@ async fn a_firm_that_is_asked_at_once_with_others_is_planned_for_no_other_ship_t
 }
 
 /// An order whose job was moved still keeps its day at the firm.
-async fn a_team_that_an_order_still_holds_is_planned_for_no_other_ship(server: TestServer) {
+async fn a_team_booked_by_an_order_is_planned_for_no_other_ship(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let Agreed {
         ada,
@@ -173,7 +171,7 @@ async fn a_team_that_an_order_still_holds_is_planned_for_no_other_ship(server: T
     server.finish().await;
 }
 
-async fn a_firm_is_booked_once_by_all_operators_together(server: TestServer) {
+async fn a_firms_team_is_booked_once_across_operators(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     let (nao, hind) = (
         due_vessel(&ada, "Nao").await,
@@ -226,7 +224,7 @@ async fn a_firm_is_booked_once_by_all_operators_together(server: TestServer) {
     server.finish().await;
 }
 
-async fn an_order_is_for_a_port_and_a_time_that_can_be(server: TestServer) {
+async fn an_order_needs_a_valid_port_and_time(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 14).await;

@@ -11,11 +11,11 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    a_call_withdrawn_after_acceptance_is_told_and_done_at_another,
-    a_call_entered_anew_has_the_agreed_job_again,
+    a_job_of_a_withdrawn_port_call_moves_to_another_one,
+    a_port_call_entered_again_has_its_agreed_job_again,
 );
 
-async fn a_call_withdrawn_after_acceptance_is_told_and_done_at_another(server: TestServer) {
+async fn a_job_of_a_withdrawn_port_call_moves_to_another_one(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let why = json!({ "reason": "charter" });
     let path = format!("{}/withdraw", agreed.call);
@@ -44,7 +44,7 @@ async fn a_call_withdrawn_after_acceptance_is_told_and_done_at_another(server: T
     server.finish().await;
 }
 
-async fn a_call_entered_anew_has_the_agreed_job_again(server: TestServer) {
+async fn a_port_call_entered_again_has_its_agreed_job_again(server: TestServer) {
     let agreed = Agreed::new(&server).await;
     let withdrawn = format!("{}/withdraw", agreed.call);
     agreed.ada.post(&withdrawn, &json!({})).await.good();

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use table::{OPEN, TABLE};
 use world::{Key, ROLES, Side, request, response};
 
-on_both!(every_role_may_do_what_the_table_says_and_nothing_to_others_data);
+on_both!(each_role_may_do_what_the_table_says_on_its_own_data_alone);
 
 /// Operation that names its subject in the body.
 const IN_BODY: &str = "POST /work-orders";
@@ -61,7 +61,7 @@ fn kind(response: &ApiResponse) -> String {
 }
 
 #[test]
-fn every_operation_has_a_line_in_the_table_and_every_line_an_operation() {
+fn operations_and_table_lines_correspond() {
     let named: BTreeSet<String> = operations().into_iter().map(|one| one.name).collect();
     let lines: BTreeSet<String> = TABLE.iter().map(|(name, _)| (*name).to_owned()).collect();
     let missing: Vec<_> = named.difference(&lines).collect();
@@ -96,7 +96,7 @@ struct Trial<'a> {
     faults: Vec<String>,
 }
 
-async fn every_role_may_do_what_the_table_says_and_nothing_to_others_data(server: TestServer) {
+async fn each_role_may_do_what_the_table_says_on_its_own_data_alone(server: TestServer) {
     let (ada, root) = Side::new(&server, "ada", None).await;
     let (eve, _) = Side::new(&server, "eve", Some(&root)).await;
     let mut trial = Trial {

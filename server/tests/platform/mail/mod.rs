@@ -14,15 +14,15 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    a_letter_says_ship_and_what_to_do_and_where_to_look,
-    a_letter_comes_when_an_alert_is_raised_gets_worse_and_is_over,
-    a_recipient_hears_of_nothing_less_bad_than_asked,
-    names_make_no_headers_and_come_through_whole,
+    an_alert_letter_names_vessel_advice_and_link,
+    a_letter_is_sent_when_an_alert_is_raised_gets_worse_and_ends,
+    a_recipient_gets_no_letter_below_the_chosen_severity,
+    names_cannot_inject_headers_and_are_unchanged,
     a_recipient_is_added_once_changed_and_removed,
-    another_operators_recipients_are_not_there,
+    another_operators_recipients_are_not_found,
 );
 
-async fn a_letter_says_ship_and_what_to_do_and_where_to_look(server: TestServer) {
+async fn an_alert_letter_names_vessel_advice_and_link(server: TestServer) {
     let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
@@ -71,7 +71,7 @@ async fn a_letter_says_ship_and_what_to_do_and_where_to_look(server: TestServer)
     server.finish().await;
 }
 
-async fn a_letter_comes_when_an_alert_is_raised_gets_worse_and_is_over(server: TestServer) {
+async fn a_letter_is_sent_when_an_alert_is_raised_gets_worse_and_ends(server: TestServer) {
     let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     add(&ada, "bridge@example.com", "notice").await;
@@ -126,7 +126,7 @@ async fn a_letter_comes_when_an_alert_is_raised_gets_worse_and_is_over(server: T
     server.finish().await;
 }
 
-async fn a_recipient_hears_of_nothing_less_bad_than_asked(server: TestServer) {
+async fn a_recipient_gets_no_letter_below_the_chosen_severity(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let relay = Relay::start().await;
@@ -163,7 +163,7 @@ async fn a_recipient_hears_of_nothing_less_bad_than_asked(server: TestServer) {
     server.finish().await;
 }
 
-async fn names_make_no_headers_and_come_through_whole(server: TestServer) {
+async fn names_cannot_inject_headers_and_are_unchanged(server: TestServer) {
     let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     for ending in ["\r\n", "\u{2028}", "\u{2029}"] {
@@ -248,7 +248,7 @@ async fn a_recipient_is_added_once_changed_and_removed(server: TestServer) {
     server.finish().await;
 }
 
-async fn another_operators_recipients_are_not_there(server: TestServer) {
+async fn another_operators_recipients_are_not_found(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;

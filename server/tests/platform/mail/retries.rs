@@ -9,16 +9,16 @@ use binnacle_server_testing::{Behaviour, Person, Relay, Stage, TestServer};
 use serde_json::json;
 
 on_both!(
-    a_busy_relay_is_tried_again_and_a_refusal_is_final,
-    a_relay_that_hangs_or_drops_is_tried_again,
-    a_letter_that_was_taken_is_not_sent_again,
-    a_letter_whose_answer_was_lost_comes_again_under_its_id,
-    letters_come_in_order_and_survive_a_restart,
-    a_relay_that_is_away_for_a_day_leaves_a_dead_letter_that_can_be_sent_again,
+    a_temporary_failure_is_retried_and_a_refusal_is_final,
+    a_hanging_or_dropped_session_is_retried,
+    an_accepted_letter_is_not_sent_again,
+    a_letter_with_a_lost_reply_is_sent_again_with_its_id,
+    letters_are_sent_in_order_and_survive_a_restart,
+    a_relay_down_for_a_day_leaves_a_dead_letter_that_can_be_resent,
     two_servers_send_a_letter_once,
 );
 
-async fn a_busy_relay_is_tried_again_and_a_refusal_is_final(server: TestServer) {
+async fn a_temporary_failure_is_retried_and_a_refusal_is_final(server: TestServer) {
     let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
@@ -60,7 +60,7 @@ async fn a_busy_relay_is_tried_again_and_a_refusal_is_final(server: TestServer) 
     server.finish().await;
 }
 
-async fn a_relay_that_hangs_or_drops_is_tried_again(server: TestServer) {
+async fn a_hanging_or_dropped_session_is_retried(server: TestServer) {
     let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
@@ -82,7 +82,7 @@ async fn a_relay_that_hangs_or_drops_is_tried_again(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_letter_that_was_taken_is_not_sent_again(server: TestServer) {
+async fn an_accepted_letter_is_not_sent_again(server: TestServer) {
     let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
@@ -101,7 +101,7 @@ async fn a_letter_that_was_taken_is_not_sent_again(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_letter_whose_answer_was_lost_comes_again_under_its_id(server: TestServer) {
+async fn a_letter_with_a_lost_reply_is_sent_again_with_its_id(server: TestServer) {
     let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
@@ -116,7 +116,7 @@ async fn a_letter_whose_answer_was_lost_comes_again_under_its_id(server: TestSer
     server.finish().await;
 }
 
-async fn letters_come_in_order_and_survive_a_restart(server: TestServer) {
+async fn letters_are_sent_in_order_and_survive_a_restart(server: TestServer) {
     let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     add(&ada, "bridge@example.com", "notice").await;
@@ -147,9 +147,7 @@ async fn letters_come_in_order_and_survive_a_restart(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_relay_that_is_away_for_a_day_leaves_a_dead_letter_that_can_be_sent_again(
-    server: TestServer,
-) {
+async fn a_relay_down_for_a_day_leaves_a_dead_letter_that_can_be_resent(server: TestServer) {
     let ada = server.admin("ada").await;
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;

@@ -57,7 +57,7 @@ async fn send(mailer: &Mailer) -> (Option<Sent>, String) {
 }
 
 #[tokio::test]
-async fn user_and_password_go_to_a_relay_that_proves_who_it_is() {
+async fn credentials_go_only_to_a_relay_with_a_valid_certificate() {
     let folder = tempfile::tempdir().unwrap();
     let authority = folder.path().join("authority.pem");
     let (acceptor, pem) = identity();
@@ -81,7 +81,7 @@ async fn user_and_password_go_to_a_relay_that_proves_who_it_is() {
 }
 
 #[tokio::test]
-async fn a_relay_that_cannot_prove_who_it_is_hears_no_letter_and_no_password() {
+async fn a_relay_with_an_invalid_certificate_gets_no_letter_and_no_password() {
     let folder = tempfile::tempdir().unwrap();
     let authority = folder.path().join("authority.pem");
     let (_, pem) = identity();
@@ -111,7 +111,7 @@ async fn a_relay_that_cannot_prove_who_it_is_hears_no_letter_and_no_password() {
 }
 
 #[tokio::test]
-async fn without_tls_a_letter_goes_to_nobody_outside_the_network() {
+async fn without_tls_no_letter_leaves_the_local_network() {
     let _ = rustls::crypto::ring::default_provider().install_default();
     let config = config::Mail {
         smtp_url: Some("smtp://1.1.1.1:25?tls=none".to_owned()),

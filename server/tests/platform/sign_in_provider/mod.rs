@@ -30,18 +30,18 @@ macro_rules! with_provider {
 mod refused;
 
 with_provider!(
-    whoever_the_provider_vouches_for_is_signed_in,
-    a_sign_in_is_kept_from_scripts_and_tells_the_provider_no_secret,
-    a_person_may_change_their_mind,
-    a_person_stays_who_they_are_whatever_becomes_of_the_email,
-    people_of_every_company_sign_in_as_themselves,
-    whoever_has_a_second_factor_is_asked_for_it,
-    another_key_of_the_providers_is_looked_for,
-    a_provider_that_signs_with_rsa_is_believed,
-    an_email_may_be_told_only_to_who_asks_for_it,
-    a_sign_in_is_in_the_audit_log,
-    a_person_who_begins_anew_is_found_anew,
-    a_one_time_code_forgets_whom_the_provider_means,
+    a_person_verified_by_the_provider_is_signed_in,
+    a_pending_sign_in_is_hidden_from_scripts_and_the_provider,
+    a_cancelled_sign_in_returns_to_the_sign_in_page,
+    a_person_keeps_the_account_when_the_email_changes,
+    people_of_every_operator_sign_in_to_their_own_account,
+    a_second_factor_is_required_after_the_provider,
+    a_rotated_provider_key_is_fetched,
+    an_rsa_signature_of_the_provider_is_accepted,
+    a_missing_email_comes_from_the_user_info_endpoint,
+    a_provider_sign_in_is_in_the_audit_log,
+    a_reset_account_is_linked_to_the_provider_again,
+    a_one_time_code_unlinks_the_provider_account,
 );
 
 struct World {
@@ -131,7 +131,7 @@ async fn send_code(server: &TestServer, cookie: &str, code: &str) -> ApiResponse
     ApiResponse::of(request.json(&json!({ "code": code }))).await
 }
 
-async fn whoever_the_provider_vouches_for_is_signed_in(world: World) {
+async fn a_person_verified_by_the_provider_is_signed_in(world: World) {
     let named = with_cookie(&world.server, "/session/provider", "").await;
     assert_eq!(named.good(), json!({ "name": "Example Lines" }));
     let done = world.sign_in().await;
@@ -152,7 +152,7 @@ async fn whoever_the_provider_vouches_for_is_signed_in(world: World) {
     world.server.finish().await;
 }
 
-async fn a_sign_in_is_kept_from_scripts_and_tells_the_provider_no_secret(world: World) {
+async fn a_pending_sign_in_is_hidden_from_scripts_and_the_provider(world: World) {
     let response = get(&world.server, START, "").await;
     let cookie = cookies(&response)[0].clone();
     for part in ["HttpOnly", "SameSite=Lax", "Max-Age=600", "Path=/"] {
@@ -182,7 +182,7 @@ async fn a_sign_in_is_kept_from_scripts_and_tells_the_provider_no_secret(world: 
     world.server.finish().await;
 }
 
-async fn a_person_may_change_their_mind(world: World) {
+async fn a_cancelled_sign_in_returns_to_the_sign_in_page(world: World) {
     let (there, cookie) = begin(&world.server).await;
     let back = at_provider(&world.server, &there).await;
     let (path, query) = back.split_once('?').unwrap();
@@ -193,7 +193,7 @@ async fn a_person_may_change_their_mind(world: World) {
     world.server.finish().await;
 }
 
-async fn a_person_stays_who_they_are_whatever_becomes_of_the_email(world: World) {
+async fn a_person_keeps_the_account_when_the_email_changes(world: World) {
     let eve = world.server.admin("eve").await;
     assert_eq!(world.me().await["email"], "ada@example.com");
     for changed in [
@@ -214,7 +214,7 @@ async fn a_person_stays_who_they_are_whatever_becomes_of_the_email(world: World)
     world.server.finish().await;
 }
 
-async fn people_of_every_company_sign_in_as_themselves(world: World) {
+async fn people_of_every_operator_sign_in_to_their_own_account(world: World) {
     let server = &world.server;
     let eve = server.admin("eve").await;
     let (firm, adjuster) = world.ada.adjuster(server, "needle").await;
@@ -234,7 +234,7 @@ async fn people_of_every_company_sign_in_as_themselves(world: World) {
     world.server.finish().await;
 }
 
-async fn whoever_has_a_second_factor_is_asked_for_it(world: World) {
+async fn a_second_factor_is_required_after_the_provider(world: World) {
     let server = &world.server;
     let (secret, _) = set_up(server, &world.ada).await;
     let (there, cookie) = begin(server).await;
@@ -268,7 +268,7 @@ async fn whoever_has_a_second_factor_is_asked_for_it(world: World) {
     world.server.finish().await;
 }
 
-async fn another_key_of_the_providers_is_looked_for(world: World) {
+async fn a_rotated_provider_key_is_fetched(world: World) {
     assert_eq!(outcome(&world.sign_in().await), "/");
     world.provider.changes_its_key();
     assert_eq!(outcome(&world.sign_in().await), "/?sign-in=untrusted");
@@ -277,7 +277,7 @@ async fn another_key_of_the_providers_is_looked_for(world: World) {
     world.server.finish().await;
 }
 
-async fn a_provider_that_signs_with_rsa_is_believed(world: World) {
+async fn an_rsa_signature_of_the_provider_is_accepted(world: World) {
     world.provider.signs_by_rsa();
     assert_eq!(world.me().await["email"], "ada@example.com");
     for signer in [Signer::Stranger, Signer::Secret, Signer::Nobody] {
@@ -295,7 +295,7 @@ async fn a_provider_that_signs_with_rsa_is_believed(world: World) {
     world.server.finish().await;
 }
 
-async fn an_email_may_be_told_only_to_who_asks_for_it(world: World) {
+async fn a_missing_email_comes_from_the_user_info_endpoint(world: World) {
     world
         .provider
         .says(json!({ "email": null, "email_verified": null }));
@@ -309,7 +309,7 @@ async fn an_email_may_be_told_only_to_who_asks_for_it(world: World) {
     world.server.finish().await;
 }
 
-async fn a_sign_in_is_in_the_audit_log(world: World) {
+async fn a_provider_sign_in_is_in_the_audit_log(world: World) {
     world.provider.says(json!({ "email": "eve@example.com" }));
     world.sign_in().await;
     let before = world.ada.get("/audit").await.good();
@@ -329,7 +329,7 @@ async fn a_sign_in_is_in_the_audit_log(world: World) {
     world.server.finish().await;
 }
 
-async fn a_person_who_begins_anew_is_found_anew(world: World) {
+async fn a_reset_account_is_linked_to_the_provider_again(world: World) {
     let server = &world.server;
     let email = "bob@example.com";
     let colleague = json!({ "email": email, "name": "Bob", "role": "viewer" });
@@ -351,7 +351,7 @@ async fn a_person_who_begins_anew_is_found_anew(world: World) {
     world.server.finish().await;
 }
 
-async fn a_one_time_code_forgets_whom_the_provider_means(world: World) {
+async fn a_one_time_code_unlinks_the_provider_account(world: World) {
     let ada = world.me().await;
     let path = format!("/users/{}/invitation", ada["user_id"].as_str().unwrap());
     let code = world.ada.post(&path, &json!({})).await.good()["code"].clone();
@@ -369,7 +369,7 @@ async fn a_one_time_code_forgets_whom_the_provider_means(world: World) {
 }
 
 #[tokio::test]
-async fn a_provider_that_is_down_stands_in_nobodys_way_and_is_tried_again() {
+async fn an_unavailable_provider_does_not_block_the_server_and_is_retried() {
     // A port without a listener.
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();
@@ -398,7 +398,7 @@ async fn a_provider_that_is_down_stands_in_nobodys_way_and_is_tried_again() {
 }
 
 #[tokio::test]
-async fn a_server_without_a_provider_says_so() {
+async fn a_server_without_a_provider_reports_none() {
     let server = TestServer::start(Engine::Sqlite).await;
     let named = with_cookie(&server, "/session/provider", "").await.good();
     assert_eq!(named, json!({ "name": null }));

@@ -8,16 +8,16 @@ use reqwest::Method;
 use serde_json::json;
 
 with_provider!(
-    a_token_that_does_not_hold_signs_nobody_in,
-    a_sign_in_comes_back_once_to_the_browser_that_began_it,
-    nobody_is_let_in_or_made_by_an_email_that_is_not_verified_or_not_known,
-    who_may_not_sign_in_may_not_by_the_provider_either,
-    guesses_at_a_code_are_slowed_down,
-    guesses_at_once_do_not_outrun_the_count,
-    what_fails_at_one_address_is_slowed_down,
+    an_invalid_id_token_signs_nobody_in,
+    a_callback_works_once_in_the_same_browser,
+    an_unverified_or_unknown_email_gives_no_access_and_no_account,
+    a_blocked_person_cannot_sign_in_through_the_provider,
+    guessed_callback_codes_are_rate_limited,
+    concurrent_callback_guesses_cannot_bypass_the_count,
+    failures_from_one_address_are_rate_limited,
 );
 
-async fn a_token_that_does_not_hold_signs_nobody_in(world: World) {
+async fn an_invalid_id_token_signs_nobody_in(world: World) {
     let wrong = [
         json!({ "nonce": "of another sign-in" }),
         json!({ "nonce": null }),
@@ -44,7 +44,7 @@ async fn a_token_that_does_not_hold_signs_nobody_in(world: World) {
     world.server.finish().await;
 }
 
-async fn a_sign_in_comes_back_once_to_the_browser_that_began_it(world: World) {
+async fn a_callback_works_once_in_the_same_browser(world: World) {
     let server = &world.server;
     let (there, cookie) = begin(server).await;
     let back = at_provider(server, &there).await;
@@ -78,7 +78,7 @@ async fn a_sign_in_comes_back_once_to_the_browser_that_began_it(world: World) {
     world.server.finish().await;
 }
 
-async fn nobody_is_let_in_or_made_by_an_email_that_is_not_verified_or_not_known(world: World) {
+async fn an_unverified_or_unknown_email_gives_no_access_and_no_account(world: World) {
     world.server.admin("kate").await;
     let cases = [
         (json!({ "email_verified": false }), "unverified"),
@@ -105,7 +105,7 @@ async fn nobody_is_let_in_or_made_by_an_email_that_is_not_verified_or_not_known(
     world.server.finish().await;
 }
 
-async fn who_may_not_sign_in_may_not_by_the_provider_either(world: World) {
+async fn a_blocked_person_cannot_sign_in_through_the_provider(world: World) {
     let viewer = world.ada.viewer(&world.server).await;
     let claims = json!({ "sub": "person-2", "email": viewer.email });
     world.provider.says(claims);
@@ -127,7 +127,7 @@ async fn who_may_not_sign_in_may_not_by_the_provider_either(world: World) {
     world.server.finish().await;
 }
 
-async fn guesses_at_a_code_are_slowed_down(world: World) {
+async fn guessed_callback_codes_are_rate_limited(world: World) {
     let server = &world.server;
     let (secret, _) = set_up(server, &world.ada).await;
     let (there, cookie) = begin(server).await;
@@ -147,7 +147,7 @@ async fn guesses_at_a_code_are_slowed_down(world: World) {
     world.server.finish().await;
 }
 
-async fn guesses_at_once_do_not_outrun_the_count(world: World) {
+async fn concurrent_callback_guesses_cannot_bypass_the_count(world: World) {
     let server = &world.server;
     set_up(server, &world.ada).await;
     let (there, cookie) = begin(server).await;
@@ -160,7 +160,7 @@ async fn guesses_at_once_do_not_outrun_the_count(world: World) {
     world.server.finish().await;
 }
 
-async fn what_fails_at_one_address_is_slowed_down(world: World) {
+async fn failures_from_one_address_are_rate_limited(world: World) {
     world.provider.says(json!({ "email": "eve@example.com" }));
     for _ in 0..50 {
         assert_eq!(outcome(&world.sign_in().await), "/?sign-in=unknown");

@@ -15,16 +15,16 @@ use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
-    an_alert_reaches_the_receiver_signed,
-    what_was_not_asked_for_is_not_sent,
-    messages_come_in_order_and_wait_for_the_one_before,
-    a_receiver_that_is_away_for_a_day_leaves_a_dead_letter_that_can_be_sent_again,
-    a_delivery_under_way_is_not_taken_by_another_server,
+    an_alert_is_delivered_with_a_signature,
+    unsubscribed_events_are_not_sent,
+    messages_are_delivered_in_order_after_the_previous_one,
+    a_receiver_down_for_a_day_leaves_a_dead_letter_that_can_be_resent,
+    a_delivery_in_progress_is_not_claimed_by_another_server,
     a_redirect_is_a_failure_and_is_not_followed,
-    nothing_is_sent_to_an_address_within_the_network,
-    a_webhook_is_made_once_changed_and_removed,
-    a_webhook_that_makes_no_sense_is_refused,
-    another_operators_webhooks_are_not_there,
+    nothing_is_sent_to_a_private_address,
+    a_webhook_is_created_once_changed_and_removed,
+    an_invalid_webhook_is_refused,
+    another_operators_webhooks_are_not_found,
 );
 
 /// Raises an alert by a silent vessel, and signs the person in again.
@@ -35,7 +35,7 @@ async fn raise(server: &TestServer, person: &Person) -> Person {
     Person::sign_in(server, person.operator, &person.email).await
 }
 
-async fn an_alert_reaches_the_receiver_signed(server: TestServer) {
+async fn an_alert_is_delivered_with_a_signature(server: TestServer) {
     let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
     let webhook = make(&ada, &url, &["alert.raised"]).await;
@@ -82,7 +82,7 @@ async fn an_alert_reaches_the_receiver_signed(server: TestServer) {
     server.finish().await;
 }
 
-async fn what_was_not_asked_for_is_not_sent(server: TestServer) {
+async fn unsubscribed_events_are_not_sent(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let (receiver, url) = Receiver::start().await;
@@ -96,7 +96,7 @@ async fn what_was_not_asked_for_is_not_sent(server: TestServer) {
     server.finish().await;
 }
 
-async fn messages_come_in_order_and_wait_for_the_one_before(server: TestServer) {
+async fn messages_are_delivered_in_order_after_the_previous_one(server: TestServer) {
     let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
     let kinds = ["alert.raised", "alert.acknowledged", "alert.cleared"];
@@ -127,9 +127,7 @@ async fn messages_come_in_order_and_wait_for_the_one_before(server: TestServer) 
     server.finish().await;
 }
 
-async fn a_receiver_that_is_away_for_a_day_leaves_a_dead_letter_that_can_be_sent_again(
-    server: TestServer,
-) {
+async fn a_receiver_down_for_a_day_leaves_a_dead_letter_that_can_be_resent(server: TestServer) {
     let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
     let webhook = make(&ada, &url, &["alert.raised"]).await;
@@ -174,7 +172,7 @@ async fn a_receiver_that_is_away_for_a_day_leaves_a_dead_letter_that_can_be_sent
     server.finish().await;
 }
 
-async fn a_delivery_under_way_is_not_taken_by_another_server(server: TestServer) {
+async fn a_delivery_in_progress_is_not_claimed_by_another_server(server: TestServer) {
     let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
     let webhook = make(&ada, &url, &["alert.raised"]).await;
@@ -209,7 +207,7 @@ async fn a_redirect_is_a_failure_and_is_not_followed(server: TestServer) {
     server.finish().await;
 }
 
-async fn nothing_is_sent_to_an_address_within_the_network(server: TestServer) {
+async fn nothing_is_sent_to_a_private_address(server: TestServer) {
     let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
     // Such a webhook may be older than the rule, or its name may resolve differently now.
@@ -232,7 +230,7 @@ async fn nothing_is_sent_to_an_address_within_the_network(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_webhook_is_made_once_changed_and_removed(server: TestServer) {
+async fn a_webhook_is_created_once_changed_and_removed(server: TestServer) {
     let ada = server.admin("ada").await;
     // A copied address may bring blanks along.
     let new =
@@ -266,7 +264,7 @@ async fn a_webhook_is_made_once_changed_and_removed(server: TestServer) {
     server.finish().await;
 }
 
-async fn a_webhook_that_makes_no_sense_is_refused(server: TestServer) {
+async fn an_invalid_webhook_is_refused(server: TestServer) {
     let ada = server.admin("ada").await;
     for (url, kinds) in [
         ("ftp://example.com/", json!(["alert.raised"])),
@@ -286,7 +284,7 @@ async fn a_webhook_that_makes_no_sense_is_refused(server: TestServer) {
     server.finish().await;
 }
 
-async fn another_operators_webhooks_are_not_there(server: TestServer) {
+async fn another_operators_webhooks_are_not_found(server: TestServer) {
     let ada = server.admin("ada").await;
     let eve = server.admin("eve").await;
     let webhook = make(&ada, "https://example.com/", &["alert.raised"]).await;

@@ -13,8 +13,8 @@ use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 
 on_both!(
-    receivers_that_do_not_answer_keep_no_other_operators_waiting,
-    a_receiver_that_does_not_answer_is_called_upon_once_at_a_time,
+    slow_receivers_do_not_delay_other_operators,
+    a_slow_receiver_gets_one_delivery_at_a_time,
 );
 
 /// A program that accepts connections and does not respond until the test closes them.
@@ -55,7 +55,7 @@ fn begin(server: &TestServer) -> JoinHandle<Option<Sent>> {
     })
 }
 
-async fn receivers_that_do_not_answer_keep_no_other_operators_waiting(server: TestServer) {
+async fn slow_receivers_do_not_delay_other_operators(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     let (mut silent, nowhere) = Silent::start().await;
     for _ in 0..3 {
@@ -79,7 +79,7 @@ async fn receivers_that_do_not_answer_keep_no_other_operators_waiting(server: Te
     server.finish().await;
 }
 
-async fn a_receiver_that_does_not_answer_is_called_upon_once_at_a_time(server: TestServer) {
+async fn a_slow_receiver_gets_one_delivery_at_a_time(server: TestServer) {
     let ada = server.admin("ada").await;
     let (mut silent, nowhere) = Silent::start().await;
     let webhook = make(&ada, &nowhere, &["order.updated"]).await;
