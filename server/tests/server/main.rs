@@ -4,10 +4,10 @@
 
 mod commands;
 mod dashboard;
-mod document;
-mod documented;
+mod documentation_examples;
 mod fit;
 mod migration;
+mod openapi;
 mod plan;
 mod schedule;
 

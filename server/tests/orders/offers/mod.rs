@@ -1,9 +1,9 @@
 //! Offers of work orders to firms: accepted, declined, lapsed, withdrawn.
 
-mod forbidden;
+mod example_client;
+mod forbidden_requests;
+mod notices;
 mod races;
-mod told;
-mod way;
 
 use binnacle_orders::dispatch::lapse;
 use binnacle_server_testing::HOUR_S;

@@ -1,11 +1,11 @@
 //! Work orders from the berth reading to the verification at sea.
 
-mod again;
 mod card;
-mod codes;
 mod evidence;
-mod held;
+mod invalid_requests;
 mod limits;
-mod refusals;
-mod strength;
-mod way;
+mod magnet_strength;
+mod preconditions;
+mod refusal_codes;
+mod second_reading;
+mod whole_order;

@@ -1,7 +1,7 @@
 //! Notifications to people: in the dashboard and by mail.
 
-mod mailed;
-mod needs;
+mod due_dates;
+mod mail;
 mod settings;
 
 use binnacle_orders::dispatch::lapse;

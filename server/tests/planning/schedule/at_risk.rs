@@ -1,6 +1,6 @@
 //! The alert of an agreed job at risk, and its end.
 
-use super::agreed::Agreed;
+use super::agreed_job::Agreed;
 use super::offers::{alerts, direct, firm};
 use super::{due_vessel, enter, follow, put, solve, terms};
 use binnacle_server_testing::on_both;

@@ -1,17 +1,17 @@
 //! The schedule: its inputs, its jobs, and its updates.
 
-mod agreed;
+mod agreed_job;
 mod at_risk;
 mod concurrent;
 mod fees;
-mod firms;
-mod moved;
+mod firm_terms;
+mod moved_port_calls;
 mod needs;
 mod offers;
-mod pins;
+mod pinned_jobs;
 mod plans;
 mod teams;
-mod withdrawn;
+mod withdrawn_port_calls;
 
 use binnacle_orders::firms as all_firms;
 use binnacle_planning::schedule;

@@ -1,6 +1,6 @@
 //! Work orders from the plan: offered, agreed, and moved for cause.
 
-use super::agreed::Agreed;
+use super::agreed_job::Agreed;
 use super::{compass_of, due_vessel, enter, first, put, solve, terms};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{Person, TestServer};

@@ -1,6 +1,6 @@
 //! Capacity and opening hours of a firm's teams.
 
-use super::agreed::Agreed;
+use super::agreed_job::Agreed;
 use super::offers::{direct, firm, offer, offer_of};
 use super::{due_vessel, enter, first, put, solve, terms};
 use binnacle_server_testing::on_both;

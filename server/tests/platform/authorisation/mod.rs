@@ -1,15 +1,15 @@
 //! Every route with every method as every role, on the role's own data and on foreign data.
 
+mod fixture;
 mod table;
-mod world;
 
 use binnacle_server::routes::openapi;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{ApiResponse, TestServer};
+use fixture::{Key, ROLES, Side, request, response};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use table::{OPEN, TABLE};
-use world::{Key, ROLES, Side, request, response};
 
 on_both!(each_role_may_do_what_the_table_says_on_its_own_data_alone);
 

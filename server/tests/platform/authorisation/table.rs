@@ -1,6 +1,6 @@
 //! Permissions: a line for each operation of the API document.
 //!
-//! A rule has a sign for each role, in the order of [`super::world::ROLES`]: `+` is allowed,
+//! A rule has a sign for each role, in the order of [`super::fixture::ROLES`]: `+` is allowed,
 //! `1` has to sign in (401), `3` is forbidden (403), `4` finds nothing (404).
 
 /// Allowed without sign-in.

@@ -1,6 +1,6 @@
 //! A withdrawn port call of an agreed job, and the job at the next one.
 
-use super::agreed::{Agreed, messages};
+use super::agreed_job::{Agreed, messages};
 use super::offers::alerts;
 use super::{enter, first, follow, solve};
 use crate::notifications::subjects_of;

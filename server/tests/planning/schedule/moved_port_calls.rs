@@ -1,6 +1,6 @@
 //! A moved port call of an order: both sides get a message, and agree on another time.
 
-use super::agreed::{Agreed, messages};
+use super::agreed_job::{Agreed, messages};
 use super::offers::{alerts, offer};
 use super::{due_vessel, enter, first, put, solve, terms};
 use crate::calendar::events;
