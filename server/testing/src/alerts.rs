@@ -17,7 +17,7 @@ const AGENT_DAY: &str = "2026-11-20T00:00:00Z";
 const A_WHILE_S: f64 = 10.0;
 
 /// Sets the vessel's alert limits and runs its analysis.
-pub async fn limit(server: &TestServer, person: &Person, ship: &Ship, limits: Value) {
+pub async fn set_alert_limits(server: &TestServer, person: &Person, ship: &Ship, limits: Value) {
     let mut settings = person.get(&ship.path("/settings")).await.good();
     settings["alerts"] = limits;
     let request = person.request(Method::PUT, &ship.path("/settings"));
@@ -29,7 +29,7 @@ pub async fn limit(server: &TestServer, person: &Person, ship: &Ship, limits: Va
 /// Enrols a ship with a model whose largest deviation is between 3 and 12 degrees.
 pub async fn ship_with_model(server: &TestServer, person: &Person) -> Ship {
     let ship = server.ship(person, "Nao").await;
-    limit(server, person, &ship, json!({ "deviation_deg": 45.0 })).await;
+    set_alert_limits(server, person, &ship, json!({ "deviation_deg": 45.0 })).await;
     ship.put(1, &passage(DAY, 300)).await.good();
     server.advance(A_WHILE_S);
     server.work().await;

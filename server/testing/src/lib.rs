@@ -29,12 +29,12 @@ pub mod webhooks;
 pub mod work_orders;
 
 pub use database::Engine;
-pub use person::{ApiResponse, Person, attempt, password_hash, patch};
+pub use person::{ApiResponse, Person, password_hash, patch, try_sign_in};
 pub use provider::{CLIENT_SECRET, Provider, Signer, provider_settings};
 pub use relay::{Behaviour, Encryption, Letter, Relay, Stage};
 pub use server::{DAY_S, HOUR_S, PASSWORD, Prepared, START, TestServer, client};
 pub use ship::{
-    Ship, days_at_sea, days_in_waters, exchange, frame, model_after_step, passage, sample,
+    Ship, days_at_sea, days_in_waters, enrol_with_code, frame, model_after_step, passage, sample,
     true_model,
 };
 

@@ -65,6 +65,13 @@ pub fn password_hash() -> &'static str {
     HASH.get_or_init(|| secret::hash_password(PASSWORD).unwrap())
 }
 
+impl TestServer {
+    /// Creates an operator with one admin, and signs the admin in.
+    pub async fn admin(&self, name: &str) -> Person {
+        Person::admin(self, name).await
+    }
+}
+
 impl Person {
     pub(crate) async fn admin(server: &TestServer, name: &str) -> Person {
         let operator = create_operator(server, name).await;
@@ -111,7 +118,7 @@ impl Person {
     }
 
     pub async fn sign_in(server: &TestServer, operator: OperatorId, email: &str) -> Person {
-        let response = attempt(server, email, PASSWORD).await;
+        let response = try_sign_in(server, email, PASSWORD).await;
         assert_eq!(response.status, 200, "{response:?}");
         let cookie = response.headers["set-cookie"].to_str().unwrap();
         Person {
@@ -124,7 +131,7 @@ impl Person {
     }
 
     /// Returns the same person with a server that was restarted.
-    pub fn at(&self, server: &TestServer) -> Person {
+    pub fn reconnect(&self, server: &TestServer) -> Person {
         Person {
             url: server.url.clone(),
             ..self.clone()
@@ -152,7 +159,7 @@ impl Person {
     }
 }
 
-pub async fn attempt(server: &TestServer, email: &str, password: &str) -> ApiResponse {
+pub async fn try_sign_in(server: &TestServer, email: &str, password: &str) -> ApiResponse {
     let request = server
         .http
         .post(format!("{}/api/v1/session", server.url))

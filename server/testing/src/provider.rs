@@ -30,18 +30,18 @@ pub const CLIENT_SECRET: &str = "the-clients-secret";
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Signer {
     #[default]
-    Itself,
+    Provider,
     /// Another key under the same key id.
-    Stranger,
+    OtherKey,
     /// The client's secret, as an HMAC key: the client knows it too.
-    Secret,
-    Nobody,
+    ClientSecret,
+    Unsigned,
 }
 
 #[derive(Clone)]
 pub struct Provider {
     pub issuer: String,
-    said: Arc<Mutex<Said>>,
+    state: Arc<Mutex<ProviderState>>,
 }
 
 /// Signing key.
@@ -53,7 +53,7 @@ enum Key {
     Ecdsa(Arc<EcdsaKeyPair>),
 }
 
-struct Said {
+struct ProviderState {
     key: Key,
     key_id: String,
     claims: Value,
@@ -101,7 +101,7 @@ impl Key {
     }
 
     /// Returns another key of the same kind.
-    fn another(&self) -> Key {
+    fn another_of_same_kind(&self) -> Key {
         match self {
             Key::Rsa(_) => Key::rsa(),
             Key::Ecdsa(_) => Key::ecdsa(),
@@ -129,7 +129,7 @@ impl Key {
     }
 
     /// Returns the public key as a JWK (RFC 7517).
-    fn shown(&self, key_id: &str) -> Value {
+    fn to_jwk(&self, key_id: &str) -> Value {
         match self {
             Key::Rsa(key) => {
                 let parts = PublicKeyComponents::<Vec<u8>>::from(key.public());
@@ -162,11 +162,11 @@ impl Provider {
         let listener = TcpListener::bind(("127.0.0.1", port)).await.unwrap();
         let provider = Provider {
             issuer: format!("http://{}", listener.local_addr().unwrap()),
-            said: Arc::new(Mutex::new(Said {
+            state: Arc::new(Mutex::new(ProviderState {
                 key: Key::ecdsa(),
                 key_id: "first".to_owned(),
                 claims: json!({}),
-                signer: Signer::Itself,
+                signer: Signer::Provider,
                 user_info: json!({}),
                 codes: HashMap::new(),
                 secrets: Vec::new(),
@@ -188,36 +188,36 @@ impl Provider {
     }
 
     /// Sets claims of the next tokens over the default ones; null removes a claim.
-    pub fn says(&self, claims: Value) {
-        let mut said = self.said.lock().unwrap();
-        said.claims = claims;
-        said.signer = Signer::Itself;
+    pub fn set_claims(&self, claims: Value) {
+        let mut state = self.state.lock().unwrap();
+        state.claims = claims;
+        state.signer = Signer::Provider;
     }
 
-    pub fn signed_by(&self, signer: Signer) {
-        self.said.lock().unwrap().signer = signer;
+    pub fn sign_with(&self, signer: Signer) {
+        self.state.lock().unwrap().signer = signer;
     }
 
     /// Sets the response of the user info endpoint.
-    pub fn tells(&self, user_info: Value) {
-        self.said.lock().unwrap().user_info = user_info;
+    pub fn set_user_info(&self, user_info: Value) {
+        self.state.lock().unwrap().user_info = user_info;
     }
 
     /// Replaces the key by another one with another key id.
-    pub fn changes_its_key(&self) {
-        let mut said = self.said.lock().unwrap();
-        (said.key, said.key_id) = (said.key.another(), "second".to_owned());
+    pub fn rotate_key(&self) {
+        let mut state = self.state.lock().unwrap();
+        (state.key, state.key_id) = (state.key.another_of_same_kind(), "second".to_owned());
     }
 
     /// Signs with a new RSA key from now on.
-    pub fn signs_by_rsa(&self) {
-        let mut said = self.said.lock().unwrap();
-        (said.key, said.key_id) = (Key::rsa(), "rsa".to_owned());
+    pub fn use_rsa_key(&self) {
+        let mut state = self.state.lock().unwrap();
+        (state.key, state.key_id) = (Key::rsa(), "rsa".to_owned());
     }
 
     /// Returns every code and token it issued.
     pub fn secrets(&self) -> Vec<String> {
-        self.said.lock().unwrap().secrets.clone()
+        self.state.lock().unwrap().secrets.clone()
     }
 }
 
@@ -236,8 +236,8 @@ async fn configuration(State(provider): State<Provider>) -> Json<Value> {
 }
 
 async fn keys(State(provider): State<Provider>) -> Json<Value> {
-    let said = provider.said.lock().unwrap();
-    Json(json!({ "keys": [said.key.shown(&said.key_id)] }))
+    let state = provider.state.lock().unwrap();
+    Json(json!({ "keys": [state.key.to_jwk(&state.key_id)] }))
 }
 
 /// Redirects back with a code at once, without a sign-in page.
@@ -254,9 +254,9 @@ async fn authorize(
         "{}?code={code}&state={}",
         asked["redirect_uri"], asked["state"]
     );
-    let mut said = provider.said.lock().unwrap();
-    said.secrets.push(code.clone());
-    said.codes.insert(code, asked);
+    let mut state = provider.state.lock().unwrap();
+    state.secrets.push(code.clone());
+    state.codes.insert(code, asked);
     Redirect::to(&back)
 }
 
@@ -265,11 +265,11 @@ async fn token(
     headers: HeaderMap,
     Form(sent): Form<HashMap<String, String>>,
 ) -> Response {
-    let mut said = provider.said.lock().unwrap();
+    let mut state = provider.state.lock().unwrap();
     let pair = base64url(format!("{CLIENT_ID}:{CLIENT_SECRET}").as_bytes());
     let basic = format!("Basic {}", pair.replace('-', "+").replace('_', "/"));
     let verifier = digest::digest(&digest::SHA256, sent["code_verifier"].as_bytes());
-    let asked = said.codes.remove(&sent["code"]);
+    let asked = state.codes.remove(&sent["code"]);
     let asked = asked.filter(|asked| {
         headers[header::AUTHORIZATION] == basic
             && sent["grant_type"] == "authorization_code"
@@ -285,35 +285,35 @@ async fn token(
         "iat": start_s(), "exp": start_s() + 3600,
         "email": "ada@example.com", "email_verified": true,
     });
-    for (name, value) in said.claims.as_object().unwrap() {
+    for (name, value) in state.claims.as_object().unwrap() {
         claims[name] = value.clone();
     }
     let claims = claims.as_object_mut().unwrap();
     claims.retain(|_, value| !value.is_null());
-    let id_token = said.sign(&json!(claims).to_string());
+    let id_token = state.sign(&json!(claims).to_string());
     let access_token = Uuid::new_v4().to_string();
-    said.secrets.push(id_token.clone());
-    said.secrets.push(access_token.clone());
+    state.secrets.push(id_token.clone());
+    state.secrets.push(access_token.clone());
     Json(json!({ "access_token": access_token, "token_type": "Bearer", "id_token": id_token }))
         .into_response()
 }
 
 async fn user_info(State(provider): State<Provider>, headers: HeaderMap) -> Response {
-    let said = provider.said.lock().unwrap();
+    let state = provider.state.lock().unwrap();
     let bearer = headers[header::AUTHORIZATION].to_str().unwrap();
     let bearer = bearer.strip_prefix("Bearer ").unwrap();
-    if !said.secrets.iter().any(|known| known == bearer) {
+    if !state.secrets.iter().any(|known| known == bearer) {
         return StatusCode::UNAUTHORIZED.into_response();
     }
-    Json(said.user_info.clone()).into_response()
+    Json(state.user_info.clone()).into_response()
 }
 
-impl Said {
+impl ProviderState {
     fn sign(&self, claims: &str) -> String {
         let algorithm = match self.signer {
-            Signer::Itself | Signer::Stranger => self.key.algorithm(),
-            Signer::Secret => "HS256",
-            Signer::Nobody => "none",
+            Signer::Provider | Signer::OtherKey => self.key.algorithm(),
+            Signer::ClientSecret => "HS256",
+            Signer::Unsigned => "none",
         };
         let head = json!({ "alg": algorithm, "kid": self.key_id, "typ": "JWT" }).to_string();
         let signed = format!(
@@ -322,13 +322,13 @@ impl Said {
             base64url(claims.as_bytes())
         );
         let signature = match self.signer {
-            Signer::Itself => self.key.sign(signed.as_bytes()),
-            Signer::Stranger => self.key.another().sign(signed.as_bytes()),
-            Signer::Secret => {
+            Signer::Provider => self.key.sign(signed.as_bytes()),
+            Signer::OtherKey => self.key.another_of_same_kind().sign(signed.as_bytes()),
+            Signer::ClientSecret => {
                 let key = hmac::Key::new(hmac::HMAC_SHA256, CLIENT_SECRET.as_bytes());
                 hmac::sign(&key, signed.as_bytes()).as_ref().to_vec()
             }
-            Signer::Nobody => Vec::new(),
+            Signer::Unsigned => Vec::new(),
         };
         format!("{signed}.{}", base64url(&signature))
     }

@@ -1,8 +1,6 @@
 //! A running server for each test.
 
 use crate::database::{Database, Engine};
-use crate::person::Person;
-use crate::ship::Ship;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::app::App;
 use binnacle_platform::clock::Clock;
@@ -92,7 +90,7 @@ impl TestServer {
     }
 
     /// Opens a second server on the same database, as another process would.
-    pub async fn second(&self) -> App {
+    pub async fn second_server(&self) -> App {
         let db = Db::connect(&self.database.url, subscribers())
             .await
             .unwrap();
@@ -101,7 +99,7 @@ impl TestServer {
     }
 
     /// Runs SQL on the database without the server's knowledge.
-    pub async fn sql(&self, statement: &'static str) {
+    pub async fn run_sql(&self, statement: &'static str) {
         let mut tx = self.app.db.begin().await.unwrap();
         match tx.connection() {
             Connection::Sqlite(tx) => {
@@ -135,16 +133,6 @@ impl TestServer {
 
     pub fn advance(&self, seconds: f64) {
         self.app.clock.advance(seconds);
-    }
-
-    /// Creates an operator with one admin, and signs the admin in.
-    pub async fn admin(&self, name: &str) -> Person {
-        Person::admin(self, name).await
-    }
-
-    /// Creates a vessel of the person's operator and enrols an agent.
-    pub async fn ship(&self, person: &Person, name: &str) -> Ship {
-        Ship::enrol(self, person, name).await
     }
 }
 

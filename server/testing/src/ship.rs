@@ -21,6 +21,13 @@ pub struct Ship {
     pub stream: StreamId,
 }
 
+impl TestServer {
+    /// Creates a vessel of the person's operator and enrols an agent.
+    pub async fn ship(&self, person: &Person, name: &str) -> Ship {
+        Ship::enrol(self, person, name).await
+    }
+}
+
 impl Ship {
     pub(crate) async fn enrol(server: &TestServer, person: &Person, name: &str) -> Ship {
         let vessel = person.create_vessel(name).await;
@@ -29,7 +36,7 @@ impl Ship {
             .post(&format!("/vessels/{id}/agents"), &json!({}))
             .await
             .good();
-        let enrolled = exchange(server, code["code"].as_str().unwrap())
+        let enrolled = enrol_with_code(server, code["code"].as_str().unwrap())
             .await
             .good();
         let enrolled: EnrolAnswer = serde_json::from_value(enrolled).unwrap();
@@ -43,7 +50,7 @@ impl Ship {
     }
 
     /// Continues with a server that was restarted.
-    pub fn at(&mut self, server: &TestServer) {
+    pub fn reconnect(&mut self, server: &TestServer) {
         self.url.clone_from(&server.url);
     }
 
@@ -64,7 +71,7 @@ impl Ship {
     }
 
     /// Returns the downlink in its compact form, and its length in bytes.
-    pub async fn compact(&self, has: &str) -> (Downlink, usize) {
+    pub async fn compact_downlink(&self, has: &str) -> (Downlink, usize) {
         let path = format!("/streams/{}/downlink?form=1{has}", self.stream);
         let response = self.request(reqwest::Method::GET, &path).send().await;
         let response = response.unwrap();
@@ -96,7 +103,7 @@ impl Ship {
     }
 }
 
-pub async fn exchange(server: &TestServer, code: &str) -> ApiResponse {
+pub async fn enrol_with_code(server: &TestServer, code: &str) -> ApiResponse {
     let request = server
         .http
         .post(format!("{}/api/v1/agents/enrol", server.url))

@@ -201,7 +201,7 @@ impl Job {
     }
 
     /// Posts something that is refused, and returns the code of the first refusal.
-    pub async fn refused(&self, rest: &str, body: &Value) -> Value {
+    pub async fn refusal_code(&self, rest: &str, body: &Value) -> Value {
         let response = self.post(rest, body).await;
         assert_eq!(response.problem(), "not-adjustable", "{response:?}");
         let refusal = response.json()["refusals"][0].clone();
@@ -210,7 +210,7 @@ impl Job {
         refusal["refusal"].clone()
     }
 
-    pub async fn photo(&self, bytes: &'static [u8]) -> ApiResponse {
+    pub async fn post_photo(&self, bytes: &'static [u8]) -> ApiResponse {
         let path = self.path("/photos?caption=trays");
         ApiResponse::of(self.person.request(Method::POST, &path).body(bytes)).await
     }

@@ -24,7 +24,7 @@ on_both!(
 const DAY: &str = "2026-11-20T00:00:00Z";
 
 /// Advances some hours without a batch.
-async fn hours_pass(server: &TestServer) {
+async fn advance_hours(server: &TestServer) {
     server.advance(7.0 * 3600.0);
     alerts::check_timed(&server.app).await.unwrap();
 }
@@ -77,7 +77,7 @@ async fn revisions_in_any_order_and_repeated_give_the_same_state(server: TestSer
     assert_eq!((quiet.len(), &quiet[0]["state"]), (1, &json!("raised")));
     let summary = quiet[0]["summary"].as_str().unwrap();
     assert!(summary.contains("they agree"), "{summary}");
-    hours_pass(&server).await;
+    advance_hours(&server).await;
     let over = list(&ada).await;
     assert_eq!((over.len(), &over[0]["state"]), (1, &json!("cleared")));
     assert_eq!(over[0]["cleared_by"], Value::Null);
@@ -111,7 +111,7 @@ async fn an_alert_of_a_lost_spool_is_closed(server: TestServer) {
     put_agent_alerts(&nao, 2, Vec::new(), vec![agent_alert(2, 1, Open)]).await;
     assert_eq!(list(&ada).await.len(), 1, "updated, not repeated");
     put_agent_alerts(&nao, 3, Vec::new(), vec![agent_alert(2, 2, NotJudged)]).await;
-    hours_pass(&server).await;
+    advance_hours(&server).await;
     let cleared = &list(&ada).await[0];
     assert_eq!(cleared["state"], "cleared");
     let why = cleared["clearing_reason"].as_str().unwrap();

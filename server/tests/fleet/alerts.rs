@@ -3,7 +3,7 @@
 use binnacle_compass::angle::TrueHeading;
 use binnacle_fleet::alerts;
 use binnacle_server_testing::DAY_S;
-use binnacle_server_testing::alerts::{limit, ship_with_model};
+use binnacle_server_testing::alerts::{set_alert_limits, ship_with_model};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{ApiResponse, Person, TestServer, passage};
 use reqwest::Method;
@@ -40,7 +40,7 @@ async fn an_alert_follows_the_vessels_limits_and_is_updated_in_place(server: Tes
     let nao = ship_with_model(&server, &ada).await;
     assert_eq!(list(&ada, "").await, Vec::<Value>::new());
 
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let raised = list(&ada, "").await;
     assert_eq!(raised.len(), 1, "{raised:?}");
     let alert = &raised[0];
@@ -64,7 +64,7 @@ async fn an_alert_follows_the_vessels_limits_and_is_updated_in_place(server: Tes
     let at_a_glance = ada.get("/fleet").await.good()["vessels"][0]["alert"].clone();
     assert_eq!(at_a_glance["id"], alert["id"]);
 
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let updated = list(&ada, "").await;
     assert_eq!(updated.len(), 1);
     assert_eq!(
@@ -73,7 +73,7 @@ async fn an_alert_follows_the_vessels_limits_and_is_updated_in_place(server: Tes
     );
     assert_eq!(updated[0]["since"], alert["since"]);
 
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
     let cleared = ada.get(&path(alert, "")).await.good();
     assert_eq!(
         (&cleared["state"], &cleared["cleared_by"]),
@@ -92,7 +92,7 @@ async fn an_alert_follows_the_vessels_limits_and_is_updated_in_place(server: Tes
 async fn an_alert_is_acknowledged_once_with_a_note(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let alert = list(&ada, "").await.remove(0);
     let viewer = ada.viewer(&server).await;
     let refused = viewer.post(&path(&alert, "/acknowledge"), &json!({})).await;
@@ -131,14 +131,14 @@ async fn an_alert_is_acknowledged_once_with_a_note(server: TestServer) {
 async fn a_worse_alert_needs_another_acknowledgement(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let alert = list(&ada, "").await.remove(0);
     assert_eq!(alert["severity"], "warning");
     // Without a body, because the note is optional.
     let request = ada.request(Method::POST, &path(&alert, "/acknowledge"));
     let known = ApiResponse::of(request).await.good();
     assert_eq!(known["acknowledgement_note"], Value::Null);
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let worse = ada.get(&path(&alert, "")).await.good();
     assert_eq!(
         (&worse["severity"], &worse["state"]),
@@ -151,15 +151,15 @@ async fn a_worse_alert_needs_another_acknowledgement(server: TestServer) {
 async fn a_cleared_alert_is_raised_again_only_when_it_gets_worse(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let alert = list(&ada, "").await.remove(0);
     let reason = json!({ "reason": "Known; she is sold" });
     let cleared = ada.post(&path(&alert, "/clear"), &reason).await.good();
     assert_eq!(cleared["clearing_reason"], "Known; she is sold");
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.4 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.4 })).await;
     assert_eq!(list(&ada, "?open=true").await, Vec::<Value>::new());
 
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let open = list(&ada, "?open=true").await;
     assert_eq!(open.len(), 1);
     assert_ne!(open[0]["id"], alert["id"]);
@@ -169,8 +169,8 @@ async fn a_cleared_alert_is_raised_again_only_when_it_gets_worse(server: TestSer
     );
     // After its cause was gone, it is raised like any other.
     ada.post(&path(&open[0], "/clear"), &reason).await.good();
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     assert_eq!(list(&ada, "?open=true").await.len(), 1);
     assert_eq!(list(&ada, "").await.len(), 3);
     server.finish().await;
@@ -209,7 +209,7 @@ async fn a_silent_agent_raises_an_alert_until_it_sends_again(server: TestServer)
 async fn two_servers_checking_at_once_raise_one_alert(server: TestServer) {
     let ada = server.admin("ada").await;
     server.ship(&ada, "Nao").await;
-    let second = server.second().await;
+    let second = server.second_server().await;
     server.advance(4.0 * DAY_S);
     let (one, other) = tokio::join!(
         alerts::check_silence(&server.app),
@@ -235,7 +235,7 @@ async fn diverging_references_raise_a_reference_fault_alert(server: TestServer) 
             .gyro
             .and_then(|gyro| TrueHeading::new(gyro.degrees() + wrong_deg));
     }
-    limit(
+    set_alert_limits(
         &server,
         &ada,
         &nao,
@@ -261,7 +261,7 @@ async fn the_list_filters_and_pages(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
     let other = server.ship(&ada, "Santa Clara").await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     server.advance(4.0 * DAY_S);
     alerts::check_silence(&server.app).await.unwrap();
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
@@ -305,7 +305,7 @@ async fn another_operators_alerts_are_not_found(server: TestServer) {
 async fn without_a_model_a_cleared_alert_is_not_reported_as_over(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let open = list(&ada, "?open=true").await.remove(0);
     assert_eq!(open["cause"], "deviation_over_limit");
 

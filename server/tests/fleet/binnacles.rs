@@ -17,7 +17,7 @@ on_both!(
 );
 
 /// Creates a vessel; returns the path of its standard compass's binnacle.
-async fn place(person: &Person) -> String {
+async fn binnacle_path(person: &Person) -> String {
     let vessel = person.create_vessel("Nao").await;
     let id = vessel["id"].as_str().unwrap();
     let compass = vessel["compasses"][0]["id"].as_str().unwrap();
@@ -42,7 +42,7 @@ async fn shipped_binnacle_types_can_be_read(server: TestServer) {
 
 async fn every_revision_of_a_binnacle_is_kept(server: TestServer) {
     let ada = server.admin("ada").await;
-    let path = place(&ada).await;
+    let path = binnacle_path(&ada).await;
     assert_eq!(ada.get(&path).await.problem(), "not-found");
     let first = put(&ada, &path, &binnacle()).await.good();
     assert_eq!(
@@ -77,7 +77,7 @@ async fn every_revision_of_a_binnacle_is_kept(server: TestServer) {
 
 async fn an_exported_binnacle_can_be_imported(server: TestServer) {
     let ada = server.admin("ada").await;
-    let path = place(&ada).await;
+    let path = binnacle_path(&ada).await;
     put(&ada, &path, &binnacle()).await.good();
     let file = ada.get(&format!("{path}.json")).await;
     let disposition = file.headers["content-disposition"].to_str().unwrap();
@@ -89,7 +89,7 @@ async fn an_exported_binnacle_can_be_imported(server: TestServer) {
 
 async fn a_binnacle_repeated_under_its_key_is_one_revision(server: TestServer) {
     let ada = server.admin("ada").await;
-    let path = place(&ada).await;
+    let path = binnacle_path(&ada).await;
     let mut other = binnacle();
     other["serial"] = json!("2048");
     let send = |body: Value, key: &'static str| {
@@ -110,7 +110,7 @@ async fn a_binnacle_repeated_under_its_key_is_one_revision(server: TestServer) {
 
 async fn an_invalid_binnacle_is_refused_by_field_and_not_stored(server: TestServer) {
     let ada = server.admin("ada").await;
-    let path = place(&ada).await;
+    let path = binnacle_path(&ada).await;
     let tray = |hole: u16| json!([{ "hole": hole, "magnet": "200 mm", "count": 1, "red": "port" }]);
     for (pointer, value, named) in [
         (
@@ -145,7 +145,7 @@ async fn an_invalid_binnacle_is_refused_by_field_and_not_stored(server: TestServ
 
 async fn a_viewer_can_read_but_not_write_a_binnacle(server: TestServer) {
     let ada = server.admin("ada").await;
-    let path = place(&ada).await;
+    let path = binnacle_path(&ada).await;
     put(&ada, &path, &binnacle()).await.good();
     let bob = ada.viewer(&server).await;
     assert_eq!(bob.get(&path).await.good()["revision"], 1);

@@ -33,7 +33,7 @@ const A_WHILE_S: f64 = 10.0;
 const DAY_S: f64 = 86_400.0;
 
 /// Enrols a ship with a model of five days of samples.
-async fn modelled(server: &TestServer, ada: &Person) -> Ship {
+async fn modelled_ship(server: &TestServer, ada: &Person) -> Ship {
     let nao = server.ship(ada, "Nao Victoria").await;
     nao.put(1, &days_at_sea(&true_model(), FROM, 5.0))
         .await
@@ -51,7 +51,7 @@ async fn amend(ada: &Person, path: &str, body: Value) {
 
 async fn a_card_shows_prediction_and_uncertainty(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = modelled(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     let vessel = json!({ "imo_number": "9074729", "call_sign": "EAVN", "flag": "Spain" });
     amend(&ada, &nao.path(""), vessel).await;
     let card = ada.get(&nao.path("/card.json")).await.good();
@@ -123,7 +123,7 @@ async fn a_card_shows_prediction_and_uncertainty(server: TestServer) {
 
 async fn the_four_forms_of_a_card_agree_and_are_reproducible(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = modelled(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     amend(
         &ada,
         &nao.path(""),
@@ -179,7 +179,7 @@ async fn the_four_forms_of_a_card_agree_and_are_reproducible(server: TestServer)
 
 async fn a_card_is_for_the_requested_place_and_date(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = modelled(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     let here = ada.get(&nao.path("/card.json")).await.good();
     assert_eq!(
         (&here["place"]["lat"], &here["place"]["lon"]),
@@ -198,7 +198,7 @@ async fn a_card_is_for_the_requested_place_and_date(server: TestServer) {
 
 async fn each_compass_has_its_own_card(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = modelled(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     let element = json!({ "name": "Element", "role": "transmitting", "serial_number": "7" });
     let other = ada.post(&nao.path("/compasses"), &element).await.good();
     let of = |id: &Value| nao.path(&format!("/card.json?compass={}", id.as_str().unwrap()));
@@ -215,7 +215,7 @@ async fn each_compass_has_its_own_card(server: TestServer) {
 
 async fn a_card_shows_the_last_recorded_correctors(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = modelled(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     let card = ada.get(&nao.path("/card.json")).await.good();
     assert_eq!(card["correctors"], json!(null));
     let compass = card["compass"]["id"].as_str().unwrap();
@@ -241,7 +241,7 @@ async fn a_card_shows_the_last_recorded_correctors(server: TestServer) {
 
 async fn an_invalid_query_is_refused_by_field(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = modelled(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     for (wrong, problem) in [
         ("?lat=95&lon=0", "invalid"),
         ("?lat=1", "invalid"),
@@ -259,7 +259,7 @@ async fn an_invalid_query_is_refused_by_field(server: TestServer) {
 }
 
 /// Returns status, last segment of the problem's type, and detail.
-async fn refusal(ada: &Person, nao: &Ship, query: &str) -> (u16, String, String) {
+async fn refused_card(ada: &Person, nao: &Ship, query: &str) -> (u16, String, String) {
     let response = ada.get(&nao.path(&format!("/card.pdf{query}"))).await;
     let detail = response.json()["detail"].to_string();
     (response.status, response.problem(), detail)
@@ -267,7 +267,7 @@ async fn refusal(ada: &Person, nao: &Ship, query: &str) -> (u16, String, String)
 
 async fn a_misleading_card_is_refused(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = modelled(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     let refused = async |query: &str| {
         let response = ada.get(&nao.path(&format!("/card.pdf{query}"))).await;
         (
@@ -285,7 +285,7 @@ async fn a_misleading_card_is_refused(server: TestServer) {
 
     server.advance(100.0 * DAY_S);
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
-    let refused = async |query: &str| refusal(&ada, &nao, query).await;
+    let refused = async |query: &str| refused_card(&ada, &nao, query).await;
     let (status, problem, detail) = refused("").await;
     assert_eq!((status, problem.as_str()), (409, "model-too-old"));
     assert!(detail.contains("2026-11-19 23:50 UTC"), "{detail}");
@@ -311,7 +311,7 @@ async fn a_card_with_ambiguous_headings_is_refused(server: TestServer) {
     server.advance(A_WHILE_S);
     server.work().await;
     ada.get(&nao.path("/card.json")).await.good();
-    let (status, problem, detail) = refusal(&ada, &nao, "?lat=-61&lon=136").await;
+    let (status, problem, detail) = refused_card(&ada, &nao, "?lat=-61&lon=136").await;
     assert_eq!((status, problem.as_str()), (409, "headings-ambiguous"));
     assert!(detail.contains("heading"), "{detail}");
     server.finish().await;
@@ -319,7 +319,7 @@ async fn a_card_with_ambiguous_headings_is_refused(server: TestServer) {
 
 async fn a_card_of_a_suspected_compass_is_refused(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = modelled(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     ada.get(&nao.path("/card.json")).await.good();
     let since = Timestamp::parse("2026-11-20T04:00:00Z").unwrap();
     let mut agent_alert = ShipAlert {
@@ -333,18 +333,18 @@ async fn a_card_of_a_suspected_compass_is_refused(server: TestServer) {
         limit_deg: 3.9,
         model_version: 1,
     };
-    nao.put_bytes(2, reporting(&nao, 2, agent_alert))
+    nao.put_bytes(2, batch_with_alert(&nao, 2, agent_alert))
         .await
         .good();
-    let (status, problem, detail) = refusal(&ada, &nao, "").await;
+    let (status, problem, detail) = refused_card(&ada, &nao, "").await;
     assert_eq!((status, problem.as_str()), (409, "compass-suspected"));
     assert!(detail.contains("parted by 28°"), "{detail}");
     // There is a card again after compass and gyro have agreed for some hours.
     (agent_alert.revision, agent_alert.state) = (2, ShipAlertState::Agree);
-    nao.put_bytes(3, reporting(&nao, 3, agent_alert))
+    nao.put_bytes(3, batch_with_alert(&nao, 3, agent_alert))
         .await
         .good();
-    let (status, _, detail) = refusal(&ada, &nao, "").await;
+    let (status, _, detail) = refused_card(&ada, &nao, "").await;
     assert_eq!(status, 409);
     assert!(detail.contains("they agree"), "{detail}");
     server.advance(7.0 * 3600.0);
@@ -354,7 +354,7 @@ async fn a_card_of_a_suspected_compass_is_refused(server: TestServer) {
 }
 
 /// Returns a batch with an alert of the agent alone.
-fn reporting(ship: &Ship, seq: u64, alert: ShipAlert) -> Vec<u8> {
+fn batch_with_alert(ship: &Ship, seq: u64, alert: ShipAlert) -> Vec<u8> {
     let batch = Batch {
         stream: ship.stream,
         seq,

@@ -28,20 +28,20 @@ on_both!(
 
 const A_WHILE_S: f64 = 10.0;
 /// Start of twenty days at sea,
-const BASE: &str = "2026-10-20T00:00:00Z";
+const DEPARTURE: &str = "2026-10-20T00:00:00Z";
 /// and their end.
-const HIT: &str = "2026-11-09T00:00:00Z";
+const STRIKE: &str = "2026-11-09T00:00:00Z";
 
 async fn the_timeline_after_a_strike_has_both_epochs_with_curves(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = well_known(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     let calm = ada.get(&nao.path("/changes")).await.good();
     assert_eq!(calm["changes"], json!([]));
     assert_eq!(calm["epochs"].as_array().unwrap().len(), 1);
     assert_eq!(calm["epochs"][0]["model_version"], 1);
 
-    let model_after_step = days_at_sea(&model_after_step(3000.0, 2000.0), HIT, 2.0);
-    send(&server, &nao, 2, &model_after_step).await;
+    let samples_after = days_at_sea(&model_after_step(3000.0, 2000.0), STRIKE, 2.0);
+    send_and_analyse(&server, &nao, 2, &samples_after).await;
     let timeline = ada.get(&nao.path("/changes")).await.good();
     let changes = timeline["changes"].as_array().unwrap();
     assert_eq!(changes.len(), 1, "{changes:?}");
@@ -98,13 +98,19 @@ async fn before_the_first_analysis_the_timeline_is_empty(server: TestServer) {
 }
 
 /// Enrols a ship with a model of three weeks at sea.
-async fn well_known(server: &TestServer, person: &Person) -> Ship {
+async fn modelled_ship(server: &TestServer, person: &Person) -> Ship {
     let ship = server.ship(person, "Nao").await;
-    send(server, &ship, 1, &days_at_sea(&true_model(), BASE, 20.0)).await;
+    send_and_analyse(
+        server,
+        &ship,
+        1,
+        &days_at_sea(&true_model(), DEPARTURE, 20.0),
+    )
+    .await;
     ship
 }
 
-async fn send(server: &TestServer, ship: &Ship, seq: u64, samples: &[Sample]) {
+async fn send_and_analyse(server: &TestServer, ship: &Ship, seq: u64, samples: &[Sample]) {
     ship.put(seq, samples).await.good();
     server.advance(A_WHILE_S);
     server.work().await;
@@ -138,16 +144,16 @@ fn widest_band_deg(model: &Value) -> f64 {
 
 async fn a_strike_raises_one_alert_that_is_updated(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = well_known(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     assert_eq!(open_alerts(&ada).await, Vec::<Value>::new());
-    let model_after_step = days_at_sea(&model_after_step(3000.0, 2000.0), HIT, 4.0);
-    send(&server, &nao, 2, &model_after_step[..36]).await;
-    let of_lightning = |alerts: Vec<Value>| -> Vec<Value> {
+    let samples_after = days_at_sea(&model_after_step(3000.0, 2000.0), STRIKE, 4.0);
+    send_and_analyse(&server, &nao, 2, &samples_after[..36]).await;
+    let lightning_alerts = |alerts: Vec<Value>| -> Vec<Value> {
         let mut alerts = alerts;
         alerts.retain(|alert| alert["cause"] == "lightning_or_shock");
         alerts
     };
-    let raised = of_lightning(open_alerts(&ada).await);
+    let raised = lightning_alerts(open_alerts(&ada).await);
     assert_eq!(raised.len(), 1, "{raised:?}");
     assert_eq!(raised[0]["severity"], "critical", "{raised:?}");
     let field_of = |alert: &Value, field: &str| alert[field].as_str().unwrap().to_owned();
@@ -158,10 +164,10 @@ async fn a_strike_raises_one_alert_that_is_updated(server: TestServer) {
     assert!(field_of(&raised[0], "summary").contains("lightning or a shock"));
     assert!(field_of(&raised[0], "since").as_str() > "2026-11-08T20");
     for day in 0..3 {
-        let samples = &model_after_step[36 + 144 * day..36 + 144 * (day + 1)];
-        send(&server, &nao, 3 + day as u64, samples).await;
+        let samples = &samples_after[36 + 144 * day..36 + 144 * (day + 1)];
+        send_and_analyse(&server, &nao, 3 + day as u64, samples).await;
     }
-    let later = of_lightning(open_alerts(&ada).await);
+    let later = lightning_alerts(open_alerts(&ada).await);
     assert_eq!(later.len(), 1, "{later:?}");
     assert_eq!(later[0]["id"], raised[0]["id"], "updated, not repeated");
     assert_eq!(later[0]["severity"], "warning", "{later:?}");
@@ -180,7 +186,7 @@ async fn a_strike_raises_one_alert_that_is_updated(server: TestServer) {
     server.finish().await;
 }
 
-async fn of_lightning(person: &Person, query: &str) -> Vec<Value> {
+async fn lightning_alerts(person: &Person, query: &str) -> Vec<Value> {
     let listed = person.get(&format!("/alerts{query}")).await.good();
     let mut alerts = listed["items"].as_array().unwrap().clone();
     alerts.retain(|alert| alert["cause"] == "lightning_or_shock");
@@ -188,10 +194,10 @@ async fn of_lightning(person: &Person, query: &str) -> Vec<Value> {
 }
 
 /// Time of the second strike, and the magnetism after it.
-const HIT_AGAIN: &str = "2026-11-14T00:00:00Z";
+const SECOND_STRIKE: &str = "2026-11-14T00:00:00Z";
 
-fn struck_again(days: f64) -> Vec<Sample> {
-    days_at_sea(&model_after_step(1200.0, 3200.0), HIT_AGAIN, days)
+fn second_strike(days: f64) -> Vec<Sample> {
+    days_at_sea(&model_after_step(1200.0, 3200.0), SECOND_STRIKE, days)
 }
 
 async fn a_second_strike_raises_an_alert_after_the_first_was_acknowledged(server: TestServer) {
@@ -201,22 +207,22 @@ async fn a_second_strike_raises_an_alert_after_the_first_was_acknowledged(server
     let kinds = json!(["alert.raised", "alert.updated", "alert.cleared"]);
     let hook = json!({ "url": "https://example.com/hook", "kinds": kinds });
     let hook = ada.post("/webhooks", &hook).await.good();
-    let nao = well_known(&server, &ada).await;
-    let first = days_at_sea(&model_after_step(3000.0, 2000.0), HIT, 5.0);
-    send(&server, &nao, 2, &first[..36]).await;
-    let alert = of_lightning(&ada, "?open=true").await.remove(0);
+    let nao = modelled_ship(&server, &ada).await;
+    let first = days_at_sea(&model_after_step(3000.0, 2000.0), STRIKE, 5.0);
+    send_and_analyse(&server, &nao, 2, &first[..36]).await;
+    let alert = lightning_alerts(&ada, "?open=true").await.remove(0);
     let path = format!("/alerts/{}", alert["id"].as_str().unwrap());
     let note = json!({ "note": "Master informed" });
     ada.post(&format!("{path}/acknowledge"), &note).await.good();
-    send(&server, &nao, 3, &first[36..]).await;
+    send_and_analyse(&server, &nao, 3, &first[36..]).await;
     // The same strike, perhaps with a better date, is still acknowledged.
     let known = ada.get(&path).await.good();
     assert_eq!(known["state"], "acknowledged", "{known}");
     mail::deliver(&server, &relay).await;
     let sent_before = mail::subjects(&relay).len();
 
-    send(&server, &nao, 4, &struck_again(2.0)).await;
-    let open = of_lightning(&ada, "?open=true").await;
+    send_and_analyse(&server, &nao, 4, &second_strike(2.0)).await;
+    let open = lightning_alerts(&ada, "?open=true").await;
     assert_eq!(open.len(), 1, "{open:?}");
     assert_eq!(
         (&open[0]["state"], &open[0]["acknowledged_by"]),
@@ -254,37 +260,37 @@ async fn a_second_strike_raises_an_alert_after_the_first_was_acknowledged(server
 
 async fn a_strike_dated_before_the_last_clearing_raises_an_alert(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = well_known(&server, &ada).await;
-    let first = days_at_sea(&model_after_step(3000.0, 2000.0), HIT, 5.0);
-    send(&server, &nao, 2, &first[..36]).await;
-    let alert = of_lightning(&ada, "?open=true").await.remove(0);
+    let nao = modelled_ship(&server, &ada).await;
+    let first = days_at_sea(&model_after_step(3000.0, 2000.0), STRIKE, 5.0);
+    send_and_analyse(&server, &nao, 2, &first[..36]).await;
+    let alert = lightning_alerts(&ada, "?open=true").await.remove(0);
     let clear = format!("/alerts/{}/clear", alert["id"].as_str().unwrap());
     let reason = json!({ "reason": "Azimuths taken" });
     ada.post(&clear, &reason).await.good();
-    send(&server, &nao, 3, &first[36..]).await;
-    let open = of_lightning(&ada, "?open=true").await;
+    send_and_analyse(&server, &nao, 3, &first[36..]).await;
+    let open = lightning_alerts(&ada, "?open=true").await;
     assert_eq!(open, Vec::<Value>::new(), "the same strike stays cleared");
 
     // From a week before the person cleared the alert.
-    send(&server, &nao, 4, &struck_again(2.0)).await;
-    let open = of_lightning(&ada, "?open=true").await;
+    send_and_analyse(&server, &nao, 4, &second_strike(2.0)).await;
+    let open = lightning_alerts(&ada, "?open=true").await;
     assert_eq!(open.len(), 1, "{open:?}");
     assert!(
         open[0]["since"].as_str().unwrap() > "2026-11-13T20",
         "{open:?}"
     );
-    let cleared = of_lightning(&ada, "?state=cleared").await;
+    let cleared = lightning_alerts(&ada, "?state=cleared").await;
     assert_eq!(cleared[0]["clearing_reason"], "Azimuths taken");
     server.finish().await;
 }
 
 async fn after_a_strike_the_agent_gets_an_interim_model_with_a_wider_band(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = well_known(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     let base = downlink_with(&nao, &Value::Null).await["model"].take();
     assert_eq!(base.get("replaces"), None);
-    let model_after_step = days_at_sea(&model_after_step(3000.0, 2000.0), HIT, 4.0);
-    send(&server, &nao, 2, &model_after_step[..36]).await;
+    let samples_after = days_at_sea(&model_after_step(3000.0, 2000.0), STRIKE, 4.0);
+    send_and_analyse(&server, &nao, 2, &samples_after[..36]).await;
     let interim = downlink_with(&nao, &base).await["model"].take();
     assert_eq!(
         interim["replaces"]["reason"], "lightning_or_shock",
@@ -294,7 +300,7 @@ async fn after_a_strike_the_agent_gets_an_interim_model_with_a_wider_band(server
     let (before, after) = (widest_band_deg(&base), widest_band_deg(&interim));
     assert!(after > 1.2 * before, "{before} and then {after}");
     // The band contains the ship's present deviation.
-    send(&server, &nao, 3, &model_after_step[36..]).await;
+    send_and_analyse(&server, &nao, 3, &samples_after[36..]).await;
     let later = downlink_with(&nao, &interim).await["model"].take();
     assert!(widest_band_deg(&later) < after);
     server.finish().await;
@@ -302,7 +308,7 @@ async fn after_a_strike_the_agent_gets_an_interim_model_with_a_wider_band(server
 
 async fn after_discharge_the_agent_gets_the_base_model_again(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = well_known(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     let base = downlink_with(&nao, &Value::Null).await["model"].take();
     // Loaded for eight hours, at sea for five days, discharged.
     let loaded = days_at_sea(
@@ -310,7 +316,7 @@ async fn after_discharge_the_agent_gets_the_base_model_again(server: TestServer)
         "2026-11-09T08:00:00Z",
         5.0,
     );
-    send(&server, &nao, 2, &loaded).await;
+    send_and_analyse(&server, &nao, 2, &loaded).await;
     let with_cargo = downlink_with(&nao, &base).await["model"].take();
     assert_eq!(
         with_cargo["replaces"]["reason"], "magnetic_cargo",
@@ -323,7 +329,7 @@ async fn after_discharge_the_agent_gets_the_base_model_again(server: TestServer)
     assert!(cargo.is_some(), "{raised:?}");
 
     let discharged = days_at_sea(&true_model(), "2026-11-14T16:00:00Z", 1.0);
-    send(&server, &nao, 3, &discharged).await;
+    send_and_analyse(&server, &nao, 3, &discharged).await;
     let timeline = ada.get(&nao.path("/changes")).await.good();
     assert_eq!(
         timeline["epochs"][2]["resumes"], 0,
@@ -344,7 +350,7 @@ async fn after_discharge_the_agent_gets_the_base_model_again(server: TestServer)
 
 async fn logged_work_opens_an_epoch_without_an_alert(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = well_known(&server, &ada).await;
+    let nao = modelled_ship(&server, &ada).await;
     let base = downlink_with(&nao, &Value::Null).await["model"].take();
     let repair = json!({ "kind": "repair", "from": "2026-11-09T00:00:00Z" });
     ada.post(&nao.path("/logbook"), &repair).await.good();
@@ -357,7 +363,7 @@ async fn logged_work_opens_an_epoch_without_an_alert(server: TestServer) {
         "2026-11-09T12:00:00Z",
         4.0,
     );
-    send(&server, &nao, 2, &after).await;
+    send_and_analyse(&server, &nao, 2, &after).await;
     let timeline = ada.get(&nao.path("/changes")).await.good();
     assert_eq!(timeline["epochs"].as_array().unwrap().len(), 2);
     assert_eq!(timeline["epochs"][1]["begun_by"], "repair");
@@ -385,12 +391,12 @@ fn deflected(place: (f64, f64), from_h: usize, to_h: usize, deg: Swing) -> Vec<S
 }
 
 /// A deflection of two hours, the same on two headings.
-fn passed(place: (f64, f64), hours_ago: usize) -> Vec<Sample> {
+fn short_deflection(place: (f64, f64), hours_ago: usize) -> Vec<Sample> {
     deflected(place, hours_ago + 2, hours_ago, |_| 3.0)
 }
 
 /// An oscillating deflection in the last six hours.
-fn passing(place: (f64, f64)) -> Vec<Sample> {
+fn oscillating_deflection(place: (f64, f64)) -> Vec<Sample> {
     deflected(place, 6, 0, |i| 6.0 * (0.7 * i).sin())
 }
 
@@ -407,18 +413,18 @@ async fn last_change(person: &Person, ship: &Ship) -> Value {
 async fn a_storm_is_named_when_two_ships_were_disturbed(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     let nao = server.ship(&ada, "Nao").await;
-    send(&server, &nao, 1, &passed((48.0, -6.0), 14)).await;
+    send_and_analyse(&server, &nao, 1, &short_deflection((48.0, -6.0), 14)).await;
     let alone = last_change(&ada, &nao).await;
     assert_eq!(alone["cause"], "local_anomaly", "{alone}");
 
     // A ship disturbed in other hours is not part of it.
     let victoria = server.ship(&eve, "Victoria").await;
-    send(&server, &victoria, 1, &passed((30.0, -40.0), 62)).await;
+    send_and_analyse(&server, &victoria, 1, &short_deflection((30.0, -40.0), 62)).await;
     assert_eq!(last_change(&eve, &victoria).await["cause"], "local_anomaly");
     assert_eq!(last_change(&ada, &nao).await, alone);
 
     let gaviota = server.ship(&eve, "Gaviota").await;
-    send(&server, &gaviota, 1, &passed((58.0, -20.0), 14)).await;
+    send_and_analyse(&server, &gaviota, 1, &short_deflection((58.0, -20.0), 14)).await;
     let stormy = last_change(&ada, &nao).await;
     assert_eq!(stormy["cause"], "magnetic_storm", "{stormy}");
     let text = stormy.to_string();
@@ -434,14 +440,14 @@ async fn a_storm_is_named_when_two_ships_were_disturbed(server: TestServer) {
 async fn an_alert_is_updated_by_other_ships_without_a_new_fit(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     let nao = server.ship(&ada, "Nao").await;
-    send(&server, &nao, 1, &passing((48.0, -6.0))).await;
+    send_and_analyse(&server, &nao, 1, &oscillating_deflection((48.0, -6.0))).await;
     let before = open_alerts(&ada).await;
     assert_eq!(before.len(), 1, "{before:?}");
     assert_eq!(before[0]["severity"], "warning");
     assert!(!before[0]["evidence"].to_string().contains("other ship"));
 
     let gaviota = server.ship(&eve, "Gaviota").await;
-    send(&server, &gaviota, 1, &passing((58.0, -20.0))).await;
+    send_and_analyse(&server, &gaviota, 1, &oscillating_deflection((58.0, -20.0))).await;
     // Ada's alert follows by itself.
     server.advance(100.0);
     server.work().await;
@@ -477,7 +483,7 @@ async fn a_swinging_compass_raises_one_alert_whatever_the_amplitude(server: Test
     let mut causes = Vec::new();
     for (name, swing) in swings {
         let ship = server.ship(&ada, name).await;
-        send(&server, &ship, 1, &deflected((48.0, -6.0), 6, 0, swing)).await;
+        send_and_analyse(&server, &ship, 1, &deflected((48.0, -6.0), 6, 0, swing)).await;
         let open = open_alerts(&ada).await;
         let of_her: Vec<&Value> = open.iter().filter(|a| a["vessel_name"] == name).collect();
         assert_eq!(of_her.len(), 1, "{name}: {open:?}");

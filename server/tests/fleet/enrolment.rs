@@ -2,7 +2,7 @@
 
 use binnacle_fleet::alerts;
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{ApiResponse, Person, Ship, TestServer, exchange, sample};
+use binnacle_server_testing::{ApiResponse, Person, Ship, TestServer, enrol_with_code, sample};
 use binnacle_wire::batch::StreamId;
 use reqwest::Method;
 use serde_json::{Value, json};
@@ -27,12 +27,14 @@ async fn a_code_works_once(server: TestServer) {
     let path = format!("/vessels/{}/agents", vessel["id"].as_str().unwrap());
     let code = ada.post(&path, &json!({})).await.good();
     let code = code["code"].as_str().unwrap();
-    let enrolled = exchange(&server, code).await.good();
+    let enrolled = enrol_with_code(&server, code).await.good();
     assert_eq!(enrolled["vessel_name"], "Nao");
     assert_eq!(enrolled["compass_name"], "Standard compass");
-    assert_eq!(exchange(&server, code).await.problem(), "gone");
+    assert_eq!(enrol_with_code(&server, code).await.problem(), "gone");
     assert_eq!(
-        exchange(&server, "0000-0000-0000-0000").await.problem(),
+        enrol_with_code(&server, "0000-0000-0000-0000")
+            .await
+            .problem(),
         "not-found"
     );
     let streams = ada.get(&path).await.good();
@@ -49,7 +51,7 @@ async fn a_code_expires(server: TestServer) {
     let made = ada.post(&path, &json!({ "valid_for_s": 60 })).await.good();
     assert_eq!(made["expires_at"], "2026-11-21T07:01:00Z");
     server.advance(60.0);
-    let late = exchange(&server, made["code"].as_str().unwrap()).await;
+    let late = enrol_with_code(&server, made["code"].as_str().unwrap()).await;
     assert_eq!(late.problem(), "gone");
     assert!(late.text.contains("a new one"), "{late:?}");
     let usual = ada.post(&path, &json!({})).await.good();
@@ -68,7 +70,7 @@ async fn a_code_may_be_typed_in_any_case_with_separators(server: TestServer) {
     let made = ada.post(&path, &json!({})).await.good();
     let code = made["code"].as_str().unwrap();
     let typed = format!(" {} ", code.to_lowercase().replace('-', " "));
-    assert_eq!(exchange(&server, &typed).await.status, 200);
+    assert_eq!(enrol_with_code(&server, &typed).await.status, 200);
     server.finish().await;
 }
 
@@ -215,14 +217,14 @@ async fn another_stream(ship: &Ship) -> StreamId {
     StreamId(opened.json()["stream"].as_str().unwrap().parse().unwrap())
 }
 
-async fn put_in(ship: &Ship, stream: StreamId, seq: u64) {
+async fn put_batch(ship: &Ship, stream: StreamId, seq: u64) {
     let path = format!("/streams/{stream}/batches/{seq}");
     let frame = binnacle_server_testing::frame(stream, seq, &[]);
     let put = ship.request(Method::PUT, &path).body(frame);
     ApiResponse::of(put).await.good();
 }
 
-async fn clones(person: &Person) -> Vec<Value> {
+async fn duplicate_agent_alerts(person: &Person) -> Vec<Value> {
     let listed = person.get("/alerts").await.good();
     let mut alerts = listed["items"].as_array().unwrap().clone();
     alerts.retain(|alert| alert["cause"] == "cloned_agent");
@@ -232,18 +234,18 @@ async fn clones(person: &Person) -> Vec<Value> {
 async fn a_duplicate_agent_raises_an_alert_until_it_is_revoked(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
-    put_in(&nao, nao.stream, 1).await;
+    put_batch(&nao, nao.stream, 1).await;
     let second = another_stream(&nao).await;
     // So far it may be the same computer, which did not use the new stream.
-    put_in(&nao, nao.stream, 2).await;
-    put_in(&nao, second, 1).await;
+    put_batch(&nao, nao.stream, 2).await;
+    put_batch(&nao, second, 1).await;
     // The same batch again proves nothing.
-    put_in(&nao, nao.stream, 2).await;
-    assert_eq!(clones(&ada).await, Vec::<Value>::new());
+    put_batch(&nao, nao.stream, 2).await;
+    assert_eq!(duplicate_agent_alerts(&ada).await, Vec::<Value>::new());
     for seq in 3..6 {
-        put_in(&nao, nao.stream, seq).await;
-        put_in(&nao, second, seq).await;
-        let found = clones(&ada).await;
+        put_batch(&nao, nao.stream, seq).await;
+        put_batch(&nao, second, seq).await;
+        let found = duplicate_agent_alerts(&ada).await;
         assert_eq!(found.len(), 1);
         assert_eq!(
             (&found[0]["state"], &found[0]["severity"]),
@@ -253,9 +255,9 @@ async fn a_duplicate_agent_raises_an_alert_until_it_is_revoked(server: TestServe
         assert!(last.starts_with(&format!("Batch {seq} arrived")), "{last}");
     }
     server.work().await;
-    assert_eq!(clones(&ada).await[0]["state"], "raised");
+    assert_eq!(duplicate_agent_alerts(&ada).await[0]["state"], "raised");
     revoke(&ada, &nao).await;
-    assert_eq!(clones(&ada).await[0]["state"], "cleared");
+    assert_eq!(duplicate_agent_alerts(&ada).await[0]["state"], "cleared");
     server.finish().await;
 }
 
@@ -263,13 +265,13 @@ async fn the_duplicate_agent_alert_ends_after_a_week_without_evidence(server: Te
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let second = another_stream(&nao).await;
-    put_in(&nao, second, 1).await;
-    put_in(&nao, nao.stream, 1).await;
+    put_batch(&nao, second, 1).await;
+    put_batch(&nao, nao.stream, 1).await;
     for (days, state) in [(6.0, "raised"), (1.1, "cleared")] {
         server.advance(days * 86_400.0);
         alerts::check_timed(&server.app).await.unwrap();
         let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
-        assert_eq!(clones(&ada).await[0]["state"], state);
+        assert_eq!(duplicate_agent_alerts(&ada).await[0]["state"], state);
     }
     server.finish().await;
 }

@@ -140,7 +140,7 @@ async fn a_stored_future_position_is_replaced(server: TestServer) {
     nao.put(1, &passage(DAY, 1)).await.good();
     // As an earlier version left it: the year 2046.
     server
-        .sql("UPDATE vessels SET last_sample_at = 2414448000000000")
+        .run_sql("UPDATE vessels SET last_sample_at = 2414448000000000")
         .await;
     nao.put(2, &passage("2026-11-20T12:00:00Z", 1)).await.good();
     let vessel = ada.get(&nao.path("")).await.good();
@@ -190,8 +190,8 @@ async fn an_acknowledged_batch_survives_a_restart(server: TestServer) {
     let mut nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 40)).await.good();
     let server = server.restart().await;
-    let ada = ada.at(&server);
-    nao.at(&server);
+    let ada = ada.reconnect(&server);
+    nao.reconnect(&server);
     assert_eq!(nao.downlink("").await["contiguous_seq"], 1);
     // Its job was stored with the batch.
     server.advance(5.0);

@@ -1,7 +1,7 @@
 //! The overview of the fleet.
 
 use binnacle_server_testing::TestServer;
-use binnacle_server_testing::alerts::{limit, ship_with_model};
+use binnacle_server_testing::alerts::{set_alert_limits, ship_with_model};
 use binnacle_server_testing::on_both;
 use serde_json::{Value, json};
 
@@ -16,7 +16,7 @@ const HOUR_S: f64 = 3_600.0;
 async fn the_overview_agrees_with_the_vessels_page(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     ada.create_vessel("Kogge").await;
 
     let fleet = ada.get("/fleet").await.good();

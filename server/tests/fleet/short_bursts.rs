@@ -28,7 +28,7 @@ fn long_passage(ship: &Ship) -> Vec<Sample> {
     long.next().unwrap()
 }
 
-async fn brought(server: &TestServer, ship: &Ship, messages: &[Vec<u8>]) -> Imported {
+async fn import_messages(server: &TestServer, ship: &Ship, messages: &[Vec<u8>]) -> Imported {
     let vessel = VesselId(ship.id.parse().unwrap());
     let named = messages.iter().zip(1..);
     let named: Vec<_> = named
@@ -47,12 +47,12 @@ async fn messages_are_reassembled_into_batches_stored_once(server: TestServer) {
     let mut messages = [second, first].concat();
     messages.reverse();
     let missing = messages.pop().unwrap();
-    let imported = brought(&server, &nao, &messages).await;
+    let imported = import_messages(&server, &nao, &messages).await;
     assert_eq!((imported.stored, imported.repeated), (1, 0));
     assert!(imported.incomplete.is_empty() && imported.refused.is_empty());
     assert_eq!(read_ack(&imported.answers[0].1).unwrap().contiguous_seq, 1);
     messages.push(missing);
-    let imported = brought(&server, &nao, &messages).await;
+    let imported = import_messages(&server, &nao, &messages).await;
     assert_eq!((imported.stored, imported.repeated), (1, 1));
     assert_eq!(read_ack(&imported.answers[0].1).unwrap().contiguous_seq, 2);
     // The same batch over the ordinary link.
@@ -76,7 +76,7 @@ async fn an_invalid_message_does_not_block_the_others(server: TestServer) {
     messages.extend(split(&frame(nao.stream, 1, &passage(DAY, 3))).unwrap());
     let day = split(&frame(nao.stream, 2, &long_passage(&nao))).unwrap();
     messages.push(day[0].clone());
-    let imported = brought(&server, &nao, &messages).await;
+    let imported = import_messages(&server, &nao, &messages).await;
     assert_eq!(imported.stored, 1);
     let refused: Vec<&str> = imported
         .refused
@@ -100,7 +100,7 @@ async fn other_bytes_under_a_stored_number_are_refused(server: TestServer) {
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 6)).await.good();
     let messages = split(&frame(nao.stream, 1, &passage(DAY, 5))).unwrap();
-    let imported = brought(&server, &nao, &messages).await;
+    let imported = import_messages(&server, &nao, &messages).await;
     assert_eq!(imported.refused.len(), 1);
     let streams = ada.get(&nao.path("/agents")).await.good();
     assert_eq!(streams["items"][0]["samples"], 6);

@@ -1,6 +1,6 @@
 //! Calendar feeds of work orders, port calls and due dates.
 
-use crate::schedule::{compass_of, due_vessel, enter};
+use crate::schedule::{compass_of, due_vessel, enter_port_call};
 use binnacle_planning::notifications::look;
 use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::on_both;
@@ -56,7 +56,7 @@ fn lines(text: &str) -> Vec<String> {
 }
 
 /// Returns a property of a calendar's only event.
-fn of(lines: &[String], key: &str) -> String {
+fn property(lines: &[String], key: &str) -> String {
     let mut found = lines
         .iter()
         .filter_map(|line| line.strip_prefix(&format!("{key}:")));
@@ -67,14 +67,14 @@ fn of(lines: &[String], key: &str) -> String {
     value.to_owned()
 }
 
-async fn feed(person: &Person, new: &Value) -> Value {
+async fn create_feed(person: &Person, new: &Value) -> Value {
     let made = person.post("/calendar-feeds", new).await;
     assert_eq!(made.status, 201, "{made:?}");
     made.good()
 }
 
 /// Reads a calendar by its address alone.
-async fn read(server: &TestServer, made: &Value) -> ApiResponse {
+async fn read_feed(server: &TestServer, made: &Value) -> ApiResponse {
     let url = made["url"].as_str().unwrap();
     let path = url.strip_prefix("https://binnacle.example").unwrap();
     ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await
@@ -82,22 +82,25 @@ async fn read(server: &TestServer, made: &Value) -> ApiResponse {
 
 async fn a_calendar_is_readable_by_its_secret_address_until_removed(server: TestServer) {
     let parties = OfferParties::planned(&server, 0).await;
-    let made = feed(&parties.ada, &json!({ "name": "Our fleet" })).await;
-    let found = read(&server, &made).await;
+    let made = create_feed(&parties.ada, &json!({ "name": "Our fleet" })).await;
+    let found = read_feed(&server, &made).await;
     assert_eq!(
         found.headers["content-type"],
         "text/calendar; charset=utf-8"
     );
     let calendar = lines(&found.text);
-    assert_eq!(of(&calendar, "X-WR-CALNAME"), "Our fleet");
-    assert_eq!(of(&calendar, "DTSTART"), "20261122T080000Z");
-    assert_eq!(of(&calendar, "DTEND"), "20261122T110000Z");
-    assert_eq!(of(&calendar, "STATUS"), "TENTATIVE");
-    assert_eq!(of(&calendar, "LOCATION"), "Bilbao\\, A5");
-    assert_eq!(found.text, read(&server, &made).await.text);
+    assert_eq!(property(&calendar, "X-WR-CALNAME"), "Our fleet");
+    assert_eq!(property(&calendar, "DTSTART"), "20261122T080000Z");
+    assert_eq!(property(&calendar, "DTEND"), "20261122T110000Z");
+    assert_eq!(property(&calendar, "STATUS"), "TENTATIVE");
+    assert_eq!(property(&calendar, "LOCATION"), "Bilbao\\, A5");
+    assert_eq!(found.text, read_feed(&server, &made).await.text);
     // A token or a session reads the same; without them nothing.
     let own = parties.ada.get("/calendar.ics").await;
-    assert_eq!(of(&lines(&own.text), "UID"), of(&calendar, "UID"));
+    assert_eq!(
+        property(&lines(&own.text), "UID"),
+        property(&calendar, "UID")
+    );
     let url = format!("{}/api/v1/calendar.ics?token=bnc_wrong", server.url);
     let wrong = ApiResponse::of(server.http.get(url)).await;
     assert_eq!(wrong.problem(), "unauthenticated");
@@ -111,14 +114,14 @@ async fn a_calendar_is_readable_by_its_secret_address_until_removed(server: Test
     assert_eq!(theirs.problem(), "not-found");
     let removed = ApiResponse::of(parties.ada.request(Method::DELETE, &path)).await;
     assert_eq!(removed.status, 204);
-    assert_eq!(read(&server, &made).await.problem(), "unauthenticated");
+    assert_eq!(read_feed(&server, &made).await.problem(), "unauthenticated");
     server.finish().await;
 }
 
 async fn an_event_keeps_its_uid_and_its_sequence_grows(server: TestServer) {
     let parties = OfferParties::planned(&server, 1).await;
-    let made = feed(&parties.ada, &json!({ "name": "Our fleet" })).await;
-    let before = lines(&read(&server, &made).await.text);
+    let made = create_feed(&parties.ada, &json!({ "name": "Our fleet" })).await;
+    let before = lines(&read_feed(&server, &made).await.text);
     server.advance(60.0);
     parties
         .post(&parties.ada, "/offer", &parties.offer())
@@ -128,18 +131,18 @@ async fn an_event_keeps_its_uid_and_its_sequence_grows(server: TestServer) {
         .post(&parties.firms[0].1, "/accept", &json!({}))
         .await
         .good();
-    let after = lines(&read(&server, &made).await.text);
-    assert_eq!(of(&before, "UID"), of(&after, "UID"));
-    let sequence = |lines: &[String]| of(lines, "SEQUENCE").parse::<u32>().unwrap();
+    let after = lines(&read_feed(&server, &made).await.text);
+    assert_eq!(property(&before, "UID"), property(&after, "UID"));
+    let sequence = |lines: &[String]| property(lines, "SEQUENCE").parse::<u32>().unwrap();
     assert!(sequence(&after) > sequence(&before));
-    assert!(of(&after, "DTSTAMP") > of(&before, "DTSTAMP"));
-    assert_eq!(of(&after, "STATUS"), "CONFIRMED");
+    assert!(property(&after, "DTSTAMP") > property(&before, "DTSTAMP"));
+    assert_eq!(property(&after, "STATUS"), "CONFIRMED");
     parties
         .post(&parties.ada, "/cancel", &json!({ "text": "sold" }))
         .await
         .good();
-    let cancelled = lines(&read(&server, &made).await.text);
-    assert_eq!(of(&cancelled, "STATUS"), "CANCELLED");
+    let cancelled = lines(&read_feed(&server, &made).await.text);
+    assert_eq!(property(&cancelled, "STATUS"), "CANCELLED");
     server.finish().await;
 }
 
@@ -147,19 +150,19 @@ async fn a_firms_calendar_shows_what_the_firm_sees(server: TestServer) {
     let parties = OfferParties::offered(&server, 2).await;
     let mut feeds = Vec::new();
     for (_, adjuster) in &parties.firms {
-        feeds.push(feed(adjuster, &json!({ "name": "Orders" })).await);
+        feeds.push(create_feed(adjuster, &json!({ "name": "Orders" })).await);
     }
-    let rosas = read(&server, &feeds[0]).await.text;
+    let rosas = read_feed(&server, &feeds[0]).await.text;
     assert!(
-        of(&lines(&rosas), "SUMMARY").ends_with("(offered)"),
+        property(&lines(&rosas), "SUMMARY").ends_with("(offered)"),
         "{rosas}"
     );
-    assert!(!read(&server, &feeds[1]).await.text.contains("VEVENT"));
+    assert!(!read_feed(&server, &feeds[1]).await.text.contains("VEVENT"));
     parties
         .post(&parties.firms[0].1, "/decline", &json!({}))
         .await;
-    assert!(!read(&server, &feeds[0]).await.text.contains("VEVENT"));
-    assert!(read(&server, &feeds[1]).await.text.contains("VEVENT"));
+    assert!(!read_feed(&server, &feeds[0]).await.text.contains("VEVENT"));
+    assert!(read_feed(&server, &feeds[1]).await.text.contains("VEVENT"));
     server.finish().await;
 }
 
@@ -167,10 +170,10 @@ async fn a_vessels_calendar_shows_that_vessel(server: TestServer) {
     let parties = OfferParties::planned(&server, 1).await;
     let other = parties.ada.create_vessel("Other").await;
     let new = |vessel: &Value| json!({ "name": "One ship", "vessel_id": vessel });
-    let ours = feed(&parties.ada, &new(&parties.new_order()["vessel_id"])).await;
-    let empty = feed(&parties.ada, &new(&other["id"])).await;
-    assert!(read(&server, &ours).await.text.contains("VEVENT"));
-    assert!(!read(&server, &empty).await.text.contains("VEVENT"));
+    let ours = create_feed(&parties.ada, &new(&parties.new_order()["vessel_id"])).await;
+    let empty = create_feed(&parties.ada, &new(&other["id"])).await;
+    assert!(read_feed(&server, &ours).await.text.contains("VEVENT"));
+    assert!(!read_feed(&server, &empty).await.text.contains("VEVENT"));
     let eve = server.admin("eve").await;
     for who in [&eve, &parties.firms[0].1] {
         let refused = who.post("/calendar-feeds", &new(&other["id"])).await;
@@ -224,10 +227,10 @@ fn sequence(event: &icalendar::Event) -> u32 {
 async fn a_vessels_calendar_follows_its_port_calls_and_due_dates(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    let call = enter(&ada, &nao, "NLRTM", 8).await;
+    let call = enter_port_call(&ada, &nao, "NLRTM", 8).await;
     look(&server.app).await.unwrap();
-    let made = feed(&ada, &json!({ "name": "Nao", "vessel_id": nao["id"] })).await;
-    let before = events(&read(&server, &made).await.text);
+    let made = create_feed(&ada, &json!({ "name": "Nao", "vessel_id": nao["id"] })).await;
+    let before = events(&read_feed(&server, &made).await.text);
     let call_uid = format!("call-{}@binnacle", call["id"].as_str().unwrap());
     let due_uid = format!("due-{}@binnacle", compass_of(&nao));
     assert_eq!(before.keys().collect::<Vec<_>>(), [&call_uid, &due_uid]);
@@ -251,7 +254,7 @@ async fn a_vessels_calendar_follows_its_port_calls_and_due_dates(server: TestSer
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-20T08:00:00Z" });
     ada.post(&path, &adjusted).await.good();
     look(&server.app).await.unwrap();
-    let after = events(&read(&server, &made).await.text);
+    let after = events(&read_feed(&server, &made).await.text);
     let (is, due_now) = (&after[&call_uid], &after[&due_uid]);
     assert_eq!(instant(is.get_start()), "2026-12-08T12:00:00+00:00");
     let said = is.get_description().unwrap();
@@ -266,13 +269,13 @@ async fn a_vessels_calendar_follows_its_port_calls_and_due_dates(server: TestSer
     }
     // Nothing has changed: the same bytes at the next request.
     look(&server.app).await.unwrap();
-    let again = read(&server, &made).await.text;
-    assert_eq!(again, read(&server, &made).await.text);
+    let again = read_feed(&server, &made).await.text;
+    assert_eq!(again, read_feed(&server, &made).await.text);
     assert_eq!(sequence(&events(&again)[&due_uid]), sequence(due_now));
 
     let why = json!({ "reason": "ice" });
     ada.post(&format!("{one}/withdraw"), &why).await.good();
-    let gone = events(&read(&server, &made).await.text);
+    let gone = events(&read_feed(&server, &made).await.text);
     let gone = &gone[&call_uid];
     assert_eq!(gone.property_value("STATUS"), Some("CANCELLED"));
     assert!(gone.get_description().unwrap().contains("Withdrawn: ice"));
@@ -283,10 +286,10 @@ async fn a_vessels_calendar_follows_its_port_calls_and_due_dates(server: TestSer
 async fn a_fleet_calendar_covers_all_vessels_and_a_firms_only_its_orders(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     let pinta = due_vessel(&parties.ada, "Pinta").await;
-    enter(&parties.ada, &pinta, "BEANR", 8).await;
+    enter_port_call(&parties.ada, &pinta, "BEANR", 8).await;
     let eve = server.admin("eve").await;
     let hers = due_vessel(&eve, "Nina").await;
-    enter(&eve, &hers, "NLRTM", 8).await;
+    enter_port_call(&eve, &hers, "NLRTM", 8).await;
     look(&server.app).await.unwrap();
     let fleet = events(&parties.ada.get("/calendar.ics").await.text);
     let kinds = |begin: &str| fleet.keys().filter(|uid| uid.starts_with(begin)).count();

@@ -1,7 +1,7 @@
 //! Vessels out of service: sold or laid up.
 
-use crate::schedule::{due_vessel, enter, follow, planned_firm, solve};
-use binnacle_server_testing::alerts::{limit, ship_with_model};
+use crate::schedule::{due_vessel, enter_port_call, planned_firm, solve, update_schedule};
+use binnacle_server_testing::alerts::{set_alert_limits, ship_with_model};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{ApiResponse, Person, Ship, TestServer, passage};
 use reqwest::Method;
@@ -18,7 +18,7 @@ on_both!(
 const A_WHILE_S: f64 = 10.0;
 const LATER: &str = "2026-11-15T12:00:00Z";
 
-async fn set(person: &Person, vessel: &str, in_service: bool) -> ApiResponse {
+async fn set_in_service(person: &Person, vessel: &str, in_service: bool) -> ApiResponse {
     let request = person.request(Method::PATCH, vessel);
     ApiResponse::of(request.json(&json!({ "in_service": in_service }))).await
 }
@@ -29,9 +29,9 @@ async fn items(person: &Person, path: &str) -> Vec<Value> {
 }
 
 /// Enrols a ship with deviation over its limit and a port call ahead.
-async fn over_her_limit(server: &TestServer, person: &Person) -> Ship {
+async fn ship_over_limit(server: &TestServer, person: &Person) -> Ship {
     let nao = ship_with_model(server, person).await;
-    limit(server, person, &nao, json!({ "deviation_deg": 1.0 })).await;
+    set_alert_limits(server, person, &nao, json!({ "deviation_deg": 1.0 })).await;
     let call =
         json!({ "port": "ESBIO", "eta": "2026-12-01T06:00:00Z", "etd": "2026-12-02T18:00:00Z" });
     person.post(&nao.path("/port-calls"), &call).await.good();
@@ -41,10 +41,10 @@ async fn over_her_limit(server: &TestServer, person: &Person) -> Ship {
 
 async fn a_vessel_out_of_service_is_unlisted_and_raises_no_alert(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = over_her_limit(&server, &ada).await;
+    let nao = ship_over_limit(&server, &ada).await;
     let kogge = server.ship(&ada, "Kogge").await;
 
-    let vessel = set(&ada, &nao.path(""), false).await.good();
+    let vessel = set_in_service(&ada, &nao.path(""), false).await.good();
     assert!(vessel["out_of_service_at"].is_string(), "{vessel}");
     assert_eq!(
         (&vessel["name"], &vessel["open_alerts"]),
@@ -74,7 +74,7 @@ async fn a_vessel_out_of_service_is_unlisted_and_raises_no_alert(server: TestSer
     assert_eq!(items(&ada, &nao.path("/port-calls")).await.len(), 1);
     ada.get(&nao.path("/deviation")).await.good();
 
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.5 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.5 })).await;
     server.advance(5.0 * 86_400.0);
     binnacle_fleet::alerts::check_timed(&server.app)
         .await
@@ -90,14 +90,14 @@ async fn a_vessel_out_of_service_is_unlisted_and_raises_no_alert(server: TestSer
 
 async fn batches_sent_out_of_service_are_kept_for_the_return(server: TestServer) {
     let ada = server.admin("ada").await;
-    let nao = over_her_limit(&server, &ada).await;
-    set(&ada, &nao.path(""), false).await.good();
+    let nao = ship_over_limit(&server, &ada).await;
+    set_in_service(&ada, &nao.path(""), false).await.good();
     nao.put(2, &passage(LATER, 30)).await.good();
     server.advance(A_WHILE_S);
     server.work().await;
     assert_eq!(items(&ada, "/alerts?open=true").await, Vec::<Value>::new());
 
-    let vessel = set(&ada, &nao.path(""), true).await.good();
+    let vessel = set_in_service(&ada, &nao.path(""), true).await.good();
     assert_eq!(vessel["out_of_service_at"], Value::Null);
     server.work().await;
     let open = items(&ada, "/alerts?open=true").await;
@@ -120,14 +120,14 @@ async fn a_vessel_with_an_order_under_way_stays_in_service(server: TestServer) {
         "planned_at": "2026-12-01T08:00:00Z",
     });
     let made = ada.post("/work-orders", &order).await.good();
-    let refused = set(&ada, &nao.path(""), false).await;
+    let refused = set_in_service(&ada, &nao.path(""), false).await;
     assert_eq!(
         (refused.status, refused.problem().as_str()),
         (409, "wrong-state")
     );
     let cancel = format!("/work-orders/{}/cancel", made["id"].as_str().unwrap());
     ada.post(&cancel, &json!({ "text": "Sold" })).await.good();
-    set(&ada, &nao.path(""), false).await.good();
+    set_in_service(&ada, &nao.path(""), false).await.good();
     let refused = ada.post("/work-orders", &order).await;
     assert_eq!(
         (refused.status, refused.problem().as_str()),
@@ -140,9 +140,12 @@ async fn only_its_operators_admin_takes_a_vessel_out_of_service(server: TestServ
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let eve = server.admin("eve").await;
-    assert_eq!(set(&eve, &nao.path(""), false).await.status, 404);
+    assert_eq!(set_in_service(&eve, &nao.path(""), false).await.status, 404);
     let viewer = ada.viewer(&server).await;
-    assert_eq!(set(&viewer, &nao.path(""), false).await.status, 403);
+    assert_eq!(
+        set_in_service(&viewer, &nao.path(""), false).await.status,
+        403
+    );
     assert_eq!(
         ada.get(&nao.path("")).await.good()["out_of_service_at"],
         Value::Null
@@ -154,7 +157,7 @@ async fn a_vessel_out_of_service_leaves_the_plan_and_comes_back_into_it(server: 
     let ada = server.admin("ada").await;
     planned_firm(&server, &ada, "rosa").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 14).await;
+    enter_port_call(&ada, &nao, "NLRTM", 14).await;
     let path = format!("/vessels/{}", nao["id"].as_str().unwrap());
     let jobs = async || {
         let seen = ada.get("/schedule").await.good();
@@ -163,8 +166,8 @@ async fn a_vessel_out_of_service_leaves_the_plan_and_comes_back_into_it(server: 
     solve(&ada).await;
     assert_eq!(jobs().await, 1);
     for (in_service, planned) in [(false, 0), (true, 1)] {
-        set(&ada, &path, in_service).await.good();
-        assert_eq!(follow(&server).await, Some(ada.operator));
+        set_in_service(&ada, &path, in_service).await.good();
+        assert_eq!(update_schedule(&server).await, Some(ada.operator));
         assert_eq!(jobs().await, planned);
     }
     server.finish().await;

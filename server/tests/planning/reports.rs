@@ -106,7 +106,7 @@ async fn a_job_is_compared_with_a_swing(server: TestServer) {
         "UPDATE work_orders SET state = 'closed'",
     ];
     for (stands, sql) in ["failed", "closed"].into_iter().zip(failed) {
-        server.sql(sql).await;
+        server.run_sql(sql).await;
         let failed = report(&job.person, "").await;
         assert_eq!(failed["jobs"][0]["state"], stands);
         assert_eq!(failed["jobs"][0]["spared_swing"], false);
@@ -156,7 +156,7 @@ async fn the_report_files_agree_with_the_report(server: TestServer) {
 }
 
 /// Parses a letter's text and attachments with Python's mail parser.
-fn parts(letter: &str) -> Value {
+fn parse_letter(letter: &str) -> Value {
     let program = "import email, email.policy, json, sys\n\
         m = email.message_from_bytes(sys.argv[1].encode(), policy=email.policy.default)\n\
         assert not m.defects, m.defects\n\
@@ -194,7 +194,7 @@ async fn a_monthly_report_goes_once_to_its_recipients(server: TestServer) {
     assert_eq!(look(&server.app).await.unwrap(), 0);
     put(&ada, "/reports/settings", &late).await.good();
     server.advance(0.05 * DAY_S);
-    let other = server.second().await;
+    let other = server.second_server().await;
     let (one, two) = tokio::join!(look(&server.app), look(&other));
     assert_eq!(one.unwrap() + two.unwrap(), 1);
     assert_eq!(look(&server.app).await.unwrap(), 0);
@@ -204,7 +204,7 @@ async fn a_monthly_report_goes_once_to_its_recipients(server: TestServer) {
     assert_eq!(got[0].to, ["<b@example.com>"]);
     let letter = &got[0];
     assert!(letter.text.contains("Subject: Compass report of 2026-11"));
-    let read = parts(&letter.text);
+    let read = parse_letter(&letter.text);
     let text = read["text"].as_str().unwrap();
     assert!(
         text.contains("Fleet:              1 vessels, 1 compasses"),
@@ -228,7 +228,7 @@ async fn a_failing_report_does_not_block_other_operators(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
     due_vessel(&ada, "Nao").await;
     server
-        .sql("UPDATE vessel_particulars SET particulars = '{'")
+        .run_sql("UPDATE vessel_particulars SET particulars = '{'")
         .await;
     due_vessel(&eve, "Pinta").await;
     let wanted = json!({ "monthly_to": ["chief@example.com"] });
@@ -250,7 +250,7 @@ async fn a_job_received_after_its_month_is_in_the_next_report(server: TestServer
     assert_eq!(report(ada, "").await["jobs"][0]["order_id"], job.order);
     // As if the phone had kept it until the second of December, 00:00 UTC.
     server
-        .sql(
+        .run_sql(
             "UPDATE work_orders SET completion_received_at = 1796169600000000
              WHERE completion_received_at >= completed_at",
         )
@@ -262,7 +262,7 @@ async fn a_job_received_after_its_month_is_in_the_next_report(server: TestServer
         assert_eq!(look(&server.app).await.unwrap(), 1);
         deliver(&server, &relay).await;
         let letter = relay.letters().pop().unwrap();
-        let files = parts(&letter.text)["files"].clone();
+        let files = parse_letter(&letter.text)["files"].clone();
         let jobs = files.as_object().unwrap().iter();
         let mut jobs = jobs.filter(|(name, _)| name.starts_with("compass-jobs"));
         let csv = jobs.next().unwrap().1[1].as_str().unwrap().to_owned();

@@ -6,7 +6,7 @@ use binnacle_server_testing::binnacles::{binnacle, put};
 use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::program::good;
-use binnacle_server_testing::{ApiResponse, Engine, PASSWORD, Person, TestServer, attempt};
+use binnacle_server_testing::{ApiResponse, Engine, PASSWORD, Person, TestServer, try_sign_in};
 use reqwest::Method;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ async fn lines(person: &Person, filter: &str) -> Vec<Value> {
 }
 
 /// Returns the audited requests, in order: method, route, status.
-fn done(lines: &[Value]) -> Vec<String> {
+fn requests(lines: &[Value]) -> Vec<String> {
     let said = |line: &Value| {
         let word = |name: &str| line[name].as_str().unwrap().replace("/api/v1", "");
         format!("{} {} {}", word("method"), word("route"), line["status"])
@@ -53,7 +53,7 @@ async fn each_change_has_an_audit_line(server: TestServer) {
     ada.get(&path).await.good();
     let found = lines(&ada, "").await;
     assert_eq!(
-        done(&found),
+        requests(&found),
         [
             "POST /session 200",
             "POST /vessels 201",
@@ -88,11 +88,11 @@ async fn a_refused_change_has_an_audit_line_too(server: TestServer) {
     }
     let nobody = server.http.patch(format!("{}/api/v1{path}", server.url));
     assert_eq!(ApiResponse::of(nobody.json(&change)).await.status, 401);
-    let wrong = attempt(&server, "ada@example.com", "wrong").await;
+    let wrong = try_sign_in(&server, "ada@example.com", "wrong").await;
     assert_eq!(wrong.status, 401);
-    let adas = done(&lines(&ada, "?route=/api/v1/vessels/{id}").await);
+    let adas = requests(&lines(&ada, "?route=/api/v1/vessels/{id}").await);
     assert_eq!(adas, ["PATCH /vessels/{id} 403"]);
-    let eves = done(&lines(&eve, "?route=/api/v1/vessels/{id}").await);
+    let eves = requests(&lines(&eve, "?route=/api/v1/vessels/{id}").await);
     assert_eq!(eves, ["PATCH /vessels/{id} 404"]);
     assert_eq!(lines(&ada, "?route=/api/v1/session").await.len(), 2);
     server.finish().await;
@@ -101,17 +101,17 @@ async fn a_refused_change_has_an_audit_line_too(server: TestServer) {
 async fn a_change_without_an_audit_line_fails(server: TestServer) {
     let ada = server.admin("ada").await;
     server
-        .sql("ALTER TABLE audit_lines RENAME TO elsewhere")
+        .run_sql("ALTER TABLE audit_lines RENAME TO elsewhere")
         .await;
     let failed = ada.post("/vessels", &json!({ "name": "Nao" })).await;
     assert_eq!(failed.problem(), "internal");
     server
-        .sql("ALTER TABLE elsewhere RENAME TO audit_lines")
+        .run_sql("ALTER TABLE elsewhere RENAME TO audit_lines")
         .await;
     assert_eq!(ada.get("/vessels").await.good()["items"], json!([]));
     ada.create_vessel("Nao").await;
     let found = lines(&ada, "?route=/api/v1/vessels").await;
-    assert_eq!(done(&found), ["POST /vessels 201"]);
+    assert_eq!(requests(&found), ["POST /vessels 201"]);
     server.finish().await;
 }
 
@@ -119,13 +119,13 @@ async fn each_read_by_a_firm_has_an_audit_line(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     let rosa = &parties.firms[0].1;
     server
-        .sql("ALTER TABLE audit_lines RENAME TO elsewhere")
+        .run_sql("ALTER TABLE audit_lines RENAME TO elsewhere")
         .await;
     let failed = rosa.get(&parties.path("")).await;
     assert_eq!(failed.problem(), "internal");
     assert_eq!(parties.view_order().await["state"], "offered");
     server
-        .sql("ALTER TABLE elsewhere RENAME TO audit_lines")
+        .run_sql("ALTER TABLE elsewhere RENAME TO audit_lines")
         .await;
     server.finish().await;
 }
@@ -155,7 +155,7 @@ async fn a_firms_audit_lines_are_visible_to_the_vessels_operator_alone(server: T
     let by_rosa = |line: &&Value| line["actor_name"] == rosa.email.as_str();
     let hers: Vec<Value> = theirs.iter().filter(by_rosa).cloned().collect();
     assert_eq!(
-        done(&hers),
+        requests(&hers),
         [
             "GET /work-orders/{id}/binnacle 200",
             "POST /work-orders/{id}/accept 200"
@@ -177,7 +177,7 @@ async fn a_firms_audit_lines_are_visible_to_the_vessels_operator_alone(server: T
     assert_eq!(lines(&eve, &of_order).await, Vec::<Value>::new());
     // The other firm sees its own attempt, and nothing about the order's owner.
     let tried = lines(&other, &of_order).await;
-    assert_eq!(done(&tried), ["POST /work-orders/{id}/accept 404"]);
+    assert_eq!(requests(&tried), ["POST /work-orders/{id}/accept 404"]);
     assert_eq!(tried[0]["vessel_id"], Value::Null);
     assert_eq!(tried[0]["operator_id"], Value::Null);
     assert!(!theirs.iter().any(|line| line["id"] == tried[0]["id"]));
@@ -197,8 +197,8 @@ async fn each_party_sees_its_own_audit_lines_and_a_viewer_none(server: TestServe
     for path in ["/audit", "/audit.csv"] {
         assert_eq!(viewer.get(path).await.problem(), "forbidden");
     }
-    assert_eq!(done(&lines(&rosa, "").await), ["POST /session 200"]);
-    let adas = done(&lines(&ada, "").await);
+    assert_eq!(requests(&lines(&rosa, "").await), ["POST /session 200"]);
+    let adas = requests(&lines(&ada, "").await);
     assert_eq!(
         adas,
         [
@@ -207,7 +207,7 @@ async fn each_party_sees_its_own_audit_lines_and_a_viewer_none(server: TestServe
             "POST /vessels 201"
         ]
     );
-    let eves = done(&lines(&eve, "").await);
+    let eves = requests(&lines(&eve, "").await);
     assert_eq!(
         eves,
         ["POST /session 200", "PUT /operators/{id}/firms/{firm} 204"]
@@ -227,7 +227,7 @@ async fn an_agents_enrolment_has_an_audit_line(server: TestServer) {
     .good();
     let found = lines(&ada, &format!("?vessel={}", ship.id)).await;
     assert_eq!(
-        done(&found),
+        requests(&found),
         [
             "POST /vessels 201",
             "POST /vessels/{id}/agents 201",
@@ -250,7 +250,7 @@ async fn an_accepted_invitation_has_an_audit_line(server: TestServer) {
         .await
         .good();
     let found = lines(&ada, "?route=/api/v1/invitations/accept").await;
-    assert_eq!(done(&found), ["POST /invitations/accept 200"]);
+    assert_eq!(requests(&found), ["POST /invitations/accept 200"]);
     assert_eq!(found[0]["actor_name"], "Bob");
     assert_eq!(found[0]["actor_id"], bob["user"]["id"]);
     server.finish().await;
@@ -306,7 +306,7 @@ async fn the_audit_log_is_searched_paged_and_exported(server: TestServer) {
     assert_eq!(first["items"].as_array().unwrap().len(), 3);
     let rest = format!("?limit=3&after={}", first["next"].as_str().unwrap());
     let rest = lines(&ada, &rest).await;
-    assert_eq!(done(&rest), ["POST /session 200"]);
+    assert_eq!(requests(&rest), ["POST /session 200"]);
     let between = "?from=2026-11-21T07:02:00Z&to=2026-11-21T07:03:00Z";
     assert_eq!(lines(&ada, between).await.len(), 1);
     let me = ada.get("/me").await.good()["user_id"].clone();
@@ -336,18 +336,18 @@ async fn old_audit_lines_are_deleted(server: TestServer) {
     server.advance(1.5 * DAY_S);
     assert_eq!(forget(&server.app).await.unwrap(), 2);
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
-    let left = done(&lines(&ada, "").await);
+    let left = requests(&lines(&ada, "").await);
     assert_eq!(left, ["POST /session 200", "POST /session 200"]);
     server.finish().await;
 }
 
 /// Lists the source files below a folder.
-fn sources(folder: &Path) -> Vec<PathBuf> {
+fn source_files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            found.extend(sources(&path));
+            found.extend(source_files(&path));
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             found.push(path);
         }
@@ -368,7 +368,7 @@ fn every_handler_begins_its_transaction_from_its_request() {
     ];
     for path in crates
         .iter()
-        .flat_map(|folder| sources(&server.join(folder)))
+        .flat_map(|folder| source_files(&server.join(folder)))
     {
         let text = std::fs::read_to_string(&path).unwrap();
         for function in text.split("\n}\n") {
@@ -393,7 +393,7 @@ async fn changes_by_the_command_line_have_an_audit_line() {
     let reset: Vec<&str> = reset.into_iter().chain([email.as_str()]).collect();
     good(&run(folder.path(), &reset));
     let found = lines(&ada, "").await;
-    assert_eq!(done(&found)[2..], [" admin reset-user null"]);
+    assert_eq!(requests(&found)[2..], [" admin reset-user null"]);
     assert_eq!(found[0]["actor_kind"], "command");
     assert_eq!(found[0]["operator_id"], ada.operator.to_string());
     server.finish().await;

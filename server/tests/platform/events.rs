@@ -25,7 +25,7 @@ async fn a_lost_postgres_connection_is_restored_and_missed_events_are_sent() {
     let server = TestServer::start(Engine::Postgres).await;
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
-    let mut source = Source::open(&ada, None).await;
+    let mut source = EventSource::open(&ada, None).await;
     let Pools::Postgres(pool) = server.app.db.pools() else {
         unreachable!("PostgreSQL was asked for");
     };
@@ -46,28 +46,28 @@ async fn a_lost_postgres_connection_is_restored_and_missed_events_are_sent() {
 const DAY: &str = "2026-11-15T00:00:00Z";
 
 /// A client of live events.
-struct Source {
+struct EventSource {
     stream: futures_util::stream::BoxStream<'static, reqwest::Result<Vec<u8>>>,
     text: String,
 }
 
-impl Source {
-    async fn open(person: &Person, last: Option<&str>) -> Source {
+impl EventSource {
+    async fn open(person: &Person, last: Option<&str>) -> EventSource {
         let mut request = person.request(Method::GET, "/events");
         if let Some(last) = last {
             request = request.header("last-event-id", last);
         }
-        Source::of(request).await
+        EventSource::of(request).await
     }
 
-    async fn of(request: reqwest::RequestBuilder) -> Source {
+    async fn of(request: reqwest::RequestBuilder) -> EventSource {
         let response = request.send().await.unwrap();
         assert_eq!(response.headers()["content-type"], "text/event-stream");
         let chunks = futures_util::stream::unfold(response, |mut response| async {
             let chunk = response.chunk().await.transpose()?;
             Some((chunk.map(|bytes| bytes.to_vec()), response))
         });
-        Source {
+        EventSource {
             stream: chunks.boxed(),
             text: String::new(),
         }
@@ -103,7 +103,7 @@ impl Source {
 async fn a_dashboard_gets_events_of_a_batch_and_a_model(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
-    let mut source = Source::open(&ada, None).await;
+    let mut source = EventSource::open(&ada, None).await;
     nao.put(1, &passage(DAY, 300)).await.good();
     let (_, batch) = source.next().await.unwrap();
     assert_eq!(
@@ -120,7 +120,7 @@ async fn a_dashboard_gets_events_of_a_batch_and_a_model(server: TestServer) {
 async fn a_dashboard_gets_an_event_of_a_logbook_entry(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
-    let mut source = Source::open(&ada, None).await;
+    let mut source = EventSource::open(&ada, None).await;
     let lightning = json!({ "kind": "lightning", "from": DAY });
     ada.post(&nao.path("/logbook"), &lightning).await.good();
     let (_, heard) = source.next().await.unwrap();
@@ -131,13 +131,13 @@ async fn a_dashboard_gets_an_event_of_a_logbook_entry(server: TestServer) {
 async fn a_reconnecting_dashboard_gets_missed_events(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
-    let mut source = Source::open(&ada, None).await;
+    let mut source = EventSource::open(&ada, None).await;
     nao.put(1, &passage(DAY, 300)).await.good();
     let (seen, _) = source.next().await.unwrap();
     drop(source);
     server.advance(10.0);
     server.work().await;
-    let mut source = Source::open(&ada, Some(&seen)).await;
+    let mut source = EventSource::open(&ada, Some(&seen)).await;
     let (_, missed) = source.next().await.unwrap();
     assert!(missed.contains("\"kind\":\"model\""), "{missed}");
     server.finish().await;
@@ -148,7 +148,7 @@ async fn events_stay_within_an_operator(server: TestServer) {
     let eve = server.admin("eve").await;
     let nao = server.ship(&ada, "Nao").await;
     let kogge = server.ship(&eve, "Kogge").await;
-    let mut source = Source::open(&eve, None).await;
+    let mut source = EventSource::open(&eve, None).await;
     nao.put(1, &passage(DAY, 3)).await.good();
     kogge.put(1, &passage(DAY, 3)).await.good();
     let (_, first) = source.next().await.unwrap();
@@ -164,9 +164,9 @@ async fn a_revoked_token_and_an_ended_session_get_no_more_events(server: TestSer
     let made = ada.post("/tokens", &token).await.good();
     let url = format!("{}/api/v1/events", server.url);
     let request = server.http.get(url);
-    let mut by_token = Source::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
-    let mut by_session = Source::open(&grace, None).await;
-    let mut kept = Source::open(&ada, None).await;
+    let mut by_token = EventSource::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
+    let mut by_session = EventSource::open(&grace, None).await;
+    let mut kept = EventSource::open(&ada, None).await;
     nao.put(1, &passage(DAY, 3)).await.good();
     for source in [&mut by_token, &mut by_session, &mut kept] {
         assert!(source.next().await.is_some());
@@ -187,13 +187,13 @@ async fn a_revoked_token_and_an_ended_session_get_no_more_events(server: TestSer
 
 async fn a_stopping_server_closes_its_event_streams(server: TestServer) {
     let ada = server.admin("ada").await;
-    let mut source = Source::open(&ada, None).await;
+    let mut source = EventSource::open(&ada, None).await;
     server.app.stopping.cancel();
     assert_eq!(source.next().await, None);
     server.finish().await;
 }
 
-async fn left(server: &TestServer) -> (i64,) {
+async fn count_events(server: &TestServer) -> (i64,) {
     let sql = "SELECT COUNT(*) FROM events";
     match server.app.db.pools() {
         Pools::Sqlite { readers, .. } => sqlx::query_as(sql).fetch_one(readers).await,
@@ -205,7 +205,7 @@ async fn left(server: &TestServer) -> (i64,) {
 async fn events_are_deleted_after_a_day(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
-    let mut source = Source::open(&ada, None).await;
+    let mut source = EventSource::open(&ada, None).await;
     nao.put(1, &passage(DAY, 3)).await.good();
     nao.put(2, &passage(DAY, 3)).await.good();
     let (seen, _) = source.next().await.unwrap();
@@ -216,10 +216,10 @@ async fn events_are_deleted_after_a_day(server: TestServer) {
     nao.put(3, &passage(DAY, 3)).await.good();
     // The session has expired.
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
-    let mut source = Source::open(&ada, Some(&seen)).await;
+    let mut source = EventSource::open(&ada, Some(&seen)).await;
     let (third, _) = source.next().await.unwrap();
     // If the second event were still there, it would come first.
-    let (listed,) = left(&server).await;
+    let (listed,) = count_events(&server).await;
     assert_eq!(listed, 1, "after {third}");
     server.finish().await;
 }

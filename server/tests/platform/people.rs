@@ -1,7 +1,7 @@
 //! An operator's people: invited, changed, blocked, removed.
 
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{ApiResponse, PASSWORD, Person, TestServer, attempt};
+use binnacle_server_testing::{ApiResponse, PASSWORD, Person, TestServer, try_sign_in};
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -21,7 +21,7 @@ on_both!(
     a_calendar_ends_with_its_creator,
 );
 
-const GOOD: &str = "seven gulls over the quay";
+const STRONG_PASSWORD: &str = "seven gulls over the quay";
 
 async fn invite(admin: &Person, email: &str, role: &str) -> Value {
     let new = json!({ "email": email, "name": "Grace Hopper", "role": role });
@@ -56,12 +56,14 @@ async fn an_invited_person_sets_a_password_and_signs_in(server: TestServer) {
     assert_eq!(invited["user"]["email"], "grace@example.com");
     // Not even with the empty password that is stored.
     for guess in ["", code] {
-        let early = attempt(&server, "grace@example.com", guess).await;
+        let early = try_sign_in(&server, "grace@example.com", guess).await;
         assert_eq!(early.problem(), "wrong-password");
     }
-    let accepted = accept(&server, &code.to_lowercase(), GOOD).await.good();
+    let accepted = accept(&server, &code.to_lowercase(), STRONG_PASSWORD)
+        .await
+        .good();
     assert_eq!(accepted["email"], "grace@example.com");
-    let signed_in = attempt(&server, "grace@example.com", GOOD).await;
+    let signed_in = try_sign_in(&server, "grace@example.com", STRONG_PASSWORD).await;
     assert_eq!(signed_in.good()["role"], "viewer");
     let listed = ada.get("/users").await.good();
     assert_eq!(listed["items"][1]["state"], "active");
@@ -75,14 +77,19 @@ async fn a_code_works_once_and_for_a_week(server: TestServer) {
     let ada = server.admin("ada").await;
     let invited = invite(&ada, "grace@example.com", "viewer").await;
     let code = invited["invitation"]["code"].as_str().unwrap().to_owned();
-    accept(&server, &code, GOOD).await.good();
+    accept(&server, &code, STRONG_PASSWORD).await.good();
     let again = accept(&server, &code, "another good long one").await;
     assert_eq!(again.problem(), "not-found");
-    let wrong = accept(&server, "AAAA-AAAA-AAAA-AAAA", GOOD).await;
+    let wrong = accept(&server, "AAAA-AAAA-AAAA-AAAA", STRONG_PASSWORD).await;
     assert_eq!(wrong.problem(), "not-found");
     let other = invite(&ada, "mary@example.com", "viewer").await;
     server.advance(7.0 * 86_400.0);
-    let late = accept(&server, other["invitation"]["code"].as_str().unwrap(), GOOD).await;
+    let late = accept(
+        &server,
+        other["invitation"]["code"].as_str().unwrap(),
+        STRONG_PASSWORD,
+    )
+    .await;
     assert_eq!(late.problem(), "gone");
     server.finish().await;
 }
@@ -106,7 +113,7 @@ async fn a_weak_password_is_refused_and_the_code_stays_valid(server: TestServer)
                 .starts_with("password: ")
         );
     }
-    accept(&server, code, GOOD).await.good();
+    accept(&server, code, STRONG_PASSWORD).await.good();
     server.finish().await;
 }
 
@@ -138,13 +145,16 @@ async fn blocking_a_person_ends_access_at_once(server: TestServer) {
     assert_eq!(disabled["state"], "disabled");
     assert_eq!(viewer.get("/me").await.problem(), "unauthenticated");
     assert_eq!(by_token().await.problem(), "unauthenticated");
-    let refused = attempt(&server, &viewer.email, PASSWORD).await;
+    let refused = try_sign_in(&server, &viewer.email, PASSWORD).await;
     assert_eq!(refused.problem(), "wrong-password");
     let path = format!("/users/{}/invitation", id.as_str().unwrap());
     assert_eq!(ada.post(&path, &json!({})).await.problem(), "wrong-state");
 
     change(&ada, &id, json!({ "disabled": false })).await.good();
-    assert_eq!(attempt(&server, &viewer.email, PASSWORD).await.status, 200);
+    assert_eq!(
+        try_sign_in(&server, &viewer.email, PASSWORD).await.status,
+        200
+    );
     server.finish().await;
 }
 
@@ -157,15 +167,20 @@ async fn a_person_with_a_forgotten_password_gets_a_new_code(server: TestServer) 
     let second = ada.post(&path, &json!({})).await.good();
     // Nothing changes until the code is used.
     assert_eq!(viewer.get("/me").await.status, 200);
-    let old = accept(&server, first["code"].as_str().unwrap(), GOOD).await;
+    let old = accept(&server, first["code"].as_str().unwrap(), STRONG_PASSWORD).await;
     assert_eq!(old.problem(), "not-found");
-    accept(&server, second["code"].as_str().unwrap(), GOOD)
+    accept(&server, second["code"].as_str().unwrap(), STRONG_PASSWORD)
         .await
         .good();
     assert_eq!(viewer.get("/me").await.problem(), "unauthenticated");
-    let before = attempt(&server, &viewer.email, PASSWORD).await;
+    let before = try_sign_in(&server, &viewer.email, PASSWORD).await;
     assert_eq!(before.problem(), "wrong-password");
-    assert_eq!(attempt(&server, &viewer.email, GOOD).await.status, 200);
+    assert_eq!(
+        try_sign_in(&server, &viewer.email, STRONG_PASSWORD)
+            .await
+            .status,
+        200
+    );
     server.finish().await;
 }
 
@@ -270,7 +285,7 @@ impl Program {
         }
     }
 
-    async fn ask(&self, method: Method, path: &str, body: &Value) -> ApiResponse {
+    async fn send(&self, method: Method, path: &str, body: &Value) -> ApiResponse {
         let request = self.http.request(method, format!("{}{path}", self.url));
         ApiResponse::of(request.bearer_auth(&self.token).json(body)).await
     }
@@ -314,12 +329,12 @@ async fn an_admins_token_cannot_manage_people(server: TestServer) {
         ),
     ];
     for (method, path, body) in tried {
-        let refused = program.ask(method, &path, &body).await;
+        let refused = program.send(method, &path, &body).await;
         assert_eq!(refused.problem(), "forbidden", "{path}");
     }
     // The token may do the work of a program.
     assert_eq!(
-        program.ask(Method::GET, "/users", &json!({})).await.status,
+        program.send(Method::GET, "/users", &json!({})).await.status,
         200
     );
     let listed = ada.get("/users").await.good();
@@ -350,11 +365,13 @@ async fn a_new_code_ends_tokens_and_calendars(server: TestServer) {
     let code = ada.post(&path, &json!({})).await.good()["code"].clone();
     // Nothing changes until the code is used.
     assert_eq!(
-        program.ask(Method::GET, "/me", &json!({})).await.status,
+        program.send(Method::GET, "/me", &json!({})).await.status,
         200
     );
-    accept(&server, code.as_str().unwrap(), GOOD).await.good();
-    let by_token = program.ask(Method::GET, "/me", &json!({})).await;
+    accept(&server, code.as_str().unwrap(), STRONG_PASSWORD)
+        .await
+        .good();
+    let by_token = program.send(Method::GET, "/me", &json!({})).await;
     assert_eq!(by_token.problem(), "unauthenticated");
     assert_eq!(reads().await.problem(), "unauthenticated");
     server.finish().await;

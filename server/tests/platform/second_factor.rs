@@ -2,7 +2,7 @@
 //! requires them of everyone.
 
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{ApiResponse, PASSWORD, Person, TestServer, attempt};
+use binnacle_server_testing::{ApiResponse, PASSWORD, Person, TestServer, try_sign_in};
 use reqwest::Method;
 use ring::hmac;
 use serde_json::{Value, json};
@@ -77,17 +77,17 @@ async fn a_confirmed_factor_requires_a_code(server: TestServer) {
     let none = json!({ "code": "000000" });
     let refused = ada.post("/me/second-factor/confirm", &none).await;
     assert_eq!(refused.problem(), "invalid");
-    assert_eq!(attempt(&server, &ada.email, PASSWORD).await.status, 200);
+    assert_eq!(try_sign_in(&server, &ada.email, PASSWORD).await.status, 200);
 
     let other = Person::sign_in(&server, ada.operator, &ada.email).await;
     let (secret, _) = set_up(&server, &ada).await;
     assert_eq!(other.get("/me").await.problem(), "unauthenticated");
     assert_eq!(ada.get("/me").await.good()["second_factor"], true);
-    let asked = attempt(&server, &ada.email, PASSWORD).await;
+    let asked = try_sign_in(&server, &ada.email, PASSWORD).await;
     assert_eq!(asked.problem(), "second-factor-needed");
     assert!(asked.headers.get("set-cookie").is_none());
     assert_eq!(
-        attempt(&server, &ada.email, "wrong").await.problem(),
+        try_sign_in(&server, &ada.email, "wrong").await.problem(),
         "wrong-password"
     );
     let code = app_code(&secret, now_s(&server));
@@ -161,7 +161,7 @@ async fn a_factor_is_removed_with_the_password_or_by_an_admin(server: TestServer
     set_up(&server, &ada).await;
     let removed = ada.post("/me/second-factor/remove", &password()).await;
     assert_eq!(removed.status, 204);
-    assert_eq!(attempt(&server, &ada.email, PASSWORD).await.status, 200);
+    assert_eq!(try_sign_in(&server, &ada.email, PASSWORD).await.status, 200);
 
     set_up(&server, &viewer).await;
     let id = viewer.get("/me").await.good()["user_id"].clone();
@@ -173,7 +173,10 @@ async fn a_factor_is_removed_with_the_password_or_by_an_admin(server: TestServer
     assert_eq!(foreign.problem(), "not-found");
     let reset = ApiResponse::of(ada.request(Method::DELETE, &path)).await;
     assert_eq!(reset.status, 204);
-    assert_eq!(attempt(&server, &viewer.email, PASSWORD).await.status, 200);
+    assert_eq!(
+        try_sign_in(&server, &viewer.email, PASSWORD).await.status,
+        200
+    );
     server.finish().await;
 }
 

@@ -18,7 +18,7 @@ struct Program {
 
 impl Program {
     fn start(folder: &Path, log: &str, more: &[&str]) -> Program {
-        let mut child = binnacle(folder)
+        let mut child = command(folder)
             .args(["serve", "--listen", "127.0.0.1:0", "--webhooks-to-private"])
             .args(["--smtp-url", "smtp://relay:smtp-pass-word@localhost:9"])
             .args(["--mail-from", "alerts@binnacle.example"])
@@ -54,7 +54,7 @@ impl Program {
     }
 }
 
-fn binnacle(folder: &Path) -> Command {
+fn command(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_binnacle-server"));
     command
         .current_dir(folder)
@@ -63,30 +63,30 @@ fn binnacle(folder: &Path) -> Command {
 }
 
 fn admin(folder: &Path, arguments: &[&str]) -> Value {
-    let output = binnacle(folder).arg("admin").args(arguments).output();
+    let output = command(folder).arg("admin").args(arguments).output();
     serde_json::from_slice(&output.unwrap().stdout).unwrap()
 }
 
 /// A client that records every secret it has seen.
-struct Drive {
+struct RecordingClient {
     http: reqwest::Client,
     url: String,
     secrets: Vec<String>,
 }
 
-impl Drive {
+impl RecordingClient {
     /// Records the secrets of a response.
-    fn keep(&mut self, value: &Value) -> String {
+    fn record(&mut self, value: &Value) -> String {
         let secret = value.as_str().unwrap().to_owned();
         self.secrets.push(secret.clone());
         secret
     }
 
     /// Waits until another process has sent a delivery, or tried to.
-    async fn until_tried(&self, key: &str, receiver: &str) {
+    async fn wait_for_attempt(&self, key: &str, receiver: &str) {
         for _ in 0..5000 {
             let path = format!("{receiver}/deliveries");
-            let (_, list) = self.ask(key, "GET", &path, json!({})).await;
+            let (_, list) = self.send(key, "GET", &path, json!({})).await;
             if list["items"][0]["attempts"].as_i64().unwrap() > 0 {
                 return;
             }
@@ -95,7 +95,7 @@ impl Drive {
     }
 
     /// Signs in through the provider, and records cookies and secrets in addresses.
-    async fn signs_in_by_the_provider(&mut self) {
+    async fn sign_in_through_provider(&mut self) {
         let there = self.follow("/api/v1/session/provider/start", "").await;
         let cookie = self.secrets.last().unwrap().clone();
         let back = self.http.get(&there).send().await.unwrap();
@@ -118,7 +118,7 @@ impl Drive {
         response.headers()["location"].to_str().unwrap().to_owned()
     }
 
-    async fn ask(&self, key: &str, method: &str, path: &str, body: Value) -> (String, Value) {
+    async fn send(&self, key: &str, method: &str, path: &str, body: Value) -> (String, Value) {
         let method = reqwest::Method::from_bytes(method.as_bytes()).unwrap();
         let url = format!("{}/api/v1{path}", self.url);
         let asked = self.http.request(method, url).json(&body);
@@ -155,96 +155,98 @@ async fn no_secret_is_in_the_most_verbose_log() {
     let folder = tempfile::tempdir().unwrap();
     let made = first_admin(folder.path());
     let program = Program::start(folder.path(), "trace", &provider.settings());
-    let mut drive = Drive {
+    let mut drive = RecordingClient {
         http: client(),
         url: program.url.clone(),
         secrets: vec!["smtp-pass-word".to_owned(), "a-wrong-guess".to_owned()],
     };
-    let password = drive.keep(&made["password"]);
+    let password = drive.record(&made["password"]);
     let email = "ada@example.com";
     let wrong = json!({ "email": email, "password": "a-wrong-guess" });
-    drive.ask("", "POST", "/session", wrong).await;
+    drive.send("", "POST", "/session", wrong).await;
     let right = json!({ "email": email, "password": password });
-    let (cookie, _) = drive.ask("", "POST", "/session", right).await;
+    let (cookie, _) = drive.send("", "POST", "/session", right).await;
     let session = cookie.split_once('=').unwrap().1.to_owned();
     drive.secrets.push(session);
 
     let lasting = Clock::System.now().micros() / 1_000_000 + 3600;
-    provider.says(json!({ "exp": lasting }));
-    drive.signs_in_by_the_provider().await;
+    provider.set_claims(json!({ "exp": lasting }));
+    drive.sign_in_through_provider().await;
     drive.secrets.extend(provider.secrets());
     drive.secrets.push(CLIENT_SECRET.to_owned());
 
     let token = json!({ "name": "ERP", "scope": "write" });
-    let (_, token) = drive.ask(&cookie, "POST", "/tokens", token).await;
-    let token = drive.keep(&token["token"]);
+    let (_, token) = drive.send(&cookie, "POST", "/tokens", token).await;
+    let token = drive.record(&token["token"]);
     let vessel = json!({ "name": "Nao" });
-    let (_, vessel) = drive.ask(&token, "POST", "/vessels", vessel).await;
+    let (_, vessel) = drive.send(&token, "POST", "/vessels", vessel).await;
     let agents = format!("/vessels/{}/agents", vessel["id"].as_str().unwrap());
-    let (_, code) = drive.ask(&token, "POST", &agents, json!({})).await;
-    let code = drive.keep(&code["code"]);
+    let (_, code) = drive.send(&token, "POST", &agents, json!({})).await;
+    let code = drive.record(&code["code"]);
     let enrol = json!({ "code": code, "agent_version": "1" });
-    let (_, agent) = drive.ask("", "POST", "/agents/enrol", enrol).await;
-    let agent = drive.keep(&agent["token"]);
-    let (_, next) = drive.ask(&agent, "POST", "/agents/token", json!({})).await;
-    let next = drive.keep(&next["token"]);
+    let (_, agent) = drive.send("", "POST", "/agents/enrol", enrol).await;
+    let agent = drive.record(&agent["token"]);
+    let (_, next) = drive.send(&agent, "POST", "/agents/token", json!({})).await;
+    let next = drive.record(&next["token"]);
     let put = json!({ "token": next });
-    drive.ask(&agent, "PUT", "/agents/token", put).await;
-    drive.ask(&next, "POST", "/streams", json!({})).await;
+    drive.send(&agent, "PUT", "/agents/token", put).await;
+    drive.send(&next, "POST", "/streams", json!({})).await;
 
     let hook = format!("{}/none?key=in-the-address", drive.url);
     drive.secrets.push("in-the-address".to_owned());
     let hook = json!({ "url": hook, "kinds": ["alert.raised"] });
-    let (_, hook) = drive.ask(&cookie, "POST", "/webhooks", hook).await;
-    drive.keep(&hook["secret"]);
+    let (_, hook) = drive.send(&cookie, "POST", "/webhooks", hook).await;
+    drive.record(&hook["secret"]);
     let hook = format!("/webhooks/{}", hook["id"].as_str().unwrap());
     let test = format!("{hook}/test");
-    drive.ask(&cookie, "POST", &test, json!({})).await;
-    drive.until_tried(&cookie, &hook).await;
+    drive.send(&cookie, "POST", &test, json!({})).await;
+    drive.wait_for_attempt(&cookie, &hook).await;
     let mail = json!({ "address": "office@example.com" });
-    let (_, mail) = drive.ask(&cookie, "POST", "/mail-recipients", mail).await;
+    let (_, mail) = drive.send(&cookie, "POST", "/mail-recipients", mail).await;
     let mail = format!("/mail-recipients/{}", mail["id"].as_str().unwrap());
     let test = format!("{mail}/test");
-    drive.ask(&cookie, "POST", &test, json!({})).await;
-    drive.until_tried(&cookie, &mail).await;
+    drive.send(&cookie, "POST", &test, json!({})).await;
+    drive.wait_for_attempt(&cookie, &mail).await;
     let feed = json!({ "name": "Fleet" });
-    let (_, feed) = drive.ask(&cookie, "POST", "/calendar-feeds", feed).await;
+    let (_, feed) = drive.send(&cookie, "POST", "/calendar-feeds", feed).await;
     let feed = feed["url"]
         .as_str()
         .unwrap()
         .split_once("?token=")
         .unwrap()
         .1;
-    let feed = drive.keep(&json!(feed));
+    let feed = drive.record(&json!(feed));
     let read = format!("/calendar.ics?token={feed}");
-    drive.ask("", "GET", &read, json!({})).await;
+    drive.send("", "GET", &read, json!({})).await;
 
     let again = json!({ "password": password });
-    let (_, begun) = drive.ask(&cookie, "POST", "/me/second-factor", again).await;
-    let secret = drive.keep(&begun["secret"]);
+    let (_, begun) = drive
+        .send(&cookie, "POST", "/me/second-factor", again)
+        .await;
+    let secret = drive.record(&begun["secret"]);
     let unix_s = Clock::System.now().micros() / 1_000_000;
     let code = json!({ "code": app_code(&secret, unix_s) });
     let confirm = "/me/second-factor/confirm";
-    let (_, codes) = drive.ask(&cookie, "POST", confirm, code).await;
+    let (_, codes) = drive.send(&cookie, "POST", confirm, code).await;
     for code in codes["recovery_codes"].as_array().unwrap() {
-        drive.keep(code);
+        drive.record(code);
     }
     let code = codes["recovery_codes"][0].clone();
     let right = json!({ "email": email, "password": password, "code": code });
-    let (cookie, _) = drive.ask("", "POST", "/session", right).await;
+    let (cookie, _) = drive.send("", "POST", "/session", right).await;
     let session = cookie.split_once('=').unwrap().1.to_owned();
     drive.secrets.push(session);
     let colleague = json!({ "email": "bob@example.com", "name": "Bob", "role": "viewer" });
-    let (_, bob) = drive.ask(&cookie, "POST", "/users", colleague).await;
-    let code = drive.keep(&bob["invitation"]["code"]);
+    let (_, bob) = drive.send(&cookie, "POST", "/users", colleague).await;
+    let code = drive.record(&bob["invitation"]["code"]);
     drive
         .secrets
         .push("a lantern astern at midnight".to_owned());
     let accept = json!({ "code": code, "password": "a lantern astern at midnight" });
-    drive.ask("", "POST", "/invitations/accept", accept).await;
+    drive.send("", "POST", "/invitations/accept", accept).await;
     let changed = json!({ "current": password, "new": "seven gulls over the quay" });
     drive.secrets.push("seven gulls over the quay".to_owned());
-    drive.ask(&cookie, "PUT", "/me/password", changed).await;
+    drive.send(&cookie, "PUT", "/me/password", changed).await;
 
     let said = program.stop();
     assert!(said.contains("TRACE") && said.contains("sqlx"), "{said}");

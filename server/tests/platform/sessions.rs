@@ -1,7 +1,7 @@
 //! Signing in and out, and API tokens.
 
 use binnacle_server_testing::on_both;
-use binnacle_server_testing::{ApiResponse, Engine, PASSWORD, Person, TestServer, attempt};
+use binnacle_server_testing::{ApiResponse, Engine, PASSWORD, Person, TestServer, try_sign_in};
 use reqwest::Method;
 use serde_json::json;
 
@@ -87,7 +87,7 @@ async fn people_see_and_end_their_own_sessions(server: TestServer) {
     server.finish().await;
 }
 
-const NEW: &str = "seven gulls over the quay";
+const NEW_PASSWORD: &str = "seven gulls over the quay";
 
 async fn put_password(person: &Person, current: &str, new: &str) -> ApiResponse {
     let body = json!({ "current": current, "new": new });
@@ -97,11 +97,14 @@ async fn put_password(person: &Person, current: &str, new: &str) -> ApiResponse 
 async fn a_new_password_ends_all_other_sessions(server: TestServer) {
     let ada = server.admin("ada").await;
     let stolen = Person::sign_in(&server, ada.operator, &ada.email).await;
-    assert_eq!(put_password(&ada, PASSWORD, NEW).await.status, 204);
+    assert_eq!(put_password(&ada, PASSWORD, NEW_PASSWORD).await.status, 204);
     assert_eq!(ada.get("/me").await.status, 200);
     assert_eq!(stolen.get("/me").await.problem(), "unauthenticated");
-    assert_eq!(attempt(&server, &ada.email, PASSWORD).await.status, 401);
-    assert_eq!(attempt(&server, &ada.email, NEW).await.status, 200);
+    assert_eq!(try_sign_in(&server, &ada.email, PASSWORD).await.status, 401);
+    assert_eq!(
+        try_sign_in(&server, &ada.email, NEW_PASSWORD).await.status,
+        200
+    );
     server.finish().await;
 }
 
@@ -120,17 +123,17 @@ async fn a_new_password_needs_the_current_one(server: TestServer) {
         "{same:?}"
     );
     for _ in 0..5 {
-        let wrong = put_password(&ada, "a guess at the desk", NEW).await;
+        let wrong = put_password(&ada, "a guess at the desk", NEW_PASSWORD).await;
         assert_eq!(wrong.problem(), "wrong-password");
     }
-    let slowed = put_password(&ada, PASSWORD, NEW).await;
+    let slowed = put_password(&ada, PASSWORD, NEW_PASSWORD).await;
     assert_eq!(slowed.problem(), "throttled");
     let made = json!({ "name": "ERP", "scope": "write" });
     let made = ada.post("/tokens", &made).await.good();
     let request = server
         .http
         .put(format!("{}/api/v1/me/password", server.url));
-    let request = request.json(&json!({ "current": PASSWORD, "new": NEW }));
+    let request = request.json(&json!({ "current": PASSWORD, "new": NEW_PASSWORD }));
     let by_token = ApiResponse::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
     assert_eq!(by_token.problem(), "forbidden");
     server.finish().await;
@@ -140,13 +143,13 @@ async fn guesses_from_one_address_are_rate_limited_whatever_the_email(server: Te
     server.admin("ada").await;
     for guess in 0..50 {
         let email = format!("nobody-{guess}@example.com");
-        let wrong = attempt(&server, &email, "a guess").await;
+        let wrong = try_sign_in(&server, &email, "a guess").await;
         assert_eq!(wrong.problem(), "wrong-password", "{guess}");
     }
-    let slowed = attempt(&server, "ada@example.com", PASSWORD).await;
+    let slowed = try_sign_in(&server, "ada@example.com", PASSWORD).await;
     assert_eq!(slowed.problem(), "throttled");
     server.advance(1.0);
-    let right = attempt(&server, "ada@example.com", PASSWORD).await;
+    let right = try_sign_in(&server, "ada@example.com", PASSWORD).await;
     assert_eq!(right.status, 200);
     server.finish().await;
 }
@@ -168,7 +171,7 @@ async fn behind_trusted_proxies_the_clients_address_counts() {
 async fn over_https_the_cookie_has_the_host_prefix() {
     let server = TestServer::start_with(Engine::Sqlite, &["--secure-cookies"]).await;
     let ada = server.admin("ada").await;
-    let response = attempt(&server, &ada.email, PASSWORD).await;
+    let response = try_sign_in(&server, &ada.email, PASSWORD).await;
     let cookie = response.headers["set-cookie"].to_str().unwrap();
     let (pair, attributes) = cookie.split_once("; ").unwrap();
     let token = pair.strip_prefix("__Host-binnacle_session=").unwrap();
@@ -185,7 +188,7 @@ async fn over_https_the_cookie_has_the_host_prefix() {
 
 async fn the_cookie_is_inaccessible_to_scripts_and_other_sites(server: TestServer) {
     server.admin("ada").await;
-    let response = attempt(&server, "ADA@example.com ", PASSWORD).await;
+    let response = try_sign_in(&server, "ADA@example.com ", PASSWORD).await;
     let cookie = response.headers["set-cookie"].to_str().unwrap();
     assert!(
         cookie.contains("HttpOnly") && cookie.contains("SameSite=Strict"),
@@ -210,32 +213,38 @@ async fn guesses_are_rate_limited_whether_or_not_the_email_exists(server: TestSe
     server.admin("ada").await;
     for email in ["ada@example.com", "nobody@example.com"] {
         for _ in 0..5 {
-            let wrong = attempt(&server, email, "wrong").await;
+            let wrong = try_sign_in(&server, email, "wrong").await;
             assert_eq!(wrong.problem(), "wrong-password");
         }
-        let slowed = attempt(&server, email, PASSWORD).await;
+        let slowed = try_sign_in(&server, email, PASSWORD).await;
         assert_eq!(slowed.problem(), "throttled");
         assert_eq!(slowed.headers["retry-after"], "1");
     }
     server.advance(1.0);
     assert_eq!(
-        attempt(&server, "ada@example.com", PASSWORD).await.status,
+        try_sign_in(&server, "ada@example.com", PASSWORD)
+            .await
+            .status,
         200
     );
     // A sign-in resets the count of failures.
     assert_eq!(
-        attempt(&server, "ada@example.com", "wrong").await.status,
+        try_sign_in(&server, "ada@example.com", "wrong")
+            .await
+            .status,
         401
     );
     assert_eq!(
-        attempt(&server, "ada@example.com", PASSWORD).await.status,
+        try_sign_in(&server, "ada@example.com", PASSWORD)
+            .await
+            .status,
         200
     );
     server.finish().await;
 }
 
 async fn concurrent_guesses_cannot_bypass_the_rate_limit(server: TestServer) {
-    let guesses = (0..30).map(|_| attempt(&server, "ada@example.com", "wrong"));
+    let guesses = (0..30).map(|_| try_sign_in(&server, "ada@example.com", "wrong"));
     let answers = futures_util::future::join_all(guesses).await;
     let judged = answers
         .iter()
@@ -243,7 +252,7 @@ async fn concurrent_guesses_cannot_bypass_the_rate_limit(server: TestServer) {
         .count();
     // The fifth failure starts the wait; one more may have been in flight.
     assert!((5..=6).contains(&judged), "{judged} guesses were judged");
-    let odd = attempt(&server, "ada\0@example.com", "wrong").await;
+    let odd = try_sign_in(&server, "ada\0@example.com", "wrong").await;
     assert_eq!(odd.problem(), "wrong-password");
     server.finish().await;
 }

@@ -16,14 +16,14 @@ use tokio::time::timeout;
 const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A server that responds "ashore", with its certificate in a folder.
-struct Served {
+struct TlsServer {
     folder: TempDir,
     url: String,
     port: u16,
     serving: AbortHandle,
 }
 
-impl Drop for Served {
+impl Drop for TlsServer {
     fn drop(&mut self) {
         self.serving.abort();
     }
@@ -38,7 +38,7 @@ fn certificate(folder: &Path) -> Certificate {
 }
 
 /// Writes a new self-signed certificate, and returns it.
-fn renew(folder: &Path) -> String {
+fn renew_certificate(folder: &Path) -> String {
     let CertifiedKey { cert, signing_key } =
         generate_simple_self_signed(["localhost".to_owned()]).unwrap();
     let files = certificate(folder);
@@ -47,14 +47,14 @@ fn renew(folder: &Path) -> String {
     cert.pem()
 }
 
-async fn serve(folder: TempDir) -> Served {
+async fn serve(folder: TempDir) -> TlsServer {
     let _ = rustls::crypto::ring::default_provider().install_default();
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();
     let listener = TlsListener::new(listener, certificate(folder.path())).unwrap();
     let router = Router::new().route("/", get(async || "ashore"));
     let serving = tokio::spawn(async move { axum::serve(listener, router).await });
-    Served {
+    TlsServer {
         folder,
         url: format!("https://localhost:{port}/"),
         port,
@@ -72,8 +72,8 @@ async fn ask(url: &str, authority: &str) -> reqwest::Result<String> {
 #[tokio::test]
 async fn clients_trusting_the_authority_are_served_and_plain_http_is_not() {
     let folder = tempfile::tempdir().unwrap();
-    let authority = renew(folder.path());
-    let stranger = renew(tempfile::tempdir().unwrap().path());
+    let authority = renew_certificate(folder.path());
+    let stranger = renew_certificate(tempfile::tempdir().unwrap().path());
     let served = serve(folder).await;
     assert_eq!(ask(&served.url, &authority).await.unwrap(), "ashore");
     assert!(ask(&served.url, &stranger).await.is_err());
@@ -84,7 +84,7 @@ async fn clients_trusting_the_authority_are_served_and_plain_http_is_not() {
 #[tokio::test]
 async fn an_endless_handshake_does_not_delay_others() {
     let folder = tempfile::tempdir().unwrap();
-    let authority = renew(folder.path());
+    let authority = renew_certificate(folder.path());
     let served = serve(folder).await;
     let address = ("127.0.0.1", served.port);
     let _silent = TcpStream::connect(address).await.unwrap();
@@ -95,7 +95,7 @@ async fn an_endless_handshake_does_not_delay_others() {
 #[tokio::test]
 async fn sighup_reloads_a_usable_certificate() {
     let folder = tempfile::tempdir().unwrap();
-    let first = renew(folder.path());
+    let first = renew_certificate(folder.path());
     let served = serve(folder).await;
     let hang_up = || {
         let this = rustix::process::getpid();
@@ -104,7 +104,7 @@ async fn sighup_reloads_a_usable_certificate() {
     fs::write(certificate(served.folder.path()).key, "no key").unwrap();
     hang_up();
     assert_eq!(ask(&served.url, &first).await.unwrap(), "ashore");
-    let second = renew(served.folder.path());
+    let second = renew_certificate(served.folder.path());
     hang_up();
     let renewed = async { while ask(&served.url, &second).await.is_err() {} };
     timeout(PATIENCE, renewed).await.unwrap();
@@ -118,11 +118,11 @@ async fn an_unusable_certificate_is_refused_by_file_name() {
     let files = certificate(folder.path());
     let refusal = || format!("{:#}", files.load().unwrap_err());
     assert!(refusal().contains("chain.pem"), "{}", refusal());
-    renew(folder.path());
+    renew_certificate(folder.path());
     let chain = fs::read(&files.chain).unwrap();
     fs::write(&files.chain, "").unwrap();
     assert!(refusal().contains("chain.pem: there is no certificate in it"));
-    renew(folder.path());
+    renew_certificate(folder.path());
     fs::write(&files.chain, chain).unwrap();
     assert!(refusal().contains("key.pem: not the certificate's key"));
     fs::write(&files.key, "").unwrap();

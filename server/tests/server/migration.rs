@@ -2,7 +2,7 @@
 
 use binnacle_platform::db::{Connection, Db, Pools, Tx};
 use binnacle_platform::secret;
-use binnacle_server_testing::{ApiResponse, Engine, TestServer, attempt, password_hash};
+use binnacle_server_testing::{ApiResponse, Engine, TestServer, password_hash, try_sign_in};
 use reqwest::Method;
 use serde_json::json;
 use sqlx::SqlSafeStr;
@@ -26,26 +26,26 @@ macro_rules! run {
 
 #[tokio::test]
 async fn on_sqlite_migrations_keep_tokens_and_webhooks() {
-    nothing_is_lost(Engine::Sqlite).await;
+    check_nothing_is_lost(Engine::Sqlite).await;
 }
 
 #[tokio::test]
 async fn on_postgres_migrations_keep_tokens_and_webhooks() {
-    nothing_is_lost(Engine::Postgres).await;
+    check_nothing_is_lost(Engine::Postgres).await;
 }
 
 #[tokio::test]
 async fn on_sqlite_a_database_of_another_version_is_refused() {
-    another_version_is_refused(Engine::Sqlite).await;
+    check_other_version_is_refused(Engine::Sqlite).await;
 }
 
 #[tokio::test]
 async fn on_postgres_a_database_of_another_version_is_refused() {
-    another_version_is_refused(Engine::Postgres).await;
+    check_other_version_is_refused(Engine::Postgres).await;
 }
 
 /// Checks that an unknown migration and one with another text are refused.
-async fn another_version_is_refused(engine: Engine) {
+async fn check_other_version_is_refused(engine: Engine) {
     for number in [1, 63] {
         let bare = TestServer::bare(engine).await;
         let other = Migration::new(
@@ -74,7 +74,7 @@ async fn another_version_is_refused(engine: Engine) {
     }
 }
 
-async fn nothing_is_lost(engine: Engine) {
+async fn check_nothing_is_lost(engine: Engine) {
     let prepared = TestServer::prepared(engine).await;
     let operator = Uuid::now_v7();
     fill(&prepared.db, operator).await;
@@ -90,7 +90,7 @@ async fn nothing_is_lost(engine: Engine) {
             .get(&url)
             .bearer_auth(format!("bna_token{number}"));
         assert_eq!(ApiResponse::of(token).await.good()["role"], role);
-        let signed_in = attempt(
+        let signed_in = try_sign_in(
             &server,
             &format!("{number}@example.com"),
             binnacle_server_testing::PASSWORD,
@@ -117,7 +117,9 @@ async fn nothing_is_lost(engine: Engine) {
         "idempotency-key-reused"
     );
     // Sessions and tokens refer to their user: a removed user is signed out.
-    server.sql("DELETE FROM users WHERE role = 'viewer'").await;
+    server
+        .run_sql("DELETE FROM users WHERE role = 'viewer'")
+        .await;
     let gone = server.http.get(url("/me")).bearer_auth("bna_token1");
     assert_eq!(ApiResponse::of(gone).await.problem(), "unauthenticated");
     let left = ApiResponse::of(request(Method::GET, "/me")).await;

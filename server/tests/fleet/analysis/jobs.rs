@@ -94,9 +94,9 @@ async fn a_new_estimator_version_reanalyses_every_vessel_at_startup(server: Test
 
     // As an earlier version left it; one of the two has a waiting job already.
     server
-        .sql("UPDATE analyses SET estimator = 'older', input_hash = 'older'")
+        .run_sql("UPDATE analyses SET estimator = 'older', input_hash = 'older'")
         .await;
-    nao.at(&server);
+    nao.reconnect(&server);
     nao.put(2, &passage("2026-11-20T00:00:00Z", 3)).await.good();
     let server = restart(server).await;
     let worked = server.work().await;
@@ -122,7 +122,7 @@ async fn an_expired_lease_goes_to_another_worker(server: TestServer) {
     server.advance(A_WHILE_S);
     assert_eq!(server.work().await, []);
     server.advance(600.0);
-    let other = server.second().await;
+    let other = server.second_server().await;
     let worked = worker::step(&other).await.unwrap();
     assert!(matches!(worked, Some(Worked::Analysed(_, 1))), "{worked:?}");
     assert_eq!(ada.get(&nao.path("/model")).await.status, 200);

@@ -67,7 +67,7 @@ async fn a_passage_becomes_a_model_that_predicts_the_deviation(server: TestServe
     assert!(nao.downlink(&has).await.get("model").is_none());
 
     // The compact form gives the same card.
-    let (compact, bytes) = nao.compact("").await;
+    let (compact, bytes) = nao.compact_downlink("").await;
     assert!(bytes < 300, "{bytes}");
     let sent = compact.model.unwrap();
     assert_eq!(sent.id.to_string(), model["id"].as_str().unwrap());
@@ -85,7 +85,7 @@ async fn a_passage_becomes_a_model_that_predicts_the_deviation(server: TestServe
         let apart = on_board.band95_deg.unwrap() - of("band95_deg");
         assert!(apart.abs() < 0.02, "{row}: {apart}");
     }
-    let (bare, bytes) = nao.compact(&has.replace('?', "&")).await;
+    let (bare, bytes) = nao.compact_downlink(&has.replace('?', "&")).await;
     assert_eq!(
         (bare.contiguous_seq, bare.model),
         (compact.contiguous_seq, None)

@@ -17,7 +17,7 @@ on_both!(
     a_thousand_entries_cause_one_analysis,
 );
 
-async fn left_out(person: &Person, ship: &Ship, reason: &str) -> usize {
+async fn count_excluded(person: &Person, ship: &Ship, reason: &str) -> usize {
     let samples = person.get(&ship.path("/samples")).await.good();
     let samples = samples["items"].as_array().unwrap();
     samples.iter().filter(|s| s["reason"] == reason).count()
@@ -25,7 +25,7 @@ async fn left_out(person: &Person, ship: &Ship, reason: &str) -> usize {
 
 /// Returns a compass's epochs, after checking that each begins where the previous one ends
 /// and has either a curve or a refusal.
-async fn sound_epochs(person: &Person, ship: &Ship) -> Vec<Value> {
+async fn checked_epochs(person: &Person, ship: &Ship) -> Vec<Value> {
     let timeline = person.get(&ship.path("/changes")).await.good();
     let epochs = timeline["epochs"].as_array().unwrap().clone();
     assert_eq!(epochs[0]["from"], Value::Null);
@@ -58,7 +58,7 @@ async fn samples_with_magnetic_cargo_are_excluded_until_the_entry_is_withdrawn(s
     });
     let entry = nao.report(&ada, &scrap).await;
     assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
-    assert_eq!(left_out(&ada, &nao, "magnetic_cargo").await, 60);
+    assert_eq!(count_excluded(&ada, &nao, "magnetic_cargo").await, 60);
     assert_eq!(ada.get(&nao.path("/model")).await.good()["version"], 2);
 
     let path = nao.path(&format!("/logbook/{}", entry["id"].as_str().unwrap()));
@@ -69,7 +69,7 @@ async fn samples_with_magnetic_cargo_are_excluded_until_the_entry_is_withdrawn(s
         "what was not named is as it was"
     );
     server.work().await;
-    assert_eq!(left_out(&ada, &nao, "magnetic_cargo").await, 13);
+    assert_eq!(count_excluded(&ada, &nao, "magnetic_cargo").await, 13);
 
     let berth = json!({ "kind": "berth", "from": DAY, "to": "2026-11-15T00:50:00Z" });
     nao.report(&ada, &berth).await;
@@ -77,8 +77,8 @@ async fn samples_with_magnetic_cargo_are_excluded_until_the_entry_is_withdrawn(s
         .await
         .good();
     assert_eq!(server.work().await.len(), 1, "one job for both");
-    assert_eq!(left_out(&ada, &nao, "magnetic_cargo").await, 0);
-    assert_eq!(left_out(&ada, &nao, "berth").await, 6);
+    assert_eq!(count_excluded(&ada, &nao, "magnetic_cargo").await, 0);
+    assert_eq!(count_excluded(&ada, &nao, "berth").await, 6);
     server.finish().await;
 }
 
@@ -189,8 +189,8 @@ async fn overlapping_and_outlying_entries_keep_the_timeline_consistent(server: T
     nao.put(1, &passage(DAY, 300)).await.good();
     server.advance(A_WHILE_S);
     assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
-    let epochs = sound_epochs(&ada, &nao).await;
-    assert_eq!(begun_by(&epochs), [&Value::Null, &json!("adjustment")]);
+    let epochs = checked_epochs(&ada, &nao).await;
+    assert_eq!(epoch_causes(&epochs), [&Value::Null, &json!("adjustment")]);
     assert_eq!(epochs[0]["refusal"]["reason"], "too_few_samples");
     assert!(
         epochs[1]["samples_used"].as_u64().unwrap() > 200,
@@ -198,21 +198,22 @@ async fn overlapping_and_outlying_entries_keep_the_timeline_consistent(server: T
         epochs[1]
     );
     // Six hours with a sample every ten minutes, each excluded once.
-    let out = left_out(&ada, &nao, "magnetic_cargo").await + left_out(&ada, &nao, "berth").await;
+    let out = count_excluded(&ada, &nao, "magnetic_cargo").await
+        + count_excluded(&ada, &nao, "berth").await;
     assert_eq!(out, 36);
 
     // The work begins at noon.
     server.advance(5.0 * 3600.0);
     assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
-    let epochs = sound_epochs(&ada, &nao).await;
+    let epochs = checked_epochs(&ada, &nao).await;
     assert_eq!(
-        begun_by(&epochs),
+        epoch_causes(&epochs),
         [&Value::Null, &json!("adjustment"), &json!("dry_docking")]
     );
     server.finish().await;
 }
 
-fn begun_by(epochs: &[Value]) -> Vec<&Value> {
+fn epoch_causes(epochs: &[Value]) -> Vec<&Value> {
     epochs.iter().map(|epoch| &epoch["begun_by"]).collect()
 }
 
@@ -228,7 +229,7 @@ async fn a_thousand_entries_cause_one_analysis(server: TestServer) {
     }
     server.advance(A_WHILE_S);
     assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
-    assert_eq!(sound_epochs(&ada, &nao).await.len(), 501);
+    assert_eq!(checked_epochs(&ada, &nao).await.len(), 501);
     assert_eq!(ada.get(&nao.path("/model")).await.good()["version"], 1);
     server.finish().await;
 }

@@ -69,7 +69,7 @@ async fn concurrent_acceptance_and_cancellation_leave_a_consistent_log(server: T
 
 async fn an_offer_checked_by_many_servers_lapses_once(server: TestServer) {
     let parties = OfferParties::offered(&server, 2).await;
-    let second = server.second().await;
+    let second = server.second_server().await;
     server.advance(HOUR_S + 1.0);
     let (here, there) = tokio::join!(lapse(&server.app), lapse(&second));
     assert_eq!(here.unwrap() + there.unwrap(), 1);
@@ -98,7 +98,7 @@ async fn concurrent_response_and_expiry_leave_a_consistent_log(server: TestServe
 async fn an_unreadable_order_does_not_block_expiry_of_others(server: TestServer) {
     let parties = OfferParties::offered(&server, 1).await;
     server
-        .sql("UPDATE work_order_entries SET line = '{' WHERE seq = 1")
+        .run_sql("UPDATE work_order_entries SET line = '{' WHERE seq = 1")
         .await;
     // Offered after that one, and overdue after it.
     server.advance(1.0);

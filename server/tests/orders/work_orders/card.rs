@@ -1,7 +1,7 @@
 //! The card after an adjustment: predicted, verified at sea, ended with its epoch.
 
 use binnacle_compass::sample::Sample;
-use binnacle_server_testing::alerts::limit;
+use binnacle_server_testing::alerts::set_alert_limits;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::work_orders::{Job, predicted_model};
 use binnacle_server_testing::{TestServer, days_at_sea};
@@ -171,7 +171,7 @@ async fn an_adjustment_failing_at_sea_keeps_its_card_predicted(server: TestServe
 
 async fn a_card_after_an_adjustment_has_no_earlier_alert(server: TestServer) {
     let job = Job::begin(&server).await;
-    limit(
+    set_alert_limits(
         &server,
         &job.person,
         &job.ship,

@@ -84,15 +84,15 @@ async fn the_record_is_available_in_each_form(server: TestServer) {
 
 async fn only_an_image_is_accepted_as_a_photograph(server: TestServer) {
     let job = Job::begin(&server).await;
-    let page = job.photo(b"<html><script>alert(1)</script>").await;
+    let page = job.post_photo(b"<html><script>alert(1)</script>").await;
     assert_eq!(
         (page.status, page.problem().as_str()),
         (415, "unsupported-media-type")
     );
-    let cut_off = job.photo(b"\x89PNG\r\n\x1a\n").await;
+    let cut_off = job.post_photo(b"\x89PNG\r\n\x1a\n").await;
     assert_eq!(cut_off.problem(), "unsupported-media-type");
     assert!(cut_off.text.contains("cut off"), "{cut_off:?}");
-    job.photo(PICTURE).await.good();
+    job.post_photo(PICTURE).await.good();
     let order = job.view_order().await;
     assert_eq!(order["photos"].as_array().unwrap().len(), 1);
     let log = job.person.get(&job.path("/entries?after=1")).await.good();
@@ -108,11 +108,11 @@ async fn only_an_image_is_accepted_as_a_photograph(server: TestServer) {
     assert_eq!(request.headers()["x-content-type-options"], "nosniff");
     assert_eq!(request.bytes().await.unwrap(), PICTURE);
     let large = Box::leak(vec![0xFF_u8; 11 * 1024 * 1024].into_boxed_slice());
-    assert_eq!(job.photo(large).await.status, 413);
+    assert_eq!(job.post_photo(large).await.status, 413);
     server.finish().await;
 }
 
-fn unpacked(bytes: &[u8]) -> BTreeMap<String, Vec<u8>> {
+fn unpack(bytes: &[u8]) -> BTreeMap<String, Vec<u8>> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
     (0..archive.len())
         .map(|index| {
@@ -126,7 +126,7 @@ fn unpacked(bytes: &[u8]) -> BTreeMap<String, Vec<u8>> {
 }
 
 /// Packs files as the server does.
-fn packed(files: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
+fn pack(files: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
     let stored = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
@@ -153,7 +153,7 @@ fn forge(files: &mut BTreeMap<String, Vec<u8>>, name: &str, content: Vec<u8>) {
 }
 
 /// Tries every forgery with a correct manifest.
-fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
+fn check_forgeries(files: &BTreeMap<String, Vec<u8>>) {
     // A changed file with a correct manifest is found by the log,
     for name in files
         .keys()
@@ -163,7 +163,7 @@ fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
         let mut content = files[name].clone();
         content.push(b' ');
         forge(&mut forged, name, content);
-        let problems = evidence::verify(&packed(&forged)).problems;
+        let problems = evidence::verify(&pack(&forged)).problems;
         assert_eq!(problems.len(), 1, "{name}: {problems:?}");
     }
     // a changed drawing by the record,
@@ -179,7 +179,7 @@ fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
     ] {
         let mut forged = files.clone();
         forge(&mut forged, name, content);
-        let problems = evidence::verify(&packed(&forged)).problems;
+        let problems = evidence::verify(&pack(&forged)).problems;
         assert_eq!(problems.len(), 1, "{name}: {problems:?}");
         assert!(problems[0].starts_with(name), "{problems:?}");
     }
@@ -187,7 +187,7 @@ fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
     for name in ["certificate.pdf", "photos/0099.png"] {
         let mut forged = files.clone();
         forge(&mut forged, name, b"CERTIFICATE".to_vec());
-        let problems = evidence::verify(&packed(&forged)).problems;
+        let problems = evidence::verify(&pack(&forged)).problems;
         assert_eq!(problems, [format!("{name} is no part of this evidence")]);
     }
     // a removed log line by its chain, and a removed end by the head.
@@ -198,18 +198,18 @@ fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
         kept.remove(left_out);
         let mut forged = files.clone();
         forge(&mut forged, "entries.ndjson", kept.join("\n").into_bytes());
-        let problems = evidence::verify(&packed(&forged)).problems;
+        let problems = evidence::verify(&pack(&forged)).problems;
         assert!(!problems.is_empty(), "without line {}", left_out + 1);
     }
 }
 
 /// Returns the archive with two entries of one name: packs the file under another name
 /// of the same length, and renames it in the bytes.
-fn with_two_of(files: &BTreeMap<String, Vec<u8>>, name: &str, content: &[u8]) -> Vec<u8> {
+fn with_duplicate_entry(files: &BTreeMap<String, Vec<u8>>, name: &str, content: &[u8]) -> Vec<u8> {
     let stand_in = "x".repeat(name.len());
     let mut more = files.clone();
     more.insert(stand_in.clone(), content.to_vec());
-    let mut bytes = packed(&more);
+    let mut bytes = pack(&more);
     let stands_at = |bytes: &[u8]| {
         let mut places = bytes.windows(name.len());
         places.position(|found| found == stand_in.as_bytes())
@@ -221,11 +221,11 @@ fn with_two_of(files: &BTreeMap<String, Vec<u8>>, name: &str, content: &[u8]) ->
 }
 
 /// Checks that data beside the files is found: a repeated name, comments, times.
-fn what_stands_beside_the_files_is_found_out(files: &BTreeMap<String, Vec<u8>>) {
-    let whole = packed(files);
+fn check_data_beside_files(files: &BTreeMap<String, Vec<u8>>) {
+    let whole = pack(files);
     assert_eq!(evidence::verify(&whole).problems, Vec::<String>::new());
     for content in [b"%PDF-1.7 CERTIFICATE".as_slice(), &files["record.pdf"]] {
-        let twice = with_two_of(files, "record.pdf", content);
+        let twice = with_duplicate_entry(files, "record.pdf", content);
         let problems = evidence::verify(&twice).problems;
         assert!(
             problems.iter().any(|problem| problem.contains("one name")),
@@ -254,7 +254,7 @@ fn what_stands_beside_the_files_is_found_out(files: &BTreeMap<String, Vec<u8>>) 
 }
 
 /// Returns the files with a changed log, its chain and the manifest corrected.
-fn with_another_log(
+fn with_changed_log(
     files: &BTreeMap<String, Vec<u8>>,
     change: &dyn Fn(&mut Vec<Value>),
 ) -> BTreeMap<String, Vec<u8>> {
@@ -285,9 +285,9 @@ fn with_another_log(
 }
 
 /// Checks that facts without a signature are reported as statements of the log.
-fn facts_without_signature_are_marked(files: &BTreeMap<String, Vec<u8>>) {
+fn check_facts_without_signature(files: &BTreeMap<String, Vec<u8>>) {
     let with = |change: &dyn Fn(&mut Vec<Value>)| {
-        evidence::verify(&packed(&with_another_log(files, change)))
+        evidence::verify(&pack(&with_changed_log(files, change)))
     };
     let found = with(&|log| {
         let mut entry = log.last().unwrap().clone();
@@ -331,7 +331,7 @@ fn facts_without_signature_are_marked(files: &BTreeMap<String, Vec<u8>>) {
 
 async fn tampered_evidence_is_detected(server: TestServer) {
     let job = Job::begin(&server).await;
-    job.photo(PICTURE).await.good();
+    job.post_photo(PICTURE).await.good();
     let done = job.complete().await;
     let record_sha256 = done["completion"]["record_sha256"].as_str().unwrap();
     let key = Ed25519KeyPair::from_seed_unchecked(&[7; 32]).unwrap();
@@ -377,7 +377,7 @@ async fn tampered_evidence_is_detected(server: TestServer) {
     assert!(found.facts.iter().any(|fact| {
         fact.contains("cover record.json, predicted.csv, record.pdf, photos/0002.jpeg")
     }));
-    let files = unpacked(&whole);
+    let files = unpack(&whole);
     assert!(String::from_utf8_lossy(&files["README.txt"]).contains("not a certificate"));
     assert!(
         String::from_utf8_lossy(&files["record.json"]).contains("predicted, not a certificate")
@@ -391,7 +391,7 @@ async fn tampered_evidence_is_detected(server: TestServer) {
         let mut without = files.clone();
         without.remove(name);
         assert!(
-            !evidence::verify(&packed(&without)).problems.is_empty(),
+            !evidence::verify(&pack(&without)).problems.is_empty(),
             "without {name}"
         );
         let mut changed = files.clone();
@@ -400,16 +400,16 @@ async fn tampered_evidence_is_detected(server: TestServer) {
         let place = content.iter().rposition(u8::is_ascii_digit);
         let byte = &mut content[place.unwrap_or(0)];
         *byte = if *byte == b'7' { b'8' } else { b'7' };
-        let problems = evidence::verify(&packed(&changed)).problems;
+        let problems = evidence::verify(&pack(&changed)).problems;
         assert!(!problems.is_empty(), "{name} changed");
     }
 
-    forgeries_are_found_out(&files);
-    what_stands_beside_the_files_is_found_out(&files);
-    facts_without_signature_are_marked(&files);
+    check_forgeries(&files);
+    check_data_beside_files(&files);
+    check_facts_without_signature(&files);
     assert!(!evidence::verify(b"not an archive").problems.is_empty());
     // A photograph after the record is evidence, and is not signed.
-    job.photo(PICTURE).await.good();
+    job.post_photo(PICTURE).await.good();
     let found = evidence::verify(&job.evidence().await);
     assert_eq!(found.problems, Vec::<String>::new());
     let uncovered = found

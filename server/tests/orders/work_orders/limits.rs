@@ -74,7 +74,7 @@ async fn a_plan_beyond_the_limits_cannot_be_completed(server: TestServer) {
     job.adjust().await;
     // As if planned by an earlier version, which offered plans beyond the limits.
     server
-        .sql(
+        .run_sql(
             "UPDATE work_order_entries \
              SET line = REPLACE(line, '\"residual_deg\":2.9', '\"residual_deg\":0.5')",
         )

@@ -26,18 +26,18 @@ fn ship() -> Model {
 }
 
 /// Returns the compass reading at the berth with a corrector setting, without needle effects.
-fn shown_deg(setting: &Value) -> f64 {
+fn compass_reading_deg(setting: &Value) -> f64 {
     let field = second_reading_after(&reading_on_ship(&ship()), setting);
     let [forward, starboard] = ["forward", "starboard"].map(|part| number(&field[part]));
     (-starboard).atan2(forward).to_degrees()
 }
 
 fn turn_deg(from: &Value, to: &Value) -> f64 {
-    (shown_deg(to) - shown_deg(from) + 540.0).rem_euclid(360.0) - 180.0
+    (compass_reading_deg(to) - compass_reading_deg(from) + 540.0).rem_euclid(360.0) - 180.0
 }
 
 /// Returns setting and hole with the step's tray some holes off; `None` outside the holes.
-fn miscounted(step: &Value, by: i64) -> Option<(u64, Value)> {
+fn with_hole_error(step: &Value, by: i64) -> Option<(u64, Value)> {
     let to = &step["to"];
     let hole = u64::try_from(to["hole"].as_i64()? + by).ok()?;
     let mut setting = step["setting_after"].clone();
@@ -53,7 +53,7 @@ fn miscounted(step: &Value, by: i64) -> Option<(u64, Value)> {
 
 /// Returns a job whose last step was three holes off, with the step, the corrector setting
 /// and the compass reading.
-async fn gone_wrong(server: &TestServer) -> (Job, Value, Value, f64) {
+async fn job_with_wrong_hole(server: &TestServer) -> (Job, Value, Value, f64) {
     let person = server.admin("ada").await;
     let job = Job::on_ship(server, person, &ship()).await;
     let read = reading_on_ship(&ship());
@@ -71,7 +71,9 @@ async fn gone_wrong(server: &TestServer) -> (Job, Value, Value, f64) {
             let is_shown = off_deg > 1.3 * number(&step["tolerance_deg"]);
             (is_shown && (0.4..1.9).contains(&share)).then_some((hole, setting, turned_deg))
         };
-        let mut off = [-3, 3].into_iter().filter_map(|by| miscounted(&step, by));
+        let mut off = [-3, 3]
+            .into_iter()
+            .filter_map(|by| with_hole_error(&step, by));
         if let Some((hole, setting, turned_deg)) = off.find_map(shows) {
             let compass_deg = (before_deg + turned_deg).rem_euclid(360.0);
             let read = json!({ "after_deg": compass_deg });
@@ -91,7 +93,7 @@ async fn gone_wrong(server: &TestServer) -> (Job, Value, Value, f64) {
 }
 
 /// Follows a new plan with magnets of catalogue strength.
-async fn goes_on(job: &Job, said: &Value) {
+async fn follow_new_plan(job: &Job, said: &Value) {
     let order = job.post("/corrector-settings", said).await.good();
     assert_eq!(order["last_step"], Value::Null);
     let mut order = job.post("/plan", &json!({})).await.good();
@@ -111,21 +113,21 @@ async fn goes_on(job: &Job, said: &Value) {
 }
 
 async fn a_tray_in_a_wrong_hole_does_not_change_the_magnet_strength(server: TestServer) {
-    let (job, _, setting, compass_deg) = gone_wrong(&server).await;
+    let (job, _, setting, compass_deg) = job_with_wrong_hole(&server).await;
     let said = json!({
         "setting": setting, "compass_deg": compass_deg, "note": "counted from the top",
     });
-    goes_on(&job, &said).await;
+    follow_new_plan(&job, &said).await;
     server.finish().await;
 }
 
 async fn a_corrected_tray_does_not_change_the_magnet_strength(server: TestServer) {
-    let (job, step, setting, compass_deg) = gone_wrong(&server).await;
+    let (job, step, setting, compass_deg) = job_with_wrong_hole(&server).await;
     let as_planned = &step["setting_after"];
     let compass_deg = compass_deg + turn_deg(&setting, as_planned);
     let said = json!({
         "setting": as_planned, "compass_deg": compass_deg.rem_euclid(360.0),
     });
-    goes_on(&job, &said).await;
+    follow_new_plan(&job, &said).await;
     server.finish().await;
 }

@@ -19,7 +19,7 @@ on_both!(
     missing_correctors_are_named,
 );
 
-fn with(changes: &Value) -> Value {
+fn reading_with(changes: &Value) -> Value {
     let mut body = reading();
     let changes = changes.as_object().unwrap().clone();
     body.as_object_mut().unwrap().extend(changes);
@@ -31,28 +31,34 @@ async fn an_impossible_reading_is_refused_with_its_code(server: TestServer) {
     let good = reading();
     let part = |name: &str, times: f64| json!(times * good[name].as_f64().unwrap());
     let times = |times: f64| {
-        with(&json!({ "forward": part("forward", times), "starboard": part("starboard", times) }))
+        reading_with(
+            &json!({ "forward": part("forward", times), "starboard": part("starboard", times) }),
+        )
     };
     for (body, word) in [
         (
-            with(&json!({ "heading_true_deg": HEADING_DEG + 9.0 })),
+            reading_with(&json!({ "heading_true_deg": HEADING_DEG + 9.0 })),
             "inconsistent_berth",
         ),
         (times(4.0), "implausible_lambda"),
         (times(1e4), "no_such_field"),
         (times(0.0), "no_such_field"),
-        (with(&json!({ "down": 1e6 })), "no_such_field"),
+        (reading_with(&json!({ "down": 1e6 })), "no_such_field"),
         (
-            with(&json!({ "lat": -64.1, "lon": 136.0 })),
+            reading_with(&json!({ "lat": -64.1, "lon": 136.0 })),
             "field_too_weak",
         ),
         // In the far south the ship's own field cancels the earth's on this heading.
         (
-            with(&json!({ "lat": -61.2, "lon": 136.0, "heading_true_deg": 225.0 })),
+            reading_with(&json!({ "lat": -61.2, "lon": 136.0, "heading_true_deg": 225.0 })),
             "ambiguous_headings",
         ),
     ] {
-        assert_eq!(job.refused("/berth-reading", &body).await, word, "{body}");
+        assert_eq!(
+            job.refusal_code("/berth-reading", &body).await,
+            word,
+            "{body}"
+        );
     }
     let nanotesla = times(1000.0);
     let response = job.post("/berth-reading", &nanotesla).await.json();
@@ -87,12 +93,12 @@ async fn an_insufficient_plan_is_refused_with_its_code(server: TestServer) {
         ),
     ] {
         job.replace_order(limits.clone()).await;
-        job.post("/berth-reading", &with(body)).await.good();
+        job.post("/berth-reading", &reading_with(body)).await.good();
         let order = job.view_order().await;
         for (name, limit) in limits.as_object().unwrap() {
             assert_eq!(order["limits"][name], *limit);
         }
-        let refused = job.refused("/plan", &json!({})).await;
+        let refused = job.refusal_code("/plan", &json!({})).await;
         assert_eq!(refused, word, "{limits}");
         assert_eq!(job.view_order().await["state"], "measured");
     }
@@ -215,7 +221,10 @@ async fn missing_correctors_are_named(server: TestServer) {
     few["aboard"] = json!({ "magnets": [{ "magnet": "200 mm", "count": 1 }] });
     put(&job.person, &path, &few).await.good();
     job.post("/berth-reading", &reading()).await.good();
-    assert_eq!(job.refused("/plan", &json!({})).await, "residual_too_large");
+    assert_eq!(
+        job.refusal_code("/plan", &json!({})).await,
+        "residual_too_large"
+    );
     let early = job.post("/complete", &completion_details()).await;
     assert_eq!(early.problem(), "wrong-state");
     server.finish().await;

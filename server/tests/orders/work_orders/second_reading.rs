@@ -256,7 +256,7 @@ async fn a_compass_reading_against_the_field_is_not_confirmed(server: TestServer
 }
 
 /// Adjusts a ship that needs heeling magnets, with the vertical part of the reading.
-async fn heeling(server: &TestServer) -> (Job, Value, Value) {
+async fn adjusted_with_heeling_magnets(server: &TestServer) -> (Job, Value, Value) {
     let job = Job::begin(server).await;
     let path = format!("/compasses/{}/binnacle", job.compass);
     let mut more = binnacle();
@@ -279,7 +279,7 @@ fn without_down(reading: &Value) -> Value {
 }
 
 async fn a_vertical_mismatch_needs_another_vertical_reading(server: TestServer) {
-    let (job, first, setting) = heeling(&server).await;
+    let (job, first, setting) = adjusted_with_heeling_magnets(&server).await;
     let mut truly = setting.clone();
     truly["heeling"] = Value::Null;
     let not_done = second_reading_after(&first, &truly);
@@ -300,7 +300,7 @@ async fn a_vertical_mismatch_needs_another_vertical_reading(server: TestServer) 
 }
 
 async fn heeling_magnets_are_confirmed_only_by_the_vertical_part(server: TestServer) {
-    let (job, first, setting) = heeling(&server).await;
+    let (job, first, setting) = adjusted_with_heeling_magnets(&server).await;
     let blind = without_down(&second_reading_after(&first, &setting));
     let said = job.post("/second-reading", &blind).await.good()["second_reading"].clone();
     assert_eq!(said["verdict"], "as_planned", "{said}");

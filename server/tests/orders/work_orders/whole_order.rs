@@ -93,12 +93,12 @@ async fn headings_at_sea_verify_an_adjustment(server: TestServer) {
     let early = job.post("/close", &json!({ "text": "done" })).await;
     assert_eq!(early.problem(), "wrong-state");
     let not_verified = "adjusted, not yet verified at sea: ";
-    let reason = reason_of_need(&job).await;
+    let reason = due_reason(&job).await;
     assert!(reason.starts_with(not_verified), "{reason}");
     let more = job.sail(&server, &ship, 3, 6.0).await;
     assert_eq!(more["state"], "verified", "{}", more["verification"]);
     assert_eq!(more["standing"], "verified at sea");
-    let reason = reason_of_need(&job).await;
+    let reason = due_reason(&job).await;
     assert!(!reason.contains(not_verified), "{reason}");
     assert_eq!(job.open_alerts().await, Vec::<Value>::new());
     let notifications = job.person.get("/notifications?kind=verified").await.good();
@@ -153,7 +153,7 @@ async fn a_disagreeing_heading_at_sea_raises_an_alert(server: TestServer) {
     server.finish().await;
 }
 
-async fn reason_of_need(job: &Job) -> String {
+async fn due_reason(job: &Job) -> String {
     let needs = job.person.get("/needs").await.good();
     let need = &needs["items"][0];
     assert_eq!(need["urgency"], "routine", "{need}");
@@ -161,7 +161,7 @@ async fn reason_of_need(job: &Job) -> String {
 }
 
 /// Returns a job that failed verification on the day after the adjustment.
-async fn disproved(server: &TestServer) -> Job {
+async fn failed_verification(server: &TestServer) -> Job {
     let mut job = Job::begin(server).await;
     let mut ship = predicted_model(&job.complete().await);
     ship.parameters_over_lambda.bx_nt += 4000.0;
@@ -178,7 +178,7 @@ async fn is_failed(job: &Job) -> bool {
 }
 
 async fn an_adjustment_after_a_failed_verification_resolves_it_on_its_day(server: TestServer) {
-    let job = disproved(&server).await;
+    let job = failed_verification(&server).await;
     // The last heading at sea was at 11:50 on that day.
     let before = json!({ "kind": "adjustment", "from": "2026-11-22T09:00:00Z" });
     let logbook = job.ship.path("/logbook");
@@ -191,13 +191,13 @@ async fn an_adjustment_after_a_failed_verification_resolves_it_on_its_day(server
 }
 
 async fn another_orders_adjustment_resolves_a_failed_verification(server: TestServer) {
-    let job = disproved(&server).await;
+    let job = failed_verification(&server).await;
     let mut again = job.new_order();
     again["planned_at"] = json!("2026-11-23T09:00:00Z");
     job.person.post("/work-orders", &again).await.good();
     // An hour after the first one, before the verification result.
     server
-        .sql(
+        .run_sql(
             "UPDATE work_orders SET state = 'adjusted', completed_at =
                  (SELECT MAX(c.completed_at) FROM work_orders c) + 3600000000
              WHERE completed_at IS NULL",

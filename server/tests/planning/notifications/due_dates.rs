@@ -71,7 +71,7 @@ async fn an_earlier_due_date_is_notified(server: TestServer) {
 async fn two_servers_notify_a_due_date_once(server: TestServer) {
     let ada = server.admin("ada").await;
     due_vessel(&ada, "Nao").await;
-    let other = server.second().await;
+    let other = server.second_server().await;
     let (one, two) = tokio::join!(look(&server.app), look(&other));
     assert_eq!(one.unwrap() + two.unwrap(), 1);
     assert_eq!(subjects_of(&ada).await.len(), 1);
@@ -83,7 +83,7 @@ async fn an_unreadable_fleet_does_not_block_other_fleets_notifications(server: T
     let ada = server.admin("ada").await;
     due_vessel(&ada, "Nao").await;
     server
-        .sql("UPDATE vessel_particulars SET particulars = '{'")
+        .run_sql("UPDATE vessel_particulars SET particulars = '{'")
         .await;
     // Created after Ada, and checked after her.
     let eve = server.admin("eve").await;

@@ -1,9 +1,9 @@
 //! Time of a letter: at once, after quiet hours, with a digest, or never.
 
-use super::{mailed, say};
+use super::{put_settings, sent_subjects};
 use binnacle_planning::notifications::post;
 use binnacle_server_testing::HOUR_S;
-use binnacle_server_testing::alerts::{limit, ship_with_model};
+use binnacle_server_testing::alerts::{set_alert_limits, ship_with_model};
 use binnacle_server_testing::mail::{add, deliver};
 use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::on_both;
@@ -24,7 +24,7 @@ on_both!(
 );
 
 /// Returns settings with quiet hours until 09:30 in Madrid, where every test begins at 08:00.
-fn quiet() -> serde_json::Value {
+fn quiet_hours() -> serde_json::Value {
     json!({
         "time_zone": "Europe/Madrid", "quiet_hours": { "from": "21:00", "to": "09:30" },
         "digest": { "every": "day", "at": "12:00" },
@@ -34,7 +34,7 @@ fn quiet() -> serde_json::Value {
 async fn letters_of_quiet_hours_are_sent_together_afterwards(server: TestServer) {
     let relay = Relay::start().await;
     let parties = OfferParties::planned(&server, 2).await;
-    say(&parties.ada, &quiet()).await.good();
+    put_settings(&parties.ada, &quiet_hours()).await.good();
     parties
         .post(&parties.ada, "/offer", &parties.offer())
         .await
@@ -46,11 +46,11 @@ async fn letters_of_quiet_hours_are_sent_together_afterwards(server: TestServer)
     parties.post(juan, "/accept", &json!({})).await.good();
     // The firms have no quiet hours.
     let offered = "Nao: a job is offered to you at Bilbao";
-    assert_eq!(mailed(&server, &relay).await, [offered; 2]);
+    assert_eq!(sent_subjects(&server, &relay).await, [offered; 2]);
     server.advance(1.5 * HOUR_S - 1.0);
-    assert_eq!(mailed(&server, &relay).await.len(), 2);
+    assert_eq!(sent_subjects(&server, &relay).await.len(), 2);
     server.advance(1.0);
-    let all = mailed(&server, &relay).await;
+    let all = sent_subjects(&server, &relay).await;
     assert_eq!(all[2..], ["2 notifications from Binnacle"]);
     let letter = relay.letters().pop().unwrap();
     assert_eq!(letter.to, ["<ada@example.com>"]);
@@ -72,23 +72,23 @@ async fn letters_of_quiet_hours_are_sent_together_afterwards(server: TestServer)
         "{text}"
     );
     server.advance(24.0 * HOUR_S);
-    assert_eq!(mailed(&server, &relay).await.len(), 3);
+    assert_eq!(sent_subjects(&server, &relay).await.len(), 3);
     server.finish().await;
 }
 
 async fn notifications_read_in_quiet_hours_are_not_mailed(server: TestServer) {
     let relay = Relay::start().await;
     let parties = OfferParties::offered(&server, 1).await;
-    say(&parties.ada, &quiet()).await.good();
+    put_settings(&parties.ada, &quiet_hours()).await.good();
     let rosa = &parties.firms[0].1;
     parties.post(rosa, "/accept", &json!({})).await.good();
     parties.post(rosa, "/on-board", &json!({})).await.good();
     let listed = parties.ada.get("/notifications").await.good();
     let first = json!({ "until": listed["items"][1]["id"] });
     parties.ada.post("/notifications/read", &first).await;
-    assert_eq!(mailed(&server, &relay).await.len(), 1);
+    assert_eq!(sent_subjects(&server, &relay).await.len(), 1);
     server.advance(2.0 * HOUR_S);
-    let all = mailed(&server, &relay).await;
+    let all = sent_subjects(&server, &relay).await;
     assert_eq!(all[1..], ["Nao: the adjuster is on board at Bilbao"]);
     server.finish().await;
 }
@@ -97,26 +97,26 @@ async fn a_critical_alert_passes_quiet_hours_and_a_warning_does_not(server: Test
     let relay = Relay::start().await;
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
-    let mut settings = quiet();
+    let mut settings = quiet_hours();
     settings["ways"] = json!({ "alert": "mail" });
-    say(&ada, &settings).await.good();
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
-    assert_eq!(mailed(&server, &relay).await, [""; 0]);
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    put_settings(&ada, &settings).await.good();
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    assert_eq!(sent_subjects(&server, &relay).await, [""; 0]);
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let critical = "Nao: critical, deviation over the limit";
-    assert_eq!(mailed(&server, &relay).await, [critical]);
+    assert_eq!(sent_subjects(&server, &relay).await, [critical]);
     // It does not wait for a digest either.
     settings["ways"] = json!({ "alert": "digest" });
-    say(&ada, &settings).await.good();
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
-    assert_eq!(mailed(&server, &relay).await, [critical; 2]);
+    put_settings(&ada, &settings).await.good();
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    assert_eq!(sent_subjects(&server, &relay).await, [critical; 2]);
     // Only a person who turned it off gets none.
     settings["ways"] = json!({ "alert": "off" });
-    say(&ada, &settings).await.good();
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
-    assert_eq!(mailed(&server, &relay).await.len(), 2);
+    put_settings(&ada, &settings).await.good();
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    assert_eq!(sent_subjects(&server, &relay).await.len(), 2);
     server.finish().await;
 }
 
@@ -124,7 +124,7 @@ async fn a_notified_person_gets_one_letter_when_an_alert_sinks_or_ends(server: T
     let relay = Relay::start().await;
     let ada = server.admin("ada").await;
     let nao = ship_with_model(&server, &ada).await;
-    say(&ada, &json!({ "ways": { "alert": "mail" } }))
+    put_settings(&ada, &json!({ "ways": { "alert": "mail" } }))
         .await
         .good();
     let vessel = ada.get(&nao.path("")).await.good();
@@ -132,18 +132,18 @@ async fn a_notified_person_gets_one_letter_when_an_alert_sinks_or_ends(server: T
     // Below the limit, but not far enough to clear the alert.
     let sunk_deg = worst_deg + 0.45;
     for deviation_deg in [1.0, 2.9, sunk_deg, 45.0, 2.9, sunk_deg, 2.9, 45.0] {
-        limit(
+        set_alert_limits(
             &server,
             &ada,
             &nao,
             json!({ "deviation_deg": deviation_deg }),
         )
         .await;
-        mailed(&server, &relay).await;
+        sent_subjects(&server, &relay).await;
     }
     let [critical, warning, sunk, over] = ["critical", "warning", "only notice now", "over"]
         .map(|state| format!("Nao: {state}, deviation over the limit"));
-    let all = mailed(&server, &relay).await;
+    let all = sent_subjects(&server, &relay).await;
     assert_eq!(
         all,
         [&critical, &sunk, &warning, &sunk, &warning, &over].map(String::as_str)
@@ -156,11 +156,11 @@ async fn a_person_on_the_mailing_list_gets_one_letter_of_an_alert(server: TestSe
     let ada = server.admin("ada").await;
     add(&ada, "Ada@example.com", "warning").await;
     let nao = ship_with_model(&server, &ada).await;
-    say(&ada, &json!({ "ways": { "alert": "mail" } }))
+    put_settings(&ada, &json!({ "ways": { "alert": "mail" } }))
         .await
         .good();
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
-    let all = mailed(&server, &relay).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    let all = sent_subjects(&server, &relay).await;
     assert_eq!(all, ["Nao: warning, deviation over the limit"]);
     assert_eq!(super::subjects_of(&ada).await, all);
     server.finish().await;
@@ -174,18 +174,18 @@ async fn a_digest_contains_everything_since_the_last_one(server: TestServer) {
         "time_zone": "Asia/Singapore", "ways": { "answered": "digest", "on_board": "digest" },
         "digest": { "every": "week", "on": "sunday", "at": "09:00" },
     });
-    let said = say(&parties.ada, &weekly).await.good();
+    let said = put_settings(&parties.ada, &weekly).await.good();
     assert_eq!(said["next_digest_at"], "2026-11-22T01:00:00Z");
     parties.post(rosa, "/accept", &json!({})).await.good();
-    assert_eq!(mailed(&server, &relay).await.len(), 1);
+    assert_eq!(sent_subjects(&server, &relay).await.len(), 1);
     server.advance(18.0 * HOUR_S);
-    let all = mailed(&server, &relay).await;
+    let all = sent_subjects(&server, &relay).await;
     assert_eq!(all[1..], ["Nao: rosa accepts the job at Bilbao"]);
     parties.post(rosa, "/on-board", &json!({})).await.good();
     server.advance(6.9 * 24.0 * HOUR_S);
-    assert_eq!(mailed(&server, &relay).await.len(), 2);
+    assert_eq!(sent_subjects(&server, &relay).await.len(), 2);
     server.advance(0.1 * 24.0 * HOUR_S);
-    let all = mailed(&server, &relay).await;
+    let all = sent_subjects(&server, &relay).await;
     assert_eq!(all[2..], ["Nao: the adjuster is on board at Bilbao"]);
     server.finish().await;
 }
@@ -193,7 +193,7 @@ async fn a_digest_contains_everything_since_the_last_one(server: TestServer) {
 async fn two_servers_make_one_letter(server: TestServer) {
     let relay = Relay::start().await;
     let _trade = OfferParties::offered(&server, 1).await;
-    let other = server.second().await;
+    let other = server.second_server().await;
     let (one, two) = tokio::join!(post(&server.app), post(&other));
     one.unwrap();
     two.unwrap();
@@ -205,14 +205,14 @@ async fn two_servers_make_one_letter(server: TestServer) {
 async fn waiting_letters_follow_new_settings(server: TestServer) {
     let relay = Relay::start().await;
     let parties = OfferParties::offered(&server, 1).await;
-    say(&parties.ada, &quiet()).await.good();
+    put_settings(&parties.ada, &quiet_hours()).await.good();
     parties
         .post(&parties.firms[0].1, "/accept", &json!({}))
         .await
         .good();
-    assert_eq!(mailed(&server, &relay).await.len(), 1);
-    say(&parties.ada, &json!({})).await.good();
-    let all = mailed(&server, &relay).await;
+    assert_eq!(sent_subjects(&server, &relay).await.len(), 1);
+    put_settings(&parties.ada, &json!({})).await.good();
+    let all = sent_subjects(&server, &relay).await;
     assert_eq!(all[1..], ["Nao: rosa accepts the job at Bilbao"]);
     server.finish().await;
 }
@@ -221,7 +221,7 @@ async fn a_removed_person_gets_no_more_letters(server: TestServer) {
     let relay = Relay::start().await;
     let parties = OfferParties::offered(&server, 1).await;
     let viewer = parties.ada.viewer(&server).await;
-    say(&viewer, &json!({ "ways": { "answered": "mail" } }))
+    put_settings(&viewer, &json!({ "ways": { "answered": "mail" } }))
         .await
         .good();
     parties

@@ -32,13 +32,13 @@ pub(crate) async fn subjects_of(person: &Person) -> Vec<String> {
 }
 
 /// Makes and sends the letters that are due; returns the subjects of all letters so far.
-async fn mailed(server: &TestServer, relay: &Relay) -> Vec<String> {
+async fn sent_subjects(server: &TestServer, relay: &Relay) -> Vec<String> {
     post(&server.app).await.unwrap();
     deliver(server, relay).await;
     subjects(relay)
 }
 
-async fn say(person: &Person, settings: &Value) -> ApiResponse {
+async fn put_settings(person: &Person, settings: &Value) -> ApiResponse {
     let request = person.request(Method::PUT, "/me/notifications");
     ApiResponse::of(request.json(settings)).await
 }
@@ -51,7 +51,7 @@ async fn an_offer_and_its_responses_notify_the_other_side(server: TestServer) {
     };
     let offered = "Nao: a job is offered to you at Bilbao";
     assert_eq!(subjects_of(rosa).await, [offered]);
-    assert_eq!(mailed(&server, &relay).await, [offered]);
+    assert_eq!(sent_subjects(&server, &relay).await, [offered]);
     let letter = relay.letters().remove(0);
     assert_eq!(letter.to, ["<rosa@adjusters.example>"]);
     let read = binnacle_server_testing::mail::read(&letter);

@@ -1,6 +1,6 @@
 //! A person's notification settings.
 
-use super::say;
+use super::put_settings;
 use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{ApiResponse, TestServer};
@@ -38,7 +38,7 @@ async fn the_default_settings_apply_until_changed(server: TestServer) {
         "quiet_hours": { "from": "20:00", "to": "06:00" },
         "digest": { "every": "week", "on": "friday", "at": "17:30" },
     });
-    say(&viewer, &wanted).await.good();
+    put_settings(&viewer, &wanted).await.good();
     let said = viewer.get("/me/notifications").await.good();
     assert_eq!(said["settings"], wanted);
     assert_eq!(said["ways"]["answered"], "off");
@@ -58,7 +58,7 @@ async fn invalid_settings_are_refused(server: TestServer) {
         json!({ "ways": { "answered": "pigeon" } }),
         json!({ "volume": 11 }),
     ] {
-        assert_eq!(say(&ada, &bad).await.problem(), "invalid", "{bad}");
+        assert_eq!(put_settings(&ada, &bad).await.problem(), "invalid", "{bad}");
     }
     let usual = ada.get("/me/notifications").await.good();
     assert_eq!(usual["settings"]["time_zone"], "UTC");

@@ -22,12 +22,12 @@ on_both!(
 
 const HEADER: &str = "id,port,eta,etd,berth\n";
 
-async fn send(person: &Person, path: &str, text: impl Into<String>) -> ApiResponse {
+async fn import(person: &Person, path: &str, text: impl Into<String>) -> ApiResponse {
     let request = person.request(Method::POST, path).body(text.into());
     ApiResponse::of(request.header("content-type", "text/csv")).await
 }
 
-fn did(created: u32, amended: u32, unchanged: u32, withdrawn: u32, over: u32) -> Value {
+fn import_counts(created: u32, amended: u32, unchanged: u32, withdrawn: u32, over: u32) -> Value {
     json!({ "created": created, "amended": amended, "unchanged": unchanged,
             "withdrawn": withdrawn, "over": over })
 }
@@ -43,11 +43,20 @@ async fn a_csv_sent_repeatedly_is_imported_once(server: TestServer) {
     let nao = ada.create_vessel("Nao").await;
     let csv = format!("{}.csv", path(&nao));
     let file = format!("{HEADER}{}{}", row("a", "NLRTM", 8), row("b", "BEANR", 10));
-    assert_eq!(send(&ada, &csv, &file).await.good(), did(2, 0, 0, 0, 0));
-    assert_eq!(send(&ada, &csv, &file).await.good(), did(0, 0, 2, 0, 0));
+    assert_eq!(
+        import(&ada, &csv, &file).await.good(),
+        import_counts(2, 0, 0, 0, 0)
+    );
+    assert_eq!(
+        import(&ada, &csv, &file).await.good(),
+        import_counts(0, 0, 2, 0, 0)
+    );
     // One file moves a port call into the time of another, and that one away.
     let file = format!("{HEADER}{}{}", row("a", "NLRTM", 10), row("b", "BEANR", 12));
-    assert_eq!(send(&ada, &csv, &file).await.good(), did(0, 2, 0, 0, 0));
+    assert_eq!(
+        import(&ada, &csv, &file).await.good(),
+        import_counts(0, 2, 0, 0, 0)
+    );
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 10", "BEANR 12"]);
     let list = ada.get(&path(&nao)).await.good();
     assert_eq!(list["items"][0]["source"], "csv");
@@ -61,12 +70,21 @@ async fn a_csv_with_past_port_calls_is_imported(server: TestServer) {
     let nao = ada.create_vessel("Nao").await;
     let csv = format!("{}.csv", path(&nao));
     let file = format!("{HEADER}{}{}", row("a", "NLRTM", 8), row("b", "BEANR", 20));
-    assert_eq!(send(&ada, &csv, &file).await.good(), did(2, 0, 0, 0, 0));
+    assert_eq!(
+        import(&ada, &csv, &file).await.good(),
+        import_counts(2, 0, 0, 0, 0)
+    );
     server.advance(20.0 * 86_400.0);
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
-    assert_eq!(send(&ada, &csv, &file).await.good(), did(0, 0, 1, 0, 1));
+    assert_eq!(
+        import(&ada, &csv, &file).await.good(),
+        import_counts(0, 0, 1, 0, 1)
+    );
     let all = format!("{csv}?replace=true");
-    assert_eq!(send(&ada, &all, &file).await.good(), did(0, 0, 1, 0, 1));
+    assert_eq!(
+        import(&ada, &all, &file).await.good(),
+        import_counts(0, 0, 1, 0, 1)
+    );
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 08", "BEANR 20"]);
     server.finish().await;
 }
@@ -77,7 +95,10 @@ async fn a_csv_of_a_european_spreadsheet_is_imported(server: TestServer) {
     let csv = format!("{}.csv", path(&nao));
     let file = "\u{feff}id;port;eta;etd;berth;eta_uncertainty_h\r\n\
                 a;NLRTM;2026-12-08T06:00:00Z;2026-12-09T18:00:00Z;\"A5, south\";1,5\r\n";
-    assert_eq!(send(&ada, &csv, file).await.good(), did(1, 0, 0, 0, 0));
+    assert_eq!(
+        import(&ada, &csv, file).await.good(),
+        import_counts(1, 0, 0, 0, 0)
+    );
     let list = ada.get(&path(&nao)).await.good();
     assert_eq!(list["items"][0]["berth"], "A5, south");
     assert_eq!(list["items"][0]["eta_uncertainty_h"], 1.5);
@@ -92,7 +113,7 @@ async fn a_csv_of_a_european_spreadsheet_is_imported(server: TestServer) {
             "line 2: eta: \"2026-12-10T06:00:00\" has no time zone",
         ),
     ] {
-        let refused = send(&ada, &csv, file).await;
+        let refused = import(&ada, &csv, file).await;
         assert_eq!(refused.problem(), "invalid");
         let detail = refused.json()["detail"].as_str().unwrap().to_owned();
         assert!(detail.contains(said), "{detail}");
@@ -132,7 +153,7 @@ async fn a_csv_with_one_invalid_line_changes_nothing(server: TestServer) {
             "file: line 3: eta: 9999-11-10T06:00:00Z is more than 730 days ahead",
         ),
     ] {
-        let response = send(&ada, &csv, format!("{HEADER}{rows}")).await;
+        let response = import(&ada, &csv, format!("{HEADER}{rows}")).await;
         assert_eq!(response.problem(), "invalid");
         let detail = response.json()["detail"].as_str().unwrap().to_owned();
         assert!(detail.starts_with(said), "{detail}\nis not\n{said}");
@@ -147,14 +168,20 @@ async fn a_replacing_file_withdraws_missing_port_calls(server: TestServer) {
     ada.post(&path(&nao), &call("ESBIO", 4)).await.good();
     let csv = format!("{}.csv?replace=true", path(&nao));
     let file = format!("{HEADER}{}{}", row("a", "NLRTM", 8), row("b", "BEANR", 10));
-    send(&ada, &csv, &file).await.good();
+    import(&ada, &csv, &file).await.good();
     let file = format!("{HEADER}{}", row("c", "DEHAM", 9));
-    assert_eq!(send(&ada, &csv, &file).await.good(), did(1, 0, 0, 2, 0));
+    assert_eq!(
+        import(&ada, &csv, &file).await.good(),
+        import_counts(1, 0, 0, 2, 0)
+    );
     // Port calls entered by hand stay.
     assert_eq!(listed(&ada, &path(&nao)).await, ["ESBIO 04", "DEHAM 09"]);
     // A returning port call is valid again, with its history.
     let file = format!("{HEADER}{}", row("a", "NLRTM", 8));
-    assert_eq!(send(&ada, &csv, &file).await.good(), did(0, 1, 0, 1, 0));
+    assert_eq!(
+        import(&ada, &csv, &file).await.good(),
+        import_counts(0, 1, 0, 1, 0)
+    );
     let list = ada.get(&path(&nao)).await.good();
     assert_eq!(list["items"][1]["revision"], 2);
     server.finish().await;
@@ -174,17 +201,17 @@ async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(server: TestServe
             row("a", "NLRTM", 8)
         )
     };
-    let taken = send(&ada, "/port-calls.csv", rows(["9074729", "la pinta"])).await;
-    assert_eq!(taken.good(), did(2, 0, 0, 0, 0));
+    let taken = import(&ada, "/port-calls.csv", rows(["9074729", "la pinta"])).await;
+    assert_eq!(taken.good(), import_counts(2, 0, 0, 0, 0));
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 08"]);
     assert_eq!(listed(&ada, &path(&pinta)).await, ["NLRTM 08"]);
-    let twice = send(&ada, "/port-calls.csv", rows(["La Pinta", id])).await;
+    let twice = import(&ada, "/port-calls.csv", rows(["La Pinta", id])).await;
     assert!(
         twice
             .text
             .contains("line 3: id: \\\"a\\\" stands on line 2")
     );
-    let nobody = send(&ada, "/port-calls.csv", rows(["Nao", "Niña"])).await;
+    let nobody = import(&ada, "/port-calls.csv", rows(["Nao", "Niña"])).await;
     assert!(nobody.text.contains("line 3: vessel: there is no vessel"));
     // Every row is checked, whatever is wrong with another one.
     let more = format!(
@@ -192,7 +219,7 @@ async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(server: TestServe
         rows(["Niña", "Santa"]),
         row("b", "BEANR", 9)
     );
-    let wrong = send(&ada, "/port-calls.csv", more).await.json();
+    let wrong = import(&ada, "/port-calls.csv", more).await.json();
     let wrong = wrong["detail"].as_str().unwrap();
     for said in [
         "line 2: vessel",
@@ -204,7 +231,7 @@ async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(server: TestServe
     }
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 08"]);
     ada.create_vessel("Nao").await;
-    let which = send(&ada, "/port-calls.csv", rows(["Nao", id])).await;
+    let which = import(&ada, "/port-calls.csv", rows(["Nao", id])).await;
     assert!(which.text.contains("several vessels; write the IMO number"));
     server.finish().await;
 }
@@ -230,19 +257,25 @@ async fn a_calendar_is_imported_and_its_cancellations_withdraw(server: TestServe
         event("b@agent", "NLRTM", "20261210", ""),
         event("old@agent", "NLRTM", "20261101", ""),
     ]);
-    assert_eq!(send(&ada, &ics, &first).await.good(), did(2, 0, 0, 0, 1));
+    assert_eq!(
+        import(&ada, &ics, &first).await.good(),
+        import_counts(2, 0, 0, 0, 1)
+    );
     let next = calendar(&[
         event("a@agent", "NLRTM", "20261208", "STATUS:CANCELLED\r\n"),
         event("b@agent", "NLRTM", "20261211", ""),
     ]);
-    assert_eq!(send(&ada, &ics, &next).await.good(), did(0, 1, 0, 1, 0));
+    assert_eq!(
+        import(&ada, &ics, &next).await.good(),
+        import_counts(0, 1, 0, 1, 0)
+    );
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 11"]);
     let all = format!("{}?withdrawn=true", path(&nao));
     let all = ada.get(&all).await.good();
     let cancelled = &all["items"][0];
     assert_eq!(cancelled["withdrawal_reason"], "cancelled in the file");
     let floating = next.replace("20261211T060000Z", "20261211T060000");
-    let response = send(&ada, &ics, floating).await;
+    let response = import(&ada, &ics, floating).await;
     assert!(
         response.text.contains("file: line 12: DTSTART: "),
         "{response:?}"
@@ -257,7 +290,7 @@ async fn a_file_of_fifty_megabytes_is_refused_with_a_problem(server: TestServer)
     let line = row("a", "NLRTM", 8);
     let file = format!("{HEADER}{}", line.repeat(50_000_000 / line.len()));
     for path in [format!("{}.csv", path(&nao)), "/port-calls.csv".to_owned()] {
-        let response = send(&ada, &path, file.as_str()).await;
+        let response = import(&ada, &path, file.as_str()).await;
         assert_eq!(response.problem(), "too-large");
         assert!(response.text.contains("8388608 bytes"), "{response:?}");
     }
@@ -275,8 +308,8 @@ async fn an_exported_file_can_be_imported(server: TestServer) {
     let csv = format!("{}.csv", path(&nao));
     let exported = ada.get(&csv).await;
     assert!(exported.text.contains("\n'=1+1,"), "{exported:?}");
-    let again = send(&ada, &csv, exported.text.as_str()).await.good();
-    assert_eq!(again, did(0, 0, 1, 0, 0));
+    let again = import(&ada, &csv, exported.text.as_str()).await.good();
+    assert_eq!(again, import_counts(0, 0, 1, 0, 0));
     server.finish().await;
 }
 
@@ -286,15 +319,15 @@ async fn a_file_may_name_only_ones_own_vessels(server: TestServer) {
     let nao = ada.create_vessel("Nao").await;
     let file = format!("{HEADER}{}", row("a", "NLRTM", 8));
     let csv = format!("{}.csv", path(&nao));
-    assert_eq!(send(&eve, &csv, &file).await.problem(), "not-found");
+    assert_eq!(import(&eve, &csv, &file).await.problem(), "not-found");
     assert_eq!(eve.get(&csv).await.problem(), "not-found");
     let id = nao["id"].as_str().unwrap();
     let fleet = format!("vessel,{HEADER}{id},{}", row("a", "NLRTM", 8));
-    let response = send(&eve, "/port-calls.csv", &fleet).await;
+    let response = import(&eve, "/port-calls.csv", &fleet).await;
     assert!(response.text.contains("there is no vessel"), "{response:?}");
     // A row may not name another vessel than the path.
     let pinta = ada.create_vessel("Pinta").await;
-    let other = send(&ada, &format!("{}.csv", path(&pinta)), &fleet).await;
+    let other = import(&ada, &format!("{}.csv", path(&pinta)), &fleet).await;
     assert!(other.text.contains("there is no vessel"), "{other:?}");
     server.finish().await;
 }

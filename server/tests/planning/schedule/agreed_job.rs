@@ -1,14 +1,14 @@
 //! A job that a firm has accepted.
 
 use super::offers::{firm, offer};
-use super::{due_vessel, enter, solve};
+use super::{due_vessel, enter_port_call, solve};
 use binnacle_server_testing::patch;
 use binnacle_server_testing::port_calls;
 use binnacle_server_testing::{ApiResponse, Person, TestServer};
 use serde_json::{Value, json};
 
 /// A ship in Rotterdam from the fourteenth to the fifteenth, and the firm with the job.
-pub(super) struct Agreed {
+pub(super) struct AgreedJob {
     pub(super) ada: Person,
     pub(super) rosa: Person,
     pub(super) firm: String,
@@ -19,11 +19,11 @@ pub(super) struct Agreed {
     pub(super) call: String,
 }
 
-impl Agreed {
-    pub(super) async fn new(server: &TestServer) -> Agreed {
+impl AgreedJob {
+    pub(super) async fn new(server: &TestServer) -> AgreedJob {
         let ada = server.admin("ada").await;
         let nao = due_vessel(&ada, "Nao").await;
-        let call = enter(&ada, &nao, "NLRTM", 14).await;
+        let call = enter_port_call(&ada, &nao, "NLRTM", 14).await;
         let (firm, rosa) = firm(server, &ada, "rosa").await;
         let plan = solve(&ada).await;
         let order = offer(&ada, &plan, &nao).await;
@@ -32,7 +32,7 @@ impl Agreed {
             .good();
         let id = call["id"].as_str().unwrap();
         let call = format!("{}/{id}", port_calls::path(&nao));
-        Agreed {
+        AgreedJob {
             ada,
             rosa,
             firm,
@@ -42,7 +42,7 @@ impl Agreed {
         }
     }
 
-    pub(super) async fn moves(&self, eta: &str, etd: &str) {
+    pub(super) async fn move_port_call(&self, eta: &str, etd: &str) {
         let times = json!({ "eta": eta, "etd": etd });
         patch(&self.ada, &self.call, &times).await.good();
     }

@@ -1,8 +1,8 @@
 //! The alert of an agreed job at risk, and its end.
 
-use super::agreed_job::Agreed;
-use super::offers::{alerts, direct, firm};
-use super::{due_vessel, enter, follow, put, solve, terms};
+use super::agreed_job::AgreedJob;
+use super::offers::{alerts, firm, order_for_firm};
+use super::{due_vessel, enter_port_call, put, solve, terms, update_schedule};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{ApiResponse, TestServer};
 use reqwest::Method;
@@ -16,14 +16,14 @@ on_both!(
 );
 
 async fn a_port_call_moved_past_the_due_date_puts_its_job_at_risk_at_once(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
-    follow(&server).await;
+    let agreed = AgreedJob::new(&server).await;
+    update_schedule(&server).await;
     // The compass is due on the twentieth.
     agreed
-        .moves("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
+        .move_port_call("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
         .await;
     assert_eq!(agreed.view_order().await["call_fit"], "needs_new_day");
-    assert_eq!(follow(&server).await, Some(agreed.ada.operator));
+    assert_eq!(update_schedule(&server).await, Some(agreed.ada.operator));
     let raised = alerts(&agreed.ada).await;
     assert_eq!(raised.len(), 1, "{raised:?}");
     let summary = raised[0]["summary"].as_str().unwrap();
@@ -35,7 +35,7 @@ async fn a_port_call_moved_past_the_due_date_puts_its_job_at_risk_at_once(server
     agreed.retime("2026-12-22T08:00:00Z").await.good();
     agreed.respond(&agreed.rosa, "accept").await.good();
     assert_eq!(agreed.view_order().await["call_fit"], Value::Null);
-    follow(&server).await;
+    update_schedule(&server).await;
     let raised = alerts(&agreed.ada).await;
     assert_eq!(
         raised.len(),
@@ -46,7 +46,7 @@ async fn a_port_call_moved_past_the_due_date_puts_its_job_at_risk_at_once(server
 }
 
 async fn an_agreed_job_at_risk_stays_so_without_its_firm(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
+    let agreed = AgreedJob::new(&server).await;
     let ada = &agreed.ada;
     solve(ada).await;
     let path = format!("/firms/{}/terms", agreed.firm);
@@ -59,7 +59,7 @@ async fn an_agreed_job_at_risk_stays_so_without_its_firm(server: TestServer) {
     assert_eq!(left_out().await, [] as [Value; 0]);
     put(ada, &path, &terms()).await.good();
     agreed
-        .moves("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
+        .move_port_call("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
         .await;
     solve(ada).await;
     let before = alerts(ada).await;
@@ -82,7 +82,7 @@ async fn an_agreed_job_at_risk_stays_so_without_its_firm(server: TestServer) {
 }
 
 async fn an_agreed_job_is_at_risk_when_its_firm_has_no_teams(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
+    let agreed = AgreedJob::new(&server).await;
     let path = format!("/firms/{}/terms", agreed.firm);
     let mut none = terms();
     none["teams"] = json!(0);
@@ -107,7 +107,7 @@ async fn an_agreed_job_without_a_port_call_is_at_risk_once_port_calls_are_known(
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let (id, rosa) = firm(&server, &ada, "rosa").await;
-    let order = direct(&nao, "NLRTM", "2026-12-15T09:00:00Z", &id);
+    let order = order_for_firm(&nao, "NLRTM", "2026-12-15T09:00:00Z", &id);
     let order = ada.post("/work-orders", &order).await.good();
     let order = format!("/work-orders/{}", order["id"].as_str().unwrap());
     rosa.post(&format!("{order}/accept"), &json!({}))
@@ -115,12 +115,12 @@ async fn an_agreed_job_without_a_port_call_is_at_risk_once_port_calls_are_known(
         .good();
     solve(&ada).await;
     assert_eq!(alerts(&ada).await, [] as [Value; 0]);
-    enter(&ada, &nao, "BEANR", 14).await;
+    enter_port_call(&ada, &nao, "BEANR", 14).await;
     solve(&ada).await;
     let raised = alerts(&ada).await;
     let summary = raised[0]["summary"].as_str().unwrap();
     assert!(summary.contains("no port call is known"), "{summary}");
-    enter(&ada, &nao, "NLRTM", 16).await;
+    enter_port_call(&ada, &nao, "NLRTM", 16).await;
     solve(&ada).await;
     assert_eq!(alerts(&ada).await.len(), 1);
     server.finish().await;

@@ -1,6 +1,6 @@
 //! Concurrent requests for a schedule.
 
-use super::{due_vessel, enter, planned_firm};
+use super::{due_vessel, enter_port_call, planned_firm};
 use binnacle_server_testing::TestServer;
 use binnacle_server_testing::on_both;
 use serde_json::{Value, json};
@@ -12,7 +12,7 @@ async fn concurrent_solves_give_one_plan(server: TestServer) {
     planned_firm(&server, &ada, "Maas Compass").await;
     for name in ["Nao", "Pinta", "Santa"] {
         let vessel = due_vessel(&ada, name).await;
-        enter(&ada, &vessel, "NLRTM", 8).await;
+        enter_port_call(&ada, &vessel, "NLRTM", 8).await;
     }
     let body = json!({});
     let solve = || ada.post("/schedule/solve", &body);

@@ -1,7 +1,7 @@
 //! Fees of a job: offered from the schedule, proposed by the firm, agreed.
 
 use super::offers::{firm, offer};
-use super::{due_vessel, enter, put, solve, terms};
+use super::{due_vessel, enter_port_call, put, solve, terms};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::patch;
 use binnacle_server_testing::port_calls;
@@ -18,10 +18,10 @@ on_both!(
 );
 
 /// Offers a ship's job to one firm of two; returns the order's path.
-async fn asked(server: &TestServer) -> (Person, Value, Person, String) {
+async fn offered_job(server: &TestServer) -> (Person, Value, Person, String) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 14).await;
+    enter_port_call(&ada, &nao, "NLRTM", 14).await;
     let (_, rosa) = firm(server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     let order = offer(&ada, &plan, &nao).await;
@@ -33,7 +33,7 @@ async fn propose(who: &Person, order: &str, terms: &Value) -> Value {
     who.post(&path, &json!({ "terms": terms })).await.good()
 }
 
-async fn yes(who: &Person, order: &str) -> Value {
+async fn accept(who: &Person, order: &str) -> Value {
     who.post(&format!("{order}/accept"), &json!({}))
         .await
         .good()
@@ -45,7 +45,7 @@ async fn an_offer_has_the_fee_of_the_schedule(server: TestServer) {
     let path = format!("/vessels/{}/compasses", nao["id"].as_str().unwrap());
     let second = json!({ "name": "Steering", "role": "steering" });
     ada.post(&path, &second).await.good();
-    enter(&ada, &nao, "NLRTM", 14).await;
+    enter_port_call(&ada, &nao, "NLRTM", 14).await;
     let (id, rosa) = firm(&server, &ada, "rosa").await;
     let mut dearer = terms();
     dearer["extra_compass_eur"] = json!(400.5);
@@ -65,7 +65,7 @@ async fn an_offer_has_the_fee_of_the_schedule(server: TestServer) {
         assert_eq!(seen["fee_eur"], Value::Null, "nothing is agreed on yet");
         fees.push(seen["offers"][0]["fee_eur"].as_f64().unwrap());
         // A firm that accepts gets this fee.
-        let taken = yes(&rosa, &path).await;
+        let taken = accept(&rosa, &path).await;
         assert_eq!(taken["fee_eur"], seen["offers"][0]["fee_eur"]);
         let log = ada.get(&format!("{path}/entries")).await.good();
         let said = log["items"].as_array().unwrap().last().unwrap();
@@ -84,7 +84,7 @@ async fn an_offer_has_the_fee_of_the_schedule(server: TestServer) {
 }
 
 async fn a_firm_proposes_another_fee_alone_and_the_operator_agrees(server: TestServer) {
-    let (ada, _, rosa, order) = asked(&server).await;
+    let (ada, _, rosa, order) = offered_job(&server).await;
     let (receiver, url) = Receiver::start().await;
     make(&ada, &url, &["order.answered"]).await;
     let before = ada.get(&order).await.good();
@@ -107,7 +107,7 @@ async fn a_firm_proposes_another_fee_alone_and_the_operator_agrees(server: TestS
         notifications.to_string().contains("for 2100.00 euros"),
         "{notifications}"
     );
-    let agreed = yes(&ada, &order).await;
+    let agreed = accept(&ada, &order).await;
     assert_eq!(agreed["state"], "accepted");
     for (field, is) in [
         ("fee_eur", &json!(2100.0)),
@@ -132,7 +132,7 @@ async fn a_firm_proposes_another_fee_alone_and_the_operator_agrees(server: TestS
 async fn a_declined_fee_does_not_change_the_next_firms_fee(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 14).await;
+    enter_port_call(&ada, &nao, "NLRTM", 14).await;
     let (_, rosa) = firm(&server, &ada, "rosa").await;
     let (second, juan) = firm(&server, &ada, "juan").await;
     let mut dearer = terms();
@@ -157,21 +157,21 @@ async fn a_declined_fee_does_not_change_the_next_firms_fee(server: TestServer) {
     // A firm that proposes only another time keeps the offered fee.
     let later = json!({ "planned_at": "2026-12-15T10:00:00Z" });
     propose(&juan, &order, &later).await;
-    let agreed = yes(&ada, &order).await;
+    let agreed = accept(&ada, &order).await;
     assert_eq!(agreed["fee_eur"], 1950.0);
     assert_eq!(agreed["planned_at"], "2026-12-15T10:00:00Z");
     server.finish().await;
 }
 
 async fn a_fee_alone_does_not_settle_the_moved_port_call(server: TestServer) {
-    let (ada, nao, rosa, order) = asked(&server).await;
+    let (ada, nao, rosa, order) = offered_job(&server).await;
     let calls = ada.get(&port_calls::path(&nao)).await.good();
     let call = calls["items"][0]["id"].as_str().unwrap();
     let call = format!("{}/{call}", port_calls::path(&nao));
     let late = json!({ "eta": "2026-12-17T06:00:00Z", "etd": "2026-12-18T18:00:00Z" });
     patch(&ada, &call, &late).await.good();
     propose(&rosa, &order, &json!({ "fee_eur": 2100 })).await;
-    let agreed = yes(&ada, &order).await;
+    let agreed = accept(&ada, &order).await;
     assert_eq!(
         agreed["call_fit"], "needs_new_day",
         "nobody agreed on another day"
@@ -180,14 +180,14 @@ async fn a_fee_alone_does_not_settle_the_moved_port_call(server: TestServer) {
     // Another time does not change the fee.
     let later = json!({ "terms": { "planned_at": "2026-12-17T08:00:00Z" } });
     ada.post(&format!("{order}/retime"), &later).await.good();
-    let moved = yes(&rosa, &format!("{order}/retime")).await;
+    let moved = accept(&rosa, &format!("{order}/retime")).await;
     assert_eq!(moved["call_fit"], Value::Null);
     assert_eq!(moved["fee_eur"], 2100.0);
     server.finish().await;
 }
 
 async fn responding_for_another_firm_is_refused(server: TestServer) {
-    let (ada, _, rosa, order) = asked(&server).await;
+    let (ada, _, rosa, order) = offered_job(&server).await;
     let (other, _) = firm(&server, &ada, "juan").await;
     let theirs = json!({ "firm_id": other });
     let message = json!({ "firm_id": other, "text": "Hello." });
@@ -202,7 +202,7 @@ async fn responding_for_another_firm_is_refused(server: TestServer) {
         assert!(refused.text.contains("is not your firm"), "{refused:?}");
     }
     assert_eq!(ada.get(&order).await.good()["state"], "offered");
-    yes(&rosa, &order).await;
+    accept(&rosa, &order).await;
     let later = json!({ "terms": { "planned_at": "2026-12-15T10:00:00Z" } });
     ada.post(&format!("{order}/retime"), &later).await.good();
     for (who, rest) in [

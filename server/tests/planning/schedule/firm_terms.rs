@@ -1,6 +1,6 @@
 //! Terms of firms with an operator.
 
-use super::{due_vessel, enter, firm, planned_firm, put, solve, terms};
+use super::{due_vessel, enter_port_call, firm, planned_firm, put, solve, terms};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{ApiResponse, TestServer};
 use reqwest::Method;
@@ -16,7 +16,7 @@ on_both!(
 async fn a_firm_without_working_days_is_kept_and_reported_as_unusable(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 8).await;
+    enter_port_call(&ada, &nao, "NLRTM", 8).await;
     let id = firm(&server, &ada, "Maas Compass").await;
     let mut idle = terms();
     idle["working_days"] = json!([]);

@@ -74,7 +74,12 @@ pub(crate) async fn due_vessel(person: &Person, name: &str) -> Value {
 }
 
 /// Enters a port call of the vessel.
-pub(crate) async fn enter(person: &Person, vessel: &Value, port: &str, day: u32) -> Value {
+pub(crate) async fn enter_port_call(
+    person: &Person,
+    vessel: &Value,
+    port: &str,
+    day: u32,
+) -> Value {
     let path = port_calls::path(vessel);
     person
         .post(&path, &port_calls::call(port, day))
@@ -89,7 +94,7 @@ pub(crate) async fn solve(person: &Person) -> Value {
 }
 
 /// Advances until changes are due, and lets the worker make a schedule.
-pub(crate) async fn follow(server: &TestServer) -> Option<OperatorId> {
+pub(crate) async fn update_schedule(server: &TestServer) -> Option<OperatorId> {
     server.advance(31.0);
     schedule::step(&server.app, &PlanSlots::default())
         .await
@@ -97,7 +102,7 @@ pub(crate) async fn follow(server: &TestServer) -> Option<OperatorId> {
 }
 
 /// Returns the first job of a plan: port, day, firm.
-pub(crate) fn first(plan: &Value) -> (&str, &str, &str) {
+pub(crate) fn first_job(plan: &Value) -> (&str, &str, &str) {
     let job = &plan["jobs"][0];
     let text = |field: &str| job[field].as_str().unwrap();
     (text("port"), text("day"), text("firm_name"))

@@ -1,8 +1,8 @@
 //! A moved port call of an order: both sides get a message, and agree on another time.
 
-use super::agreed_job::{Agreed, messages};
+use super::agreed_job::{AgreedJob, messages};
 use super::offers::{alerts, offer};
-use super::{due_vessel, enter, first, put, solve, terms};
+use super::{due_vessel, enter_port_call, first_job, put, solve, terms};
 use crate::calendar::events;
 use crate::notifications::subjects_of;
 use binnacle_orders::dispatch::lapse;
@@ -26,7 +26,7 @@ on_both!(
 );
 
 async fn a_moved_eta_is_reported_to_both_sides_with_old_and_new_time(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
+    let agreed = AgreedJob::new(&server).await;
     let (ours, our_url) = Receiver::start().await;
     let (theirs, their_url) = Receiver::start().await;
     make(&agreed.ada, &our_url, &["order.call_moved"]).await;
@@ -37,7 +37,7 @@ async fn a_moved_eta_is_reported_to_both_sides_with_old_and_new_time(server: Tes
     );
     assert_eq!(agreed.view_order().await["call_fit"], Value::Null);
     agreed
-        .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
+        .move_port_call("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
         .await;
     let order = agreed.view_order().await;
     for person in [&agreed.ada, &agreed.rosa] {
@@ -89,11 +89,11 @@ async fn a_moved_eta_is_reported_to_both_sides_with_old_and_new_time(server: Tes
     }
     // The port call returns to its day, first later on it, then at its old time.
     agreed
-        .moves("2026-12-15T12:00:00Z", "2026-12-16T18:00:00Z")
+        .move_port_call("2026-12-15T12:00:00Z", "2026-12-16T18:00:00Z")
         .await;
     assert_eq!(agreed.view_order().await["call_fit"], "other_hour");
     agreed
-        .moves("2026-12-15T06:00:00Z", "2026-12-16T18:00:00Z")
+        .move_port_call("2026-12-15T06:00:00Z", "2026-12-16T18:00:00Z")
         .await;
     assert_eq!(agreed.view_order().await["call_fit"], "fits");
     // Another berth or a more certain time is not another time.
@@ -104,7 +104,7 @@ async fn a_moved_eta_is_reported_to_both_sides_with_old_and_new_time(server: Tes
 }
 
 async fn port_calls_moved_by_a_file_are_reported_like_those_by_a_request(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
+    let agreed = AgreedJob::new(&server).await;
     let post = |path: String, kind: &'static str, text: String| {
         let request = agreed.ada.request(Method::POST, &path).body(text);
         ApiResponse::of(request.header("content-type", kind))
@@ -150,9 +150,9 @@ async fn port_calls_moved_by_a_file_are_reported_like_those_by_a_request(server:
 }
 
 async fn the_old_day_stands_until_a_new_one_is_agreed(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
+    let agreed = AgreedJob::new(&server).await;
     agreed
-        .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
+        .move_port_call("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
         .await;
     let asked = agreed.retime("2026-12-17T08:00:00Z").await.good();
     assert_eq!(asked["planned_at"], "2026-12-15T07:00:00Z");
@@ -181,7 +181,7 @@ async fn the_old_day_stands_until_a_new_one_is_agreed(server: TestServer) {
     let last = subjects_of(&agreed.ada).await.pop().unwrap();
     assert!(last.contains("rosa agrees to another time"), "{last}");
     let plan = solve(&agreed.ada).await;
-    assert_eq!(first(&plan), ("NLRTM", "2026-12-16", "rosa"));
+    assert_eq!(first_job(&plan), ("NLRTM", "2026-12-16", "rosa"));
     assert_eq!(plan["jobs"][0]["state"], "confirmed");
     assert_eq!(alerts(&agreed.ada).await, [] as [Value; 0]);
     // After the adjuster is on board there are no more requests.
@@ -197,9 +197,9 @@ async fn the_old_day_stands_until_a_new_one_is_agreed(server: TestServer) {
 }
 
 async fn a_new_day_is_within_the_port_call_and_the_firms_capacity(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
+    let agreed = AgreedJob::new(&server).await;
     let pinta = due_vessel(&agreed.ada, "Pinta").await;
-    enter(&agreed.ada, &pinta, "NLRTM", 17).await;
+    enter_port_call(&agreed.ada, &pinta, "NLRTM", 17).await;
     let plan = solve(&agreed.ada).await;
     let jobs = plan["jobs"].as_array().unwrap();
     let hers = jobs
@@ -214,7 +214,7 @@ async fn a_new_day_is_within_the_port_call_and_the_firms_capacity(server: TestSe
         .await
         .good();
     agreed
-        .moves("2026-12-16T06:00:00Z", "2026-12-18T18:00:00Z")
+        .move_port_call("2026-12-16T06:00:00Z", "2026-12-18T18:00:00Z")
         .await;
     for (at, said) in [
         ("2026-12-15T08:00:00Z", "no call at NLRTM"),
@@ -238,7 +238,7 @@ async fn a_new_day_is_within_the_port_call_and_the_firms_capacity(server: TestSe
     put(&agreed.ada, &path, &terms()).await.good();
     // The port call may have moved again.
     agreed
-        .moves("2026-12-19T06:00:00Z", "2026-12-20T18:00:00Z")
+        .move_port_call("2026-12-19T06:00:00Z", "2026-12-20T18:00:00Z")
         .await;
     let gone = agreed.respond(&agreed.rosa, "accept").await;
     assert!(gone.text.contains("no call at NLRTM"), "{gone:?}");
@@ -250,9 +250,9 @@ async fn a_new_day_is_within_the_port_call_and_the_firms_capacity(server: TestSe
 }
 
 async fn another_time_keeps_the_agreed_fee(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
+    let agreed = AgreedJob::new(&server).await;
     agreed
-        .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
+        .move_port_call("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
         .await;
     let dearer = json!({ "terms": { "planned_at": "2026-12-16T08:00:00Z", "fee_eur": 900.5 } });
     let path = format!("{}/retime", agreed.order);
@@ -270,7 +270,7 @@ async fn another_time_keeps_the_agreed_fee(server: TestServer) {
 }
 
 async fn an_unanswered_request_keeps_the_agreement(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
+    let agreed = AgreedJob::new(&server).await;
     agreed.retime("2026-12-14T08:00:00Z").await.good();
     server.advance(3601.0);
     let late = agreed.respond(&agreed.rosa, "accept").await;
@@ -293,8 +293,8 @@ async fn an_unanswered_request_keeps_the_agreement(server: TestServer) {
 }
 
 async fn a_moved_port_call_without_an_order_notifies_nobody(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
-    let other = enter(&agreed.ada, &agreed.nao, "BEANR", 20).await;
+    let agreed = AgreedJob::new(&server).await;
+    let other = enter_port_call(&agreed.ada, &agreed.nao, "BEANR", 20).await;
     let other = format!(
         "{}/{}",
         port_calls::path(&agreed.nao),
@@ -307,7 +307,7 @@ async fn a_moved_port_call_without_an_order_notifies_nobody(server: TestServer) 
     let path = format!("{}/cancel", agreed.order);
     agreed.ada.post(&path, &cancelled).await.good();
     agreed
-        .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
+        .move_port_call("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
         .await;
     assert_eq!(agreed.view_order().await["call_fit"], Value::Null);
     assert_eq!(messages(&agreed.ada, &agreed.order).await.len(), 0);

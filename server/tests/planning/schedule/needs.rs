@@ -1,6 +1,6 @@
 //! Due dates of compasses, and the rules behind them.
 
-use super::{due_vessel, enter, put};
+use super::{due_vessel, enter_port_call, put};
 use binnacle_compass::model::Model;
 use binnacle_planning::notifications::look;
 use binnacle_server_testing::on_both;
@@ -205,7 +205,7 @@ async fn predicted_deviation_at_a_next_port_brings_a_due_date_forward(server: Te
     assert_eq!(sure["predicted"][0]["place"], "here");
     ada.post(&nao.path("/logbook"), &adjusted).await.good();
     // In the far north the directive field is weak, and the ship's field weighs more.
-    enter(&ada, &vessel, "NOTOS", 8).await;
+    enter_port_call(&ada, &vessel, "NOTOS", 8).await;
     let need = need(&ada, &vessel).await;
     let ahead = &need["predicted"][1];
     assert_eq!(

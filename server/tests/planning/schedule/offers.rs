@@ -1,7 +1,7 @@
 //! Work orders from the plan: offered, agreed, and moved for cause.
 
-use super::agreed_job::Agreed;
-use super::{compass_of, due_vessel, enter, first, put, solve, terms};
+use super::agreed_job::AgreedJob;
+use super::{compass_of, due_vessel, enter_port_call, first_job, put, solve, terms};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{Person, TestServer};
 use serde_json::{Value, json};
@@ -41,7 +41,7 @@ pub(super) async fn offer(person: &Person, plan: &Value, vessel: &Value) -> Stri
     format!("/work-orders/{}", order.as_str().unwrap())
 }
 
-pub(super) fn direct(vessel: &Value, port: &str, planned_at: &str, firm: &str) -> Value {
+pub(super) fn order_for_firm(vessel: &Value, port: &str, planned_at: &str, firm: &str) -> Value {
     json!({ "vessel_id": vessel["id"], "compass_id": compass_of(vessel), "port": port,
             "planned_at": planned_at, "offer": { "firms": [firm] } })
 }
@@ -57,7 +57,7 @@ pub(super) async fn alerts(person: &Person) -> Vec<Value> {
 async fn an_agreed_job_stays_in_the_plan(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "BEANR", 8).await;
+    enter_port_call(&ada, &nao, "BEANR", 8).await;
     let (firm_id, rosa) = firm(&server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     let order = offer(&ada, &plan, &nao).await;
@@ -75,7 +75,7 @@ async fn an_agreed_job_stays_in_the_plan(server: TestServer) {
         .await
         .good();
     // A better port call appears, and the job stays as agreed.
-    enter(&ada, &nao, "NLRTM", 15).await;
+    enter_port_call(&ada, &nao, "NLRTM", 15).await;
     let plan = solve(&ada).await;
     assert_eq!(plan["jobs"][0]["state"], "confirmed");
     assert_eq!(plan["jobs"][0]["port"], "BEANR");
@@ -85,18 +85,18 @@ async fn an_agreed_job_stays_in_the_plan(server: TestServer) {
 }
 
 async fn an_eta_moved_past_the_due_date_raises_an_alert_and_a_new_plan(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
-    let Agreed {
+    let agreed = AgreedJob::new(&server).await;
+    let AgreedJob {
         ada, nao, order, ..
     } = &agreed;
     solve(ada).await;
     // Due on the twentieth, and the vessel now arrives on the twenty-second.
     agreed
-        .moves("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
+        .move_port_call("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
         .await;
-    enter(ada, nao, "BEANR", 17).await;
+    enter_port_call(ada, nao, "BEANR", 17).await;
     let plan = solve(ada).await;
-    assert_eq!(first(&plan), ("BEANR", "2026-12-18", "rosa"));
+    assert_eq!(first_job(&plan), ("BEANR", "2026-12-18", "rosa"));
     let job = &plan["jobs"][0];
     let id = order.rsplit('/').next().unwrap();
     assert_eq!(
@@ -127,7 +127,7 @@ async fn an_eta_moved_past_the_due_date_raises_an_alert_and_a_new_plan(server: T
 async fn a_declining_firm_is_not_planned_again(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 14).await;
+    enter_port_call(&ada, &nao, "NLRTM", 14).await;
     let (_, rosa) = firm(&server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     let order = offer(&ada, &plan, &nao).await;
@@ -140,7 +140,7 @@ async fn a_declining_firm_is_not_planned_again(server: TestServer) {
     assert!(because.contains("rosa declined"), "{because}");
     firm(&server, &ada, "juan").await;
     let plan = solve(&ada).await;
-    assert_eq!(first(&plan).2, "juan");
+    assert_eq!(first_job(&plan).2, "juan");
     let id = order.rsplit('/').next().unwrap();
     assert_eq!(plan["jobs"][0]["instead_of"], json!([id]));
     // It is offered to the next firm as planned, and the old order is cancelled.
@@ -157,7 +157,7 @@ async fn a_declining_firm_is_not_planned_again(server: TestServer) {
 async fn a_refusal_stands_after_its_order_is_cancelled(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 14).await;
+    enter_port_call(&ada, &nao, "NLRTM", 14).await;
     let (juans, _) = firm(&server, &ada, "juan").await;
     let mut dearer = terms();
     dearer["fee_eur"] = json!(4000);
@@ -166,23 +166,23 @@ async fn a_refusal_stands_after_its_order_is_cancelled(server: TestServer) {
         .good();
     let (rosas, rosa) = firm(&server, &ada, "rosa").await;
     let plan = solve(&ada).await;
-    assert_eq!(first(&plan).2, "rosa");
+    assert_eq!(first_job(&plan).2, "rosa");
     let order = offer(&ada, &plan, &nao).await;
     rosa.post(&format!("{order}/decline"), &json!({})).await;
     let why = json!({ "text": "declined" });
     ada.post(&format!("{order}/cancel"), &why).await.good();
     let plan = solve(&ada).await;
-    assert_eq!(first(&plan), ("NLRTM", "2026-12-15", "juan"));
+    assert_eq!(first_job(&plan), ("NLRTM", "2026-12-15", "juan"));
     assert_eq!(plan["jobs"][0]["instead_of"], json!([]));
     // Unless the firm gets a new offer.
-    let anew = direct(&nao, "NLRTM", "2026-12-15T09:00:00Z", &rosas);
+    let anew = order_for_firm(&nao, "NLRTM", "2026-12-15T09:00:00Z", &rosas);
     let anew = ada.post("/work-orders", &anew).await.good();
     let anew = format!("/work-orders/{}", anew["id"].as_str().unwrap());
     rosa.post(&format!("{anew}/accept"), &json!({}))
         .await
         .good();
     let plan = solve(&ada).await;
-    assert_eq!(first(&plan), ("NLRTM", "2026-12-15", "rosa"));
+    assert_eq!(first_job(&plan), ("NLRTM", "2026-12-15", "rosa"));
     assert_eq!(plan["jobs"][0]["state"], "confirmed");
     assert_eq!(alerts(&ada).await, [] as [Value; 0]);
     server.finish().await;
@@ -192,7 +192,7 @@ async fn a_refusal_stands_after_its_order_is_cancelled(server: TestServer) {
 async fn a_cancelled_order_does_not_block_a_new_one(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 14).await;
+    enter_port_call(&ada, &nao, "NLRTM", 14).await;
     let (_, rosa) = firm(&server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     let order = offer(&ada, &plan, &nao).await;
@@ -216,7 +216,7 @@ async fn an_offer_names_its_plan_version(server: TestServer) {
     let plan = solve(&ada).await;
     let unplanned = ada.post("/schedule/offer", &offer_of(&plan, &nao)).await;
     assert_eq!(unplanned.problem(), "not-found");
-    enter(&ada, &nao, "NLRTM", 14).await;
+    enter_port_call(&ada, &nao, "NLRTM", 14).await;
     solve(&ada).await;
     let old = ada.post("/schedule/offer", &offer_of(&plan, &nao)).await;
     assert!(old.text.contains("the plan is of version 2 now"), "{old:?}");
@@ -239,7 +239,7 @@ async fn a_job_of_several_compasses_is_offered_whole(server: TestServer) {
     let path = format!("/vessels/{}/compasses", nao["id"].as_str().unwrap());
     let second = json!({ "name": "Steering", "role": "steering" });
     let second = ada.post(&path, &second).await.good();
-    enter(&ada, &nao, "NLRTM", 14).await;
+    enter_port_call(&ada, &nao, "NLRTM", 14).await;
     firm(&server, &ada, "rosa").await;
     let plan = solve(&ada).await;
     assert_eq!(plan["jobs"][0]["compasses"].as_array().unwrap().len(), 2);
@@ -258,12 +258,12 @@ async fn a_job_of_several_compasses_is_offered_whole(server: TestServer) {
 }
 
 async fn an_agreed_job_without_a_place_names_its_order(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
-    let Agreed { ada, order, .. } = &agreed;
+    let agreed = AgreedJob::new(&server).await;
+    let AgreedJob { ada, order, .. } = &agreed;
     solve(ada).await;
     // An hour alongside is not enough for any firm.
     agreed
-        .moves("2026-12-22T09:00:00Z", "2026-12-22T10:00:00Z")
+        .move_port_call("2026-12-22T09:00:00Z", "2026-12-22T10:00:00Z")
         .await;
     let plan = solve(ada).await;
     assert_eq!(plan["jobs"], json!([]));
@@ -278,7 +278,7 @@ async fn a_firm_not_authorised_for_the_vessel_gets_no_order(server: TestServer) 
     let nao = due_vessel(&ada, "Nao").await;
     let (firm_id, _) = firm(&server, &ada, "rosa").await;
     let ask = async || {
-        let order = direct(&nao, "Rotterdam (NLRTM)", "2026-12-15T08:00:00Z", &firm_id);
+        let order = order_for_firm(&nao, "Rotterdam (NLRTM)", "2026-12-15T08:00:00Z", &firm_id);
         ada.post("/work-orders", &order).await
     };
     let firms = format!("/firms/{firm_id}/terms");
@@ -312,9 +312,9 @@ async fn a_firm_not_authorised_for_the_vessel_gets_no_order(server: TestServer) 
 async fn an_order_at_a_port_with_known_port_calls_needs_one_of_them(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 14).await;
+    enter_port_call(&ada, &nao, "NLRTM", 14).await;
     let (firm_id, rosa) = firm(&server, &ada, "rosa").await;
-    let order = |at: &str| direct(&nao, "NLRTM", at, &firm_id);
+    let order = |at: &str| order_for_firm(&nao, "NLRTM", at, &firm_id);
     let other = ada
         .post("/work-orders", &order("2026-12-18T08:00:00Z"))
         .await;

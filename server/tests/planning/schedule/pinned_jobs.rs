@@ -1,6 +1,6 @@
 //! Pinned jobs stay in the plan, and move only for cause.
 
-use super::{compass_of, due_vessel, enter, first, planned_firm, put, solve, terms};
+use super::{compass_of, due_vessel, enter_port_call, first_job, planned_firm, put, solve, terms};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::port_calls;
 use binnacle_server_testing::{ApiResponse, TestServer};
@@ -21,14 +21,14 @@ fn pin(vessel: &Value, call: &Value, firm: &str, day: &str) -> Value {
 async fn a_pinned_job_stays_until_it_is_unpinned(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 8).await;
-    let later = enter(&ada, &nao, "BEANR", 15).await;
+    enter_port_call(&ada, &nao, "NLRTM", 8).await;
+    let later = enter_port_call(&ada, &nao, "BEANR", 15).await;
     let firm = planned_firm(&server, &ada, "Maas Compass").await;
     let wanted = pin(&nao, &later, &firm, "2026-12-15");
     let kept = ada.post("/schedule/pins", &wanted).await.good();
     assert_eq!(kept["created_by"], "ada@example.com");
     let made = solve(&ada).await;
-    assert_eq!(first(&made), ("BEANR", "2026-12-15", "Maas Compass"));
+    assert_eq!(first_job(&made), ("BEANR", "2026-12-15", "Maas Compass"));
     let job = &made["jobs"][0];
     assert_eq!(
         (&job["pinned"], &job["state"]),
@@ -44,7 +44,7 @@ async fn a_pinned_job_stays_until_it_is_unpinned(server: TestServer) {
     let gone = ApiResponse::of(ada.request(Method::DELETE, &path)).await;
     assert_eq!(gone.status, 204);
     let made = solve(&ada).await;
-    assert_eq!(first(&made), ("NLRTM", "2026-12-09", "Maas Compass"));
+    assert_eq!(first_job(&made), ("NLRTM", "2026-12-09", "Maas Compass"));
     assert_eq!(made["jobs"][0]["pinned"], false);
     server.finish().await;
 }
@@ -52,8 +52,8 @@ async fn a_pinned_job_stays_until_it_is_unpinned(server: TestServer) {
 async fn an_impossible_pin_is_dropped_with_its_reason(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 8).await;
-    let later = enter(&ada, &nao, "BEANR", 15).await;
+    enter_port_call(&ada, &nao, "NLRTM", 8).await;
+    let later = enter_port_call(&ada, &nao, "BEANR", 15).await;
     let firm = planned_firm(&server, &ada, "Maas Compass").await;
     let wanted = pin(&nao, &later, &firm, "2026-12-15");
     ada.post("/schedule/pins", &wanted).await.good();
@@ -67,7 +67,7 @@ async fn an_impossible_pin_is_dropped_with_its_reason(server: TestServer) {
         .await
         .good();
     let made = solve(&ada).await;
-    assert_eq!(first(&made), ("NLRTM", "2026-12-09", "Maas Compass"));
+    assert_eq!(first_job(&made), ("NLRTM", "2026-12-09", "Maas Compass"));
     let change = &made["changes"][0];
     assert_eq!(change["what"], "moved");
     assert!(
@@ -83,8 +83,8 @@ async fn an_invalid_pin_is_refused(server: TestServer) {
     let eve = server.admin("eve").await;
     let nao = due_vessel(&ada, "Nao").await;
     let pinta = due_vessel(&ada, "Pinta").await;
-    let call = enter(&ada, &nao, "NLRTM", 8).await;
-    let others = enter(&ada, &pinta, "NLRTM", 8).await;
+    let call = enter_port_call(&ada, &nao, "NLRTM", 8).await;
+    let others = enter_port_call(&ada, &pinta, "NLRTM", 8).await;
     let firm = planned_firm(&server, &ada, "Maas Compass").await;
     let early = ada
         .post("/schedule/pins", &pin(&nao, &call, &firm, "2026-12-07"))

@@ -1,6 +1,8 @@
 //! Plans: made, stored, and made again when their input changes.
 
-use super::{compass_of, due_vessel, enter, first, follow, planned_firm, put, solve};
+use super::{
+    compass_of, due_vessel, enter_port_call, first_job, planned_firm, put, solve, update_schedule,
+};
 use binnacle_planning::schedule::{self, PlanSlots};
 use binnacle_platform::db::Pools;
 use binnacle_schedule::{input, plan};
@@ -32,12 +34,12 @@ async fn a_plan_is_reproducible_from_its_input(server: TestServer) {
     assert_eq!(current(&ada).await, none);
     assert_eq!(ada.get("/schedule/input").await.problem(), "not-found");
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 8).await;
+    enter_port_call(&ada, &nao, "NLRTM", 8).await;
     planned_firm(&server, &ada, "Maas Compass").await;
     let outdated = current(&ada).await["outdated_since"].clone();
     assert!(outdated.is_string(), "{outdated}");
     let made = solve(&ada).await;
-    assert_eq!(first(&made), ("NLRTM", "2026-12-09", "Maas Compass"));
+    assert_eq!(first_job(&made), ("NLRTM", "2026-12-09", "Maas Compass"));
     let job = &made["jobs"][0];
     assert_eq!(job["vessel_name"], "Nao");
     assert_eq!(job["compasses"][0]["compass_name"], "Standard compass");
@@ -72,7 +74,7 @@ async fn an_unplanned_job_has_its_reason_and_remedy(server: TestServer) {
         ada.post(&port_calls::path(vessel), &call).await.good();
     }
     let far = ada.create_vessel("Far").await;
-    enter(&ada, &far, "BRSSZ", 1).await;
+    enter_port_call(&ada, &far, "BRSSZ", 1).await;
     planned_firm(&server, &ada, "Maas Compass").await;
     let made = solve(&ada).await;
     assert_eq!(made["jobs"].as_array().unwrap().len(), 1);
@@ -89,12 +91,12 @@ async fn an_unplanned_job_has_its_reason_and_remedy(server: TestServer) {
 async fn a_moved_eta_makes_a_new_plan_with_its_cost(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    let call = enter(&ada, &nao, "NLRTM", 8).await;
-    enter(&ada, &nao, "BEANR", 15).await;
+    let call = enter_port_call(&ada, &nao, "NLRTM", 8).await;
+    enter_port_call(&ada, &nao, "BEANR", 15).await;
     planned_firm(&server, &ada, "Maas Compass").await;
-    assert_eq!(follow(&server).await, Some(ada.operator));
+    assert_eq!(update_schedule(&server).await, Some(ada.operator));
     let before = current(&ada).await["plan"].clone();
-    assert_eq!(first(&before), ("NLRTM", "2026-12-09", "Maas Compass"));
+    assert_eq!(first_job(&before), ("NLRTM", "2026-12-09", "Maas Compass"));
     let one = format!(
         "{}/{}",
         port_calls::path(&nao),
@@ -104,9 +106,9 @@ async fn a_moved_eta_makes_a_new_plan_with_its_cost(server: TestServer) {
     ada.post(&format!("{one}/withdraw"), &withdrawn)
         .await
         .good();
-    assert_eq!(follow(&server).await, Some(ada.operator));
+    assert_eq!(update_schedule(&server).await, Some(ada.operator));
     let after = current(&ada).await["plan"].clone();
-    assert_eq!(first(&after), ("BEANR", "2026-12-16", "Maas Compass"));
+    assert_eq!(first_job(&after), ("BEANR", "2026-12-16", "Maas Compass"));
     let change = &after["changes"][0];
     assert_eq!(change["what"], "moved");
     assert_eq!(
@@ -145,7 +147,7 @@ async fn many_changes_make_one_plan_after_half_a_minute(server: TestServer) {
     planned_firm(&server, &ada, "Maas Compass").await;
     let nao = due_vessel(&ada, "Nao").await;
     for day in [1, 8, 15] {
-        enter(&ada, &nao, "NLRTM", day).await;
+        enter_port_call(&ada, &nao, "NLRTM", day).await;
     }
     server.advance(20.0);
     assert_eq!(
@@ -154,7 +156,7 @@ async fn many_changes_make_one_plan_after_half_a_minute(server: TestServer) {
             .unwrap(),
         None
     );
-    let second = server.second().await;
+    let second = server.second_server().await;
     server.advance(11.0);
     let (here, there) = (PlanSlots::default(), PlanSlots::default());
     let (one, other) = tokio::join!(
@@ -178,8 +180,8 @@ async fn a_new_plan_is_made_each_day(server: TestServer) {
     let ada = server.admin("ada").await;
     planned_firm(&server, &ada, "Maas Compass").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 8).await;
-    assert!(follow(&server).await.is_some());
+    enter_port_call(&ada, &nao, "NLRTM", 8).await;
+    assert!(update_schedule(&server).await.is_some());
     server.advance(86_000.0);
     assert_eq!(
         schedule::step(&server.app, &PlanSlots::default())
@@ -204,9 +206,9 @@ async fn a_new_plan_is_made_each_day(server: TestServer) {
 async fn an_operator_without_firms_gets_no_automatic_plan(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 8).await;
-    assert!(follow(&server).await.is_some());
-    assert_eq!(follow(&server).await, None);
+    enter_port_call(&ada, &nao, "NLRTM", 8).await;
+    assert!(update_schedule(&server).await.is_some());
+    assert_eq!(update_schedule(&server).await, None);
     assert_eq!(current(&ada).await["plan"], json!(null));
     server.finish().await;
 }
@@ -214,7 +216,7 @@ async fn an_operator_without_firms_gets_no_automatic_plan(server: TestServer) {
 async fn a_compass_with_an_open_order_is_listed_beside_the_plan(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 8).await;
+    enter_port_call(&ada, &nao, "NLRTM", 8).await;
     planned_firm(&server, &ada, "Maas Compass").await;
     let order = json!({ "vessel_id": nao["id"], "compass_id": compass_of(&nao),
                         "port": "Rotterdam", "planned_at": "2026-12-08T10:00:00Z" });
@@ -252,9 +254,9 @@ async fn a_fleet_too_large_to_plan_gets_an_error(server: TestServer) {
     let ada = server.admin("ada").await;
     planned_firm(&server, &ada, "Maas Compass").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 8).await;
+    enter_port_call(&ada, &nao, "NLRTM", 8).await;
     server
-        .sql(match server.app.db.pools() {
+        .run_sql(match server.app.db.pools() {
             Pools::Sqlite { .. } => many_calls!("randomblob(16)"),
             Pools::Postgres(_) => many_calls!("gen_random_uuid()"),
         })
@@ -263,7 +265,7 @@ async fn a_fleet_too_large_to_plan_gets_an_error(server: TestServer) {
     let refused = ada.post("/schedule/solve", &json!({})).await;
     assert_eq!(refused.problem(), "wrong-state");
     assert_eq!(refused.json()["detail"], said);
-    follow(&server).await;
+    update_schedule(&server).await;
     assert_eq!(current(&ada).await["problem"], said);
     server.finish().await;
 }
@@ -271,7 +273,7 @@ async fn a_fleet_too_large_to_plan_gets_an_error(server: TestServer) {
 async fn weights_in_settings_apply_and_are_validated(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 8).await;
+    enter_port_call(&ada, &nao, "NLRTM", 8).await;
     planned_firm(&server, &ada, "Maas Compass").await;
     for wrong in [
         json!({ "horizon_days": 0 }),

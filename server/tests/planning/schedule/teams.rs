@@ -1,8 +1,8 @@
 //! Capacity and opening hours of a firm's teams.
 
-use super::agreed_job::Agreed;
-use super::offers::{direct, firm, offer, offer_of};
-use super::{due_vessel, enter, first, put, solve, terms};
+use super::agreed_job::AgreedJob;
+use super::offers::{firm, offer, offer_of, order_for_firm};
+use super::{due_vessel, enter_port_call, first_job, put, solve, terms};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::port_calls;
 use binnacle_server_testing::{ApiResponse, TestServer};
@@ -21,7 +21,7 @@ on_both!(
 async fn no_offer_is_made_for_a_time_outside_opening_hours(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 14).await;
+    enter_port_call(&ada, &nao, "NLRTM", 14).await;
     let (id, rosa) = firm(&server, &ada, "rosa").await;
     let mut closed = terms();
     closed["closed"] = json!(["2026-12-14"]);
@@ -54,7 +54,7 @@ async fn no_offer_is_made_for_a_time_outside_opening_hours(server: TestServer) {
     retime("2026-12-15T10:00:00Z").await.good();
     let why = json!({ "text": "no more" });
     ada.post(&format!("{order}/cancel"), &why).await.good();
-    let asked = direct(&nao, "NLRTM", "2026-12-14T09:00:00Z", &id);
+    let asked = order_for_firm(&nao, "NLRTM", "2026-12-14T09:00:00Z", &id);
     let refused = ada.post("/work-orders", &asked).await;
     assert!(refused.text.contains("does not work on"), "{refused:?}");
     server.finish().await;
@@ -67,7 +67,7 @@ async fn a_firm_is_offered_no_more_ships_than_it_has_teams(server: TestServer) {
         due_vessel(&ada, "Pinta").await,
     );
     for vessel in [&nao, &pinta] {
-        enter(&ada, vessel, "NLRTM", 14).await;
+        enter_port_call(&ada, vessel, "NLRTM", 14).await;
     }
     let (firm_id, _) = firm(&server, &ada, "rosa").await;
     let mut two = terms();
@@ -108,7 +108,7 @@ async fn a_firm_with_a_simultaneous_offer_is_planned_for_no_other_ship_then(serv
     }
     let (rosa, _) = firm(&server, &ada, "rosa").await;
     let (juan, _) = firm(&server, &ada, "juan").await;
-    let mut order = direct(&nao, "NLRTM", "2026-12-15T09:00:00Z", &rosa);
+    let mut order = order_for_firm(&nao, "NLRTM", "2026-12-15T09:00:00Z", &rosa);
     order["offer"] = json!({ "firms": [rosa, juan], "at_once": true });
     ada.post("/work-orders", &order).await.good();
     // Each of the two firms may accept, and has one team.
@@ -122,8 +122,8 @@ async fn a_firm_with_a_simultaneous_offer_is_planned_for_no_other_ship_then(serv
 
 /// An order whose job was moved still keeps its day at the firm.
 async fn a_team_booked_by_an_order_is_planned_for_no_other_ship(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
-    let Agreed {
+    let agreed = AgreedJob::new(&server).await;
+    let AgreedJob {
         ada,
         nao,
         firm,
@@ -132,16 +132,16 @@ async fn a_team_booked_by_an_order_is_planned_for_no_other_ship(server: TestServ
     } = &agreed;
     solve(ada).await;
     agreed
-        .moves("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
+        .move_port_call("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
         .await;
-    enter(ada, nao, "BEANR", 17).await;
+    enter_port_call(ada, nao, "BEANR", 17).await;
     let pinta = due_vessel(ada, "Pinta").await;
     let mut that_day = port_calls::call("NLRTM", 15);
     that_day["etd"] = json!("2026-12-15T20:00:00Z");
     ada.post(&port_calls::path(&pinta), &that_day).await.good();
     let plan = solve(ada).await;
     let id = order.rsplit('/').next().unwrap();
-    assert_eq!(first(&plan), ("BEANR", "2026-12-18", "rosa"));
+    assert_eq!(first_job(&plan), ("BEANR", "2026-12-18", "rosa"));
     assert_eq!(plan["jobs"][0]["instead_of"], json!([id]));
     assert_eq!(plan["jobs"].as_array().unwrap().len(), 1, "{plan}");
     let because = plan["unscheduled"][0]["because"].to_string();
@@ -153,7 +153,7 @@ async fn a_team_booked_by_an_order_is_planned_for_no_other_ship(server: TestServ
     assert!(why.contains("not long enough in rosa's hours"), "{why}");
     // That brought no new information.
     assert_eq!(solve(ada).await["version"], plan["version"]);
-    let asked = direct(&pinta, "NLRTM", "2026-12-15T09:00:00Z", firm);
+    let asked = order_for_firm(&pinta, "NLRTM", "2026-12-15T09:00:00Z", firm);
     let full = ada.post("/work-orders", &asked).await;
     assert_eq!(full.problem(), "wrong-state");
     assert!(
@@ -166,7 +166,7 @@ async fn a_team_booked_by_an_order_is_planned_for_no_other_ship(server: TestServ
         .await
         .good();
     let plan = solve(ada).await;
-    assert_eq!(first(&plan), ("NLRTM", "2026-12-15", "rosa"));
+    assert_eq!(first_job(&plan), ("NLRTM", "2026-12-15", "rosa"));
     offer(ada, &plan, &pinta).await;
     server.finish().await;
 }
@@ -187,9 +187,9 @@ async fn a_firms_team_is_booked_once_across_operators(server: TestServer) {
     tx.commit().await.unwrap();
     // One team gets two offers before it has responded to either.
     let at = "2026-12-15T09:00:00Z";
-    let hers = direct(&nao, "NLRTM", at, &id);
+    let hers = order_for_firm(&nao, "NLRTM", at, &id);
     let hers = ada.post("/work-orders", &hers).await.good();
-    let theirs = direct(&hind, "BEANR", at, &id);
+    let theirs = order_for_firm(&hind, "BEANR", at, &id);
     let theirs = eve.post("/work-orders", &theirs).await.good();
     let yes = |order: &Value| format!("/work-orders/{}/accept", order["id"].as_str().unwrap());
     let (one, other) = (yes(&hers), yes(&theirs));
@@ -213,7 +213,7 @@ async fn a_firms_team_is_booked_once_across_operators(server: TestServer) {
     };
     let ship = due_vessel(late, ship).await;
     let full = late
-        .post("/work-orders", &direct(&ship, "NLRTM", at, &id))
+        .post("/work-orders", &order_for_firm(&ship, "NLRTM", at, &id))
         .await;
     assert_eq!(full.problem(), "wrong-state");
     assert!(
@@ -227,10 +227,10 @@ async fn a_firms_team_is_booked_once_across_operators(server: TestServer) {
 async fn an_order_needs_a_valid_port_and_time(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
-    enter(&ada, &nao, "NLRTM", 14).await;
+    enter_port_call(&ada, &nao, "NLRTM", 14).await;
     let (id, _) = firm(&server, &ada, "rosa").await;
     let ask = async |port: &str, at: &str| {
-        let order = direct(&nao, port, at, &id);
+        let order = order_for_firm(&nao, port, at, &id);
         ada.post("/work-orders", &order).await
     };
     let elsewhere = ask("ESBIO", "2026-12-15T09:00:00Z").await;

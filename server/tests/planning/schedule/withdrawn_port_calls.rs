@@ -1,8 +1,8 @@
 //! A withdrawn port call of an agreed job, and the job at the next one.
 
-use super::agreed_job::{Agreed, messages};
+use super::agreed_job::{AgreedJob, messages};
 use super::offers::alerts;
-use super::{enter, first, follow, solve};
+use super::{enter_port_call, first_job, solve, update_schedule};
 use crate::notifications::subjects_of;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::port_calls;
@@ -16,7 +16,7 @@ on_both!(
 );
 
 async fn a_job_of_a_withdrawn_port_call_moves_to_another_one(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
+    let agreed = AgreedJob::new(&server).await;
     let why = json!({ "reason": "charter" });
     let path = format!("{}/withdraw", agreed.call);
     agreed.ada.post(&path, &why).await.good();
@@ -26,33 +26,33 @@ async fn a_job_of_a_withdrawn_port_call_moves_to_another_one(server: TestServer)
     assert_eq!(order["state"], "accepted");
     let last = subjects_of(&agreed.rosa).await.pop().unwrap();
     assert!(last.contains("the port call is withdrawn"), "{last}");
-    follow(&server).await;
+    update_schedule(&server).await;
     assert_eq!(alerts(&agreed.ada).await.len(), 1);
     let nowhere = agreed.retime("2026-12-15T08:00:00Z").await;
     assert_eq!(nowhere.problem(), "wrong-state");
     // Another port means another journey, and thus another order.
-    enter(&agreed.ada, &agreed.nao, "BEANR", 14).await;
+    enter_port_call(&agreed.ada, &agreed.nao, "BEANR", 14).await;
     let elsewhere = agreed.retime("2026-12-15T08:00:00Z").await;
     assert_eq!(elsewhere.problem(), "wrong-state");
-    enter(&agreed.ada, &agreed.nao, "NLRTM", 17).await;
+    enter_port_call(&agreed.ada, &agreed.nao, "NLRTM", 17).await;
     agreed.retime("2026-12-17T08:00:00Z").await.good();
     agreed.respond(&agreed.rosa, "accept").await.good();
     let plan = solve(&agreed.ada).await;
-    assert_eq!(first(&plan), ("NLRTM", "2026-12-17", "rosa"));
+    assert_eq!(first_job(&plan), ("NLRTM", "2026-12-17", "rosa"));
     assert_eq!(plan["jobs"][0]["state"], "confirmed");
     assert_eq!(alerts(&agreed.ada).await, [] as [Value; 0]);
     server.finish().await;
 }
 
 async fn a_port_call_entered_again_has_its_agreed_job_again(server: TestServer) {
-    let agreed = Agreed::new(&server).await;
+    let agreed = AgreedJob::new(&server).await;
     let withdrawn = format!("{}/withdraw", agreed.call);
     agreed.ada.post(&withdrawn, &json!({})).await.good();
     assert_eq!(agreed.view_order().await["call_fit"], "no_call");
     // A port call at another port or time does not get the job.
-    enter(&agreed.ada, &agreed.nao, "NLRTM", 18).await;
+    enter_port_call(&agreed.ada, &agreed.nao, "NLRTM", 18).await;
     assert_eq!(agreed.view_order().await["call_fit"], "no_call");
-    let call = enter(&agreed.ada, &agreed.nao, "NLRTM", 14).await;
+    let call = enter_port_call(&agreed.ada, &agreed.nao, "NLRTM", 14).await;
     let order = agreed.view_order().await;
     assert_eq!(order["call_fit"], "fits");
     assert_eq!(order["call_change"]["call_id"], call["id"]);

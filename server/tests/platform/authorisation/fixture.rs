@@ -74,8 +74,8 @@ impl Side {
         let write = token(&admin, "write").await;
         let firms = token(&adjuster, "read").await;
         alerts::report_departure(&ship).await;
-        let mut ids = possessions(&admin, &ship, &format!("{firm}")).await;
-        ids.extend(of_an_order(&admin, &adjuster, firm, &ids).await);
+        let mut ids = create_objects(&admin, &ship, &format!("{firm}")).await;
+        ids.extend(create_order_objects(&admin, &adjuster, firm, &ids).await);
         ids.insert("colleague", colleague(server, &admin, &ship).await);
         ids.insert("firm", firm.to_string());
         ids.insert("operator", admin.operator.to_string());
@@ -199,7 +199,7 @@ impl Side {
 }
 
 /// Creates one object of every kind that an operator owns.
-async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'static str, String> {
+async fn create_objects(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'static str, String> {
     let vessel = ship.id.clone();
     let agents = admin.get(&ship.path("/agents")).await.good();
     let compasses = admin.get(&ship.path("/compasses")).await.good();
@@ -261,7 +261,7 @@ async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'stat
 }
 
 /// Creates a key of the firm, a photograph of an order, and a pin.
-async fn of_an_order(
+async fn create_order_objects(
     admin: &Person,
     adjuster: &Person,
     firm: FirmId,

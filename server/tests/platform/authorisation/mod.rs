@@ -109,10 +109,10 @@ async fn each_role_may_do_what_the_table_says_on_its_own_data_alone(server: Test
     // Reads come first, because attempts appear in the person's own audit log.
     all.sort_by_key(rank);
     for one in &all {
-        trial.refuses(one).await;
+        trial.check_refusals(one).await;
     }
     for one in &all {
-        trial.lets(one).await;
+        trial.check_permissions(one).await;
     }
     assert!(trial.faults.is_empty(), "{:#?}", trial.faults);
     server.finish().await;
@@ -120,7 +120,7 @@ async fn each_role_may_do_what_the_table_says_on_its_own_data_alone(server: Test
 
 impl Trial<'_> {
     /// Sends an operation with a key, on data of that role on Ada's side or on unknown ids.
-    async fn ask(
+    async fn send(
         &self,
         one: &Operation,
         key: Option<&Key>,
@@ -144,12 +144,12 @@ impl Trial<'_> {
     }
 
     /// Tries each operation without sign-in, as forbidden roles, and as every foreign role.
-    async fn refuses(&mut self, one: &Operation) {
+    async fn check_refusals(&mut self, one: &Operation) {
         let rule = rule(one);
         if rule == OPEN {
             return;
         }
-        let nobody = self.ask(one, None, 0, true).await;
+        let nobody = self.send(one, None, 0, true).await;
         let holds = nobody.status == 401 && kind(&nobody) == "unauthenticated";
         self.expect(holds, one, "nobody", &nobody);
         for (index, role) in ROLES.iter().enumerate() {
@@ -161,7 +161,7 @@ impl Trial<'_> {
             };
             if sign != b'+' {
                 let own = self
-                    .ask(one, Some(&self.ada.keys[index]), index, true)
+                    .send(one, Some(&self.ada.keys[index]), index, true)
                     .await;
                 self.expect(own.status == expected, one, role, &own);
             }
@@ -172,20 +172,20 @@ impl Trial<'_> {
             let key = self.eve.keys[index].clone();
             let who = format!("another's {role}");
             if sign != b'+' && sign != b'4' {
-                let theirs = self.ask(one, Some(&key), index, true).await;
+                let theirs = self.send(one, Some(&key), index, true).await;
                 self.expect(theirs.status == expected, one, &who, &theirs);
             } else if one.name == IN_BODY {
-                let theirs = self.ask(one, Some(&key), index, true).await;
+                let theirs = self.send(one, Some(&key), index, true).await;
                 self.expect(theirs.status == 404, one, &who, &theirs);
             } else if one.method == "GET" || one.path.contains('{') {
-                self.finds_nothing(one, (&key, index), &who).await;
+                self.check_not_found(one, (&key, index), &who).await;
             }
         }
     }
 
     /// Checks that a foreign object and an unknown one give the same response.
-    async fn finds_nothing(&mut self, one: &Operation, (key, role): (&Key, usize), who: &str) {
-        let theirs = self.ask(one, Some(key), role, true).await;
+    async fn check_not_found(&mut self, one: &Operation, (key, role): (&Key, usize), who: &str) {
+        let theirs = self.send(one, Some(key), role, true).await;
         for mark in &self.ada.marks {
             if theirs.text.contains(mark.as_str()) {
                 let fault = format!("{} as {who} tells of {mark}", one.name);
@@ -196,7 +196,7 @@ impl Trial<'_> {
         if !by_id || one.name == "PUT /agents/logbook/{id}" {
             return;
         }
-        let nowhere = self.ask(one, Some(key), role, false).await;
+        let nowhere = self.send(one, Some(key), role, false).await;
         let same = (theirs.status, kind(&theirs)) == (nowhere.status, kind(&nowhere));
         self.expect(same, one, who, &theirs);
         // An unreadable body is refused before the object is looked up.
@@ -205,7 +205,7 @@ impl Trial<'_> {
     }
 
     /// Tries each operation as the roles that may do it.
-    async fn lets(&mut self, one: &Operation) {
+    async fn check_permissions(&mut self, one: &Operation) {
         let rule = rule(one);
         if rule == OPEN {
             return;
@@ -218,7 +218,7 @@ impl Trial<'_> {
                 continue;
             }
             let own = self
-                .ask(one, Some(&self.ada.keys[index]), index, true)
+                .send(one, Some(&self.ada.keys[index]), index, true)
                 .await;
             let kind = kind(&own);
             let refused = ["unauthenticated", "forbidden", "internal"].contains(&kind.as_str());

@@ -6,7 +6,7 @@ mod tls;
 use binnacle_fleet::alerts;
 use binnacle_platform::outbox::Sent;
 use binnacle_server_testing::DAY_S;
-use binnacle_server_testing::alerts::{limit, ship_with_model};
+use binnacle_server_testing::alerts::{set_alert_limits, ship_with_model};
 use binnacle_server_testing::mail::{add, deliver, path, read, subjects, test};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{ApiResponse, Relay, TestServer};
@@ -27,7 +27,7 @@ async fn an_alert_letter_names_vessel_advice_and_link(server: TestServer) {
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
     let nao = ship_with_model(&server, &ada).await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     assert_eq!(deliver(&server, &relay).await, [Sent::Delivered]);
 
     let letter = relay.letters().remove(0);
@@ -78,7 +78,7 @@ async fn a_letter_is_sent_when_an_alert_is_raised_gets_worse_and_ends(server: Te
     let nao = ship_with_model(&server, &ada).await;
     // New text, worse, better, as bad as before, over.
     for deviation_deg in [2.5, 2.4, 1.0, 2.5, 1.0, 45.0] {
-        limit(
+        set_alert_limits(
             &server,
             &ada,
             &nao,
@@ -106,7 +106,7 @@ async fn a_letter_is_sent_when_an_alert_is_raised_gets_worse_and_ends(server: Te
     );
 
     // The same cause later is another alert, with a letter of its own.
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     assert_eq!(deliver(&server, &relay).await, [Sent::Delivered]);
     let alert = ada.get("/alerts?open=true").await.good()["items"][0].clone();
     let at = |rest: &str| format!("/alerts/{}{rest}", alert["id"].as_str().unwrap());
@@ -133,12 +133,12 @@ async fn a_recipient_gets_no_letter_below_the_chosen_severity(server: TestServer
     add(&ada, "master@example.com", "critical").await;
     add(&eve, "eve@example.com", "notice").await;
     let nao = ship_with_model(&server, &ada).await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     assert_eq!(deliver(&server, &relay).await, []);
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     // After the critical alert the master gets one letter about the lower severity.
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 2.9 })).await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 2.9 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
     assert_eq!(deliver(&server, &relay).await, [Sent::Delivered; 2]);
     let expected = [
         "Nao: critical, deviation over the limit",
@@ -152,8 +152,8 @@ async fn a_recipient_gets_no_letter_below_the_chosen_severity(server: TestServer
         "{text}"
     );
     // An alert that was critical until its end gets a letter at its end.
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
-    limit(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    set_alert_limits(&server, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
     deliver(&server, &relay).await;
     let expected = [
         "Nao: critical, deviation over the limit",

@@ -2,7 +2,7 @@
 
 use binnacle_platform::outbox::{self, Sent};
 use binnacle_server_testing::DAY_S;
-use binnacle_server_testing::alerts::{limit, ship_with_model};
+use binnacle_server_testing::alerts::{set_alert_limits, ship_with_model};
 use binnacle_server_testing::mail::{add, deliver, mailer, path, subjects, test};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{Behaviour, Person, Relay, Stage, TestServer};
@@ -122,7 +122,7 @@ async fn letters_are_sent_in_order_and_survive_a_restart(server: TestServer) {
     add(&ada, "bridge@example.com", "notice").await;
     let nao = ship_with_model(&server, &ada).await;
     for deviation_deg in [2.5, 1.0, 45.0] {
-        limit(
+        set_alert_limits(
             &server,
             &ada,
             &nao,
@@ -183,7 +183,7 @@ async fn two_servers_send_a_letter_once(server: TestServer) {
     let relay = Relay::start().await;
     let bridge = add(&ada, "bridge@example.com", "warning").await;
     test(&ada, &bridge).await;
-    let second = server.second().await;
+    let second = server.second_server().await;
     let mailer = mailer(&relay);
     let (one, other) = tokio::join!(
         outbox::step(&server.app, &mailer),

@@ -5,7 +5,8 @@ use binnacle_platform::audit::RequestContext;
 use binnacle_platform::time::Time;
 use binnacle_platform::users;
 use binnacle_server_testing::{
-    ApiResponse, Engine, PASSWORD, Person, Provider, Signer, TestServer, attempt, provider_settings,
+    ApiResponse, Engine, PASSWORD, Person, Provider, Signer, TestServer, provider_settings,
+    try_sign_in,
 };
 use serde_json::{Value, json};
 use tokio::net::TcpListener;
@@ -18,11 +19,11 @@ macro_rules! with_provider {
     ($($test:ident),* $(,)?) => {
         mod sqlite {
             use super::*;
-            $(#[tokio::test] async fn $test() { super::$test(World::new(Engine::Sqlite).await).await; })*
+            $(#[tokio::test] async fn $test() { super::$test(Fixture::new(Engine::Sqlite).await).await; })*
         }
         mod postgres {
             use super::*;
-            $(#[tokio::test] async fn $test() { super::$test(World::new(Engine::Postgres).await).await; })*
+            $(#[tokio::test] async fn $test() { super::$test(Fixture::new(Engine::Postgres).await).await; })*
         }
     };
 }
@@ -44,18 +45,18 @@ with_provider!(
     a_one_time_code_unlinks_the_provider_account,
 );
 
-struct World {
+struct Fixture {
     server: TestServer,
     provider: Provider,
     ada: Person,
 }
 
-impl World {
-    async fn new(engine: Engine) -> World {
+impl Fixture {
+    async fn new(engine: Engine) -> Fixture {
         let provider = Provider::start().await;
         let server = TestServer::start_with(engine, &provider.settings()).await;
         let ada = server.admin("ada").await;
-        World {
+        Fixture {
             server,
             provider,
             ada,
@@ -63,16 +64,16 @@ impl World {
     }
 
     async fn sign_in(&self) -> ApiResponse {
-        let (there, cookie) = begin(&self.server).await;
-        let back = at_provider(&self.server, &there).await;
-        come_back(&self.server, &back, &cookie).await
+        let (there, cookie) = start_sign_in(&self.server).await;
+        let back = callback_address(&self.server, &there).await;
+        follow_callback(&self.server, &back, &cookie).await
     }
 
     /// Signs in through the provider, and returns the account.
-    async fn me(&self) -> Value {
+    async fn account(&self) -> Value {
         let done = self.sign_in().await;
-        assert_eq!(outcome(&done), "/");
-        let response = with_cookie(&self.server, "/me", &session(&done).unwrap()).await;
+        assert_eq!(redirect_target(&done), "/");
+        let response = with_cookie(&self.server, "/me", &session_cookie(&done).unwrap()).await;
         response.good()
     }
 }
@@ -93,7 +94,7 @@ fn cookies(response: &ApiResponse) -> Vec<String> {
 }
 
 /// Returns the session cookie, if a session was opened.
-fn session(response: &ApiResponse) -> Option<String> {
+fn session_cookie(response: &ApiResponse) -> Option<String> {
     let all = cookies(response);
     let found = all
         .iter()
@@ -102,26 +103,26 @@ fn session(response: &ApiResponse) -> Option<String> {
 }
 
 /// Returns the redirect target.
-fn outcome(response: &ApiResponse) -> &str {
+fn redirect_target(response: &ApiResponse) -> &str {
     assert_eq!(response.status, 303, "{response:?}");
     response.headers["location"].to_str().unwrap()
 }
 
 /// Returns the provider's address, and the cookie that the browser keeps.
-async fn begin(server: &TestServer) -> (String, String) {
+async fn start_sign_in(server: &TestServer) -> (String, String) {
     let response = get(server, START, "").await;
     let cookie = cookies(&response)[0].split(';').next().unwrap().to_owned();
-    (outcome(&response).to_owned(), cookie)
+    (redirect_target(&response).to_owned(), cookie)
 }
 
 /// Follows the address at the provider; returns the callback address.
-async fn at_provider(server: &TestServer, address: &str) -> String {
+async fn callback_address(server: &TestServer, address: &str) -> String {
     let response = ApiResponse::of(server.http.get(address)).await;
-    let back = outcome(&response);
+    let back = redirect_target(&response);
     back.strip_prefix(PUBLIC).unwrap().to_owned()
 }
 
-async fn come_back(server: &TestServer, back: &str, cookie: &str) -> ApiResponse {
+async fn follow_callback(server: &TestServer, back: &str, cookie: &str) -> ApiResponse {
     get(server, back, cookie).await
 }
 
@@ -131,43 +132,43 @@ async fn send_code(server: &TestServer, cookie: &str, code: &str) -> ApiResponse
     ApiResponse::of(request.json(&json!({ "code": code }))).await
 }
 
-async fn a_person_verified_by_the_provider_is_signed_in(world: World) {
-    let named = with_cookie(&world.server, "/session/provider", "").await;
+async fn a_person_verified_by_the_provider_is_signed_in(fixture: Fixture) {
+    let named = with_cookie(&fixture.server, "/session/provider", "").await;
     assert_eq!(named.good(), json!({ "name": "Example Lines" }));
-    let done = world.sign_in().await;
-    let cookie = session(&done).unwrap();
-    let me = with_cookie(&world.server, "/me", &cookie).await.good();
+    let done = fixture.sign_in().await;
+    let cookie = session_cookie(&done).unwrap();
+    let me = with_cookie(&fixture.server, "/me", &cookie).await.good();
     assert_eq!(me["email"], "ada@example.com");
-    let sessions = world.ada.get("/sessions").await.good();
+    let sessions = fixture.ada.get("/sessions").await.good();
     assert_eq!(sessions["items"][0]["provider"], Value::Null);
     assert_eq!(sessions["items"][1]["provider"], "Example Lines");
-    let url = format!("{}/api/v1/session", world.server.url);
-    let out = world.server.http.delete(url).header("cookie", &cookie);
+    let url = format!("{}/api/v1/session", fixture.server.url);
+    let out = fixture.server.http.delete(url).header("cookie", &cookie);
     let out = ApiResponse::of(out.header("x-binnacle-request", "1")).await;
     assert_eq!(out.status, 204);
     assert_eq!(
-        with_cookie(&world.server, "/me", &cookie).await.problem(),
+        with_cookie(&fixture.server, "/me", &cookie).await.problem(),
         "unauthenticated"
     );
-    world.server.finish().await;
+    fixture.server.finish().await;
 }
 
-async fn a_pending_sign_in_is_hidden_from_scripts_and_the_provider(world: World) {
-    let response = get(&world.server, START, "").await;
+async fn a_pending_sign_in_is_hidden_from_scripts_and_the_provider(fixture: Fixture) {
+    let response = get(&fixture.server, START, "").await;
     let cookie = cookies(&response)[0].clone();
     for part in ["HttpOnly", "SameSite=Lax", "Max-Age=600", "Path=/"] {
         assert!(cookie.contains(part), "{cookie}");
     }
     let kept = cookie.split([';', '=', '.']).nth(2).unwrap();
     assert_eq!(kept.len(), 43);
-    let there = outcome(&response);
-    assert!(there.starts_with(&world.provider.issuer));
+    let there = redirect_target(&response);
+    assert!(there.starts_with(&fixture.provider.issuer));
     assert!(
         !there.contains(kept) && !there.contains("secret"),
         "{there}"
     );
     assert!(there.contains("code_challenge_method=S256"));
-    let done = world.sign_in().await;
+    let done = fixture.sign_in().await;
     let all = cookies(&done);
     let session = all
         .iter()
@@ -179,73 +180,73 @@ async fn a_pending_sign_in_is_hidden_from_scripts_and_the_provider(world: World)
     assert!(forgotten.unwrap().contains("Max-Age=0"));
     assert!(done.headers.contains_key("content-security-policy"));
     assert_eq!(done.headers["cache-control"], "no-store");
-    world.server.finish().await;
+    fixture.server.finish().await;
 }
 
-async fn a_cancelled_sign_in_returns_to_the_sign_in_page(world: World) {
-    let (there, cookie) = begin(&world.server).await;
-    let back = at_provider(&world.server, &there).await;
+async fn a_cancelled_sign_in_returns_to_the_sign_in_page(fixture: Fixture) {
+    let (there, cookie) = start_sign_in(&fixture.server).await;
+    let back = callback_address(&fixture.server, &there).await;
     let (path, query) = back.split_once('?').unwrap();
     let (_, state) = query.split_once("&state=").unwrap();
     let back = format!("{path}?error=access_denied&state={state}");
-    let done = come_back(&world.server, &back, &cookie).await;
-    assert_eq!(outcome(&done), "/?sign-in=cancelled");
-    world.server.finish().await;
+    let done = follow_callback(&fixture.server, &back, &cookie).await;
+    assert_eq!(redirect_target(&done), "/?sign-in=cancelled");
+    fixture.server.finish().await;
 }
 
-async fn a_person_keeps_the_account_when_the_email_changes(world: World) {
-    let eve = world.server.admin("eve").await;
-    assert_eq!(world.me().await["email"], "ada@example.com");
+async fn a_person_keeps_the_account_when_the_email_changes(fixture: Fixture) {
+    let eve = fixture.server.admin("eve").await;
+    assert_eq!(fixture.account().await["email"], "ada@example.com");
     for changed in [
         json!({ "email": "eve@example.com" }),
         json!({ "email": null }),
         json!({ "email": "countess@example.com", "email_verified": false }),
     ] {
-        world.provider.says(changed);
-        assert_eq!(world.me().await["email"], "ada@example.com");
+        fixture.provider.set_claims(changed);
+        assert_eq!(fixture.account().await["email"], "ada@example.com");
     }
     // The address now belongs to someone else.
-    world.provider.says(json!({ "sub": "person-2" }));
-    let done = world.sign_in().await;
-    assert_eq!(outcome(&done), "/?sign-in=taken");
-    assert_eq!(session(&done), None);
+    fixture.provider.set_claims(json!({ "sub": "person-2" }));
+    let done = fixture.sign_in().await;
+    assert_eq!(redirect_target(&done), "/?sign-in=taken");
+    assert_eq!(session_cookie(&done), None);
     let sessions = eve.get("/sessions").await.good();
     assert_eq!(sessions["items"].as_array().unwrap().len(), 1);
-    world.server.finish().await;
+    fixture.server.finish().await;
 }
 
-async fn people_of_every_operator_sign_in_to_their_own_account(world: World) {
-    let server = &world.server;
+async fn people_of_every_operator_sign_in_to_their_own_account(fixture: Fixture) {
+    let server = &fixture.server;
     let eve = server.admin("eve").await;
-    let (firm, adjuster) = world.ada.adjuster(server, "needle").await;
-    let root = world.ada.platform_admin(server).await;
+    let (firm, adjuster) = fixture.ada.adjuster(server, "needle").await;
+    let root = fixture.ada.platform_admin(server).await;
     for (person, email) in [&eve, &adjuster, &root].iter().zip(2..) {
         let claims = json!({ "sub": format!("person-{email}"), "email": person.email });
-        world.provider.says(claims);
-        let me = world.me().await;
+        fixture.provider.set_claims(claims);
+        let me = fixture.account().await;
         assert_eq!(me, person.get("/me").await.good());
     }
-    world
+    fixture
         .provider
-        .says(json!({ "sub": "person-3", "email": "ada@example.com" }));
-    let me = world.me().await;
+        .set_claims(json!({ "sub": "person-3", "email": "ada@example.com" }));
+    let me = fixture.account().await;
     assert_eq!(me["firm_id"], json!(firm));
     assert_eq!(me["operator_id"], Value::Null);
-    world.server.finish().await;
+    fixture.server.finish().await;
 }
 
-async fn a_second_factor_is_required_after_the_provider(world: World) {
-    let server = &world.server;
-    let (secret, _) = set_up(server, &world.ada).await;
-    let (there, cookie) = begin(server).await;
-    let back = at_provider(server, &there).await;
+async fn a_second_factor_is_required_after_the_provider(fixture: Fixture) {
+    let server = &fixture.server;
+    let (secret, _) = set_up(server, &fixture.ada).await;
+    let (there, cookie) = start_sign_in(server).await;
+    let back = callback_address(server, &there).await;
     let early = send_code(server, &cookie, &app_code(&secret, now_s(server))).await;
     assert_eq!(early.problem(), "gone");
-    let done = come_back(server, &back, &cookie).await;
-    assert_eq!(outcome(&done), "/?sign-in=code");
-    assert_eq!(session(&done), None);
+    let done = follow_callback(server, &back, &cookie).await;
+    assert_eq!(redirect_target(&done), "/?sign-in=code");
+    assert_eq!(session_cookie(&done), None);
     let code = app_code(&secret, now_s(server));
-    let (_, another) = begin(server).await;
+    let (_, another) = start_sign_in(server).await;
     for strange in ["", another.as_str()] {
         assert_eq!(send_code(server, strange, &code).await.problem(), "gone");
     }
@@ -253,70 +254,84 @@ async fn a_second_factor_is_required_after_the_provider(world: World) {
     assert_eq!(wrong.problem(), "wrong-code");
     let right = send_code(server, &cookie, &code).await;
     assert_eq!(right.good()["email"], "ada@example.com");
-    let me = with_cookie(server, "/me", &session(&right).unwrap()).await;
+    let me = with_cookie(server, "/me", &session_cookie(&right).unwrap()).await;
     assert_eq!(me.status, 200);
     server.advance(60.0);
     let again = send_code(server, &cookie, &app_code(&secret, now_s(server))).await;
     assert_eq!(again.problem(), "gone");
 
-    let (there, cookie) = begin(server).await;
-    let back = at_provider(server, &there).await;
-    come_back(server, &back, &cookie).await;
+    let (there, cookie) = start_sign_in(server).await;
+    let back = callback_address(server, &there).await;
+    follow_callback(server, &back, &cookie).await;
     server.advance(600.0);
     let late = send_code(server, &cookie, &app_code(&secret, now_s(server))).await;
     assert_eq!(late.problem(), "gone");
-    world.server.finish().await;
+    fixture.server.finish().await;
 }
 
-async fn a_rotated_provider_key_is_fetched(world: World) {
-    assert_eq!(outcome(&world.sign_in().await), "/");
-    world.provider.changes_its_key();
-    assert_eq!(outcome(&world.sign_in().await), "/?sign-in=untrusted");
-    world.server.advance(60.0);
-    assert_eq!(outcome(&world.sign_in().await), "/");
-    world.server.finish().await;
-}
-
-async fn an_rsa_signature_of_the_provider_is_accepted(world: World) {
-    world.provider.signs_by_rsa();
-    assert_eq!(world.me().await["email"], "ada@example.com");
-    for signer in [Signer::Stranger, Signer::Secret, Signer::Nobody] {
-        world.provider.signed_by(signer);
-        assert_eq!(outcome(&world.sign_in().await), "/?sign-in=untrusted");
-    }
-    world.provider.signed_by(Signer::Itself);
-    world.server.advance(60.0);
-    world.provider.changes_its_key();
+async fn a_rotated_provider_key_is_fetched(fixture: Fixture) {
+    assert_eq!(redirect_target(&fixture.sign_in().await), "/");
+    fixture.provider.rotate_key();
     assert_eq!(
-        outcome(&world.sign_in().await),
+        redirect_target(&fixture.sign_in().await),
+        "/?sign-in=untrusted"
+    );
+    fixture.server.advance(60.0);
+    assert_eq!(redirect_target(&fixture.sign_in().await), "/");
+    fixture.server.finish().await;
+}
+
+async fn an_rsa_signature_of_the_provider_is_accepted(fixture: Fixture) {
+    fixture.provider.use_rsa_key();
+    assert_eq!(fixture.account().await["email"], "ada@example.com");
+    for signer in [Signer::OtherKey, Signer::ClientSecret, Signer::Unsigned] {
+        fixture.provider.sign_with(signer);
+        assert_eq!(
+            redirect_target(&fixture.sign_in().await),
+            "/?sign-in=untrusted"
+        );
+    }
+    fixture.provider.sign_with(Signer::Provider);
+    fixture.server.advance(60.0);
+    fixture.provider.rotate_key();
+    assert_eq!(
+        redirect_target(&fixture.sign_in().await),
         "/",
         "another RSA key is looked for"
     );
-    world.server.finish().await;
+    fixture.server.finish().await;
 }
 
-async fn a_missing_email_comes_from_the_user_info_endpoint(world: World) {
-    world
+async fn a_missing_email_comes_from_the_user_info_endpoint(fixture: Fixture) {
+    fixture
         .provider
-        .says(json!({ "email": null, "email_verified": null }));
+        .set_claims(json!({ "email": null, "email_verified": null }));
     let user_info = |subject: &str, verified: bool| json!({ "sub": subject, "email": "ada@example.com", "email_verified": verified });
-    world.provider.tells(user_info("person-2", true));
-    assert_eq!(outcome(&world.sign_in().await), "/?sign-in=unverified");
-    world.provider.tells(user_info("person-1", false));
-    assert_eq!(outcome(&world.sign_in().await), "/?sign-in=unverified");
-    world.provider.tells(user_info("person-1", true));
-    assert_eq!(world.me().await["email"], "ada@example.com");
-    world.server.finish().await;
+    fixture.provider.set_user_info(user_info("person-2", true));
+    assert_eq!(
+        redirect_target(&fixture.sign_in().await),
+        "/?sign-in=unverified"
+    );
+    fixture.provider.set_user_info(user_info("person-1", false));
+    assert_eq!(
+        redirect_target(&fixture.sign_in().await),
+        "/?sign-in=unverified"
+    );
+    fixture.provider.set_user_info(user_info("person-1", true));
+    assert_eq!(fixture.account().await["email"], "ada@example.com");
+    fixture.server.finish().await;
 }
 
-async fn a_provider_sign_in_is_in_the_audit_log(world: World) {
-    world.provider.says(json!({ "email": "eve@example.com" }));
-    world.sign_in().await;
-    let before = world.ada.get("/audit").await.good();
-    world.provider.says(json!({}));
-    world.sign_in().await;
-    let after = world.ada.get("/audit").await;
-    for secret in world.provider.secrets() {
+async fn a_provider_sign_in_is_in_the_audit_log(fixture: Fixture) {
+    fixture
+        .provider
+        .set_claims(json!({ "email": "eve@example.com" }));
+    fixture.sign_in().await;
+    let before = fixture.ada.get("/audit").await.good();
+    fixture.provider.set_claims(json!({}));
+    fixture.sign_in().await;
+    let after = fixture.ada.get("/audit").await;
+    for secret in fixture.provider.secrets() {
         assert!(!after.text.contains(&secret));
     }
     let (before, after) = (before["items"].clone(), after.good()["items"].clone());
@@ -326,46 +341,46 @@ async fn a_provider_sign_in_is_in_the_audit_log(world: World) {
     assert_eq!(after[0]["route"], "/api/v1/session/provider/callback");
     assert_eq!(after[0]["path"], "/api/v1/session/provider/callback");
     assert_eq!(after[0]["status"], 303);
-    world.server.finish().await;
+    fixture.server.finish().await;
 }
 
-async fn a_reset_account_is_linked_to_the_provider_again(world: World) {
-    let server = &world.server;
+async fn a_reset_account_is_linked_to_the_provider_again(fixture: Fixture) {
+    let server = &fixture.server;
     let email = "bob@example.com";
     let colleague = json!({ "email": email, "name": "Bob", "role": "viewer" });
-    world.ada.post("/users", &colleague).await.good();
-    world
+    fixture.ada.post("/users", &colleague).await.good();
+    fixture
         .provider
-        .says(json!({ "sub": "person-2", "email": email }));
-    assert_eq!(world.me().await["email"], email);
-    let people = world.ada.get("/users").await.good();
+        .set_claims(json!({ "sub": "person-2", "email": email }));
+    assert_eq!(fixture.account().await["email"], email);
+    let people = fixture.ada.get("/users").await.good();
     assert_eq!(people["items"][1]["state"], "active");
-    world
+    fixture
         .provider
-        .says(json!({ "sub": "person-3", "email": email }));
-    assert_eq!(outcome(&world.sign_in().await), "/?sign-in=taken");
+        .set_claims(json!({ "sub": "person-3", "email": email }));
+    assert_eq!(redirect_target(&fixture.sign_in().await), "/?sign-in=taken");
     let now = Time(server.app.clock.now());
     let command = RequestContext::of_command(&server.app.db, "admin reset-user", now);
     users::reset(&command, email, now).await.unwrap();
-    assert_eq!(world.me().await["email"], email);
-    world.server.finish().await;
+    assert_eq!(fixture.account().await["email"], email);
+    fixture.server.finish().await;
 }
 
-async fn a_one_time_code_unlinks_the_provider_account(world: World) {
-    let ada = world.me().await;
+async fn a_one_time_code_unlinks_the_provider_account(fixture: Fixture) {
+    let ada = fixture.account().await;
     let path = format!("/users/{}/invitation", ada["user_id"].as_str().unwrap());
-    let code = world.ada.post(&path, &json!({})).await.good()["code"].clone();
-    world.provider.says(json!({ "sub": "person-2" }));
-    assert_eq!(outcome(&world.sign_in().await), "/?sign-in=taken");
-    let url = format!("{}/api/v1/invitations/accept", world.server.url);
+    let code = fixture.ada.post(&path, &json!({})).await.good()["code"].clone();
+    fixture.provider.set_claims(json!({ "sub": "person-2" }));
+    assert_eq!(redirect_target(&fixture.sign_in().await), "/?sign-in=taken");
+    let url = format!("{}/api/v1/invitations/accept", fixture.server.url);
     let body = json!({ "code": code, "password": "seven gulls over the quay" });
-    ApiResponse::of(world.server.http.post(url).json(&body))
+    ApiResponse::of(fixture.server.http.post(url).json(&body))
         .await
         .good();
-    assert_eq!(world.me().await["email"], "ada@example.com");
-    world.provider.says(json!({}));
-    assert_eq!(outcome(&world.sign_in().await), "/?sign-in=taken");
-    world.server.finish().await;
+    assert_eq!(fixture.account().await["email"], "ada@example.com");
+    fixture.provider.set_claims(json!({}));
+    assert_eq!(redirect_target(&fixture.sign_in().await), "/?sign-in=taken");
+    fixture.server.finish().await;
 }
 
 #[tokio::test]
@@ -379,21 +394,26 @@ async fn an_unavailable_provider_does_not_block_the_server_and_is_retried() {
     let server = TestServer::start_with(Engine::Sqlite, &settings).await;
     server.admin("ada").await;
     let response = get(&server, START, "").await;
-    assert_eq!(outcome(&response), "/?sign-in=unreachable");
+    assert_eq!(redirect_target(&response), "/?sign-in=unreachable");
     assert_eq!(
-        attempt(&server, "ada@example.com", PASSWORD).await.status,
+        try_sign_in(&server, "ada@example.com", PASSWORD)
+            .await
+            .status,
         200
     );
     let provider = Provider::start_at(port).await;
     assert_eq!(provider.issuer, issuer);
     assert_eq!(
-        outcome(&get(&server, START, "").await),
+        redirect_target(&get(&server, START, "").await),
         "/?sign-in=unreachable"
     );
     server.advance(5.0);
-    let (there, cookie) = begin(&server).await;
-    let back = at_provider(&server, &there).await;
-    assert_eq!(outcome(&come_back(&server, &back, &cookie).await), "/");
+    let (there, cookie) = start_sign_in(&server).await;
+    let back = callback_address(&server, &there).await;
+    assert_eq!(
+        redirect_target(&follow_callback(&server, &back, &cookie).await),
+        "/"
+    );
     server.finish().await;
 }
 

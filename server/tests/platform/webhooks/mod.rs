@@ -28,7 +28,7 @@ on_both!(
 );
 
 /// Raises an alert by a silent vessel, and signs the person in again.
-async fn raise(server: &TestServer, person: &Person) -> Person {
+async fn raise_alert(server: &TestServer, person: &Person) -> Person {
     server.ship(person, "Nao").await;
     server.advance(4.0 * DAY_S);
     alerts::check_silence(&server.app).await.unwrap();
@@ -39,7 +39,7 @@ async fn an_alert_is_delivered_with_a_signature(server: TestServer) {
     let ada = server.admin("ada").await;
     let (receiver, url) = Receiver::start().await;
     let webhook = make(&ada, &url, &["alert.raised"]).await;
-    let ada = raise(&server, &ada).await;
+    let ada = raise_alert(&server, &ada).await;
     assert_eq!(deliver(&server).await, [Sent::Delivered]);
 
     let (signature, body) = receiver.received().remove(0);
@@ -90,7 +90,7 @@ async fn unsubscribed_events_are_not_sent(server: TestServer) {
     make(&eve, &url, &["alert.raised"]).await;
     let off = json!({ "url": url, "kinds": ["alert.raised"], "enabled": false });
     ada.post("/webhooks", &off).await.good();
-    raise(&server, &ada).await;
+    raise_alert(&server, &ada).await;
     assert_eq!(deliver(&server).await, []);
     assert_eq!(receiver.received(), []);
     server.finish().await;
@@ -101,7 +101,7 @@ async fn messages_are_delivered_in_order_after_the_previous_one(server: TestServ
     let (receiver, url) = Receiver::start().await;
     let kinds = ["alert.raised", "alert.acknowledged", "alert.cleared"];
     make(&ada, &url, &kinds).await;
-    let ada = raise(&server, &ada).await;
+    let ada = raise_alert(&server, &ada).await;
     let alert = ada.get("/alerts").await.good()["items"][0].clone();
     let at = |rest: &str| format!("/alerts/{}{rest}", alert["id"].as_str().unwrap());
     ada.post(&at("/acknowledge"), &json!({})).await.good();
@@ -179,7 +179,7 @@ async fn a_delivery_in_progress_is_not_claimed_by_another_server(server: TestSer
     for _ in 0..2 {
         ada.post(&path(&webhook, "/test"), &json!({})).await.good();
     }
-    let second = server.second().await;
+    let second = server.second_server().await;
     let sender = Sender::new(Reach::Anywhere).unwrap();
     let (one, other) = tokio::join!(
         outbox::step(&server.app, &sender),

@@ -18,13 +18,13 @@ on_both!(
 );
 
 /// A program that accepts connections and does not respond until the test closes them.
-struct Silent {
+struct SilentReceiver {
     heard: mpsc::Receiver<TcpStream>,
     kept: Vec<TcpStream>,
 }
 
-impl Silent {
-    async fn start() -> (Silent, String) {
+impl SilentReceiver {
+    async fn start() -> (SilentReceiver, String) {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let url = format!("http://{}/hook", listener.local_addr().unwrap());
         let (tell, heard) = mpsc::channel(10);
@@ -36,18 +36,18 @@ impl Silent {
             }
         });
         let kept = Vec::new();
-        (Silent { heard, kept }, url)
+        (SilentReceiver { heard, kept }, url)
     }
 
     /// Waits for a connection.
-    async fn hear(&mut self) {
+    async fn wait_for_connection(&mut self) {
         let stream = self.heard.recv().await.unwrap();
         self.kept.push(stream);
     }
 }
 
 /// Runs one delivery in the background.
-fn begin(server: &TestServer) -> JoinHandle<Option<Sent>> {
+fn start_delivery(server: &TestServer) -> JoinHandle<Option<Sent>> {
     let app = server.app.clone();
     tokio::spawn(async move {
         let sender = Sender::new(Reach::Anywhere).unwrap();
@@ -57,7 +57,7 @@ fn begin(server: &TestServer) -> JoinHandle<Option<Sent>> {
 
 async fn slow_receivers_do_not_delay_other_operators(server: TestServer) {
     let (ada, eve) = (server.admin("ada").await, server.admin("eve").await);
-    let (mut silent, nowhere) = Silent::start().await;
+    let (mut silent, nowhere) = SilentReceiver::start().await;
     for _ in 0..3 {
         let webhook = make(&ada, &nowhere, &["alert.raised"]).await;
         ada.post(&path(&webhook, "/test"), &json!({})).await.good();
@@ -65,9 +65,9 @@ async fn slow_receivers_do_not_delay_other_operators(server: TestServer) {
     let (receiver, url) = Receiver::start().await;
     let webhook = make(&eve, &url, &["alert.raised"]).await;
     eve.post(&path(&webhook, "/test"), &json!({})).await.good();
-    let waiting = [begin(&server), begin(&server)];
+    let waiting = [start_delivery(&server), start_delivery(&server)];
     for _ in &waiting {
-        silent.hear().await;
+        silent.wait_for_connection().await;
     }
     // Ada's third delivery waits while two of hers occupy workers.
     assert_eq!(deliver(&server).await, [Sent::Delivered]);
@@ -81,7 +81,7 @@ async fn slow_receivers_do_not_delay_other_operators(server: TestServer) {
 
 async fn a_slow_receiver_gets_one_delivery_at_a_time(server: TestServer) {
     let ada = server.admin("ada").await;
-    let (mut silent, nowhere) = Silent::start().await;
+    let (mut silent, nowhere) = SilentReceiver::start().await;
     let webhook = make(&ada, &nowhere, &["order.updated"]).await;
     let receiver = webhook["id"].as_str().unwrap().parse().unwrap();
     // They are of two orders, so neither waits for the other.
@@ -97,8 +97,8 @@ async fn a_slow_receiver_gets_one_delivery_at_a_time(server: TestServer) {
         let queued = outbox::queue_one(&command, receiver, &message, now);
         queued.await.unwrap();
     }
-    let first = begin(&server);
-    silent.hear().await;
+    let first = start_delivery(&server);
+    silent.wait_for_connection().await;
     assert_eq!(deliver(&server).await, []);
     drop(silent);
     assert_eq!(first.await.unwrap(), Some(Sent::Failed));
