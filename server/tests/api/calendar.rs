@@ -253,10 +253,7 @@ async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(shore: 
     let (is, due_now) = (&after[&call_uid], &after[&due_uid]);
     assert_eq!(instant(is.get_start()), "2026-12-08T12:00:00+00:00");
     let said = is.get_description().unwrap();
-    assert!(
-        said.contains("ETA: 2026-12-08 12:00 UTC, ±12 h"),
-        "{said}"
-    );
+    assert!(said.contains("ETA: 2026-12-08 12:00 UTC, ±12 h"), "{said}");
     assert_eq!(instant(due_now.get_start()), "2028-11-20");
     for (before, after) in [(was, is), (due, due_now)] {
         assert!(sequence(after) > sequence(before));

@@ -4,11 +4,11 @@ use super::facts::{Completed, Facts, Stored, UpcomingCall, Work, assess_compass}
 use super::over_limit_since::{self, DeviationHistory};
 use crate::port_calls;
 use binnacle_compass::logbook::LogbookKind;
-use binnacle_fleet::alerts::AlertLimits;
 use binnacle_fleet::analysis::Findings;
 use binnacle_fleet::compasses::{self, Compass};
 use binnacle_fleet::models::{self, StoredModel};
 use binnacle_fleet::particulars::Particulars;
+use binnacle_fleet::settings::AlertLimits;
 use binnacle_orders::work_orders::State;
 use binnacle_platform::app::App;
 use binnacle_platform::db::{Db, rows};

@@ -2,7 +2,7 @@
 
 use super::notification::Notification;
 use binnacle_platform::error::Result;
-use binnacle_platform::mail::{Letter, Told, header, one_line, wrapped};
+use binnacle_platform::mail::{Letter, LetterItem, header, one_line, wrapped};
 
 /// Maximum number of notifications in full text; further ones get a line each.
 const MAX_IN_FULL: usize = 20;
@@ -16,9 +16,9 @@ pub(super) fn compose_letter(notifications: &[Notification]) -> Option<Result<St
         [one] => Letter {
             subject: header(&one.subject),
             text: one.text.clone(),
-            told: Vec::new(),
+            items: Vec::new(),
             path: one.path.clone(),
-            report: None,
+            files: None,
             about: one.alert_id.map(|id| id.0).or(one.order_id.map(|id| id.0)),
         },
         several => compose_digest(several),
@@ -33,7 +33,7 @@ fn compose_digest(all: &[Notification]) -> Letter {
         format!("{subject} ({})", one.created_at.to_the_minute())
     };
     let latest_first = || all.iter().rev();
-    let in_full = latest_first().take(MAX_IN_FULL).map(|one| Told {
+    let in_full = latest_first().take(MAX_IN_FULL).map(|one| LetterItem {
         head: head(one),
         text: one.text.clone(),
         path: one.path.clone(),
@@ -53,9 +53,9 @@ fn compose_digest(all: &[Notification]) -> Letter {
     Letter {
         subject: format!("{prefix}{} notifications from Binnacle", all.len()),
         text: lines.join("\n"),
-        told: in_full.collect(),
+        items: in_full.collect(),
         path: "/notifications".to_owned(),
         about: None,
-        report: None,
+        files: None,
     }
 }

@@ -6,10 +6,12 @@
 mod csv;
 mod layout;
 mod load;
+mod mailing_list;
 mod monthly;
 mod report;
 mod settings;
 
+pub use mailing_list::MAILING_LIST;
 pub use monthly::{make_due_reports, watch};
 
 use axum::extract::{FromRef, State};

@@ -5,13 +5,13 @@
 
 use super::csv::{self, Table};
 use super::load::load_report;
+use super::mailing_list;
 use super::report::Report;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::app::App;
 use binnacle_platform::db::{Tx, execute, row, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{DeliveryId, OperatorId, RecipientId};
-use binnacle_platform::mail;
 use binnacle_platform::outbox::{self, Kind, Message};
 use binnacle_platform::time::Time;
 use chrono::{DateTime, Datelike, Days, NaiveDate, NaiveTime, Timelike, Utc};
@@ -78,7 +78,7 @@ async fn make_report(
     let last = next_month(month) - Days::new(1);
     let before = find_last_report(app, operator, month).await?;
     let report = load_report(app, operator, month, last, before).await?;
-    let letter = mail::monthly_letter(&report.letter_text(), operator, &month_name(month));
+    let letter = mailing_list::letter(&report.letter_text(), operator, &month_name(month));
     let tables = [Table::Due, Table::Deviation, Table::Jobs];
     let [due, deviation, jobs] = tables.map(|table| csv::render_table(&report, table));
     let (due, deviation, jobs) = (due?, deviation?, jobs?);
