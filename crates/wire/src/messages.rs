@@ -12,6 +12,7 @@ use uuid::Uuid;
 
 /// `POST /api/v1/agents/enrol`: exchanges a one-time code for a token.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct EnrolRequest {
     /// The code shown to the operator.
     pub code: String,
@@ -21,10 +22,12 @@ pub struct EnrolRequest {
 
 /// The response to an enrolment: everything the agent needs to send.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct EnrolAnswer {
     /// Bearer token; shown this once.
     pub token: String,
     /// A new stream, opened for this installation.
+    #[cfg_attr(feature = "openapi", schema(value_type = Uuid))]
     pub stream: StreamId,
     /// The vessel's name, for the local page.
     pub vessel_name: String,
@@ -39,6 +42,7 @@ pub struct EnrolAnswer {
 /// the request's own token. An agent stores the new token before that `PUT`,
 /// and keeps the old one until it has the response.
 #[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct NewToken {
     /// Bearer token.
     pub token: String,
@@ -54,8 +58,10 @@ impl fmt::Debug for NewToken {
 /// new stream for the same compass. An agent does so when its spool was lost or
 /// restored from an old copy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct OpenStreamAnswer {
     /// The new stream.
+    #[cfg_attr(feature = "openapi", schema(value_type = Uuid))]
     pub stream: StreamId,
 }
 
@@ -66,6 +72,7 @@ pub struct OpenStreamAnswer {
 /// model that this version of the program cannot read leaves the rest intact:
 /// the server may be years ahead of an agent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(from = "Received")]
 pub struct Downlink {
     /// Every batch up to and including this one is durable on the server; 0 for
@@ -139,6 +146,7 @@ pub struct UnreadModel {
 
 /// A model as sent to the bridge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct ModelDownlink {
     /// The model version's id.
     pub id: Uuid,
@@ -157,11 +165,13 @@ pub struct ModelDownlink {
 /// Statement that earlier models no longer hold: the ship's magnetism or the
 /// compass changed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CardWithdrawn {
     /// Time of the change.
     pub since: Timestamp,
     /// The cause: a kind of logbook entry, a detected cause, or
     /// `ship_as_before`. More values may be added.
+    #[cfg_attr(feature = "openapi", schema(example = "adjustment"))]
     pub reason: String,
 }
 
@@ -195,14 +205,19 @@ impl fmt::Display for CardWithdrawn {
 /// It may be sent until it is acknowledged: repeating it, or sending an older
 /// revision late, changes nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = BoardReport))]
 pub struct LogbookReport {
     /// Revision, from 1; rises by one with each change by the officer.
+    #[cfg_attr(feature = "openapi", schema(minimum = 1))]
     pub revision: u32,
     /// The officer's name; may be empty.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(max_length = 100, default = ""))]
     pub reporter: String,
     /// True when the officer withdraws the report.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(default = false))]
     pub withdrawn: bool,
     /// The event reported.
     #[serde(flatten)]
@@ -211,6 +226,8 @@ pub struct LogbookReport {
 
 /// The response to a [`LogbookReport`]: it is in the logbook.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = BoardReportAnswer))]
 pub struct LogbookAnswer {
     /// The latest revision in the logbook.
     pub revision: u32,

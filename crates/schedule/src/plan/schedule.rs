@@ -76,6 +76,8 @@ pub struct PlannedJob {
 
 /// Weighted costs of a job beyond what is paid, in euros.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = PlannedJobWeighed))]
 pub struct Weighed {
     /// Risk of missing the ship.
     pub risk_eur: f64,
@@ -127,6 +129,8 @@ pub struct Change {
 
 /// Kind of change of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = PlanChangeKind))]
 #[serde(rename_all = "snake_case")]
 pub enum ChangeKind {
     /// It stays unchanged.
