@@ -92,6 +92,16 @@ enum HeadingAdvice {}
 enum LatitudeAdvice {}
 
 #[cfg(feature = "openapi")]
-crate::openapi::named_schema!(HeadingAdvice, "HeadingAdvice", Advice<HeadingSuggestion>);
+crate::openapi::named_schema!(
+    HeadingAdvice,
+    "HeadingAdvice",
+    Advice<HeadingSuggestion>,
+    HeadingSuggestion
+);
 #[cfg(feature = "openapi")]
-crate::openapi::named_schema!(LatitudeAdvice, "LatitudeAdvice", Advice<LatitudeSuggestion>);
+crate::openapi::named_schema!(
+    LatitudeAdvice,
+    "LatitudeAdvice",
+    Advice<LatitudeSuggestion>,
+    LatitudeSuggestion
+);
