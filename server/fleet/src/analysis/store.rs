@@ -18,6 +18,7 @@ use binnacle_platform::time::Time;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use utoipa::ToSchema;
 
 /// Samples are kept in rows of so many microseconds: 30 days.
 const CHUNK_MICROS: i64 = 30 * 86_400 * 1_000_000;
@@ -40,17 +41,21 @@ pub struct Found {
 
 /// Coverage of a compass's samples, advice where more would help most, and the comparison of gyro
 /// and satellite compass.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[schema(as = Coverage)]
 pub struct Covered {
     /// Counts of samples.
     #[serde(flatten)]
+    #[schema(inline)]
     pub coverage: Coverage,
-    /// None without a model, and in what was stored before there was advice.
+    /// Advice on the headings and waters that narrow the 95 % band most; none without a model.
     #[serde(default)]
+    #[schema(required)]
     pub sail_next: Option<SailNext>,
-    /// None where they could not be compared, and in what was stored before they
-    /// were.
+    /// Comparison of gyro and satellite compass. None before the first analysis, and where a model
+    /// is refused because they disagree.
     #[serde(default)]
+    #[schema(required)]
     pub references: Option<ReferenceCheck>,
 }
 

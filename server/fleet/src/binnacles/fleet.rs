@@ -1,6 +1,5 @@
 //! The binnacles of a fleet, in a line each: who stands in what, and where none is entered.
 
-use super::schema::AboardSchema;
 use super::store;
 use crate::compasses::Role;
 use axum::extract::{FromRef, State};
@@ -52,7 +51,6 @@ struct BinnacleInShort {
     /// The maker's number of this one.
     serial: String,
     /// All correctors on board, those in use included.
-    #[schema(value_type = AboardSchema)]
     aboard: Inventory,
     /// Number of measured effects.
     measured_effects: usize,

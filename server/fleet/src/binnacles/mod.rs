@@ -5,14 +5,11 @@
 //! one is ever changed or lost. What is sent in and what is given out are the same form
 //! (docs/binnacle.md), which `plan --binnacle` reads too.
 
-mod design_schema;
 mod fleet;
-mod schema;
 mod shipped;
 mod store;
 mod words;
 
-pub use schema::{BarSchema, BinnacleSchema, BucketSchema, PairSchema, SettingSchema, TraySchema};
 pub use store::{Author, Revised, current, insert};
 pub use words::in_words;
 
@@ -73,7 +70,7 @@ pub struct BinnacleRevision {
     #[schema(required)]
     pub reason: Option<String>,
     /// The binnacle, with the correctors on board and how they stand.
-    #[schema(value_type = BinnacleSchema)]
+    #[schema(value_type = BinnacleForm)]
     pub binnacle: Binnacle,
 }
 
@@ -117,7 +114,7 @@ async fn find_binnacle(
 /// written before stays among its revisions; the same again makes no new one.
 #[utoipa::path(put, path = "/vessels/{id}/compasses/{compass}/binnacle", tag = "adjusting",
     params(("id" = VesselId, Path), ("compass" = CompassId, Path), Why, Key),
-    request_body = BinnacleSchema,
+    request_body = BinnacleForm,
     responses((status = 200, body = BinnacleRevision), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 422, body = Problem)))]
@@ -183,7 +180,7 @@ async fn list_revisions(
 /// As `binnacle-server plan --binnacle` reads it, and as it can be written again.
 #[utoipa::path(get, path = "/vessels/{id}/compasses/{compass}/binnacle.json", tag = "adjusting",
     params(("id" = VesselId, Path), ("compass" = CompassId, Path)),
-    responses((status = 200, body = BinnacleSchema), (status = 401, body = Problem),
+    responses((status = 200, body = BinnacleForm), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn export_binnacle(
     State(app): State<App>,

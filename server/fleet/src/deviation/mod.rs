@@ -2,7 +2,7 @@
 
 mod predict;
 
-pub use predict::{HandbookSchema, Row, Worst, handbook, table, worst, worst_of};
+pub use predict::{Row, Worst, handbook, table, worst, worst_of};
 
 use crate::compasses;
 use crate::models;

@@ -1,7 +1,6 @@
 //! Reason for which a compass has no model, and the withdrawal of its last one.
 
-use crate::analysis::{LeftOut, RefusalSchema};
-use crate::ingest::CardWithdrawnSchema;
+use crate::analysis::LeftOut;
 use axum::http::StatusCode;
 use binnacle_compass::result::FitError;
 use binnacle_platform::error::{DomainProblem, Error};
@@ -39,7 +38,7 @@ pub struct NoModelFields {
     /// Reason for which the model is refused. Only in `no-model-yet`, and not before the first
     /// samples have been analysed.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, value_type = Option<RefusalSchema>)]
+    #[schema(required = false)]
     refusal: Option<FitError>,
     /// The samples that the logbook leaves out of the current epoch; only in
     /// `no-model-yet`, and only if there are any.
@@ -48,7 +47,7 @@ pub struct NoModelFields {
     left_out: Option<LeftOut>,
     /// Withdrawal of the last model; only in `no-model-yet`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, value_type = Option<CardWithdrawnSchema>)]
+    #[schema(required = false)]
     card_withdrawn: Option<CardWithdrawn>,
 }
 

@@ -3,21 +3,22 @@
 
 mod downlink_policy;
 mod missing;
-mod schema;
+mod model_json;
 mod store;
 
 pub use missing::{NoModel, NoModelFields};
-pub use schema::{IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema};
+pub use model_json::ModelJson;
 pub use store::{
     StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, foretold, in_force,
     insert, lately, of_version, withdrawn,
 };
 
 use crate::compasses::{self, WhichCompass};
-use crate::deviation::{HandbookSchema, Worst};
+use crate::deviation::Worst;
 use crate::{analysis, vessels};
 use axum::extract::{FromRef, State};
 use binnacle_compass::deviation::CoefficientsInDegrees;
+use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
 use binnacle_platform::access::Reader;
 use binnacle_platform::app::App;
@@ -99,10 +100,10 @@ pub struct ModelVersion {
     /// Vertical field there, nT, down positive.
     pub z_nt: f64,
     /// The handbook's coefficients there; none where headings are ambiguous.
-    #[schema(required, value_type = Option<HandbookSchema>)]
+    #[schema(required)]
     pub handbook: Option<CoefficientsInDegrees>,
     /// The fit.
-    #[schema(value_type = ModelSchema)]
+    #[schema(value_type = Model)]
     pub model: ModelJson,
 }
 

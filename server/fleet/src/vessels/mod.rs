@@ -15,7 +15,7 @@ use crate::alerts::{self, OpenCount};
 use crate::compasses::{self, Compass};
 use crate::deviation::Worst;
 use crate::models::{self, ModelSummary, StoredModel};
-use amendment::{Amendment, AmendmentSchema};
+use amendment::Amendment;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_platform::access::{Reader, Writer};
@@ -217,7 +217,7 @@ async fn find_vessel(
 /// What is left out stays as it is; null takes a value away. Out of service goes only a vessel
 /// none of whose work orders is under way.
 #[utoipa::path(patch, path = "/vessels/{id}", tag = "fleet", params(("id" = VesselId, Path)),
-    request_body = AmendmentSchema,
+    request_body = Amendment,
     responses((status = 200, body = Vessel), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "A work order of hers is under way", body = Problem),

@@ -70,7 +70,6 @@ pub struct AgainSaid {
     pub step: Option<u32>,
     /// How the correctors would stand with that slip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<binnacle_fleet::binnacles::SettingSchema>)]
     pub setting: Option<Setting>,
     /// The worst residual foretold now, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]

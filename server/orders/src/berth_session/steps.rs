@@ -87,7 +87,6 @@ pub struct StepDone {
 #[schema(as = CorrectorSettings)]
 pub(crate) struct Stand {
     /// How each stands.
-    #[schema(value_type = binnacle_fleet::binnacles::SettingSchema)]
     pub setting: Setting,
     /// What the compass reads then, degrees.
     #[serde(default)]

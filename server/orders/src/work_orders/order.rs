@@ -15,7 +15,6 @@ use crate::work_orders::schema::{ChosenPlanSchema, StepSchema, VerdictSchema};
 use binnacle_adjustment::adjust::{Limits, ReadingForm, Step};
 use binnacle_adjustment::binnacle::Setting;
 use binnacle_compass::angle::wrap_360;
-use binnacle_fleet::binnacles::SettingSchema;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::http::{optional_text, text};
 use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
@@ -272,7 +271,7 @@ pub(crate) struct Order {
     /// Whether someone has said since that reading how the correctors stand.
     pub looked_since: bool,
     /// How the correctors stand now; none before the first reading.
-    #[schema(required, value_type = Option<SettingSchema>)]
+    #[schema(required)]
     pub setting: Option<Setting>,
     /// What the compass read last at the berth, degrees.
     #[schema(required)]

@@ -1,7 +1,8 @@
 //! How the OpenAPI document describes plans; they themselves are the science crate's.
 
 use crate::berth_session::steps::Verdict;
-use binnacle_fleet::binnacles::{BarSchema, BucketSchema, PairSchema, SettingSchema, TraySchema};
+use binnacle_adjustment::binnacle::{BarSetting, HeelingSetting, PairSetting, Setting, Tray};
+use binnacle_compass::model::Model;
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
@@ -61,7 +62,7 @@ struct InShortSchema {
 #[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Plan")]
 pub(crate) struct PlanSchema {
     /// How they will stand.
-    setting: SettingSchema,
+    setting: Setting,
     /// Movements of hand that it takes.
     moves: u32,
     /// Worst foretold residual on any heading, weighted over the waters, degrees.
@@ -79,7 +80,7 @@ pub(crate) struct PlanSchema {
     /// What to do, in order.
     steps: Vec<StepSchema>,
     /// The model that holds from the last step on.
-    model_after: binnacle_fleet::models::ModelSchema,
+    model_after: Model,
 }
 
 /// Deviations foretold at one place.
@@ -159,9 +160,9 @@ pub(crate) struct StepSchema {
     /// Whether on this heading the compass shows the step at all.
     seen: bool,
     /// How the correctors stood before.
-    setting_before: SettingSchema,
+    setting_before: Setting,
     /// How they stand then.
-    setting_after: SettingSchema,
+    setting_after: Setting,
 }
 
 /// What is moved at the binnacle.
@@ -195,10 +196,10 @@ enum ActionSchema {
 #[schema(as = CorrectorPlace)]
 #[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Place")]
 enum PlaceSchema {
-    Magnets(TraySchema),
-    Pair(PairSchema),
-    Bar(BarSchema),
-    Bucket(BucketSchema),
+    Magnets(Tray),
+    Pair(PairSetting),
+    Bar(BarSetting),
+    Bucket(HeelingSetting),
 }
 
 /// What becomes of the heeling magnets.
