@@ -28,17 +28,17 @@ pub(crate) struct StepRead {
 }
 
 /// What became of a step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StepSaid {
     /// The step's number in its plan.
     pub number: u32,
-    /// What the compass read before.
+    /// What the compass read before, degrees.
     pub before_deg: f64,
-    /// What it read after.
+    /// What it read after, degrees.
     pub after_deg: f64,
-    /// By how much it should have turned.
+    /// By how much it should have turned, degrees.
     pub expected_change_deg: f64,
-    /// How far off that may be.
+    /// How far off that may be, degrees.
     pub tolerance_deg: f64,
     /// In a word.
     pub verdict: Verdict,
