@@ -31,7 +31,12 @@ pub(super) fn add_problem_fields<T: ToSchema>(document: &mut OpenApi) {
 }
 
 /// Names of the server's forms that refuse unknown fields.
-const STRICT_FORMS: [&str; 3] = ["VesselAmendment", "CompassAmendment", "LogbookAmendment"];
+const STRICT_FORMS: [&str; 4] = [
+    "VesselAmendment",
+    "CompassAmendment",
+    "LogbookAmendment",
+    "PortCallAmendment",
+];
 
 /// Corrects the schemas that are derived from types of the science crates and the server.
 ///
