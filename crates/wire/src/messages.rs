@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use uuid::Uuid;
 
-/// `POST /api/v1/agents/enrol`: exchanges a one-time code for a token.
+/// A one-time code to be exchanged for a token: the request of `POST
+/// /api/v1/agents/enrol`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct EnrolRequest {
@@ -20,7 +21,7 @@ pub struct EnrolRequest {
     pub agent_version: String,
 }
 
-/// The response to an enrolment: everything the agent needs to send.
+/// Everything the agent needs to send: the response to an enrolment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct EnrolAnswer {
@@ -54,9 +55,9 @@ impl fmt::Debug for NewToken {
     }
 }
 
-/// The response to `POST /api/v1/streams` with the agent's token, which opens a
-/// new stream for the same compass. An agent does so when its spool was lost or
-/// restored from an old copy.
+/// A new stream for the same compass: the response to `POST /api/v1/streams`.
+///
+/// An agent opens one when its spool was lost or restored from an old copy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct OpenStreamAnswer {
@@ -65,7 +66,8 @@ pub struct OpenStreamAnswer {
     pub stream: StreamId,
 }
 
-/// The response to `PUT /api/v1/streams/{stream}/batches/{seq}`, and to `GET
+/// Acknowledgement, and everything that the agent lacks: the response to `PUT
+/// /api/v1/streams/{stream}/batches/{seq}` and to `GET
 /// /api/v1/streams/{stream}/downlink`.
 ///
 /// Both take `?model={id}&settings={version}`, the agent's current ones. A
@@ -162,12 +164,11 @@ pub struct ModelDownlink {
     pub model: Model,
 }
 
-/// Statement that earlier models no longer hold: the ship's magnetism or the
-/// compass changed.
+/// Withdrawal of earlier cards: the ship's magnetism or the compass changed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct CardWithdrawn {
-    /// Time of the change.
+    /// Time of the change, from which they do not hold.
     pub since: Timestamp,
     /// The cause: a kind of logbook entry, a detected cause, or
     /// `ship_as_before`. More values may be added.
@@ -199,8 +200,8 @@ impl fmt::Display for CardWithdrawn {
     }
 }
 
-/// `PUT /api/v1/agents/logbook/{id}` with the agent's token: an officer's
-/// report, complete, under an id made on board.
+/// An officer's report, complete, under an id made on board: the request of
+/// `PUT /api/v1/agents/logbook/{id}`.
 ///
 /// It may be sent until it is acknowledged: repeating it, or sending an older
 /// revision late, changes nothing.
@@ -224,7 +225,7 @@ pub struct LogbookReport {
     pub report: Report,
 }
 
-/// The response to a [`LogbookReport`]: it is in the logbook.
+/// An officer's report in the logbook: the response to the report.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "openapi", schema(as = BoardReportAnswer))]

@@ -79,15 +79,15 @@ pub struct PlannedJob {
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "openapi", schema(as = PlannedJobWeighed))]
 pub struct Weighed {
-    /// Risk of missing the ship.
+    /// Risk of missing the ship, euros.
     pub risk_eur: f64,
-    /// Days of waiting.
+    /// Days of waiting, euros.
     pub waiting_eur: f64,
-    /// Days to come after the due date, and lateness itself.
+    /// Days to come after the due date, and lateness itself, euros.
     pub late_eur: f64,
-    /// Days before the due date.
+    /// Days before the due date, euros.
     pub early_eur: f64,
-    /// Departure from the previous plan.
+    /// Departure from the previous plan, euros.
     pub changed_eur: f64,
 }
 

@@ -39,8 +39,7 @@ pub struct Found {
     pub findings: Findings,
 }
 
-/// Coverage of a compass's samples, advice where more would help most, and the comparison of gyro
-/// and satellite compass.
+/// Coverage of a compass's samples, with advice and a comparison of the references.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = Coverage)]
 pub struct Covered {
@@ -52,8 +51,9 @@ pub struct Covered {
     #[serde(default)]
     #[schema(required)]
     pub sail_next: Option<SailNext>,
-    /// Comparison of gyro and satellite compass. None before the first analysis, and where a model
-    /// is refused because they disagree.
+    /// Comparison of gyro and satellite compass over the samples since the last change of the ship
+    /// or the compass. None before the first analysis, and where a model is refused because they
+    /// disagree.
     #[serde(default)]
     #[schema(required)]
     pub references: Option<ReferenceCheck>,
