@@ -32,13 +32,13 @@ pub(crate) struct StepRead {
 pub struct StepSaid {
     /// The step's number in its plan.
     pub number: u32,
-    /// What the compass read before, degrees.
+    /// Compass reading before the step, degrees.
     pub before_deg: f64,
-    /// What it read after, degrees.
+    /// Compass reading after the step, degrees.
     pub after_deg: f64,
-    /// By how much it should have turned, degrees.
+    /// Expected turn of the compass, degrees.
     pub expected_change_deg: f64,
-    /// How far off that may be, degrees.
+    /// Tolerance of the turn, degrees.
     pub tolerance_deg: f64,
     /// In a word.
     pub verdict: Verdict,
