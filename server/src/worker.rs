@@ -3,8 +3,8 @@
 use binnacle_analysis::advice::sail_next;
 use binnacle_analysis::analyse::analyse;
 use binnacle_fleet::analysis::Findings;
-use binnacle_fleet::analysis::{Covered, Found, input, queue, store};
-use binnacle_fleet::{alerts, compasses, settings};
+use binnacle_fleet::analysis::{AnalysisResult, Covered, input, store};
+use binnacle_fleet::{alerts, analysis_queue, compasses, settings};
 use binnacle_orders::verification;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
@@ -63,14 +63,14 @@ pub async fn run(app: App) {
 /// # Errors
 /// When the queue cannot be reached; a job that fails is not an error here.
 pub async fn step(app: &App) -> anyhow::Result<Option<Worked>> {
-    let Some(job) = queue::claim(&app.db, app.clock.now().into()).await? else {
+    let Some(job) = analysis_queue::claim(&app.db, app.clock.now().into()).await? else {
         return Ok(None);
     };
     let vessel = job.vessel_id;
     let begun = Instant::now();
     let outcome = match job.attempts {
         // Its worker died each time: whatever it is, it takes the process with it.
-        ..=queue::MOST_ATTEMPTS => tokio::select! {
+        ..=analysis_queue::MOST_ATTEMPTS => tokio::select! {
             done = work(app, job) => done,
             never = keep_lease(app, job) => match never {},
         },
@@ -89,7 +89,7 @@ pub async fn step(app: &App) -> anyhow::Result<Option<Worked>> {
         Err(error) => error.to_string(),
     };
     counter!("binnacle_analyses_total", "result" => "failed").increment(1);
-    let dead = queue::fail(&app.db, job, &error, app.clock.now().into()).await?;
+    let dead = analysis_queue::fail(&app.db, job, &error, app.clock.now().into()).await?;
     if dead {
         error!(%vessel, error, "the analysis failed too often and was given up");
     } else {
@@ -99,35 +99,35 @@ pub async fn step(app: &App) -> anyhow::Result<Option<Worked>> {
 }
 
 /// Renews a job's lease for as long as it is waited for.
-async fn keep_lease(app: &App, job: queue::Job) -> Infallible {
+async fn keep_lease(app: &App, job: analysis_queue::Job) -> Infallible {
     loop {
         tokio::time::sleep(RENEW_EVERY).await;
-        if let Err(error) = queue::renew(&app.db, job, app.clock.now().into()).await {
+        if let Err(error) = analysis_queue::renew(&app.db, job, app.clock.now().into()).await {
             warn!(vessel = %job.vessel_id, %error, "a lease was not renewed");
         }
     }
 }
 
 /// Analyses a vessel's compasses and stores what is new.
-async fn work(app: &App, job: queue::Job) -> Result<usize> {
+async fn work(app: &App, job: analysis_queue::Job) -> Result<usize> {
     let mut news = Vec::new();
-    let mut comes_true = None;
+    let mut next_entry_at = None;
     let now: Time = app.clock.now().into();
     let compasses = compasses::of_vessel(&app.db, job.vessel_id).await?;
     for compass in &compasses {
         let stored = input::load(&app.db, job.vessel_id, compass.id, now.0).await?;
-        comes_true = comes_true.into_iter().chain(stored.comes_true).min();
+        next_entry_at = next_entry_at.into_iter().chain(stored.next_entry_at).min();
         news.extend(analyse_compass(app, job.vessel_id, compass.id, stored).await?);
     }
     let limits = settings::find(&app.db, job.vessel_id).await?.alerts;
     let now: Time = app.clock.now().into();
     let mut tx = app.db.begin().await?;
-    if !queue::finish(&mut tx, job).await? {
+    if !analysis_queue::finish(&mut tx, job).await? {
         return Err(Error::Internal(anyhow::anyhow!("the lease was lost")));
     }
-    if let Some(time) = comes_true {
+    if let Some(time) = next_entry_at {
         let delay_s = time.seconds_since(now.0).max(0.0);
-        queue::enqueue(&mut tx, job.vessel_id, now, delay_s).await?;
+        analysis_queue::enqueue(&mut tx, job.vessel_id, now, delay_s).await?;
     }
     let mut events = Vec::new();
     for found in &news {
@@ -156,10 +156,10 @@ async fn analyse_compass(
     app: &App,
     vessel_id: VesselId,
     compass_id: CompassId,
-    stored: input::Stored,
-) -> Result<Option<Found>> {
+    stored: input::StoredInput,
+) -> Result<Option<AnalysisResult>> {
     let last_hash = store::last_hash(&app.db, vessel_id, compass_id).await?;
-    let found = tokio::task::spawn_blocking(move || -> anyhow::Result<Option<Found>> {
+    let found = tokio::task::spawn_blocking(move || -> anyhow::Result<Option<AnalysisResult>> {
         let input = stored.decode()?;
         let input_hash = input::input_hash(&input)?;
         if input.samples.is_empty() || last_hash.as_ref() == Some(&input_hash) {
@@ -171,7 +171,7 @@ async fn analyse_compass(
             sail_next: sail_next(&analysis),
             references: analysis.current_epoch().and_then(|epoch| epoch.references),
         };
-        Ok(Some(Found {
+        Ok(Some(AnalysisResult {
             vessel_id,
             compass_id,
             input_hash,

@@ -34,12 +34,12 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
         let db = Db::connect(&arguments.database.database_url, subscribers()).await?;
         db.migrate().await?;
         let now = Clock::System.now().into();
-        let imported = ingest::import(&db, vessel, &messages, now).await;
+        let imported = ingest::import_messages(&db, vessel, &messages, now).await;
         db.close().await;
         Ok(imported?)
     })?;
     if let Some(folder) = &arguments.answers {
-        for (stream, bytes) in &imported.answers {
+        for (stream, bytes) in &imported.acknowledgements {
             let path = folder.join(format!("{stream}.sbd"));
             write_whole(&path, bytes).with_context(|| path.display().to_string())?;
         }

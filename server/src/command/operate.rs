@@ -6,7 +6,7 @@ use crate::{health, routes, worker};
 use anyhow::{Context, Result};
 use axum::extract::connect_info::Connected;
 use axum::serve::{IncomingStream, Listener};
-use binnacle_fleet::{alerts, analysis};
+use binnacle_fleet::{alerts, analysis_queue};
 use binnacle_orders::dispatch;
 use binnacle_planning::{notifications, reports, schedule};
 use binnacle_platform::app::App;
@@ -77,7 +77,7 @@ where
     let mut parts = JoinSet::new();
     let line = events::Line::open(&app.db).await?;
     parts.spawn(line.listen(app.clone()));
-    let outdated = analysis::enqueue_outdated(&app.db, app.clock.now().into()).await?;
+    let outdated = analysis_queue::enqueue_outdated(&app.db, app.clock.now().into()).await?;
     if outdated > 0 {
         info!(vessels = outdated, "another estimator: analysing again");
     }

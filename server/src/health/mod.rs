@@ -74,7 +74,7 @@ async fn metrics_page(
     if !may_read_metrics(&app, &origin, &headers) {
         return Err(Error::Unauthenticated);
     }
-    let waiting = binnacle_fleet::analysis::count_jobs(&app.db).await?;
+    let waiting = binnacle_fleet::analysis_queue::count(&app.db).await?;
     for (state, jobs) in waiting {
         metrics::gauge!("binnacle_jobs", "state" => state).set(jobs as f64);
     }

@@ -12,8 +12,8 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use binnacle_fleet::models::NoModelFields;
 use binnacle_fleet::{
-    alerts, binnacles, card, changes, compasses, deviation, deviation_book, enrolment, ingest,
-    logbook, models, operators, overview, particulars, samples, settings, vessels,
+    alerts, binnacles, card, changes, compasses, deviation_book, deviation_table, enrolment,
+    ingest, logbook, models, operators, overview, particulars, samples, settings, vessel_api,
 };
 use binnacle_orders::work_orders::NotAdjustableFields;
 use binnacle_orders::{api as orders_api, firms};
@@ -97,7 +97,7 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(operators::router())
         .merge(firms::router())
         .merge(overview::router())
-        .merge(vessels::router())
+        .merge(vessel_api::router())
         .merge(compasses::router())
         .merge(binnacles::router())
         .merge(orders_api::router())
@@ -110,7 +110,7 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(settings::router())
         .merge(logbook::router())
         .merge(models::router())
-        .merge(deviation::router())
+        .merge(deviation_table::router())
         .merge(card::router())
         .merge(deviation_book::router())
         .merge(changes::router())

@@ -255,7 +255,7 @@ async fn names_make_no_headers_and_come_through_whole(shore: Shore) {
     assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered; 3]);
     let mut got: Vec<Value> = relay.got().iter().map(read).collect();
     for name in names {
-        let subject = format!("{name}: notice, no word from the vessel").replace("=?", "= ?");
+        let subject = format!("{name}: notice, no data from the vessel").replace("=?", "= ?");
         let place = got
             .iter()
             .position(|read| read["subject"] == subject.as_str());

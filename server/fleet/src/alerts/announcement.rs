@@ -1,7 +1,7 @@
-//! Words in which a change of an alert is announced: a letter, a webhook's message, a notice.
+//! Text of an announced alert: letter, webhook message and notice.
 
 use super::alert::Alert;
-use super::publish::AlertChange;
+use super::change::AlertChange;
 use binnacle_platform::ids::OperatorId;
 use binnacle_platform::mail::{Announcement, Letter, header, one_line, wrapped};
 use binnacle_platform::notices::{self, Notice, NoticesPublished};
@@ -44,7 +44,7 @@ pub(super) fn announcement(change: &AlertChange) -> Announcement {
     }
 }
 
-/// Names what alerts that follow one another have in common: compass and cause.
+/// Names the series of alerts with the same compass and cause.
 fn series(alert: &Alert) -> String {
     format!("{}: {:?}", alert.compass_id, alert.cause)
 }

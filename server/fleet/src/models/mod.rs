@@ -1,21 +1,25 @@
-//! The models of a vessel's compasses: every version is kept, the highest is current,
-//! but while a change has ended its epoch and no other model has taken its place.
+//! Models of a vessel's compasses.
+//!
+//! Invariants: every version is kept, and the highest is current. A compass has no current model
+//! after a change has ended its epoch, until the next model.
 
 mod downlink_policy;
+mod left_out;
 mod missing;
 mod model_json;
 mod store;
 
+pub use left_out::LeftOut;
 pub use missing::{NoModel, NoModelFields};
 pub use model_json::ModelJson;
 pub use store::{
-    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, foretold, in_force,
-    insert, lately, of_version, withdrawn,
+    StoredModel, card_withdrawn, card_withdrawn_in, current, current_of_fleet, current_of_vessel,
+    find_prediction, find_version, insert, list_in_force, list_recent,
 };
 
 use crate::compasses::{self, WhichCompass};
-use crate::deviation::Worst;
-use crate::{analysis, vessels};
+use crate::deviation::WorstHeading;
+use crate::vessels;
 use axum::extract::{FromRef, State};
 use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_compass::model::Model;
@@ -32,7 +36,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -43,7 +47,7 @@ where
         .routes(routes!(list_models))
 }
 
-/// A model in a line.
+/// Summary of a model.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct ModelSummary {
     /// The model version's id.
@@ -63,7 +67,7 @@ pub struct ModelSummary {
     pub samples_used: u64,
 }
 
-/// A model version, whole.
+/// A whole model version.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct ModelVersion {
     /// The model version's id.
@@ -75,7 +79,7 @@ pub struct ModelVersion {
     /// Time from which it holds; none means without limit.
     #[schema(required)]
     pub epoch_from: Option<Time>,
-    /// Until when it holds; none goes on.
+    /// Time until which it holds; none means without limit.
     #[schema(required)]
     pub epoch_to: Option<Time>,
     /// The time of the first sample in it.
@@ -131,7 +135,7 @@ async fn current_model(
     vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
     let compass = compasses::find(&app.db, id, which.compass).await?;
     let model = must_have(&app, id, compass.id).await?;
-    Ok(Json(model.version()))
+    Ok(Json(model.into_version()))
 }
 
 /// List a compass's model versions
@@ -152,20 +156,24 @@ async fn list_models(
     let found = store::list(&app.db, id, compass.id, before, page.fetch()).await?;
     let listed = page.cut(found, |model| model.version.to_string());
     Ok(Json(ModelVersionList {
-        items: listed.items.into_iter().map(StoredModel::version).collect(),
+        items: listed
+            .items
+            .into_iter()
+            .map(StoredModel::into_version)
+            .collect(),
         next: listed.next,
     }))
 }
 
-/// The current model, or why there is none.
+/// Returns the current model.
 ///
 /// # Errors
-/// [`NoModel`] with what is missing.
+/// [`NoModel`], with the reason, when there is none.
 pub async fn must_have(app: &App, vessel: VesselId, compass: CompassId) -> Result<StoredModel> {
     if let Some(model) = current(&app.db, vessel, compass).await? {
         return Ok(model);
     }
-    let (refusal, left_out) = analysis::refusal(&app.db, vessel, compass).await?;
+    let (refusal, left_out) = missing::find_refusal(&app.db, vessel, compass).await?;
     Err(NoModel {
         refusal,
         left_out,
@@ -175,7 +183,7 @@ pub async fn must_have(app: &App, vessel: VesselId, compass: CompassId) -> Resul
 }
 
 impl StoredModel {
-    /// The model in a line.
+    /// Summarizes the model in a line.
     pub fn summary(&self) -> ModelSummary {
         ModelSummary {
             id: self.id,
@@ -188,8 +196,8 @@ impl StoredModel {
         }
     }
 
-    /// The heading with the greatest deviation, at the last sample's place.
-    pub fn worst(&self) -> Option<Worst> {
+    /// Finds the heading with the greatest deviation, at the last sample's place.
+    pub fn worst(&self) -> Option<WorstHeading> {
         crate::deviation::worst(&self.model.0, self.earth())
     }
 
@@ -208,8 +216,8 @@ impl StoredModel {
         }
     }
 
-    /// The version, whole.
-    pub fn version(self) -> ModelVersion {
+    /// Returns the whole version, as the API shows it.
+    pub fn into_version(self) -> ModelVersion {
         ModelVersion {
             handbook: crate::deviation::handbook(&self.model.0, self.earth()),
             id: self.id,

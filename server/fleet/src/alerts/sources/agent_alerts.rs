@@ -1,15 +1,16 @@
-//! Alerts that the ship's agent raises itself: compass and gyro have parted.
+//! Source of alerts: reports of the ship's agent that compass and gyro have parted.
 //!
 //! Invariants:
 //!
-//! - Revisions may come late, again and in any order; the highest of each alert counts.
+//! - Revisions may arrive late, repeatedly and in any order; the highest of each alert counts.
 //! - The alert that the agent reported last is the one that is open or over.
-//! - An analysis neither raises it nor changes its words.
+//! - An analysis neither raises it nor changes its text.
 
 use crate::adjustments;
 use crate::alerts::causes::{AgentReports, Facts, Source, evaluate};
+use crate::alerts::change::PendingChange;
 use crate::alerts::clearing::{ADJUSTED, NOT_JUDGED, OVER};
-use crate::alerts::publish::{PendingChange, publish_changes};
+use crate::alerts::publish::publish_changes;
 use crate::alerts::reconcile::reconcile;
 use crate::alerts::store;
 use binnacle_compass::time::Timestamp;

@@ -1,7 +1,7 @@
-//! A card on a sheet of A4: what stands where.
+//! Layout of a card on a sheet of A4.
 //!
-//! What always holds: table and curve share their lines, so that a heading is read
-//! straight across; all that the card says of itself stands on the one sheet.
+//! Invariants: table and curve share their lines, so that a heading is read straight across. All
+//! statements of the card stand on the one sheet.
 
 mod chart;
 mod foot;
@@ -13,12 +13,12 @@ use binnacle_drawing::{A4, About, MARGIN, Point, Sheet, Style};
 
 const LEFT: f32 = MARGIN;
 const RIGHT: f32 = A4.0 - MARGIN;
-/// From one line of the table to the next.
+/// Distance from one line of the table to the next.
 const LINE: f32 = 13.0;
-/// Grey of what is not the first thing to be read.
+/// Grey of secondary text.
 const GREY: u8 = 90;
 
-/// The card's sheet.
+/// Draws the card's sheet.
 pub(super) fn sheet(card: &Card) -> Sheet {
     let mut sheet = Sheet::a4();
     let below_head = head::draw(&mut sheet, card);
@@ -44,10 +44,10 @@ pub(super) fn about(card: &Card) -> About {
     }
 }
 
-/// Smaller than this nobody reads.
+/// Smallest legible size of type.
 const SMALLEST: f32 = 6.0;
 
-/// A word in grey and what it says, in a room of its own.
+/// Draws a label in grey and its value within a width.
 fn fact(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) {
     const LABEL: f32 = 74.0;
     let style = Style::plain(8.0);
@@ -79,7 +79,7 @@ fn draw_labelled(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f
 /// Text for an unknown value.
 const UNKNOWN: &str = "not recorded";
 
-/// A value, or that there is none.
+/// Returns the value, or a mark for a missing one.
 fn known(value: Option<&str>) -> &str {
     value.unwrap_or(UNKNOWN)
 }
