@@ -118,7 +118,7 @@ pub(super) fn must_be_new(
     match ids.insert((call.vessel.clone(), call.id.clone()), line) {
         None => Ok(()),
         Some(first) => {
-            let what = format!("{:?} stands on line {first} already", call.id);
+            let what = format!("{:?} is already on line {first}", call.id);
             Err(FileError::new(line, "id", what))
         }
     }
