@@ -8,12 +8,10 @@ mod load;
 mod need;
 mod over_limit_since;
 mod prediction;
-mod schema;
 
 pub use facts::Facts;
 pub use load::of_fleet;
 pub use need::Need;
-pub use schema::UrgencySchema;
 
 use crate::schedule;
 use axum::extract::{FromRef, State};

@@ -1,7 +1,6 @@
 //! A need, as it is shown.
 
 use super::prediction::Ahead;
-use super::schema::{CauseKindSchema, UrgencySchema};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_schedule::needs::{CauseKind, Due, Urgency};
 use binnacle_schedule::rules::{Rule, built_in_rules};
@@ -24,7 +23,6 @@ pub struct Need {
     /// The last day on which it may be adjusted.
     pub due_on: NaiveDate,
     /// Urgency of the due date.
-    #[schema(value_type = UrgencySchema)]
     pub urgency: Urgency,
     /// Reason in plain words.
     #[schema(
@@ -50,7 +48,6 @@ pub struct Need {
 #[schema(as = NeedCause)]
 pub struct Cause {
     /// Kind of cause.
-    #[schema(value_type = CauseKindSchema)]
     pub kind: CauseKind,
     /// By when it wants the compass adjusted.
     pub due_on: NaiveDate,
@@ -92,7 +89,6 @@ pub(super) struct NeedList {
 #[into_params(parameter_in = Query)]
 pub(super) struct Filter {
     /// Of this urgency only.
-    #[param(value_type = Option<UrgencySchema>)]
     pub(super) urgency: Option<Urgency>,
     /// Due on this day or before.
     pub(super) due_by: Option<NaiveDate>,

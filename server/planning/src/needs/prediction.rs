@@ -1,6 +1,5 @@
 //! Predicted deviation at a place and on a day.
 
-use super::schema::SideSchema;
 use binnacle_schedule::needs::Side;
 use chrono::NaiveDate;
 use serde::Serialize;
@@ -18,6 +17,5 @@ pub struct Ahead {
     /// The largest deviation on any heading, either way, degrees.
     pub worst_deviation_deg: f64,
     /// Direction of the deviation.
-    #[schema(value_type = SideSchema)]
     pub side: Side,
 }

@@ -39,7 +39,7 @@ use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{CallId, OperatorId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_schedule::calls::overlap;
-use call::{Amendment, AmendmentSchema, CallList, Filter, NewCall, RevisedCall, Withdrawal};
+use call::{Amendment, CallList, Filter, NewCall, RevisedCall, Withdrawal};
 use store::Author;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -171,7 +171,7 @@ async fn find_port_call(
 /// What is left out stays as it is; null takes a value away. The call as it was is kept
 /// among its revisions.
 #[utoipa::path(patch, path = "/vessels/{id}/port-calls/{call}", tag = "adjusting",
-    params(("id" = VesselId, Path), ("call" = CallId, Path)), request_body = AmendmentSchema,
+    params(("id" = VesselId, Path), ("call" = CallId, Path)), request_body = Amendment,
     responses((status = 200, body = PortCall), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "It would overlap another call", body = Problem),

@@ -1,6 +1,5 @@
 //! A fleet's report, as JSON has it; CSV and paper are made from the same.
 
-use crate::needs::UrgencySchema;
 use binnacle_orders::work_orders::State;
 use binnacle_platform::ids::{CompassId, OrderId, VesselId};
 use binnacle_platform::time::Time;
@@ -52,7 +51,6 @@ pub(super) struct DueCompass {
     /// The last day on which it may be adjusted.
     pub(super) due_on: NaiveDate,
     /// Urgency of the due date.
-    #[schema(value_type = UrgencySchema)]
     pub(super) urgency: Urgency,
     /// Reason in plain words.
     pub(super) reason: String,

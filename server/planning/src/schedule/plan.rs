@@ -1,7 +1,5 @@
 //! A schedule, as it is kept and shown: the solver's answer with everybody's names.
 
-use super::schema::{ChangeKindSchema, HeadingSchema, JobStateSchema, WeighedSchema};
-use crate::needs::UrgencySchema;
 use binnacle_platform::ids::{CallId, CompassId, FirmId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_schedule::calls::BerthHeading;
@@ -101,7 +99,7 @@ pub struct Job {
     #[schema(required)]
     pub berth: Option<String>,
     /// Her heading alongside, where it is known or learnt.
-    #[schema(required, value_type = Option<HeadingSchema>)]
+    #[schema(required)]
     pub berth_heading: Option<BerthHeading>,
     /// By which firm.
     pub firm_id: FirmId,
@@ -114,7 +112,6 @@ pub struct Job {
     /// Until when.
     pub to: Time,
     /// State of the job.
-    #[schema(value_type = JobStateSchema)]
     pub state: JobState,
     /// Whether a person pinned it.
     pub pinned: bool,
@@ -127,7 +124,6 @@ pub struct Job {
     /// The last day on which it would be in time.
     pub due_on: NaiveDate,
     /// Urgency of the due date.
-    #[schema(value_type = UrgencySchema)]
     pub urgency: Urgency,
     /// Reason of the due date.
     pub reason: String,
@@ -140,7 +136,6 @@ pub struct Job {
     /// Its part of the team's travel, euros.
     pub travel_eur: f64,
     /// Other terms of the cost.
-    #[schema(value_type = WeighedSchema)]
     pub weighed: Weighed,
 }
 
@@ -157,7 +152,6 @@ pub struct Unscheduled {
     /// Due date.
     pub due_on: NaiveDate,
     /// Urgency of the due date.
-    #[schema(value_type = UrgencySchema)]
     pub urgency: Urgency,
     /// Reason of the due date.
     pub reason: String,
@@ -184,7 +178,6 @@ pub struct Change {
     /// The compasses.
     pub compasses: Vec<Compass>,
     /// Kind of change.
-    #[schema(value_type = ChangeKindSchema)]
     pub what: ChangeKind,
     /// Previous place.
     #[schema(required)]
