@@ -1,6 +1,6 @@
-//! `deviation`: what a model says about every heading at one place.
+//! `deviation`: prints the deviation that a model predicts on every heading at one place.
 
-use super::{BadInput, answer, input, json, table};
+use super::{BadInput, input, json, print_result, table};
 use crate::cli::Deviation;
 use binnacle_compass::deviation::DeviationError;
 use binnacle_compass::field::{FieldModel, field};
@@ -15,7 +15,7 @@ use std::process::ExitCode;
 /// # Errors
 /// When standard output cannot be written.
 pub fn deviation(arguments: &Deviation) -> anyhow::Result<ExitCode> {
-    answer(find(arguments).map(|rows| {
+    print_result(find(arguments).map(|rows| {
         if arguments.json {
             json(&json!({ "rows": rows }))
         } else {

@@ -6,7 +6,7 @@ use crate::on_both;
 use crate::planning::{compass_of, due_vessel, enter};
 use crate::port_calls;
 use crate::support::{Answer, Person, Shore};
-use binnacle_planning::notifications::look;
+use binnacle_planning::notifications::notify_of_needs;
 use icalendar::{CalendarComponent, CalendarDateTime, Component, DatePerhapsTime};
 use reqwest::Method;
 use serde_json::{Value, json};
@@ -223,7 +223,7 @@ async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(shore: 
     let ada = shore.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let call = enter(&ada, &nao, "NLRTM", 8).await;
-    look(&shore.app).await.unwrap();
+    notify_of_needs(&shore.app).await.unwrap();
     let made = feed(&ada, &json!({ "name": "Nao", "vessel_id": nao["id"] })).await;
     let before = events(&read(&shore, &made).await.text);
     let call_uid = format!("call-{}@binnacle", call["id"].as_str().unwrap());
@@ -248,22 +248,19 @@ async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(shore: 
     let path = format!("/vessels/{}/logbook", nao["id"].as_str().unwrap());
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-20T08:00:00Z" });
     ada.post(&path, &adjusted).await.good();
-    look(&shore.app).await.unwrap();
+    notify_of_needs(&shore.app).await.unwrap();
     let after = events(&read(&shore, &made).await.text);
     let (is, due_now) = (&after[&call_uid], &after[&due_uid]);
     assert_eq!(instant(is.get_start()), "2026-12-08T12:00:00+00:00");
     let said = is.get_description().unwrap();
-    assert!(
-        said.contains("ETA: 2026-12-08 12:00 UTC, within 12 h"),
-        "{said}"
-    );
+    assert!(said.contains("ETA: 2026-12-08 12:00 UTC, ±12 h"), "{said}");
     assert_eq!(instant(due_now.get_start()), "2028-11-20");
     for (before, after) in [(was, is), (due, due_now)] {
         assert!(sequence(after) > sequence(before));
         assert!(after.get_last_modified() > before.get_last_modified());
     }
     // Nothing has changed: the same octets, for whoever asks again.
-    look(&shore.app).await.unwrap();
+    notify_of_needs(&shore.app).await.unwrap();
     let again = read(&shore, &made).await.text;
     assert_eq!(again, read(&shore, &made).await.text);
     assert_eq!(sequence(&events(&again)[&due_uid]), sequence(due_now));
@@ -285,7 +282,7 @@ async fn a_fleets_calendar_has_every_vessels_and_a_firms_none(shore: Shore) {
     let eve = shore.admin("eve").await;
     let hers = due_vessel(&eve, "Nina").await;
     enter(&eve, &hers, "NLRTM", 8).await;
-    look(&shore.app).await.unwrap();
+    notify_of_needs(&shore.app).await.unwrap();
     let fleet = events(&trade.ada.get("/calendar.ics").await.text);
     let kinds = |begin: &str| fleet.keys().filter(|uid| uid.starts_with(begin)).count();
     assert_eq!(kinds("call-"), 1);

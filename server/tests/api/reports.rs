@@ -6,7 +6,7 @@ use crate::on_both;
 use crate::planning::{due_vessel, put};
 use crate::support::{Person, Relay, Shore};
 use crate::work_orders::Job;
-use binnacle_planning::reports::look;
+use binnacle_planning::reports::make_due_reports;
 use serde_json::{Value, json};
 use std::process::Command;
 
@@ -187,17 +187,17 @@ async fn the_report_of_a_month_goes_once_to_those_who_were_on_the_list(shore: Sh
     let fewer = json!({ "monthly_to": ["b@example.com"] });
     put(&ada, "/reports/settings", &fewer).await.good();
     // October was over before anybody was on the list.
-    assert_eq!(look(&shore.app).await.unwrap(), 0);
+    assert_eq!(make_due_reports(&shore.app).await.unwrap(), 0);
     shore.advance(9.95 * DAY_S);
     let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
     let late = json!({ "monthly_to": ["b@example.com", "late@example.com"] });
-    assert_eq!(look(&shore.app).await.unwrap(), 0);
+    assert_eq!(make_due_reports(&shore.app).await.unwrap(), 0);
     put(&ada, "/reports/settings", &late).await.good();
     shore.advance(0.05 * DAY_S);
     let other = shore.second().await;
-    let (one, two) = tokio::join!(look(&shore.app), look(&other));
+    let (one, two) = tokio::join!(make_due_reports(&shore.app), make_due_reports(&other));
     assert_eq!(one.unwrap() + two.unwrap(), 1);
-    assert_eq!(look(&shore.app).await.unwrap(), 0);
+    assert_eq!(make_due_reports(&shore.app).await.unwrap(), 0);
     deliver(&shore, &relay).await;
     let got = relay.got();
     assert_eq!(got.len(), 1);
@@ -236,7 +236,7 @@ async fn a_report_that_cannot_be_made_holds_up_no_other_operators(shore: Shore) 
         put(admin, "/reports/settings", &wanted).await.good();
     }
     shore.advance(10.0 * DAY_S);
-    assert_eq!(look(&shore.app).await.unwrap(), 1);
+    assert_eq!(make_due_reports(&shore.app).await.unwrap(), 1);
     shore.finish().await;
 }
 
@@ -259,7 +259,7 @@ async fn a_job_that_was_sent_after_its_month_is_in_the_next_report(shore: Shore)
     // The first of December, of January and of February.
     for days in [10.0, 31.0, 31.0] {
         shore.advance(days * DAY_S);
-        assert_eq!(look(&shore.app).await.unwrap(), 1);
+        assert_eq!(make_due_reports(&shore.app).await.unwrap(), 1);
         deliver(&shore, &relay).await;
         let letter = relay.got().pop().unwrap();
         let files = parts(&letter.text)["files"].clone();

@@ -36,10 +36,10 @@ pub(super) fn announcement(change: &AlertChange) -> Announcement {
         letter: Letter {
             subject: header(&subject),
             text,
-            told: Vec::new(),
+            items: Vec::new(),
             path: format!("/vessels/{}", alert.vessel_id),
             about: Some(alert.id.0),
-            report: None,
+            files: None,
         },
     }
 }

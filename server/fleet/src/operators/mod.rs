@@ -85,7 +85,7 @@ async fn create_operator(
     key: Key,
     Valid(new): Valid<NewCompany>,
 ) -> Result<(StatusCode, Json<Operator>)> {
-    let admin = admin.who_may_write()?;
+    let admin = admin.must_be_writer()?;
     let request_hash = idempotency::request_hash("operator", &new)?;
     let name = text("name", &new.name)?;
     let now = app.clock.now().into();

@@ -6,7 +6,7 @@ use crate::mail::{add, deliver};
 use crate::offers::{HOUR_S, Trade};
 use crate::on_both;
 use crate::support::{Answer, Relay, Shore};
-use binnacle_planning::notifications::post;
+use binnacle_planning::notifications::send_due;
 use reqwest::Method;
 use serde_json::json;
 
@@ -193,7 +193,7 @@ async fn two_servers_make_one_letter(shore: Shore) {
     let relay = Relay::start().await;
     let _trade = Trade::offered(&shore, 1).await;
     let other = shore.second().await;
-    let (one, two) = tokio::join!(post(&shore.app), post(&other));
+    let (one, two) = tokio::join!(send_due(&shore.app), send_due(&other));
     one.unwrap();
     two.unwrap();
     assert_eq!(deliver(&shore, &relay).await.len(), 1);
@@ -227,7 +227,7 @@ async fn who_is_removed_gets_no_more_letters(shore: Shore) {
         .post(&trade.firms[0].1, "/accept", &json!({}))
         .await
         .good();
-    post(&shore.app).await.unwrap();
+    send_due(&shore.app).await.unwrap();
     let id = viewer.get("/me").await.good()["user_id"].clone();
     let path = format!("/users/{}", id.as_str().unwrap());
     let removed = Answer::of(trade.ada.request(Method::DELETE, &path)).await;

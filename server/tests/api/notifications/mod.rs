@@ -9,7 +9,7 @@ use crate::offers::{HOUR_S, Trade};
 use crate::on_both;
 use crate::support::{Answer, Person, Relay, Shore};
 use binnacle_orders::dispatch::lapse;
-use binnacle_planning::notifications::post;
+use binnacle_planning::notifications::send_due;
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -32,7 +32,7 @@ pub(crate) async fn told(person: &Person) -> Vec<String> {
 
 /// Makes the letters that are due and sends them; the subjects of all there were.
 async fn mailed(shore: &Shore, relay: &Relay) -> Vec<String> {
-    post(&shore.app).await.unwrap();
+    send_due(&shore.app).await.unwrap();
     deliver(shore, relay).await;
     subjects(relay)
 }

@@ -5,7 +5,7 @@ use crate::logbook::A_WHILE_S;
 use crate::on_both;
 use crate::support::{Person, Ship, Shore, days_at_sea, truth};
 use binnacle_compass::model::Model;
-use binnacle_planning::notifications::look;
+use binnacle_planning::notifications::notify_of_needs;
 use serde_json::{Value, json};
 
 on_both!(
@@ -177,7 +177,7 @@ async fn deviation_over_its_limit_becomes_overdue(shore: Shore) {
     let (nao, vessel) = australian(&shore, &ada, &astray).await;
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-01T08:00:00Z" });
     ada.post(&nao.path("/logbook"), &adjusted).await.good();
-    look(&shore.app).await.unwrap();
+    notify_of_needs(&shore.app).await.unwrap();
     let first = need(&ada, &vessel).await;
     assert_eq!(first["causes"][0]["kind"], "over_limit", "{first}");
     assert_eq!(first["due_on"], "2026-12-05");
@@ -258,8 +258,8 @@ async fn deviation_over_the_vessels_own_limit_brings_a_need_forward(shore: Shore
     assert_eq!(
         over["reason"],
         format!(
-            "{here:.1}° {letter} of deviation at her position on 2026-11-21, over the vessel's own \
-             limit of 5°"
+            "{here:.1}° {letter} of deviation at the vessel's position on 2026-11-21, over the \
+             vessel's own limit of 5°"
         )
     );
     let alerts = |figure: &str, deg: f64| {

@@ -120,7 +120,7 @@ async fn a_csv_with_one_wrong_line_leaves_nothing(shore: Shore) {
         ),
         (
             format!("{good}{good}"),
-            "file: line 3: id: \"a\" stands on line 2 already",
+            "file: line 3: id: \"a\" is already on line 2",
         ),
         (
             format!("{good}{}", row(&"x".repeat(201), "BEANR", 12)),
@@ -181,7 +181,7 @@ async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(shore: Shore) {
     assert!(
         twice
             .text
-            .contains("line 3: id: \\\"a\\\" stands on line 2")
+            .contains("line 3: id: \\\"a\\\" is already on line 2")
     );
     let nobody = send(&ada, "/port-calls.csv", rows(["Nao", "Niña"])).await;
     assert!(nobody.text.contains("line 3: vessel: there is no vessel"));
@@ -204,7 +204,7 @@ async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(shore: Shore) {
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 08"]);
     ada.create_vessel("Nao").await;
     let which = send(&ada, "/port-calls.csv", rows(["Nao", id])).await;
-    assert!(which.text.contains("several vessels; write the IMO number"));
+    assert!(which.text.contains("several vessels; use the IMO number"));
     shore.finish().await;
 }
 
