@@ -43,7 +43,7 @@ const JOBS: [Column; 6] = [
 
 impl Report {
     /// Returns the report as PDF.
-    pub(super) async fn to_pdf(self) -> Result<Vec<u8>> {
+    pub(super) async fn into_pdf(self) -> Result<Vec<u8>> {
         let about = About {
             title: format!(
                 "Compass report: {}, {} to {}",

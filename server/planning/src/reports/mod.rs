@@ -110,7 +110,7 @@ async fn report_pdf(
 ) -> Result<Response> {
     let report = range.report(&app, reader).await?;
     let name = report.file_name("report", "pdf");
-    Ok(file("application/pdf", &name, report.to_pdf().await?))
+    Ok(file("application/pdf", &name, report.into_pdf().await?))
 }
 
 impl Range {

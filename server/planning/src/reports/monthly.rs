@@ -82,7 +82,7 @@ async fn make_report(
     let tables = [Table::Due, Table::Deviation, Table::Jobs];
     let [due, deviation, jobs] = tables.map(|table| csv::render_table(&report, table));
     let (due, deviation, jobs) = (due?, deviation?, jobs?);
-    let (made_at, pdf) = (report.made_at, report.to_pdf().await?);
+    let (made_at, pdf) = (report.made_at, report.into_pdf().await?);
     let mut tx = app.db.begin().await?;
     let inserted = execute!(
         &mut tx,

@@ -11,13 +11,14 @@ mod orders;
 use super::plan::{LeftOut, Plan, UnderWay};
 use super::{pins, store};
 use crate::needs::{self, Facts, Need};
-use crate::port_calls::{self, EarlierHeadings, heading_alongside};
+use crate::port_calls::{self, EarlierHeadings, StoredCall, heading_alongside};
 use crate::schedule_settings;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
 use binnacle_platform::time::Time;
+use binnacle_schedule::calls::PortCall;
 use binnacle_schedule::input::{self, Declined, Input, JobState, Vessel};
 use binnacle_schedule::time::Instant;
 use firms::{book_teams, find_declined, load_firms};
@@ -87,18 +88,7 @@ pub(super) async fn load_input(
     let declinations: Vec<Declined> = declinations
         .filter_map(|one| find_declined(one, &upcoming))
         .collect();
-    let earlier = EarlierHeadings::of_fleet(&app.db, operator, now).await?;
-    let mut calls = Vec::new();
-    for row in upcoming {
-        let content = row.content()?;
-        let mut call = content.to_schedule_call(&row.id.to_string(), &row.vessel_id.to_string());
-        let day = row.eta.0.to_chrono().date_naive();
-        call.name = Some(format!("{} {day}", content.port));
-        let learnt = heading_alongside(&content, row.lay_heading_deg, &earlier);
-        call.berth_heading_deg = learnt.map(|learnt| learnt.heading_deg);
-        calls.push(call);
-        names.calls.insert(row.id, row);
-    }
+    let port_calls = name_calls(app, operator, now, upcoming, &mut names).await?;
     let pins = pins::list(&app.db, operator).await?;
     let mut former_jobs = FormerJobs::new(&needs, &planned_with);
     for (compass, agreed) in &names.agreed {
@@ -134,7 +124,7 @@ pub(super) async fn load_input(
         vessels: vessels(&facts),
         needs: needs.iter().map(input_need).collect(),
         compasses: Vec::new(),
-        port_calls: calls,
+        port_calls,
         firms: planned_with,
         former: former_jobs.joined(),
         declined,
@@ -163,6 +153,29 @@ pub(super) async fn load_input(
         text: serde_json::to_string(&input)?,
         sha256,
     })
+}
+
+/// Returns the upcoming calls for the solver, with names and headings alongside.
+async fn name_calls(
+    app: &App,
+    operator: OperatorId,
+    now: Time,
+    upcoming: Vec<StoredCall>,
+    names: &mut Names,
+) -> Result<Vec<PortCall>> {
+    let earlier = EarlierHeadings::of_fleet(&app.db, operator, now).await?;
+    let mut calls = Vec::new();
+    for row in upcoming {
+        let content = row.content()?;
+        let mut call = content.to_schedule_call(&row.id.to_string(), &row.vessel_id.to_string());
+        let day = row.eta.0.to_chrono().date_naive();
+        call.name = Some(format!("{} {day}", content.port));
+        let learnt = heading_alongside(&content, row.lay_heading_deg, &earlier);
+        call.berth_heading_deg = learnt.map(|learnt| learnt.heading_deg);
+        calls.push(call);
+        names.calls.insert(row.id, row);
+    }
+    Ok(calls)
 }
 
 /// Returns the start of the current hour, so that requests within it share one input.
