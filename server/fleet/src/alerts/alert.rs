@@ -77,7 +77,7 @@ pub struct Alert {
     /// Name of that person.
     #[schema(required)]
     pub acknowledged_by: Option<String>,
-    /// That person's note.
+    /// Note of that person.
     #[schema(required)]
     pub acknowledgement_note: Option<String>,
     /// Time at which it was cleared.

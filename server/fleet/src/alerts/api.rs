@@ -3,7 +3,7 @@
 use super::alert::{Alert, State};
 use super::change::PendingChange;
 use super::publish::publish_changes;
-use super::schema::{Acknowledgement, AlertList, Clearing, Filter};
+use super::requests::{Acknowledgement, AlertList, Clearing, Filter};
 use super::store::{self, Remark};
 use axum::extract::{FromRef, State as Shared};
 use binnacle_platform::access::{Reader, Writer};

@@ -23,7 +23,7 @@ mod clearing;
 mod desired;
 mod publish;
 mod reconcile;
-mod schema;
+mod requests;
 mod sources;
 mod store;
 

@@ -4,7 +4,7 @@ use super::alert::{Alert, KnownAlert, State};
 use super::cause::Cause;
 use super::causes::Source;
 use super::desired::DesiredAlert;
-use super::schema::Filter;
+use super::requests::Filter;
 use crate::agent_auth::Agent;
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};

@@ -218,6 +218,19 @@ async fn must_be_of_fleet(
     Ok(())
 }
 
+impl StoredRevision {
+    /// Returns the revision as the API shows it.
+    pub fn into_revision(self) -> BinnacleRevision {
+        BinnacleRevision {
+            revision: self.revision,
+            at: self.at,
+            by: self.author_name,
+            reason: self.reason,
+            binnacle: self.binnacle.0,
+        }
+    }
+}
+
 /// Returns the refusal of an invalid binnacle.
 #[allow(
     clippy::needless_pass_by_value,

@@ -1,6 +1,5 @@
 //! Binnacles in the database.
 
-use super::BinnacleRevision;
 use crate::compasses::Role;
 use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
@@ -45,19 +44,6 @@ impl TryFrom<String> for BinnacleJson {
 
     fn try_from(text: String) -> std::result::Result<BinnacleJson, serde_json::Error> {
         serde_json::from_str(&text).map(BinnacleJson)
-    }
-}
-
-impl StoredRevision {
-    /// Returns the revision as the API shows it.
-    pub fn into_revision(self) -> BinnacleRevision {
-        BinnacleRevision {
-            revision: self.revision,
-            at: self.at,
-            by: self.author_name,
-            reason: self.reason,
-            binnacle: self.binnacle.0,
-        }
     }
 }
 

@@ -218,7 +218,7 @@ pub struct CardRow {
     pub residual_deg: Option<f64>,
 }
 
-/// CardCoefficients at a card's place, degrees.
+/// Coefficients at a card's place, degrees.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
 pub struct CardCoefficients {
     /// The exact ones, × 57.3.

@@ -1,6 +1,6 @@
 //! Amendment of a compass's record.
 
-use super::{Compass, Role};
+use super::compass::{Compass, Role};
 use binnacle_platform::error::Result;
 use binnacle_platform::http::{Amended, optional_text, text};
 use serde::Deserialize;

@@ -1,6 +1,6 @@
 //! Compasses in the database.
 
-use super::{Compass, Role};
+use super::compass::{Compass, Role};
 use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
 use binnacle_platform::ids::{CompassId, OperatorId, VesselId};
 use binnacle_platform::time::Time;

@@ -1,6 +1,6 @@
 //! Codes, agents and their streams in the database.
 
-use super::{AgentStream, BoardStatus, LinkWeek};
+use super::stream::{AgentStream, BoardStatus, LinkWeek};
 use crate::agent_auth::Agent;
 use crate::alerts;
 use crate::compasses::Compass;

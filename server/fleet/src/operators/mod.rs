@@ -15,8 +15,8 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Page, Valid, text};
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::OperatorId;
-use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
+use store::Operator;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -30,18 +30,6 @@ where
     OpenApiRouter::new()
         .routes(routes!(list_operators, create_operator))
         .routes(routes!(find_operator))
-}
-
-/// A company with a fleet.
-#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
-struct Operator {
-    /// Its id.
-    id: OperatorId,
-    /// Its name.
-    #[schema(example = "Armada del Sur")]
-    name: String,
-    /// Time at which it was entered.
-    created_at: Time,
 }
 
 /// A company to be entered.

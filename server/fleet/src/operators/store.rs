@@ -1,10 +1,23 @@
 //! Operators in the database.
 
-use super::Operator;
 use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
 use binnacle_platform::ids::OperatorId;
 use binnacle_platform::time::Time;
+use serde::Serialize;
+use utoipa::ToSchema;
 use uuid::Uuid;
+
+/// A company with a fleet.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+pub(super) struct Operator {
+    /// Its id.
+    pub(super) id: OperatorId,
+    /// Its name.
+    #[schema(example = "Armada del Sur")]
+    pub(super) name: String,
+    /// Time at which it was entered.
+    pub(super) created_at: Time,
+}
 
 /// Creates an operator.
 pub async fn create(tx: &mut Tx, name: &str, now: Time) -> Result<OperatorId> {

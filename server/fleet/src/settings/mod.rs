@@ -6,23 +6,21 @@
 
 mod alert_limits;
 mod store;
+mod vessel_settings;
 
 pub use alert_limits::AlertLimits;
 pub use store::find;
+pub use vessel_settings::VesselSettings;
 
 use crate::analysis_queue;
 use crate::vessels;
 use axum::extract::{FromRef, State};
-use binnacle_compass::settings::AnalysisSettings;
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Valid};
 use binnacle_platform::ids::VesselId;
-use binnacle_wire::messages::Settings;
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -33,18 +31,6 @@ where
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new().routes(routes!(find_settings, change_settings))
-}
-
-/// A vessel's settings.
-#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
-pub struct VesselSettings {
-    /// Settings of its agents; `version` rises with every change and is ignored in a request.
-    pub agent: Settings,
-    /// Settings of the analysis of its samples.
-    pub analysis: AnalysisSettings,
-    /// Limits beyond which alerts are raised; the defaults if absent.
-    #[serde(default)]
-    pub alerts: AlertLimits,
 }
 
 /// See a vessel's settings

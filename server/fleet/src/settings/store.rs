@@ -1,6 +1,7 @@
 //! Settings in the database.
 
-use super::{AlertLimits, VesselSettings};
+use super::alert_limits::AlertLimits;
+use super::vessel_settings::VesselSettings;
 use binnacle_compass::settings::AnalysisSettings;
 use binnacle_platform::db::{Db, Tx, execute, row};
 use binnacle_platform::error::Result;
