@@ -3,6 +3,7 @@
 use crate::person::Person;
 use crate::relay::{Letter, Relay};
 use crate::server::TestServer;
+use binnacle_planning::reports;
 use binnacle_platform::config;
 use binnacle_platform::mail::Mailer;
 use binnacle_platform::outbox::{self, Sent};
@@ -22,6 +23,7 @@ pub fn mailer(relay: &Relay) -> Mailer {
         public_url: Some("https://binnacle.example/".to_owned()),
     };
     let mailer = Mailer::new(&config).unwrap().unwrap();
+    let mailer = mailer.with_list(reports::MAILING_LIST);
     mailer.with_patience(PATIENCE)
 }
 

@@ -2,7 +2,7 @@
 
 use crate::run;
 use binnacle_compass::sample::Sample;
-use binnacle_fleet::ingest::{Imported, Incomplete, import};
+use binnacle_fleet::ingest::{ImportResult, IncompleteBatch, import_messages};
 use binnacle_platform::ids::VesselId;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::program::assert_refused;
@@ -28,14 +28,16 @@ fn long_passage(ship: &Ship) -> Vec<Sample> {
     long.next().unwrap()
 }
 
-async fn import_messages(server: &TestServer, ship: &Ship, messages: &[Vec<u8>]) -> Imported {
+async fn import_as_files(server: &TestServer, ship: &Ship, messages: &[Vec<u8>]) -> ImportResult {
     let vessel = VesselId(ship.id.parse().unwrap());
     let named = messages.iter().zip(1..);
     let named: Vec<_> = named
         .map(|(m, n)| (format!("{n}.sbd"), m.clone()))
         .collect();
     let now = server.app.clock.now().into();
-    import(&server.app.db, vessel, &named, now).await.unwrap()
+    import_messages(&server.app.db, vessel, &named, now)
+        .await
+        .unwrap()
 }
 
 async fn messages_are_reassembled_into_batches_stored_once(server: TestServer) {
@@ -47,14 +49,24 @@ async fn messages_are_reassembled_into_batches_stored_once(server: TestServer) {
     let mut messages = [second, first].concat();
     messages.reverse();
     let missing = messages.pop().unwrap();
-    let imported = import_messages(&server, &nao, &messages).await;
+    let imported = import_as_files(&server, &nao, &messages).await;
     assert_eq!((imported.stored, imported.repeated), (1, 0));
     assert!(imported.incomplete.is_empty() && imported.refused.is_empty());
-    assert_eq!(read_ack(&imported.answers[0].1).unwrap().contiguous_seq, 1);
+    assert_eq!(
+        read_ack(&imported.acknowledgements[0].1)
+            .unwrap()
+            .contiguous_seq,
+        1
+    );
     messages.push(missing);
-    let imported = import_messages(&server, &nao, &messages).await;
+    let imported = import_as_files(&server, &nao, &messages).await;
     assert_eq!((imported.stored, imported.repeated), (1, 1));
-    assert_eq!(read_ack(&imported.answers[0].1).unwrap().contiguous_seq, 2);
+    assert_eq!(
+        read_ack(&imported.acknowledgements[0].1)
+            .unwrap()
+            .contiguous_seq,
+        2
+    );
     // The same batch over the ordinary link.
     let response = nao.put(1, &passage_1).await.good();
     assert_eq!(response["contiguous_seq"], 2);
@@ -76,7 +88,7 @@ async fn an_invalid_message_does_not_block_the_others(server: TestServer) {
     messages.extend(split(&frame(nao.stream, 1, &passage(DAY, 3))).unwrap());
     let day = split(&frame(nao.stream, 2, &long_passage(&nao))).unwrap();
     messages.push(day[0].clone());
-    let imported = import_messages(&server, &nao, &messages).await;
+    let imported = import_as_files(&server, &nao, &messages).await;
     assert_eq!(imported.stored, 1);
     let refused: Vec<&str> = imported
         .refused
@@ -84,7 +96,7 @@ async fn an_invalid_message_does_not_block_the_others(server: TestServer) {
         .map(|r| r.message.as_str())
         .collect();
     assert_eq!(refused, ["1.sbd", "2.sbd"]);
-    let waits = Incomplete {
+    let waits = IncompleteBatch {
         seq: 2,
         messages: 1,
         of: day.len(),
@@ -100,7 +112,7 @@ async fn other_bytes_under_a_stored_number_are_refused(server: TestServer) {
     let nao = server.ship(&ada, "Nao").await;
     nao.put(1, &passage(DAY, 6)).await.good();
     let messages = split(&frame(nao.stream, 1, &passage(DAY, 5))).unwrap();
-    let imported = import_messages(&server, &nao, &messages).await;
+    let imported = import_as_files(&server, &nao, &messages).await;
     assert_eq!(imported.refused.len(), 1);
     let streams = ada.get(&nao.path("/agents")).await.good();
     assert_eq!(streams["items"][0]["samples"], 6);

@@ -121,7 +121,7 @@ async fn an_unusable_certificate_is_refused_by_file_name() {
     renew_certificate(folder.path());
     let chain = fs::read(&files.chain).unwrap();
     fs::write(&files.chain, "").unwrap();
-    assert!(refusal().contains("chain.pem: there is no certificate in it"));
+    assert!(refusal().contains("chain.pem: contains no certificate"));
     renew_certificate(folder.path());
     fs::write(&files.chain, chain).unwrap();
     assert!(refusal().contains("key.pem: not the certificate's key"));

@@ -310,7 +310,7 @@ pub(crate) async fn write_logbook(
 ) -> Result<()> {
     let summary = &change.whole.summary;
     let note = format!("work order {}", summary.id);
-    let written = logbook::Adjusted {
+    let written = logbook::AdjustmentEntry {
         id,
         vessel: summary.vessel_id,
         compass: summary.compass_id,
@@ -332,7 +332,7 @@ impl Signed {
     pub fn checked(&self, record_sha256: &str) -> Result<()> {
         let key = ed25519::key(&self.public_key)?;
         let record = ed25519::from_hex(record_sha256).unwrap_or_default();
-        let signature = ("signature", self.signature.as_str());
-        ed25519::must_be_signed(&key, signature, &record, "the record's SHA-256")
+        let called = "the record's SHA-256";
+        ed25519::must_be_signed(&key, "signature", &self.signature, &record, called)
     }
 }

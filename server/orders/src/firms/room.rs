@@ -165,7 +165,7 @@ async fn must_suit(tx: &mut Tx, firm_name: &str, terms: &Terms, visit: &Visit<'_
     if let Some(why) = terms.closed_at(visit.at, port_meant(visit.port)) {
         return wrong(why, "time");
     }
-    let (flag, licence) = particulars::asked_of_adjusters(tx, visit.vessel).await?;
+    let (flag, licence) = particulars::adjuster_requirements(tx, visit.vessel).await?;
     match terms.not_accepted(flag, licence.as_deref()) {
         Some(why) => wrong(why, "firm"),
         None => Ok(()),

@@ -81,8 +81,8 @@ pub(crate) async fn tell(
         at: now,
     };
     tx.publish(&published).await?;
-    let order = (summary.vessel_id, summary.id);
-    let mut live = vec![events::insert_of_order(tx, order, None, now).await?];
+    let (vessel, order) = (summary.vessel_id, summary.id);
+    let mut live = vec![events::insert_of_order(tx, vessel, order, None, now).await?];
     // In the order of their ids: no two transactions wait for each other.
     for firm in firms(&before.offers, &offers) {
         let was = before.was(firm);
@@ -104,7 +104,7 @@ pub(crate) async fn tell(
             at: now,
         };
         tx.publish(&published).await?;
-        live.push(events::insert_of_order(tx, order, Some(firm), now).await?);
+        live.push(events::insert_of_order(tx, vessel, order, Some(firm), now).await?);
     }
     Ok(live)
 }

@@ -1,7 +1,7 @@
 //! The queue of analysis jobs: delay, lease, retries.
 
 use super::{A_WHILE_S, DAY};
-use binnacle_fleet::analysis;
+use binnacle_fleet::analysis_queue;
 use binnacle_server::worker::{self, Worked};
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{TestServer, passage};
@@ -19,7 +19,7 @@ on_both!(
 /// Claims a job as a worker that then dies.
 async fn claim(server: &TestServer) -> bool {
     let now = server.app.clock.now().into();
-    let job = analysis::claim(&server.app.db, now).await.unwrap();
+    let job = analysis_queue::claim(&server.app.db, now).await.unwrap();
     job.is_some()
 }
 
@@ -136,21 +136,25 @@ async fn a_renewed_lease_stays_with_its_worker(server: TestServer) {
     nao.put(1, &passage(DAY, 30)).await.good();
     server.advance(A_WHILE_S);
     let now = || server.app.clock.now().into();
-    let job = analysis::claim(&server.app.db, now())
+    let job = analysis_queue::claim(&server.app.db, now())
         .await
         .unwrap()
         .unwrap();
     for _ in 0..3 {
         server.advance(50.0);
-        analysis::renew(&server.app.db, job, now()).await.unwrap();
+        analysis_queue::renew(&server.app.db, job, now())
+            .await
+            .unwrap();
     }
     assert_eq!(server.work().await, []);
     // The worker was killed: within a minute another one claims the job.
     server.advance(60.0);
     assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
     // A worker that comes back late cannot renew the lease.
-    analysis::renew(&server.app.db, job, now()).await.unwrap();
-    let left = analysis::count_jobs(&server.app.db).await.unwrap();
+    analysis_queue::renew(&server.app.db, job, now())
+        .await
+        .unwrap();
+    let left = analysis_queue::count(&server.app.db).await.unwrap();
     assert_eq!(left, [("queued", 0), ("running", 0), ("dead", 0)]);
     server.finish().await;
 }
@@ -183,7 +187,7 @@ async fn a_failing_job_is_retried_and_then_dead(server: TestServer) {
     nao.put(2, &passage("2026-11-20T00:00:00Z", 3)).await.good();
     server.advance(A_WHILE_S);
     assert!(matches!(server.work().await[..], [Worked::Analysed(_, 1)]));
-    let left = analysis::count_jobs(&server.app.db).await.unwrap();
+    let left = analysis_queue::count(&server.app.db).await.unwrap();
     assert_eq!(left, [("queued", 0), ("running", 0), ("dead", 0)]);
     server.finish().await;
 }

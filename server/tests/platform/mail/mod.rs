@@ -185,7 +185,7 @@ async fn names_cannot_inject_headers_and_are_unchanged(server: TestServer) {
     assert_eq!(deliver(&server, &relay).await, [Sent::Delivered; 3]);
     let mut got: Vec<Value> = relay.letters().iter().map(read).collect();
     for name in names {
-        let subject = format!("{name}: notice, no word from the vessel").replace("=?", "= ?");
+        let subject = format!("{name}: notice, no data from the vessel").replace("=?", "= ?");
         let place = got
             .iter()
             .position(|read| read["subject"] == subject.as_str());

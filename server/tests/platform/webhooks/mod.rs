@@ -5,8 +5,9 @@ mod slow_receivers;
 use axum::http::StatusCode;
 use axum::response::Redirect;
 use binnacle_fleet::alerts;
+use binnacle_platform::outbound::Reach;
 use binnacle_platform::outbox::{self, Sent};
-use binnacle_platform::webhooks::{Reach, Sender};
+use binnacle_platform::webhooks::Sender;
 use binnacle_server_testing::DAY_S;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::webhooks::{Receiver, deliver, example_accepts, json_of, make, path};
@@ -203,7 +204,10 @@ async fn a_redirect_is_a_failure_and_is_not_followed(server: TestServer) {
     assert_eq!(deliver(&server).await, [Sent::Failed]);
     assert_eq!(elsewhere.received(), []);
     let listed = ada.get(&path(&webhook, "/deliveries")).await.good();
-    assert_eq!(listed["items"][0]["last_error"], "answered with status 307");
+    assert_eq!(
+        listed["items"][0]["last_error"],
+        "responded with status 307"
+    );
     server.finish().await;
 }
 

@@ -2,8 +2,9 @@
 
 use binnacle_platform::audit::RequestContext;
 use binnacle_platform::ids::{DeliveryId, OrderId};
+use binnacle_platform::outbound::Reach;
 use binnacle_platform::outbox::{self, Kind, Message, Sent};
-use binnacle_platform::webhooks::{Reach, Sender};
+use binnacle_platform::webhooks::Sender;
 use binnacle_server_testing::TestServer;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::webhooks::{Receiver, deliver, make, path};
