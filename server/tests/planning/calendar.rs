@@ -1,7 +1,7 @@
 //! Calendar feeds of work orders, port calls and due dates.
 
 use crate::schedule::{compass_of, due_vessel, enter_port_call};
-use binnacle_planning::notifications::look;
+use binnacle_planning::notifications::notify_of_needs;
 use binnacle_server_testing::offers::OfferParties;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::patch;
@@ -228,7 +228,7 @@ async fn a_vessels_calendar_follows_its_port_calls_and_due_dates(server: TestSer
     let ada = server.admin("ada").await;
     let nao = due_vessel(&ada, "Nao").await;
     let call = enter_port_call(&ada, &nao, "NLRTM", 8).await;
-    look(&server.app).await.unwrap();
+    notify_of_needs(&server.app).await.unwrap();
     let made = create_feed(&ada, &json!({ "name": "Nao", "vessel_id": nao["id"] })).await;
     let before = events(&read_feed(&server, &made).await.text);
     let call_uid = format!("call-{}@binnacle", call["id"].as_str().unwrap());
@@ -253,22 +253,19 @@ async fn a_vessels_calendar_follows_its_port_calls_and_due_dates(server: TestSer
     let path = format!("/vessels/{}/logbook", nao["id"].as_str().unwrap());
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-20T08:00:00Z" });
     ada.post(&path, &adjusted).await.good();
-    look(&server.app).await.unwrap();
+    notify_of_needs(&server.app).await.unwrap();
     let after = events(&read_feed(&server, &made).await.text);
     let (is, due_now) = (&after[&call_uid], &after[&due_uid]);
     assert_eq!(instant(is.get_start()), "2026-12-08T12:00:00+00:00");
     let said = is.get_description().unwrap();
-    assert!(
-        said.contains("ETA: 2026-12-08 12:00 UTC, within 12 h"),
-        "{said}"
-    );
+    assert!(said.contains("ETA: 2026-12-08 12:00 UTC, ±12 h"), "{said}");
     assert_eq!(instant(due_now.get_start()), "2028-11-20");
     for (before, after) in [(was, is), (due, due_now)] {
         assert!(sequence(after) > sequence(before));
         assert!(after.get_last_modified() > before.get_last_modified());
     }
     // Nothing has changed: the same bytes at the next request.
-    look(&server.app).await.unwrap();
+    notify_of_needs(&server.app).await.unwrap();
     let again = read_feed(&server, &made).await.text;
     assert_eq!(again, read_feed(&server, &made).await.text);
     assert_eq!(sequence(&events(&again)[&due_uid]), sequence(due_now));
@@ -290,7 +287,7 @@ async fn a_fleet_calendar_covers_all_vessels_and_a_firms_only_its_orders(server:
     let eve = server.admin("eve").await;
     let hers = due_vessel(&eve, "Nina").await;
     enter_port_call(&eve, &hers, "NLRTM", 8).await;
-    look(&server.app).await.unwrap();
+    notify_of_needs(&server.app).await.unwrap();
     let fleet = events(&parties.ada.get("/calendar.ics").await.text);
     let kinds = |begin: &str| fleet.keys().filter(|uid| uid.starts_with(begin)).count();
     assert_eq!(kinds("call-"), 1);

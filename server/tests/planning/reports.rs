@@ -1,7 +1,7 @@
 //! Reports: due dates, deviations, jobs done and their savings.
 
 use crate::schedule::{due_vessel, put};
-use binnacle_planning::reports::look;
+use binnacle_planning::reports::make_due_reports;
 use binnacle_server_testing::alerts::ship_with_model;
 use binnacle_server_testing::mail::deliver;
 use binnacle_server_testing::on_both;
@@ -187,17 +187,17 @@ async fn a_monthly_report_goes_once_to_its_recipients(server: TestServer) {
     let fewer = json!({ "monthly_to": ["b@example.com"] });
     put(&ada, "/reports/settings", &fewer).await.good();
     // October ended before the list had a recipient.
-    assert_eq!(look(&server.app).await.unwrap(), 0);
+    assert_eq!(make_due_reports(&server.app).await.unwrap(), 0);
     server.advance(9.95 * DAY_S);
     let ada = Person::sign_in(&server, ada.operator, &ada.email).await;
     let late = json!({ "monthly_to": ["b@example.com", "late@example.com"] });
-    assert_eq!(look(&server.app).await.unwrap(), 0);
+    assert_eq!(make_due_reports(&server.app).await.unwrap(), 0);
     put(&ada, "/reports/settings", &late).await.good();
     server.advance(0.05 * DAY_S);
     let other = server.second_server().await;
-    let (one, two) = tokio::join!(look(&server.app), look(&other));
+    let (one, two) = tokio::join!(make_due_reports(&server.app), make_due_reports(&other));
     assert_eq!(one.unwrap() + two.unwrap(), 1);
-    assert_eq!(look(&server.app).await.unwrap(), 0);
+    assert_eq!(make_due_reports(&server.app).await.unwrap(), 0);
     deliver(&server, &relay).await;
     let got = relay.letters();
     assert_eq!(got.len(), 1);
@@ -236,7 +236,7 @@ async fn a_failing_report_does_not_block_other_operators(server: TestServer) {
         put(admin, "/reports/settings", &wanted).await.good();
     }
     server.advance(10.0 * DAY_S);
-    assert_eq!(look(&server.app).await.unwrap(), 1);
+    assert_eq!(make_due_reports(&server.app).await.unwrap(), 1);
     server.finish().await;
 }
 
@@ -259,7 +259,7 @@ async fn a_job_received_after_its_month_is_in_the_next_report(server: TestServer
     // The first of December, of January and of February.
     for days in [10.0, 31.0, 31.0] {
         server.advance(days * DAY_S);
-        assert_eq!(look(&server.app).await.unwrap(), 1);
+        assert_eq!(make_due_reports(&server.app).await.unwrap(), 1);
         deliver(&server, &relay).await;
         let letter = relay.letters().pop().unwrap();
         let files = parse_letter(&letter.text)["files"].clone();

@@ -64,7 +64,7 @@ pub fn berth_heading(call: &super::PortCall, earlier: &[Observed]) -> Option<Ber
     }
 }
 
-/// The mean direction, where the directions agree (resultant length 0.9 or
+/// Returns the mean direction, where the directions agree (resultant length 0.9 or
 /// more).
 fn mean(headings: impl Iterator<Item = f64>) -> Option<f64> {
     let (mut north, mut east, mut count) = (0.0, 0.0, 0.0);

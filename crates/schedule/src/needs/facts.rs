@@ -110,7 +110,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The side of a deviation in degrees, positive to the east.
+    /// Returns the side of a deviation in degrees, positive to the east.
     pub fn of(deviation_deg: f64) -> Side {
         if deviation_deg < 0.0 {
             Side::West

@@ -180,7 +180,7 @@ pub enum RuleError {
 }
 
 impl Flag {
-    /// The two letters.
+    /// Returns the two letters.
     #[allow(clippy::missing_panics_doc, reason = "it cannot: see the message")]
     pub fn letters(&self) -> &str {
         std::str::from_utf8(&self.0).expect("capital letters are ASCII")
@@ -204,7 +204,7 @@ impl From<Flag> for String {
 }
 
 impl Months {
-    /// Number of months.
+    /// Returns the number of months.
     pub fn get(self) -> u32 {
         self.0
     }

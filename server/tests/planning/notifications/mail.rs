@@ -1,7 +1,7 @@
 //! Time of a letter: at once, after quiet hours, with a digest, or never.
 
 use super::{put_settings, sent_subjects};
-use binnacle_planning::notifications::post;
+use binnacle_planning::notifications::send_due;
 use binnacle_server_testing::HOUR_S;
 use binnacle_server_testing::alerts::{set_alert_limits, ship_with_model};
 use binnacle_server_testing::mail::{add, deliver};
@@ -194,7 +194,7 @@ async fn two_servers_make_one_letter(server: TestServer) {
     let relay = Relay::start().await;
     let _trade = OfferParties::offered(&server, 1).await;
     let other = server.second_server().await;
-    let (one, two) = tokio::join!(post(&server.app), post(&other));
+    let (one, two) = tokio::join!(send_due(&server.app), send_due(&other));
     one.unwrap();
     two.unwrap();
     assert_eq!(deliver(&server, &relay).await.len(), 1);
@@ -228,7 +228,7 @@ async fn a_removed_person_gets_no_more_letters(server: TestServer) {
         .post(&parties.firms[0].1, "/accept", &json!({}))
         .await
         .good();
-    post(&server.app).await.unwrap();
+    send_due(&server.app).await.unwrap();
     let id = viewer.get("/me").await.good()["user_id"].clone();
     let path = format!("/users/{}", id.as_str().unwrap());
     let removed = ApiResponse::of(parties.ada.request(Method::DELETE, &path)).await;

@@ -5,7 +5,7 @@ mod mail;
 mod settings;
 
 use binnacle_orders::dispatch::lapse;
-use binnacle_planning::notifications::post;
+use binnacle_planning::notifications::send_due;
 use binnacle_server_testing::HOUR_S;
 use binnacle_server_testing::mail::{deliver, subjects};
 use binnacle_server_testing::offers::OfferParties;
@@ -33,7 +33,7 @@ pub(crate) async fn subjects_of(person: &Person) -> Vec<String> {
 
 /// Makes and sends the letters that are due; returns the subjects of all letters so far.
 async fn sent_subjects(server: &TestServer, relay: &Relay) -> Vec<String> {
-    post(&server.app).await.unwrap();
+    send_due(&server.app).await.unwrap();
     deliver(server, relay).await;
     subjects(relay)
 }

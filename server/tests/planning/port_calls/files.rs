@@ -142,7 +142,7 @@ async fn a_csv_with_one_invalid_line_changes_nothing(server: TestServer) {
         ),
         (
             format!("{good}{good}"),
-            "file: line 3: id: \"a\" stands on line 2 already",
+            "file: line 3: id: \"a\" is already on line 2",
         ),
         (
             format!("{good}{}", row(&"x".repeat(201), "BEANR", 12)),
@@ -209,7 +209,7 @@ async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(server: TestServe
     assert!(
         twice
             .text
-            .contains("line 3: id: \\\"a\\\" stands on line 2")
+            .contains("line 3: id: \\\"a\\\" is already on line 2")
     );
     let nobody = import(&ada, "/port-calls.csv", rows(["Nao", "Niña"])).await;
     assert!(nobody.text.contains("line 3: vessel: there is no vessel"));
@@ -232,7 +232,7 @@ async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(server: TestServe
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 08"]);
     ada.create_vessel("Nao").await;
     let which = import(&ada, "/port-calls.csv", rows(["Nao", id])).await;
-    assert!(which.text.contains("several vessels; write the IMO number"));
+    assert!(which.text.contains("several vessels; use the IMO number"));
     server.finish().await;
 }
 

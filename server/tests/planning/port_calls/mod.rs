@@ -125,7 +125,7 @@ async fn port_calls_of_one_vessel_cannot_overlap(server: TestServer) {
     assert_eq!(overlapping.problem(), "wrong-state");
     assert!(overlapping.text.contains("NLRTM 2026-12-08T06:00:00Z"));
     let again = ada.post(&path(&nao), &call("NLRTM", 8)).await;
-    assert!(again.text.contains("there is a call of reference"));
+    assert!(again.text.contains("belongs to call"));
     let next = ada.post(&path(&nao), &call("BEANR", 10)).await.good();
     let one = format!("{}/{}", path(&nao), next["id"].as_str().unwrap());
     let into_first = json!({ "eta": "2026-12-09T17:59:00Z" });

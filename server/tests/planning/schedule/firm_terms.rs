@@ -84,7 +84,7 @@ async fn a_firm_without_terms_is_not_in_the_plan(server: TestServer) {
     due_vessel(&ada, "Nao").await;
     firm(&server, &ada, "Maas Compass").await;
     let plan = solve(&ada).await;
-    let why = "nobody has said on what terms it works";
+    let why = "its terms are not set";
     assert_eq!(plan["left_out"][0]["why"], why);
     let because = &plan["unscheduled"][0]["because"];
     assert_eq!(because, &json!(["no port call is known"]));

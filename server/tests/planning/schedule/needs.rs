@@ -2,7 +2,7 @@
 
 use super::{due_vessel, enter_port_call, put};
 use binnacle_compass::model::Model;
-use binnacle_planning::notifications::look;
+use binnacle_planning::notifications::notify_of_needs;
 use binnacle_server_testing::on_both;
 use binnacle_server_testing::{Person, Ship, TestServer, days_at_sea, true_model};
 use serde_json::{Value, json};
@@ -178,7 +178,7 @@ async fn deviation_over_its_limit_becomes_overdue(server: TestServer) {
     let (nao, vessel) = australian(&server, &ada, &strong).await;
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-01T08:00:00Z" });
     ada.post(&nao.path("/logbook"), &adjusted).await.good();
-    look(&server.app).await.unwrap();
+    notify_of_needs(&server.app).await.unwrap();
     let first = need(&ada, &vessel).await;
     assert_eq!(first["causes"][0]["kind"], "over_limit", "{first}");
     assert_eq!(first["due_on"], "2026-12-05");
@@ -259,8 +259,8 @@ async fn deviation_over_the_vessels_own_limit_brings_a_due_date_forward(server: 
     assert_eq!(
         over["reason"],
         format!(
-            "{here:.1}° {letter} of deviation at her position on 2026-11-21, over the vessel's own \
-             limit of 5°"
+            "{here:.1}° {letter} of deviation at the vessel's position on 2026-11-21, over the \
+             vessel's own limit of 5°"
         )
     );
     let alerts = |figure: &str, deg: f64| {

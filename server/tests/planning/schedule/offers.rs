@@ -219,7 +219,10 @@ async fn an_offer_names_its_plan_version(server: TestServer) {
     enter_port_call(&ada, &nao, "NLRTM", 14).await;
     solve(&ada).await;
     let old = ada.post("/schedule/offer", &offer_of(&plan, &nao)).await;
-    assert!(old.text.contains("the plan is of version 2 now"), "{old:?}");
+    assert!(
+        old.text.contains("the current plan has version 2"),
+        "{old:?}"
+    );
     let theirs = eve.post("/schedule/offer", &offer_of(&plan, &nao)).await;
     assert_eq!(theirs.problem(), "not-found");
     let viewer = ada.viewer(&server).await;

@@ -109,7 +109,7 @@ async fn an_invalid_pin_is_refused(server: TestServer) {
         .post("/schedule/pins", &pin(&nao, &call, &firm, day))
         .await;
     assert_eq!(nobody.problem(), "invalid");
-    let why = "the schedule leaves Maas Compass out: working_days";
+    let why = "the schedule cannot plan with Maas Compass: working_days";
     assert!(nobody.text.contains(why), "{nobody:?}");
     let theirs = eve
         .post("/schedule/pins", &pin(&nao, &call, &firm, day))

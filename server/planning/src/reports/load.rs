@@ -1,9 +1,9 @@
-//! Loading of a report from the database.
+//! Loading of a report's figures from the database.
 
 use super::report::{DueCompass, FeeFrom, Job, Report, Saving, UnderWay, WorstDeviation};
 use super::settings::{self, Settings};
-use crate::needs::{Facts, need, of_fleet};
-use crate::schedule;
+use crate::needs::{Facts, find_need, load_facts};
+use crate::schedule_settings;
 use binnacle_compass::time::Timestamp;
 use binnacle_fleet::models::{self, StoredModel};
 use binnacle_orders::completion::{self, Done, Span};
@@ -18,35 +18,36 @@ use chrono::{Days, NaiveDate, NaiveTime};
 use std::collections::{BTreeMap, BTreeSet};
 use uuid::Uuid;
 
-/// Longest gap between jobs on a vessel in one port that belong to one visit.
-const A_VISIT_S: f64 = 86_400.0;
+/// Maximum gap between two jobs of one visit, seconds.
+const MAX_GAP_S: f64 = 86_400.0;
 
-/// The report of a fleet, with the jobs from one day to another; also those of before that
-/// the server heard of after `late_since`.
-pub(super) async fn gather(
+/// Returns the report of a fleet, with the jobs from one day to another. Earlier jobs that the server
+/// received after `late_since` are included.
+pub(super) async fn load_report(
     app: &App,
     operator: OperatorId,
-    (from, to): (NaiveDate, NaiveDate),
+    from: NaiveDate,
+    to: NaiveDate,
     late_since: Option<Time>,
 ) -> Result<Report> {
     let made_at: Time = app.clock.now().into();
-    let facts = of_fleet(app, operator, None).await?;
+    let facts = load_facts(app, operator, None).await?;
     let all = (VesselId(Uuid::nil()), VesselId(Uuid::max()));
     let models = models::current_of_fleet(&app.db, operator, all.0, all.1).await?;
-    let terms = schedule::terms(&app.db, operator).await?;
-    let under_way = under_way(&app.db, operator).await?;
+    let terms = schedule_settings::terms(&app.db, operator).await?;
+    let under_way = list_orders_under_way(&app.db, operator).await?;
     let span = Span {
-        from: midnight("from", from)?,
-        until: midnight("to", to + Days::new(1))?,
+        from: start_of_day("from", from)?,
+        until: start_of_day("to", to + Days::new(1))?,
         late_since,
         known_at: made_at,
     };
-    let jobs = jobs(&app.db, operator, span).await?;
+    let jobs = list_jobs(&app.db, operator, span).await?;
     let settings = settings::find(&app.db, operator).await?;
     let today = made_at.0.to_chrono().date_naive();
     let mut due: Vec<DueCompass> = facts
         .iter()
-        .filter_map(|facts| need(facts, &terms, today))
+        .filter_map(|facts| find_need(facts, &terms, today))
         .map(|need| DueCompass {
             order: under_way.get(&need.compass_id).cloned(),
             vessel_id: need.vessel_id,
@@ -62,21 +63,21 @@ pub(super) async fn gather(
     due.sort_by_key(|due| (due.due_on, due.compass_id));
     let vessels: BTreeSet<VesselId> = facts.iter().map(|facts| facts.vessel_id).collect();
     Ok(Report {
-        operator_name: name(&app.db, operator).await?,
+        operator_name: find_operator_name(&app.db, operator).await?,
         from,
         to,
         made_at,
         vessels: vessels.len(),
         compasses: facts.len(),
         due,
-        // A thousand models on every heading: not for a thread that others wait for.
-        deviation: tokio::task::spawn_blocking(move || deviations(&facts, &models)).await?,
-        saved: saved(&jobs, &settings),
+        // A thousand models on every heading take time: not on an async thread.
+        deviation: tokio::task::spawn_blocking(move || worst_deviations(&facts, &models)).await?,
+        saved: compute_saving(&jobs, &settings),
         jobs,
     })
 }
 
-async fn name(db: &Db, operator: OperatorId) -> Result<String> {
+async fn find_operator_name(db: &Db, operator: OperatorId) -> Result<String> {
     let found = row!(
         db,
         (String,),
@@ -87,8 +88,11 @@ async fn name(db: &Db, operator: OperatorId) -> Result<String> {
     Ok(name)
 }
 
-/// The order under way of each compass that has one: there is one at most.
-async fn under_way(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassId, UnderWay>> {
+/// Returns the order under way of each compass, of which there is one at most.
+async fn list_orders_under_way(
+    db: &Db,
+    operator: OperatorId,
+) -> Result<BTreeMap<CompassId, UnderWay>> {
     let found = rows!(
         db,
         (CompassId, OrderId, State, String, Time, Option<String>),
@@ -114,12 +118,12 @@ async fn under_way(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassId, 
     Ok(found.into_iter().map(read).collect())
 }
 
-fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
+fn worst_deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
     let models: BTreeMap<CompassId, &StoredModel> = models
         .iter()
         .map(|model| (model.compass_id, model))
         .collect();
-    let of = |facts: &Facts| {
+    let worst = |facts: &Facts| {
         let model = models.get(&facts.compass_id);
         let worst = model.and_then(|model| model.worst());
         WorstDeviation {
@@ -133,16 +137,16 @@ fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
             data_until: model.map(|model| model.data_until),
         }
     };
-    let mut all: Vec<WorstDeviation> = facts.iter().map(of).collect();
+    let mut all: Vec<WorstDeviation> = facts.iter().map(worst).collect();
     let size = |one: &WorstDeviation| one.deviation_deg.map_or(-1.0, f64::abs);
     all.sort_by(|one, other| size(other).total_cmp(&size(one)));
     all
 }
 
-async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
+async fn list_jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
     let done = completion::done(db, operator, span).await?;
     let terms = firms::of_operator(db, operator).await?;
-    let visits = visits(&done);
+    let visits = number_visits(&done);
     let usual = |nth: usize| {
         let firm = done[nth].firm_id?;
         let (_, _, terms) = terms.iter().find(|(of, _, _)| *of == firm)?;
@@ -179,23 +183,23 @@ async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
     Ok(done.into_iter().zip(visits).zip(fees).map(job).collect())
 }
 
-/// Returns the visit of each job, in the jobs' order. A visit is a vessel's jobs in one port,
-/// each within a day of the one before.
-fn visits(done: &[Done]) -> Vec<usize> {
+/// Returns the number of each job's visit, in the jobs' order. A visit is a vessel's jobs in one
+/// port, each within a day of the previous one.
+fn number_visits(done: &[Done]) -> Vec<usize> {
     let mut last: BTreeMap<VesselId, usize> = BTreeMap::new();
     let mut visits: Vec<usize> = Vec::with_capacity(done.len());
     for (nth, job) in done.iter().enumerate() {
         let before = last.insert(job.vessel_id, nth).filter(|before| {
             let before = &done[*before];
             let since_s = job.completed_at.0.seconds_since(before.completed_at.0);
-            before.port == job.port && since_s < A_VISIT_S
+            before.port == job.port && since_s < MAX_GAP_S
         });
         visits.push(before.map_or(nth, |before| visits[before]));
     }
     visits
 }
 
-fn midnight(field: &'static str, day: NaiveDate) -> Result<Time> {
+fn start_of_day(field: &'static str, day: NaiveDate) -> Result<Time> {
     let midnight = day.and_time(NaiveTime::MIN).and_utc();
     let at = Timestamp::from_micros(midnight.timestamp_micros());
     at.map(Time).map_err(|error| Error::Invalid {
@@ -204,15 +208,15 @@ fn midnight(field: &'static str, day: NaiveDate) -> Result<Time> {
     })
 }
 
-fn saved(jobs: &[Job], settings: &Settings) -> Saving {
-    let spared = || jobs.iter().filter(|job| job.spared_swing);
-    let swings: BTreeSet<usize> = spared().map(|job| job.visit).collect();
+fn compute_saving(jobs: &[Job], settings: &Settings) -> Saving {
+    let without_swing = || jobs.iter().filter(|job| job.spared_swing);
+    let swings: BTreeSet<usize> = without_swing().map(|job| job.visit).collect();
     let swings = swings.len();
-    // A sum of none would be less than nothing by its sign.
+    // The sum of an empty iterator is -0.0.
     let fees = jobs.iter().filter_map(|job| job.fee_eur);
     let fees_eur = fees.fold(0.0, |sum: f64, fee| sum + fee);
     Saving {
-        jobs: spared().count(),
+        jobs: without_swing().count(),
         swings,
         swing_eur: settings.swing_eur,
         swing_h: settings.swing_h,
