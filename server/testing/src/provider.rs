@@ -243,20 +243,20 @@ async fn keys(State(provider): State<Provider>) -> Json<Value> {
 /// Redirects back with a code at once, without a sign-in page.
 async fn authorize(
     State(provider): State<Provider>,
-    Query(asked): Query<HashMap<String, String>>,
+    Query(query): Query<HashMap<String, String>>,
 ) -> Redirect {
-    assert_eq!(asked["response_type"], "code");
-    assert_eq!(asked["client_id"], CLIENT_ID);
-    assert_eq!(asked["code_challenge_method"], "S256");
-    assert!(asked["scope"].split(' ').any(|scope| scope == "openid"));
+    assert_eq!(query["response_type"], "code");
+    assert_eq!(query["client_id"], CLIENT_ID);
+    assert_eq!(query["code_challenge_method"], "S256");
+    assert!(query["scope"].split(' ').any(|scope| scope == "openid"));
     let code = Uuid::new_v4().to_string();
     let back = format!(
         "{}?code={code}&state={}",
-        asked["redirect_uri"], asked["state"]
+        query["redirect_uri"], query["state"]
     );
     let mut state = provider.state.lock().unwrap();
     state.secrets.push(code.clone());
-    state.codes.insert(code, asked);
+    state.codes.insert(code, query);
     Redirect::to(&back)
 }
 
@@ -269,19 +269,19 @@ async fn token(
     let pair = base64url(format!("{CLIENT_ID}:{CLIENT_SECRET}").as_bytes());
     let basic = format!("Basic {}", pair.replace('-', "+").replace('_', "/"));
     let verifier = digest::digest(&digest::SHA256, sent["code_verifier"].as_bytes());
-    let asked = state.codes.remove(&sent["code"]);
-    let asked = asked.filter(|asked| {
+    let query = state.codes.remove(&sent["code"]);
+    let query = query.filter(|query| {
         headers[header::AUTHORIZATION] == basic
             && sent["grant_type"] == "authorization_code"
-            && sent["redirect_uri"] == asked["redirect_uri"]
-            && asked["code_challenge"] == base64url(verifier.as_ref())
+            && sent["redirect_uri"] == query["redirect_uri"]
+            && query["code_challenge"] == base64url(verifier.as_ref())
     });
-    let Some(asked) = asked else {
+    let Some(query) = query else {
         let refused = Json(json!({ "error": "invalid_grant" }));
         return (StatusCode::BAD_REQUEST, refused).into_response();
     };
     let mut claims = json!({
-        "iss": provider.issuer, "aud": CLIENT_ID, "sub": "person-1", "nonce": asked["nonce"],
+        "iss": provider.issuer, "aud": CLIENT_ID, "sub": "person-1", "nonce": query["nonce"],
         "iat": start_s(), "exp": start_s() + 3600,
         "email": "ada@example.com", "email_verified": true,
     });

@@ -259,14 +259,14 @@ pub fn second_reading_after(first: &Value, setting: &Value) -> Value {
         let added_ut = (of_correctors.b_nt[axis] + induced) / 1000.0;
         first[name].as_f64().unwrap() + added_ut
     };
-    let mut again = json!({
+    let mut repeated = json!({
         "at": AT, "unit": "microtesla",
         "forward": part("forward", 0), "starboard": part("starboard", 1),
     });
     if first["down"].is_number() {
-        again["down"] = json!(part("down", 2));
+        repeated["down"] = json!(part("down", 2));
     }
-    again
+    repeated
 }
 
 /// Returns the magnetic heading and the earth's field at the berth.

@@ -13,7 +13,7 @@ use std::thread::JoinHandle;
 struct Program {
     child: Child,
     url: String,
-    said: JoinHandle<String>,
+    log_output: JoinHandle<String>,
 }
 
 impl Program {
@@ -30,7 +30,7 @@ impl Program {
             .spawn()
             .unwrap();
         let mut errors = child.stderr.take().unwrap();
-        let said = std::thread::spawn(move || {
+        let log_output = std::thread::spawn(move || {
             let mut all = Vec::new();
             errors.read_to_end(&mut all).unwrap();
             String::from_utf8_lossy(&all).into_owned()
@@ -42,7 +42,7 @@ impl Program {
         Program {
             url: url.to_owned(),
             child,
-            said,
+            log_output,
         }
     }
 
@@ -50,7 +50,7 @@ impl Program {
         let pid = rustix::process::Pid::from_child(&self.child);
         rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
         self.child.wait().unwrap();
-        self.said.join().unwrap()
+        self.log_output.join().unwrap()
     }
 }
 
@@ -110,8 +110,8 @@ impl RecordingClient {
     /// Returns the redirect target, and records the value of the first cookie.
     async fn follow(&mut self, path: &str, cookie: &str) -> String {
         let url = format!("{}{path}", self.url);
-        let asked = self.http.get(url).header("cookie", cookie);
-        let response = asked.send().await.unwrap();
+        let request = self.http.get(url).header("cookie", cookie);
+        let response = request.send().await.unwrap();
         let set = response.headers()["set-cookie"].to_str().unwrap();
         let (_, value) = set.split(';').next().unwrap().split_once('=').unwrap();
         self.secrets.push(value.to_owned());
@@ -121,15 +121,15 @@ impl RecordingClient {
     async fn send(&self, key: &str, method: &str, path: &str, body: Value) -> (String, Value) {
         let method = reqwest::Method::from_bytes(method.as_bytes()).unwrap();
         let url = format!("{}/api/v1{path}", self.url);
-        let asked = self.http.request(method, url).json(&body);
-        let asked = if key.contains('=') {
-            asked
+        let request = self.http.request(method, url).json(&body);
+        let request = if key.contains('=') {
+            request
                 .header("cookie", key)
                 .header("x-binnacle-request", "1")
         } else {
-            asked.bearer_auth(key)
+            request.bearer_auth(key)
         };
-        let response = asked.send().await.unwrap();
+        let response = request.send().await.unwrap();
         let cookie = response.headers().get("set-cookie");
         let cookie = cookie.map_or("", |cookie| cookie.to_str().unwrap());
         let cookie = cookie.split(';').next().unwrap().to_owned();
@@ -219,9 +219,9 @@ async fn no_secret_is_in_the_most_verbose_log() {
     let read = format!("/calendar.ics?token={feed}");
     drive.send("", "GET", &read, json!({})).await;
 
-    let again = json!({ "password": password });
+    let repeated = json!({ "password": password });
     let (_, begun) = drive
-        .send(&cookie, "POST", "/me/second-factor", again)
+        .send(&cookie, "POST", "/me/second-factor", repeated)
         .await;
     let secret = drive.record(&begun["secret"]);
     let unix_s = Clock::System.now().micros() / 1_000_000;
@@ -248,11 +248,16 @@ async fn no_secret_is_in_the_most_verbose_log() {
     drive.secrets.push("seven gulls over the quay".to_owned());
     drive.send(&cookie, "PUT", "/me/password", changed).await;
 
-    let said = program.stop();
-    assert!(said.contains("TRACE") && said.contains("sqlx"), "{said}");
+    let log_output = program.stop();
+    assert!(
+        log_output.contains("TRACE") && log_output.contains("sqlx"),
+        "{log_output}"
+    );
     for secret in &drive.secrets {
         assert!(!secret.is_empty());
-        let line = said.lines().find(|line| line.contains(secret.as_str()));
+        let line = log_output
+            .lines()
+            .find(|line| line.contains(secret.as_str()));
         assert_eq!(line, None, "{secret:?} is in the log");
     }
 }

@@ -88,8 +88,8 @@ async fn an_endless_handshake_does_not_delay_others() {
     let served = serve(folder).await;
     let address = ("127.0.0.1", served.port);
     let _silent = TcpStream::connect(address).await.unwrap();
-    let asked = timeout(PATIENCE, ask(&served.url, &authority)).await;
-    assert_eq!(asked.unwrap().unwrap(), "ashore");
+    let result = timeout(PATIENCE, ask(&served.url, &authority)).await;
+    assert_eq!(result.unwrap().unwrap(), "ashore");
 }
 
 #[tokio::test]
