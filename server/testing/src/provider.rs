@@ -24,22 +24,27 @@ use tokio::net::TcpListener;
 use uuid::Uuid;
 
 const CLIENT_ID: &str = "binnacle";
+/// Secret of the client at the provider.
 pub const CLIENT_SECRET: &str = "the-clients-secret";
 
 /// Signer of an ID token.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Signer {
+    /// The provider's own key.
     #[default]
     Provider,
     /// Another key under the same key id.
     OtherKey,
     /// The client's secret, as an HMAC key: the client knows it too.
     ClientSecret,
+    /// No signature.
     Unsigned,
 }
 
+/// A running provider.
 #[derive(Clone)]
 pub struct Provider {
+    /// Issuer URL, which is its address.
     pub issuer: String,
     state: Arc<Mutex<ProviderState>>,
 }
@@ -154,10 +159,12 @@ fn start_s() -> i64 {
 }
 
 impl Provider {
+    /// Starts a provider on a free port.
     pub async fn start() -> Provider {
         Provider::start_at(0).await
     }
 
+    /// Starts a provider on a port.
     pub async fn start_at(port: u16) -> Provider {
         let listener = TcpListener::bind(("127.0.0.1", port)).await.unwrap();
         let provider = Provider {
@@ -183,6 +190,7 @@ impl Provider {
         provider
     }
 
+    /// Server settings for sign-in by this provider.
     pub fn settings(&self) -> [&str; 8] {
         provider_settings(&self.issuer)
     }
@@ -194,6 +202,7 @@ impl Provider {
         state.signer = Signer::Provider;
     }
 
+    /// Sets the signer of the next tokens.
     pub fn sign_with(&self, signer: Signer) {
         self.state.lock().unwrap().signer = signer;
     }
