@@ -5,10 +5,13 @@ use serde::{Deserialize, Serialize};
 
 /// A heading alongside.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = PlannedBerthHeading))]
 pub struct BerthHeading {
     /// Degrees, true.
     pub heading_deg: f64,
-    /// Source of the heading.
+    /// Source of the heading: `given`, or earlier calls at the same `berth` or `port`.
+    #[cfg_attr(feature = "openapi", schema(value_type = String))]
     pub source: HeadingSource,
 }
 

@@ -66,12 +66,15 @@ pub struct Taken {
 
 /// A port that a firm serves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct ServedPort {
-    /// The port.
+    /// UN/LOCODE of the port.
+    #[cfg_attr(feature = "openapi", schema(value_type = String, example = "NLRTM"))]
     pub port: PortCode,
-    /// Cost of sending a team there for a day.
+    /// Cost of sending a team there for a day, euros.
     #[serde(default)]
+    #[cfg_attr(feature = "openapi", schema(value_type = f64, minimum = 0, maximum = 1_000_000))]
     pub travel_eur: Eur,
 }
 

@@ -168,6 +168,8 @@ pub struct FormerJob {
 
 /// Progress of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = PlannedJobState))]
 #[serde(rename_all = "snake_case")]
 pub enum JobState {
     /// Planned; no firm has been asked.

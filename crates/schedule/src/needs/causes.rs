@@ -8,6 +8,8 @@ use std::cmp::Ordering;
 
 /// Kind of cause of a due date.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = NeedCauseKind))]
 #[serde(rename_all = "snake_case")]
 pub enum CauseKind {
     /// No adjustment is on record.

@@ -109,6 +109,7 @@ pub struct Flag([u8; 2]);
 
 /// A ship's trade.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs, reason = "the words say it")]
 pub enum Trade {
@@ -125,6 +126,8 @@ pub enum Trade {
 
 /// State of the compass deviation book.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "openapi", schema(as = DeviationRecordKept))]
 #[serde(rename_all = "snake_case")]
 pub enum DeviationRecord {
     /// Kept as required.

@@ -8,9 +8,9 @@ pub use create::{give_way, write};
 use crate::berth_session::{berth_api, firm_vessel_view, second_reading_api};
 use crate::completion::completion_api;
 use crate::dispatch::{messages, offer_api, reschedule};
+use crate::work_orders::entry_list::{EntryLine, EntryList};
 use crate::work_orders::log_entry::Entry;
 use crate::work_orders::order::{Filter, Order, OrderList};
-use crate::work_orders::schema::{LineList, LineSchema};
 use crate::work_orders::{firm_view, queries, shown, store};
 use axum::extract::{FromRef, RawPathParams, Request, State as Shared};
 use axum::middleware::{Next, from_fn};
@@ -111,14 +111,14 @@ async fn find_work_order(
 /// What is between the operator and another firm is withheld from a firm; its hash stays.
 #[utoipa::path(get, path = "/work-orders/{id}/entries", tag = "adjusting",
     params(("id" = OrderId, Path), Page),
-    responses((status = 200, body = LineList), (status = 401, body = Problem),
+    responses((status = 200, body = EntryList), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn list_entries(
     Shared(app): Shared<App>,
     reader: PartyReader,
     Id(id): Id<OrderId>,
     page: Page,
-) -> Result<Json<LineList>> {
+) -> Result<Json<EntryList>> {
     let summary = store::summary(&app.db, reader.tenant, id).await?;
     let after = page.after_number()?;
     let found = store::lines(&app.db, summary.vessel_id, id, after, page.fetch()).await?;
@@ -127,10 +127,10 @@ async fn list_entries(
         let entry: Entry = serde_json::from_str(&line)?;
         let line = firm_view::line(reader.tenant, &entry, line, &sha256)?;
         let entry = serde_json::from_str(&line)?;
-        Ok(LineSchema { seq, sha256, entry })
+        Ok(EntryLine { seq, sha256, entry })
     };
-    let items: Result<Vec<LineSchema>> = listed.items.into_iter().map(read).collect();
-    Ok(Json(LineList {
+    let items: Result<Vec<EntryLine>> = listed.items.into_iter().map(read).collect();
+    Ok(Json(EntryList {
         items: items?,
         next: listed.next,
     }))

@@ -12,8 +12,6 @@ use crate::work_orders::log_entry::Content;
 use crate::work_orders::order::{Order, State};
 use crate::work_orders::order_update;
 use crate::work_orders::refusal::not_adjustable;
-use crate::work_orders::request_schema::BerthReadingSchema;
-use crate::work_orders::schema::OfferSchema;
 use crate::work_orders::shown;
 use crate::work_orders::store::{self, Whole};
 use axum::extract::{FromRef, State as Shared};
@@ -70,7 +68,7 @@ where
 /// The unit is named, never guessed. What cannot be true is kept in the log and refused,
 /// with the mistakes that would explain it.
 #[utoipa::path(post, path = "/work-orders/{id}/berth-reading", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = BerthReadingSchema,
+    params(("id" = OrderId, Path), Key), request_body = ReadingForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem),
               (status = 404, description = "Also when the compass has no model yet", body = Problem),
@@ -159,7 +157,7 @@ fn must_not_be_moved(whole: &Whole) -> Result<()> {
 /// From the last reading, and from how the correctors stand now. Nothing is kept.
 #[utoipa::path(get, path = "/work-orders/{id}/plan", tag = "adjusting",
     params(("id" = OrderId, Path)),
-    responses((status = 200, body = OfferSchema), (status = 401, body = Problem),
+    responses((status = 200, body = Outcome), (status = 401, body = Problem),
               (status = 404, body = Problem),
               (status = 409, description = "There is no reading to plan from", body = Problem),
               (status = 422, description = "There is no plan, and what would cure that", body = Problem)))]

@@ -20,7 +20,8 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// A plan that was chosen.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[schema(as = ChosenPlan)]
 pub struct Planned {
     /// Which of those that were offered, from 1.
     pub chosen: usize,
@@ -35,7 +36,8 @@ pub struct Planned {
 }
 
 /// A plan in short.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[schema(as = PlanInShort)]
 pub struct InShort {
     /// Movements of hand that it takes.
     pub moves: u32,

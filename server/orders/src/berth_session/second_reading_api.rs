@@ -63,14 +63,12 @@ pub struct AgainSaid {
     /// In words.
     pub words: String,
     /// Forward, to starboard and, where it was read both times, down.
-    #[schema(value_type = Vec<PartSchema>)]
     pub parts: Vec<FieldComponent>,
     /// The step that is suspected, of all that were done since the first reading, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step: Option<u32>,
     /// How the correctors would stand with that slip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<binnacle_fleet::binnacles::SettingSchema>)]
     pub setting: Option<Setting>,
     /// The worst residual foretold now, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -104,50 +102,6 @@ pub enum AgainVerdict {
     Unexplained,
 }
 
-/// One part of the field, nT.
-#[derive(ToSchema)]
-#[schema(as = SecondReadingPart)]
-#[allow(
-    dead_code,
-    clippy::struct_field_names,
-    reason = "describes binnacle_adjustment::adjust::FieldComponent"
-)]
-struct PartSchema {
-    /// What was foretold.
-    expected_nt: f64,
-    read_nt: f64,
-    /// Of the difference.
-    standard_error_nt: f64,
-}
-
-/// What the magnetometer of the first reading read after the steps, in the same place.
-#[derive(ToSchema)]
-#[schema(as = SecondReading, example = json!({
-    "at": "2026-11-22T10:05:00Z", "forward": 15.1, "starboard": 17.7, "unit": "microtesla"
-}))]
-#[allow(
-    dead_code,
-    reason = "describes binnacle_adjustment::adjust::SecondReadingForm"
-)]
-struct AgainSchema {
-    /// When it was read.
-    at: binnacle_platform::time::Time,
-    /// Horizontal field at the card's centre, bowl out, forward positive.
-    forward: f64,
-    /// The same, starboard positive.
-    starboard: f64,
-    /// Vertical field there, down positive.
-    down: Option<f64>,
-    /// What all three are in.
-    unit: crate::work_orders::request_schema::FieldUnit,
-    /// The ship's true heading, by the same means, where it is no longer what it was.
-    #[schema(minimum = 0, maximum = 360)]
-    heading_true_deg: Option<f64>,
-    /// What the compass read before the bowl was taken out, degrees.
-    #[schema(minimum = 0, maximum = 360)]
-    compass_deg: Option<f64>,
-}
-
 pub(crate) fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -161,7 +115,7 @@ where
 /// With it a slip that the berth's heading hides is found: the field shows what the compass
 /// on one heading cannot. Optional; without it such a slip can only be found at sea.
 #[utoipa::path(post, path = "/work-orders/{id}/second-reading", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = AgainSchema,
+    params(("id" = OrderId, Path), Key), request_body = SecondReadingForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "Not before all steps are done, or nothing was moved", body = Problem),

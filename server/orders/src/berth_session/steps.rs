@@ -28,17 +28,17 @@ pub(crate) struct StepRead {
 }
 
 /// What became of a step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct StepSaid {
     /// The step's number in its plan.
     pub number: u32,
-    /// What the compass read before.
+    /// Compass reading before the step, degrees.
     pub before_deg: f64,
-    /// What it read after.
+    /// Compass reading after the step, degrees.
     pub after_deg: f64,
-    /// By how much it should have turned.
+    /// Expected turn of the compass, degrees.
     pub expected_change_deg: f64,
-    /// How far off that may be.
+    /// Tolerance of the turn, degrees.
     pub tolerance_deg: f64,
     /// In a word.
     pub verdict: Verdict,
@@ -87,7 +87,6 @@ pub struct StepDone {
 #[schema(as = CorrectorSettings)]
 pub(crate) struct Stand {
     /// How each stands.
-    #[schema(value_type = binnacle_fleet::binnacles::SettingSchema)]
     pub setting: Setting,
     /// What the compass reads then, degrees.
     #[serde(default)]

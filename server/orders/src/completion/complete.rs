@@ -77,7 +77,6 @@ pub struct Completed {
     pub model_id: ModelId,
     /// The same, whole.
     #[serde(rename = "model")]
-    #[schema(value_type = binnacle_fleet::models::ModelSchema)]
     pub model_after: Model,
 }
 

@@ -63,7 +63,6 @@ where
 pub struct Terms {
     /// The ports it serves, UN/LOCODE, with what a team's day there costs in travel.
     #[serde(default)]
-    #[schema(value_type = Vec<ServedPortSchema>)]
     pub ports: Vec<ServedPort>,
     /// The fee for a job, euros.
     #[schema(value_type = f64, minimum = 0, maximum = 1_000_000)]
@@ -106,19 +105,6 @@ pub struct Terms {
     #[serde(default)]
     #[schema(value_type = Vec<String>)]
     pub flags: Vec<Flag>,
-}
-
-/// A port that a firm serves.
-#[derive(ToSchema)]
-#[schema(as = ServedPort)]
-#[allow(dead_code, reason = "describes binnacle_schedule::input::ServedPort")]
-struct ServedPortSchema {
-    /// UN/LOCODE.
-    #[schema(example = "NLRTM")]
-    port: String,
-    /// What it costs to send a team there for a day, euros.
-    #[schema(required = false, minimum = 0, maximum = 1_000_000)]
-    travel_eur: f64,
 }
 
 fn one() -> u32 {

@@ -32,7 +32,6 @@ const HEADING_SD_DEG: f64 = 0.7;
 #[schema(as = OrderVerification)]
 pub struct Verified {
     /// The verdict with its figures: `passed`, `more_needed` or `alarm`.
-    #[schema(value_type = crate::work_orders::schema::SeaVerdictSchema)]
     pub verification: Verification,
     /// The same in words.
     pub words: String,

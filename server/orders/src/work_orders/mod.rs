@@ -10,6 +10,7 @@
 //! - What is foretold says so until headings at sea agree. Nothing here issues a
 //!   certificate.
 
+pub(crate) mod entry_list;
 pub(crate) mod firm_view;
 mod idempotency_keys;
 pub mod log_entry;
@@ -21,8 +22,6 @@ pub(crate) mod order_update;
 pub(crate) mod publish;
 pub(crate) mod queries;
 pub(crate) mod refusal;
-pub(crate) mod request_schema;
-pub(crate) mod schema;
 pub(crate) mod store;
 mod subscriber;
 

@@ -10,12 +10,9 @@ use crate::dispatch::port_call_changes::{CallChange, CallFit};
 use crate::verification::Verified;
 use crate::work_orders::offer_state::{Offer, OfferState};
 use crate::work_orders::order_state::Standing;
-use crate::work_orders::request_schema::{BerthReadingSchema, LimitsSchema};
-use crate::work_orders::schema::{ChosenPlanSchema, StepSchema, VerdictSchema};
 use binnacle_adjustment::adjust::{Limits, ReadingForm, Step};
 use binnacle_adjustment::binnacle::Setting;
 use binnacle_compass::angle::wrap_360;
-use binnacle_fleet::binnacles::SettingSchema;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::http::{optional_text, text};
 use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
@@ -131,7 +128,6 @@ pub struct NewOrder {
     pub offer: Option<NewOffer>,
     /// What a plan must keep to, where it is not the usual.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<LimitsSchema>)]
     pub limits: Option<Limits>,
 }
 
@@ -247,24 +243,23 @@ pub(crate) struct Order {
     #[schema(example = "predicted, not a certificate")]
     pub standing: &'static str,
     /// What a plan must keep to.
-    #[schema(value_type = LimitsSchema)]
     pub limits: Limits,
     /// What the magnetometer read; the last reading that was taken.
-    #[schema(required, value_type = Option<BerthReadingSchema>)]
+    #[schema(required)]
     pub reading: Option<ReadingForm>,
     /// What that told.
     #[schema(required)]
     pub berth_check: Option<Checked>,
     /// The plan that is followed.
-    #[schema(required, value_type = Option<ChosenPlanSchema>)]
+    #[schema(required)]
     pub plan: Option<Planned>,
     /// How many of its steps are done.
     pub steps_done: usize,
     /// The step to do now; none when all are done, or there is no plan.
-    #[schema(required, value_type = Option<StepSchema>)]
+    #[schema(required)]
     pub next_step: Option<Step>,
     /// What became of the last step.
-    #[schema(required, value_type = Option<VerdictSchema>)]
+    #[schema(required)]
     pub last_step: Option<crate::berth_session::steps::StepSaid>,
     /// What the magnetometer said after the steps, the correctors standing as they stand.
     #[schema(required)]
@@ -272,7 +267,7 @@ pub(crate) struct Order {
     /// Whether someone has said since that reading how the correctors stand.
     pub looked_since: bool,
     /// How the correctors stand now; none before the first reading.
-    #[schema(required, value_type = Option<SettingSchema>)]
+    #[schema(required)]
     pub setting: Option<Setting>,
     /// What the compass read last at the berth, degrees.
     #[schema(required)]

@@ -8,12 +8,10 @@ mod load;
 mod need;
 mod over_limit_since;
 mod prediction;
-mod schema;
 
 pub use facts::Facts;
 pub use load::load_facts;
 pub use need::{Need, find_need};
-pub use schema::UrgencySchema;
 
 use crate::schedule_settings;
 use axum::extract::{FromRef, State};

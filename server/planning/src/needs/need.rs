@@ -2,7 +2,6 @@
 
 use super::facts::Facts;
 use super::prediction::PredictedDeviation;
-use super::schema::{CauseKindSchema, UrgencySchema};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_schedule::needs::{CauseKind, Due, Terms, Urgency, due};
 use binnacle_schedule::rules::{Read, Rule, built_in_rules};
@@ -25,7 +24,6 @@ pub struct Need {
     /// Last day for the adjustment.
     pub due_on: NaiveDate,
     /// Urgency of the due date.
-    #[schema(value_type = UrgencySchema)]
     pub urgency: Urgency,
     /// Reason of the due date, as a sentence.
     #[schema(
@@ -51,7 +49,6 @@ pub struct Need {
 #[schema(as = NeedCause)]
 pub struct Cause {
     /// Kind of cause.
-    #[schema(value_type = CauseKindSchema)]
     pub kind: CauseKind,
     /// Due date by this cause.
     pub due_on: NaiveDate,
@@ -93,7 +90,6 @@ pub(super) struct NeedList {
 #[into_params(parameter_in = Query)]
 pub(super) struct Filter {
     /// Only needs of this urgency.
-    #[param(value_type = Option<UrgencySchema>)]
     pub(super) urgency: Option<Urgency>,
     /// Only needs due on this day or before.
     pub(super) due_by: Option<NaiveDate>,

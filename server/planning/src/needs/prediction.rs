@@ -1,6 +1,5 @@
 //! Deviation predicted at a place for a day.
 
-use super::schema::SideSchema;
 use binnacle_schedule::needs::Side;
 use chrono::NaiveDate;
 use serde::Serialize;
@@ -18,6 +17,5 @@ pub struct PredictedDeviation {
     /// Largest size of the deviation on any heading, degrees.
     pub worst_deviation_deg: f64,
     /// Direction of the deviation.
-    #[schema(value_type = SideSchema)]
     pub side: Side,
 }

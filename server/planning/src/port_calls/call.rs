@@ -46,49 +46,42 @@ pub(super) struct NewCall {
     pub(super) berth_heading_deg: Option<f64>,
 }
 
-/// Changes to a port call.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Amendment {
-    #[serde(default, deserialize_with = "never_null")]
-    port: Option<PortCode>,
-    #[serde(default)]
-    berth: Amended<String>,
-    #[serde(default, deserialize_with = "never_null")]
-    eta: Option<Instant>,
-    #[serde(default, deserialize_with = "never_null")]
-    eta_uncertainty_h: Option<f64>,
-    #[serde(default, deserialize_with = "never_null")]
-    etd: Option<Instant>,
-    #[serde(default, deserialize_with = "never_null")]
-    etd_uncertainty_h: Option<f64>,
-    #[serde(default)]
-    berth_heading_deg: Amended<f64>,
-}
-
 /// Changes to a port call. A field that is left out stays; null removes the berth or the heading
 /// there.
-#[derive(ToSchema)]
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
 #[schema(as = PortCallAmendment, example = json!({
     "eta": "2026-12-09T02:00:00Z", "etd": "2026-12-11T12:00:00Z"
 }))]
-#[allow(dead_code, reason = "describes Amendment")]
-pub(super) struct AmendmentSchema {
-    /// UN/LOCODE.
-    #[schema(nullable = false)]
-    port: Option<String>,
-    #[schema(max_length = 200)]
-    berth: Option<String>,
-    #[schema(nullable = false)]
-    eta: Option<Time>,
+pub(super) struct Amendment {
+    /// UN/LOCODE of the port.
+    #[serde(default, deserialize_with = "never_null")]
+    #[schema(value_type = Option<String>, nullable = false)]
+    port: Option<PortCode>,
+    /// Berth.
+    #[serde(default)]
+    #[schema(value_type = Option<String>, max_length = 200)]
+    berth: Amended<String>,
+    /// Expected arrival alongside, with a time zone.
+    #[serde(default, deserialize_with = "never_null")]
+    #[schema(value_type = Option<Time>, nullable = false)]
+    eta: Option<Instant>,
+    /// Half-width of the 95 % interval of the arrival, hours.
+    #[serde(default, deserialize_with = "never_null")]
     #[schema(minimum = 0, maximum = 720, nullable = false)]
     eta_uncertainty_h: Option<f64>,
-    #[schema(nullable = false)]
-    etd: Option<Time>,
+    /// Expected departure, with a time zone.
+    #[serde(default, deserialize_with = "never_null")]
+    #[schema(value_type = Option<Time>, nullable = false)]
+    etd: Option<Instant>,
+    /// Half-width of the 95 % interval of the departure, hours.
+    #[serde(default, deserialize_with = "never_null")]
     #[schema(minimum = 0, maximum = 720, nullable = false)]
     etd_uncertainty_h: Option<f64>,
-    #[schema(minimum = 0, maximum = 360)]
-    berth_heading_deg: Option<f64>,
+    /// True heading alongside, degrees.
+    #[serde(default)]
+    #[schema(value_type = Option<f64>, minimum = 0, maximum = 360)]
+    berth_heading_deg: Amended<f64>,
 }
 
 /// Content of a port call, whatever its source.

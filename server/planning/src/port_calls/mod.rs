@@ -36,7 +36,7 @@ use binnacle_platform::http::{Id, Json, Page, Params, Valid, ValidOrNone, option
 use binnacle_platform::idempotency::{self, Key};
 use binnacle_platform::ids::{CallId, OperatorId, VesselId};
 use binnacle_schedule::calls::find_overlap;
-use call::{Amendment, AmendmentSchema, CallList, Filter, NewCall, RevisedCall, Withdrawal};
+use call::{Amendment, CallList, Filter, NewCall, RevisedCall, Withdrawal};
 use commit::commit;
 use store::Author;
 use utoipa_axum::router::OpenApiRouter;
@@ -182,7 +182,7 @@ async fn find_port_call(
 /// A field that is left out stays; null removes a value. The earlier content is kept among the
 /// revisions.
 #[utoipa::path(patch, path = "/vessels/{id}/port-calls/{call}", tag = "adjusting",
-    params(("id" = VesselId, Path), ("call" = CallId, Path)), request_body = AmendmentSchema,
+    params(("id" = VesselId, Path), ("call" = CallId, Path)), request_body = Amendment,
     responses((status = 200, body = PortCall), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "It would overlap another call", body = Problem),

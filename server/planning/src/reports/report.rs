@@ -1,6 +1,5 @@
 //! A fleet's report, the source of JSON, CSV and PDF.
 
-use crate::needs::UrgencySchema;
 use binnacle_orders::work_orders::State;
 use binnacle_platform::ids::{CompassId, OrderId, VesselId};
 use binnacle_platform::time::Time;
@@ -51,7 +50,6 @@ pub(super) struct DueCompass {
     /// Last day for the adjustment.
     pub(super) due_on: NaiveDate,
     /// Urgency of the due date.
-    #[schema(value_type = UrgencySchema)]
     pub(super) urgency: Urgency,
     /// Reason of the due date, as a sentence.
     pub(super) reason: String,

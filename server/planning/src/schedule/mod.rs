@@ -14,7 +14,6 @@ mod input;
 mod offer;
 mod pins;
 mod plan;
-mod schema;
 mod settings;
 mod solve;
 mod store;

@@ -1,7 +1,5 @@
 //! The stored plan: the solver's result with names.
 
-use super::schema::{ChangeKindSchema, HeadingSchema, JobStateSchema, WeighedSchema};
-use crate::needs::UrgencySchema;
 use binnacle_platform::ids::{CallId, CompassId, FirmId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use binnacle_schedule::calls::BerthHeading;
@@ -101,7 +99,7 @@ pub struct Job {
     #[schema(required)]
     pub berth: Option<String>,
     /// Heading of the vessel alongside, where known or learnt.
-    #[schema(required, value_type = Option<HeadingSchema>)]
+    #[schema(required)]
     pub berth_heading: Option<BerthHeading>,
     /// The firm.
     pub firm_id: FirmId,
@@ -114,7 +112,6 @@ pub struct Job {
     /// End of that window.
     pub to: Time,
     /// State of the job.
-    #[schema(value_type = JobStateSchema)]
     pub state: JobState,
     /// `true` when a person pinned it.
     pub pinned: bool,
@@ -126,7 +123,6 @@ pub struct Job {
     /// Due date.
     pub due_on: NaiveDate,
     /// Urgency of the due date.
-    #[schema(value_type = UrgencySchema)]
     pub urgency: Urgency,
     /// Reason of the due date.
     pub reason: String,
@@ -139,7 +135,6 @@ pub struct Job {
     /// Share of the team's travel, euros.
     pub travel_eur: f64,
     /// Other terms of the cost.
-    #[schema(value_type = WeighedSchema)]
     pub weighed: Weighed,
 }
 
@@ -156,7 +151,6 @@ pub struct Unscheduled {
     /// Due date.
     pub due_on: NaiveDate,
     /// Urgency of the due date.
-    #[schema(value_type = UrgencySchema)]
     pub urgency: Urgency,
     /// Reason of the due date.
     pub reason: String,
@@ -183,7 +177,6 @@ pub struct Change {
     /// The compasses.
     pub compasses: Vec<Compass>,
     /// Kind of change.
-    #[schema(value_type = ChangeKindSchema)]
     pub what: ChangeKind,
     /// Previous place.
     #[schema(required)]
