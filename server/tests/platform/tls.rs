@@ -124,7 +124,7 @@ async fn an_unusable_certificate_is_refused_by_file_name() {
     assert!(refusal().contains("chain.pem: contains no certificate"));
     renew_certificate(folder.path());
     fs::write(&files.chain, chain).unwrap();
-    assert!(refusal().contains("key.pem: not the certificate's key"));
+    assert!(refusal().contains("key.pem: is not the certificate's key"));
     fs::write(&files.key, "").unwrap();
     assert!(refusal().contains("key.pem"), "{}", refusal());
 }
