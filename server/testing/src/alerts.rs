@@ -36,6 +36,7 @@ pub async fn ship_with_model(server: &TestServer, person: &Person) -> Ship {
     ship
 }
 
+/// An alert of the agent: the compass departs from the gyro.
 pub fn agent_alert(id: u128, revision: u32, state: ShipAlertState) -> ShipAlert {
     let since = Timestamp::parse("2026-11-20T04:00:00Z").unwrap();
     ShipAlert {
@@ -51,6 +52,7 @@ pub fn agent_alert(id: u128, revision: u32, state: ShipAlertState) -> ShipAlert 
     }
 }
 
+/// Sends a batch with samples and alerts of the agent.
 pub async fn put_agent_alerts(ship: &Ship, seq: u64, samples: Vec<Sample>, alerts: Vec<ShipAlert>) {
     let batch = Batch {
         stream: ship.stream,

@@ -21,6 +21,7 @@ pub fn binnacle() -> Value {
     })
 }
 
+/// Writes a binnacle.
 pub async fn put(person: &Person, path: &str, body: &Value) -> ApiResponse {
     ApiResponse::of(person.request(Method::PUT, path).json(body)).await
 }

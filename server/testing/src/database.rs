@@ -10,9 +10,12 @@ use tempfile::TempDir;
 use tokio::sync::OnceCell;
 use uuid::Uuid;
 
+/// Database engine of a test.
 #[derive(Clone, Copy, Debug)]
 pub enum Engine {
+    /// A file of its own.
     Sqlite,
+    /// A database of its own on the server.
     Postgres,
 }
 

@@ -11,7 +11,6 @@
     clippy::missing_panics_doc,
     reason = "a test fails by a panic"
 )]
-#![allow(missing_docs, reason = "the tests say how it is used")]
 
 pub mod alerts;
 pub mod binnacles;

@@ -27,11 +27,13 @@ pub fn mailer(relay: &Relay) -> Mailer {
     mailer.with_patience(PATIENCE)
 }
 
+/// Adds a mail recipient for alerts from a severity on.
 pub async fn add(person: &Person, address: &str, severity: &str) -> Value {
     let new = json!({ "address": address, "severity": severity });
     person.post("/mail-recipients", &new).await.good()
 }
 
+/// Returns a path below a mail recipient.
 pub fn path(recipient: &Value, rest: &str) -> String {
     format!(
         "/mail-recipients/{}{rest}",
@@ -39,6 +41,7 @@ pub fn path(recipient: &Value, rest: &str) -> String {
     )
 }
 
+/// Queues a test letter to a recipient.
 pub async fn test(person: &Person, recipient: &Value) -> Value {
     person
         .post(&path(recipient, "/test"), &json!({}))
@@ -74,6 +77,7 @@ pub fn read(letter: &Letter) -> Value {
     serde_json::from_slice(&done.stdout).unwrap()
 }
 
+/// Returns the subjects of all letters so far.
 pub fn subjects(relay: &Relay) -> Vec<String> {
     let got = relay.letters();
     let subjects = got.iter().map(|letter| read(letter)["subject"].take());

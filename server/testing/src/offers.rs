@@ -10,10 +10,15 @@ pub const NEXT_DAY: &str = "2026-11-22T13:00:00Z";
 
 /// An operator with a work order for a ship, and firms that work for the operator.
 pub struct OfferParties {
+    /// The operator's admin.
     pub ada: Person,
+    /// Id of the vessel.
     pub vessel: String,
+    /// Id of the compass.
     pub compass: String,
+    /// The firms, each with its adjuster.
     pub firms: Vec<(FirmId, Person)>,
+    /// Id of the order.
     pub order: String,
 }
 
@@ -58,6 +63,7 @@ impl OfferParties {
         parties
     }
 
+    /// Returns the body of a new order.
     pub fn new_order(&self) -> Value {
         json!({
             "vessel_id": self.vessel, "compass_id": self.compass, "port": "Bilbao",
@@ -65,19 +71,23 @@ impl OfferParties {
         })
     }
 
+    /// Returns the body of an offer to all firms, one after another.
     pub fn offer(&self) -> Value {
         let ids: Vec<String> = self.firms.iter().map(|(id, _)| id.to_string()).collect();
         json!({ "firms": ids, "answer_within_hours": 1 })
     }
 
+    /// Returns a path below the order.
     pub fn path(&self, rest: &str) -> String {
         format!("/work-orders/{}{rest}", self.order)
     }
 
+    /// Posts to a path below the order.
     pub async fn post(&self, who: &Person, rest: &str, body: &Value) -> ApiResponse {
         who.post(&self.path(rest), body).await
     }
 
+    /// Returns the order as the operator sees it.
     pub async fn view_order(&self) -> Value {
         self.ada.get(&self.path("")).await.good()
     }
@@ -100,6 +110,7 @@ impl OfferParties {
     }
 }
 
+/// Returns the body of a proposal: another time, berth and fee.
 pub fn proposal() -> Value {
     json!({
         "terms": { "planned_at": NEXT_DAY, "berth": "A7", "fee_eur": 900.5 },

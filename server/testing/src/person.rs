@@ -11,24 +11,32 @@ use reqwest::Method;
 use serde_json::{Value, json};
 use std::sync::OnceLock;
 
+/// A signed-in person.
 #[derive(Clone)]
 pub struct Person {
     url: String,
     http: reqwest::Client,
+    /// Operator of the person, or of the admin who created them.
     pub operator: OperatorId,
+    /// E-mail address, which is the name for sign-in.
     pub email: String,
+    /// Session cookie.
     pub cookie: String,
 }
 
 /// Status, headers and body of a response.
 #[derive(Debug)]
 pub struct ApiResponse {
+    /// HTTP status.
     pub status: u16,
+    /// HTTP headers.
     pub headers: reqwest::header::HeaderMap,
+    /// Body.
     pub text: String,
 }
 
 impl ApiResponse {
+    /// Sends a request and reads its response.
     pub async fn of(request: reqwest::RequestBuilder) -> ApiResponse {
         let response = request.send().await.unwrap();
         ApiResponse {
@@ -38,6 +46,7 @@ impl ApiResponse {
         }
     }
 
+    /// Parses the body.
     pub fn json(&self) -> Value {
         serde_json::from_str(&self.text).unwrap_or_else(|_| panic!("not JSON: {self:?}"))
     }
@@ -108,6 +117,7 @@ impl Person {
         Person::sign_in(server, self.operator, &email).await
     }
 
+    /// Creates a person without signing in.
     pub async fn create(server: &TestServer, tenant: Option<Tenant>, email: &str, role: Role) {
         let now = Time(server.app.clock.now());
         let mut tx = server.app.db.begin().await.unwrap();
@@ -117,6 +127,7 @@ impl Person {
         tx.commit().await.unwrap();
     }
 
+    /// Signs an existing person in.
     pub async fn sign_in(server: &TestServer, operator: OperatorId, email: &str) -> Person {
         let response = try_sign_in(server, email, PASSWORD).await;
         assert_eq!(response.status, 200, "{response:?}");
@@ -146,19 +157,23 @@ impl Person {
             .header("x-binnacle-request", "1")
     }
 
+    /// Sends a GET request.
     pub async fn get(&self, path: &str) -> ApiResponse {
         ApiResponse::of(self.request(Method::GET, path)).await
     }
 
+    /// Sends a POST request.
     pub async fn post(&self, path: &str, body: &Value) -> ApiResponse {
         ApiResponse::of(self.request(Method::POST, path).json(body)).await
     }
 
+    /// Creates a vessel with one compass.
     pub async fn create_vessel(&self, name: &str) -> Value {
         self.post("/vessels", &json!({ "name": name })).await.good()
     }
 }
 
+/// Sends a sign-in request.
 pub async fn try_sign_in(server: &TestServer, email: &str, password: &str) -> ApiResponse {
     let request = server
         .http
@@ -177,6 +192,7 @@ async fn create_operator(server: &TestServer, name: &str) -> OperatorId {
     id
 }
 
+/// Sends a PATCH request.
 pub async fn patch(person: &Person, path: &str, body: &Value) -> ApiResponse {
     ApiResponse::of(person.request(Method::PATCH, path).json(body)).await
 }

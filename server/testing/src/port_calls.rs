@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+/// Returns the path of a vessel's port calls.
 pub fn path(vessel: &Value) -> String {
     format!("/vessels/{}/port-calls", vessel["id"].as_str().unwrap())
 }

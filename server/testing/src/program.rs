@@ -5,6 +5,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::{Command, Output};
 
+/// Prepares the program with arguments, in a folder.
 pub fn command(program: &str, folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(program);
     command
@@ -14,10 +15,12 @@ pub fn command(program: &str, folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
+/// Runs the program with arguments, in a folder.
 pub fn run(program: &str, folder: &Path, arguments: &[&str]) -> Output {
     command(program, folder, arguments).output().unwrap()
 }
 
+/// Returns the standard output of a successful run.
 pub fn good(output: &Output) -> String {
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{errors}");
@@ -35,6 +38,7 @@ pub fn assert_refused(output: &Output, words: &[&str]) {
     }
 }
 
+/// Writes a passage as `samples.csv`.
 pub fn samples_csv(folder: &Path) {
     let mut text = "time,lat,lon,compass_deg,gyro_deg,windows\n".to_owned();
     for sample in passage("2026-11-15T00:00:00Z", 300) {

@@ -24,22 +24,27 @@ use tokio::net::TcpListener;
 use uuid::Uuid;
 
 const CLIENT_ID: &str = "binnacle";
+/// Secret of the client at the provider.
 pub const CLIENT_SECRET: &str = "the-clients-secret";
 
 /// Signer of an ID token.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Signer {
+    /// The provider's own key.
     #[default]
     Provider,
     /// Another key under the same key id.
     OtherKey,
     /// The client's secret, as an HMAC key: the client knows it too.
     ClientSecret,
+    /// No signature.
     Unsigned,
 }
 
+/// A running provider.
 #[derive(Clone)]
 pub struct Provider {
+    /// Issuer URL, which is its address.
     pub issuer: String,
     state: Arc<Mutex<ProviderState>>,
 }
@@ -154,10 +159,12 @@ fn start_s() -> i64 {
 }
 
 impl Provider {
+    /// Starts a provider on a free port.
     pub async fn start() -> Provider {
         Provider::start_at(0).await
     }
 
+    /// Starts a provider on a port.
     pub async fn start_at(port: u16) -> Provider {
         let listener = TcpListener::bind(("127.0.0.1", port)).await.unwrap();
         let provider = Provider {
@@ -183,6 +190,7 @@ impl Provider {
         provider
     }
 
+    /// Server settings for sign-in by this provider.
     pub fn settings(&self) -> [&str; 8] {
         provider_settings(&self.issuer)
     }
@@ -194,6 +202,7 @@ impl Provider {
         state.signer = Signer::Provider;
     }
 
+    /// Sets the signer of the next tokens.
     pub fn sign_with(&self, signer: Signer) {
         self.state.lock().unwrap().signer = signer;
     }
@@ -243,20 +252,20 @@ async fn keys(State(provider): State<Provider>) -> Json<Value> {
 /// Redirects back with a code at once, without a sign-in page.
 async fn authorize(
     State(provider): State<Provider>,
-    Query(asked): Query<HashMap<String, String>>,
+    Query(query): Query<HashMap<String, String>>,
 ) -> Redirect {
-    assert_eq!(asked["response_type"], "code");
-    assert_eq!(asked["client_id"], CLIENT_ID);
-    assert_eq!(asked["code_challenge_method"], "S256");
-    assert!(asked["scope"].split(' ').any(|scope| scope == "openid"));
+    assert_eq!(query["response_type"], "code");
+    assert_eq!(query["client_id"], CLIENT_ID);
+    assert_eq!(query["code_challenge_method"], "S256");
+    assert!(query["scope"].split(' ').any(|scope| scope == "openid"));
     let code = Uuid::new_v4().to_string();
     let back = format!(
         "{}?code={code}&state={}",
-        asked["redirect_uri"], asked["state"]
+        query["redirect_uri"], query["state"]
     );
     let mut state = provider.state.lock().unwrap();
     state.secrets.push(code.clone());
-    state.codes.insert(code, asked);
+    state.codes.insert(code, query);
     Redirect::to(&back)
 }
 
@@ -269,19 +278,19 @@ async fn token(
     let pair = base64url(format!("{CLIENT_ID}:{CLIENT_SECRET}").as_bytes());
     let basic = format!("Basic {}", pair.replace('-', "+").replace('_', "/"));
     let verifier = digest::digest(&digest::SHA256, sent["code_verifier"].as_bytes());
-    let asked = state.codes.remove(&sent["code"]);
-    let asked = asked.filter(|asked| {
+    let query = state.codes.remove(&sent["code"]);
+    let query = query.filter(|query| {
         headers[header::AUTHORIZATION] == basic
             && sent["grant_type"] == "authorization_code"
-            && sent["redirect_uri"] == asked["redirect_uri"]
-            && asked["code_challenge"] == base64url(verifier.as_ref())
+            && sent["redirect_uri"] == query["redirect_uri"]
+            && query["code_challenge"] == base64url(verifier.as_ref())
     });
-    let Some(asked) = asked else {
+    let Some(query) = query else {
         let refused = Json(json!({ "error": "invalid_grant" }));
         return (StatusCode::BAD_REQUEST, refused).into_response();
     };
     let mut claims = json!({
-        "iss": provider.issuer, "aud": CLIENT_ID, "sub": "person-1", "nonce": asked["nonce"],
+        "iss": provider.issuer, "aud": CLIENT_ID, "sub": "person-1", "nonce": query["nonce"],
         "iat": start_s(), "exp": start_s() + 3600,
         "email": "ada@example.com", "email_verified": true,
     });

@@ -10,34 +10,48 @@ use tokio_rustls::TlsAcceptor;
 /// Stage of an SMTP session, before the reply there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
+    /// Before the greeting.
     Greeting,
+    /// After `RCPT TO`.
     Recipient,
+    /// After `DATA`.
     Data,
     /// After the last line of the message.
     End,
+    /// After `QUIT`.
     Quit,
 }
 
 /// Behaviour of the relay in one session.
 #[derive(Clone, Copy, Debug)]
 pub enum Behaviour {
+    /// Accepts the message.
     Accept,
+    /// Sends this reply at a stage.
     Reply(Stage, &'static str),
+    /// Stops responding at a stage.
     Hang(Stage),
+    /// Closes the connection at a stage.
     Drop(Stage),
 }
 
 /// A message handed over, whether the relay accepted it or not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Letter {
+    /// Sender of the envelope.
     pub from: String,
+    /// Recipients of the envelope.
     pub to: Vec<String>,
+    /// Headers and body.
     pub text: String,
+    /// True if it came over TLS.
     pub encrypted: bool,
 }
 
+/// A running relay.
 #[derive(Clone, Default)]
 pub struct Relay {
+    /// Port on the local host.
     pub port: u16,
     letters: Arc<Mutex<Vec<Letter>>>,
     commands: Arc<Mutex<Vec<String>>>,
@@ -47,17 +61,22 @@ pub struct Relay {
 /// Encryption that the relay offers.
 #[derive(Clone, Default)]
 pub enum Encryption {
+    /// No encryption.
     #[default]
     Nothing,
+    /// STARTTLS.
     Start(TlsAcceptor),
+    /// TLS from the first byte.
     Always(TlsAcceptor),
 }
 
 impl Relay {
+    /// Starts a relay without encryption.
     pub async fn start() -> Relay {
         Relay::start_with(Encryption::Nothing).await
     }
 
+    /// Starts a relay.
     pub async fn start_with(encryption: Encryption) -> Relay {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let relay = Relay {
@@ -79,6 +98,7 @@ impl Relay {
         self.behaviours.lock().unwrap().push_back(behaviour);
     }
 
+    /// Returns every message it received.
     pub fn letters(&self) -> Vec<Letter> {
         self.letters.lock().unwrap().clone()
     }

@@ -18,21 +18,28 @@ use tokio::task::JoinHandle;
 
 /// Start time of every test.
 pub const START: &str = "2026-11-21T07:00:00Z";
+/// Seconds of a day.
 pub const DAY_S: f64 = 86_400.0;
+/// Seconds of an hour.
 pub const HOUR_S: f64 = 3600.0;
+/// Password of every person.
 pub const PASSWORD: &str = "correct horse battery";
 
 /// A running server with a clock that the test advances. Its worker does nothing by
 /// itself: the test calls [`TestServer::work`].
 pub struct TestServer {
+    /// State of the server.
     pub app: App,
+    /// Address, without a slash at the end.
     pub url: String,
+    /// Client without a session.
     pub http: reqwest::Client,
     serving: JoinHandle<anyhow::Result<()>>,
     database: Database,
 }
 
 impl TestServer {
+    /// Starts a server on an empty database.
     pub async fn start(engine: Engine) -> TestServer {
         TestServer::start_with(engine, &[]).await
     }
@@ -131,6 +138,7 @@ impl TestServer {
         done
     }
 
+    /// Advances the clock.
     pub fn advance(&self, seconds: f64) {
         self.app.clock.advance(seconds);
     }
@@ -138,6 +146,7 @@ impl TestServer {
 
 /// A database that the test fills before the server opens it.
 pub struct Prepared {
+    /// Connection to the database.
     pub db: Db,
     database: Database,
 }
@@ -194,6 +203,7 @@ fn metrics() -> PrometheusHandle {
         .clone()
 }
 
+/// Returns a client that does not follow redirects.
 pub fn client() -> reqwest::Client {
     // Only the first test can install it; reqwest needs a provider also for http.
     let _ = rustls::crypto::ring::default_provider().install_default();

@@ -13,11 +13,15 @@ use binnacle_wire::messages::{Downlink, EnrolAnswer};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
+/// A ship and its agent.
 pub struct Ship {
     url: String,
     http: reqwest::Client,
+    /// Id of the vessel.
     pub id: String,
+    /// Token of the agent.
     pub token: String,
+    /// Stream of the agent.
     pub stream: StreamId,
 }
 
@@ -54,15 +58,18 @@ impl Ship {
         self.url.clone_from(&server.url);
     }
 
+    /// Sends a batch of samples.
     pub async fn put(&self, seq: u64, samples: &[Sample]) -> ApiResponse {
         self.put_bytes(seq, frame(self.stream, seq, samples)).await
     }
 
+    /// Sends bytes as a batch.
     pub async fn put_bytes(&self, seq: u64, bytes: Vec<u8>) -> ApiResponse {
         let path = format!("/streams/{}/batches/{seq}", self.stream);
         ApiResponse::of(self.request(reqwest::Method::PUT, &path).body(bytes)).await
     }
 
+    /// Reads the downlink in its JSON form; `has` is the query.
     pub async fn downlink(&self, has: &str) -> Value {
         let path = format!("/streams/{}/downlink{has}", self.stream);
         ApiResponse::of(self.request(reqwest::Method::GET, &path))
@@ -83,26 +90,31 @@ impl Ship {
         )
     }
 
+    /// Builds a request of the agent.
     pub fn request(&self, method: reqwest::Method, path: &str) -> reqwest::RequestBuilder {
         self.http
             .request(method, format!("{}/api/v1{path}", self.url))
             .bearer_auth(&self.token)
     }
 
+    /// Returns a path below the vessel.
     pub fn path(&self, rest: &str) -> String {
         format!("/vessels/{}{rest}", self.id)
     }
 
+    /// Enters a logbook entry as a person.
     pub async fn report(&self, person: &Person, entry: &Value) -> Value {
         person.post(&self.path("/logbook"), entry).await.good()
     }
 
+    /// Sends a logbook report as the agent.
     pub async fn put_report(&self, id: &str, report: &Value) -> ApiResponse {
         let path = format!("/agents/logbook/{id}");
         ApiResponse::of(self.request(reqwest::Method::PUT, &path).json(report)).await
     }
 }
 
+/// Sends an enrolment request.
 pub async fn enrol_with_code(server: &TestServer, code: &str) -> ApiResponse {
     let request = server
         .http
@@ -111,6 +123,7 @@ pub async fn enrol_with_code(server: &TestServer, code: &str) -> ApiResponse {
     ApiResponse::of(request).await
 }
 
+/// Returns the bytes of a batch.
 pub fn frame(stream: StreamId, seq: u64, samples: &[Sample]) -> Vec<u8> {
     let batch = Batch {
         stream,

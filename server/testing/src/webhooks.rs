@@ -24,6 +24,7 @@ pub struct Receiver {
 }
 
 impl Receiver {
+    /// Starts a receiver; returns it and its URL.
     pub async fn start() -> (Receiver, String) {
         let receiver = Receiver::default();
         let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
@@ -35,6 +36,7 @@ impl Receiver {
         (receiver, url)
     }
 
+    /// Queues a response to a later message.
     pub fn respond_next(&self, response: impl IntoResponse) {
         self.responses
             .lock()
@@ -52,6 +54,7 @@ impl Receiver {
         self.received.lock().unwrap().clone()
     }
 
+    /// Returns the kinds of the messages in order of arrival.
     pub fn kinds(&self) -> Vec<String> {
         let got = self.received().into_iter();
         got.map(|(_, body)| json_of(&body)["kind"].as_str().unwrap().to_owned())
@@ -67,15 +70,18 @@ async fn take(State(receiver): State<Receiver>, headers: HeaderMap, body: Bytes)
     response.unwrap_or_else(|| StatusCode::OK.into_response())
 }
 
+/// Parses a body.
 pub fn json_of(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
 }
 
+/// Creates a webhook for kinds of events.
 pub async fn make(person: &Person, url: &str, kinds: &[&str]) -> Value {
     let new = json!({ "url": url, "kinds": kinds });
     person.post("/webhooks", &new).await.good()
 }
 
+/// Returns a path below a webhook.
 pub fn path(webhook: &Value, rest: &str) -> String {
     format!("/webhooks/{}{rest}", webhook["id"].as_str().unwrap())
 }

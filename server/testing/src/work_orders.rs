@@ -15,9 +15,11 @@ use binnacle_compass::time::Timestamp;
 use reqwest::Method;
 use serde_json::{Value, json};
 
-/// Position of the berth, and time of the magnetometer reading there.
+/// Position of the berth: degrees north and east.
 pub const BERTH: (f64, f64) = (43.35, -3.04);
+/// Time of the magnetometer reading at the berth.
 pub const AT: &str = "2026-11-21T06:30:00Z";
+/// True heading at the berth.
 pub const HEADING_DEG: f64 = 40.0;
 /// The ships' λ, which no heading shows.
 pub const LAMBDA: f64 = 0.9;
@@ -30,18 +32,24 @@ pub const PICTURE: &[u8] = &[
 
 /// A ship with a model, a binnacle with no corrector in use, and an order to adjust it.
 pub struct Job {
+    /// The operator's admin, who does the work too.
     pub person: Person,
+    /// The ship.
     pub ship: Ship,
+    /// Id of the compass.
     pub compass: String,
+    /// Id of the order.
     pub order: String,
 }
 
 impl Job {
+    /// Creates the order with a new operator.
     pub async fn begin(server: &TestServer) -> Job {
         let person = server.admin("ada").await;
         Job::for_person(server, person).await
     }
 
+    /// Creates the order for a person's operator.
     pub async fn for_person(server: &TestServer, person: Person) -> Job {
         Job::on_ship(server, person, &true_model()).await
     }
@@ -82,6 +90,7 @@ impl Job {
         job
     }
 
+    /// Returns the body of a new order.
     pub fn new_order(&self) -> Value {
         json!({
             "vessel_id": self.ship.id, "compass_id": self.compass, "port": "Bilbao",
@@ -90,14 +99,17 @@ impl Job {
         })
     }
 
+    /// Returns a path below the order.
     pub fn path(&self, rest: &str) -> String {
         format!("/work-orders/{}{rest}", self.order)
     }
 
+    /// Posts to a path below the order.
     pub async fn post(&self, rest: &str, body: &Value) -> ApiResponse {
         self.person.post(&self.path(rest), body).await
     }
 
+    /// Returns the order.
     pub async fn view_order(&self) -> Value {
         self.person.get(&self.path("")).await.good()
     }
@@ -120,6 +132,7 @@ impl Job {
         order
     }
 
+    /// Adjusts and completes the order.
     pub async fn complete(&self) -> Value {
         self.adjust().await;
         self.post("/complete", &completion_details()).await.good()
@@ -142,11 +155,13 @@ impl Job {
         self.person = Person::sign_in(server, self.person.operator, &self.person.email).await;
     }
 
+    /// Returns the open alerts.
     pub async fn open_alerts(&self) -> Vec<Value> {
         let found = self.person.get("/alerts?open=true").await.good();
         found["items"].as_array().unwrap().clone()
     }
 
+    /// Downloads the evidence archive.
     pub async fn evidence(&self) -> Vec<u8> {
         let request = self
             .person
@@ -156,6 +171,7 @@ impl Job {
         response.bytes().await.unwrap().to_vec()
     }
 
+    /// Returns the deviation card.
     pub async fn card(&self) -> Value {
         self.person.get(&self.ship.path("/card.json")).await.good()
     }
@@ -210,6 +226,7 @@ impl Job {
         refusal["refusal"].clone()
     }
 
+    /// Uploads a photograph.
     pub async fn post_photo(&self, bytes: &'static [u8]) -> ApiResponse {
         let path = self.path("/photos?caption=trays");
         ApiResponse::of(self.person.request(Method::POST, &path).body(bytes)).await
@@ -223,6 +240,7 @@ impl Job {
         format!("{logbook}/{}/withdraw", entry["id"].as_str().unwrap())
     }
 
+    /// Withdraws a logbook entry.
     pub async fn withdraw(&self, path: &str) {
         let reason = json!({ "reason": "another ship" });
         self.person.post(path, &reason).await.good();
@@ -234,6 +252,7 @@ pub fn predicted_model(order: &Value) -> Model {
     serde_json::from_value(order["completion"]["model"].clone()).unwrap()
 }
 
+/// Returns the body that completes an order.
 pub fn completion_details() -> Value {
     json!({
         "adjuster_name": "M. Etxeberria", "adjuster_licence": "ES-CA-114",
@@ -259,14 +278,14 @@ pub fn second_reading_after(first: &Value, setting: &Value) -> Value {
         let added_ut = (of_correctors.b_nt[axis] + induced) / 1000.0;
         first[name].as_f64().unwrap() + added_ut
     };
-    let mut again = json!({
+    let mut repeated = json!({
         "at": AT, "unit": "microtesla",
         "forward": part("forward", 0), "starboard": part("starboard", 1),
     });
     if first["down"].is_number() {
-        again["down"] = json!(part("down", 2));
+        repeated["down"] = json!(part("down", 2));
     }
-    again
+    repeated
 }
 
 /// Returns the magnetic heading and the earth's field at the berth.
@@ -298,6 +317,7 @@ pub fn reading_on_ship(ship: &Model) -> Value {
     })
 }
 
+/// Encodes bytes in hexadecimal digits.
 pub fn hex(bytes: &[u8]) -> String {
     let digits = |text: String, byte: &u8| text + &format!("{byte:02x}");
     bytes.iter().fold(String::new(), digits)

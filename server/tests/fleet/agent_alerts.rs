@@ -124,7 +124,7 @@ async fn repeated_departures_within_hours_are_one_alert(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = server.ship(&ada, "Nao").await;
     let begun = Timestamp::parse("2026-11-20T04:00:00Z").unwrap();
-    let said = |id: u128, hours: f64, revision: u32, state| {
+    let alert_at = |id: u128, hours: f64, revision: u32, state| {
         let since = begun.plus_seconds(3600.0 * hours);
         let at = since.plus_seconds(1800.0 * f64::from(revision));
         ShipAlert {
@@ -141,7 +141,7 @@ async fn repeated_departures_within_hours_are_one_alert(server: TestServer) {
                 &nao,
                 seq,
                 Vec::new(),
-                vec![said(id, hours, revision, state)],
+                vec![alert_at(id, hours, revision, state)],
             )
             .await;
         }
@@ -161,7 +161,7 @@ async fn repeated_departures_within_hours_are_one_alert(server: TestServer) {
     let states: Vec<&Value> = over.iter().map(|alert| &alert["state"]).collect();
     assert_eq!(states, [&json!("cleared")], "{over:?}");
     // A day later it is another alert.
-    put_agent_alerts(&nao, 8, Vec::new(), vec![said(4, 30.0, 1, Open)]).await;
+    put_agent_alerts(&nao, 8, Vec::new(), vec![alert_at(4, 30.0, 1, Open)]).await;
     assert_eq!(list(&ada).await.len(), 2);
     server.finish().await;
 }
@@ -181,11 +181,11 @@ async fn a_new_departure_after_a_clearing_is_another_alert(server: TestServer) {
     ada.post(&format!("/alerts/{id}/clear"), &reason)
         .await
         .good();
-    let again = ShipAlert {
+    let repeated = ShipAlert {
         revision: 2,
         ..open
     };
-    put_agent_alerts(&nao, 2, Vec::new(), vec![again]).await;
+    put_agent_alerts(&nao, 2, Vec::new(), vec![repeated]).await;
     assert_eq!(list(&ada).await.len(), 1, "of the same it has been said");
     let anew = ShipAlert {
         id: Uuid::from_u128(2),

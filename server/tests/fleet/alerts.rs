@@ -106,11 +106,11 @@ async fn an_alert_is_acknowledged_once_with_a_note(server: TestServer) {
     );
     assert_eq!(known["acknowledgement_note"], "Azimuth taken");
     server.advance(60.0);
-    let again = ada
+    let repeated = ada
         .post(&path(&alert, "/acknowledge"), &json!({}))
         .await
         .good();
-    assert_eq!(again, known);
+    assert_eq!(repeated, known);
     let vessel = ada.get(&nao.path("")).await.good();
     assert_eq!(
         (&vessel["open_alerts"], &vessel["worst_alert"]),
@@ -362,12 +362,12 @@ async fn an_adjustment_withdraws_the_old_card_at_once(server: TestServer) {
     let withdraw = format!("/logbook/{}/withdraw", entry["id"].as_str().unwrap());
     ada.post(&nao.path(&withdraw), &json!({})).await.good();
     server.work().await;
-    let again = ada.get(&nao.path("/model")).await.good();
-    assert_eq!(again["model"], model["model"]);
+    let repeated = ada.get(&nao.path("/model")).await.good();
+    assert_eq!(repeated["model"], model["model"]);
     let downlink = nao.downlink(&has).await;
     assert_eq!(
         (&downlink["model"]["id"], downlink.get("card_withdrawn")),
-        (&again["id"], None)
+        (&repeated["id"], None)
     );
     server.finish().await;
 }

@@ -49,8 +49,8 @@ async fn every_revision_of_a_binnacle_is_kept(server: TestServer) {
         (&first["revision"], &first["by"]),
         (&json!(1), &json!("ada@example.com"))
     );
-    let again = put(&ada, &path, &binnacle()).await.good();
-    assert_eq!(again["revision"], 1, "the same is no other revision");
+    let repeated = put(&ada, &path, &binnacle()).await.good();
+    assert_eq!(repeated["revision"], 1, "the same is no other revision");
     let mut moved = binnacle();
     moved["setting"]["athwartship"] =
         json!([{ "hole": 7, "magnet": "200 mm", "count": 1, "red": "port" }]);
@@ -82,8 +82,8 @@ async fn an_exported_binnacle_can_be_imported(server: TestServer) {
     let file = ada.get(&format!("{path}.json")).await;
     let disposition = file.headers["content-disposition"].to_str().unwrap();
     assert!(disposition.starts_with("attachment"), "{disposition}");
-    let again = put(&ada, &path, &file.good()).await.good();
-    assert_eq!(again["revision"], 1);
+    let repeated = put(&ada, &path, &file.good()).await.good();
+    assert_eq!(repeated["revision"], 1);
     server.finish().await;
 }
 

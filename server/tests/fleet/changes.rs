@@ -27,9 +27,9 @@ on_both!(
 );
 
 const A_WHILE_S: f64 = 10.0;
-/// Start of twenty days at sea,
+/// Start of twenty days at sea.
 const DEPARTURE: &str = "2026-10-20T00:00:00Z";
-/// and their end.
+/// Time of the strike, at their end.
 const STRIKE: &str = "2026-11-09T00:00:00Z";
 
 async fn the_timeline_after_a_strike_has_both_epochs_with_curves(server: TestServer) {
@@ -78,8 +78,11 @@ async fn the_timeline_after_a_strike_has_both_epochs_with_curves(server: TestSer
     let parted = (0..36)
         .map(|row| deviation(&epochs[1], row).unwrap() - deviation(&epochs[0], row).unwrap());
     let most = parted.map(f64::abs).fold(0.0, f64::max);
-    let said = change["deviation_change_deg"].as_f64().unwrap();
-    assert!((most - said).abs() < 0.15 * said, "{most} and {said}");
+    let change_deg = change["deviation_change_deg"].as_f64().unwrap();
+    assert!(
+        (most - change_deg).abs() < 0.15 * change_deg,
+        "{most} and {change_deg}"
+    );
     assert!(epochs[1]["curve"][0]["band95_deg"].as_f64().unwrap() > 0.0);
     assert_eq!(timeline["place"]["lat"], 48.0);
     server.finish().await;
@@ -490,10 +493,6 @@ async fn a_swinging_compass_raises_one_alert_whatever_the_amplitude(server: Test
         causes.push(of_her[0]["cause"].as_str().unwrap().to_owned());
     }
     assert!(causes[0] != "compass_fault", "{causes:?}");
-    assert_eq!(
-        causes[2..],
-        ["compass_fault", "compass_fault"],
-        "{causes:?}"
-    );
+    assert_eq!(causes[2..], ["compass_fault"; 2], "{causes:?}");
     server.finish().await;
 }

@@ -80,8 +80,8 @@ async fn a_code_for_another_vessels_compass_is_refused(server: TestServer) {
     let theirs = ada.create_vessel("Nao").await;
     let ours = eve.create_vessel("Kogge").await;
     let path = format!("/vessels/{}/agents", ours["id"].as_str().unwrap());
-    let wanted = json!({ "compass_id": theirs["compasses"][0]["id"] });
-    assert_eq!(eve.post(&path, &wanted).await.problem(), "not-found");
+    let body = json!({ "compass_id": theirs["compasses"][0]["id"] });
+    assert_eq!(eve.post(&path, &body).await.problem(), "not-found");
     server.finish().await;
 }
 
@@ -94,8 +94,8 @@ async fn an_agent_reaches_only_its_own_streams(server: TestServer) {
     let put = ApiResponse::of(nao.request(Method::PUT, &path).body(stolen)).await;
     assert_eq!(put.problem(), "not-found");
     let path = format!("/streams/{}/downlink", kogge.stream);
-    let asked = ApiResponse::of(nao.request(Method::GET, &path)).await;
-    assert_eq!(asked.problem(), "not-found");
+    let fleet_read = ApiResponse::of(nao.request(Method::GET, &path)).await;
+    assert_eq!(fleet_read.problem(), "not-found");
     // It does not open the fleet API either.
     let vessels = ApiResponse::of(nao.request(Method::GET, "/vessels")).await;
     assert_eq!(vessels.problem(), "unauthenticated");
@@ -141,10 +141,10 @@ async fn the_agents_list_reports_the_spool_and_a_short_budget(server: TestServer
     let path = nao.path("/agents");
     let status_on_board = async || ada.get(&path).await.good()["items"][0]["aboard"].clone();
     assert_eq!(status_on_board().await, Value::Null);
-    let send = async |seq: u64, said: &str| {
+    let send = async |seq: u64, status_query: &str| {
         let taken = [sample(server.app.clock.now(), 90.0)];
         let batch = binnacle_server_testing::frame(nao.stream, seq, &taken);
-        let path = format!("/streams/{}/batches/{seq}{said}", nao.stream);
+        let path = format!("/streams/{}/batches/{seq}{status_query}", nao.stream);
         let put = nao.request(Method::PUT, &path).body(batch);
         ApiResponse::of(put).await.good();
     };

@@ -43,9 +43,9 @@ async fn a_repeated_create_request_creates_nothing(server: TestServer) {
         ApiResponse::of(request.header("idempotency-key", "k-1").json(&body)).await
     };
     let first = create(json!({ "name": "Nao" })).await;
-    let again = create(json!({ "name": "Nao" })).await;
-    assert_eq!((first.status, again.status), (201, 201));
-    assert_eq!(first.json(), again.json());
+    let repeated = create(json!({ "name": "Nao" })).await;
+    assert_eq!((first.status, repeated.status), (201, 201));
+    assert_eq!(first.json(), repeated.json());
     let other = create(json!({ "name": "Kogge" })).await;
     assert_eq!(other.problem(), "idempotency-key-reused");
     let listed = ada.get("/vessels").await.good();

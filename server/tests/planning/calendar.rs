@@ -257,8 +257,11 @@ async fn a_vessels_calendar_follows_its_port_calls_and_due_dates(server: TestSer
     let after = events(&read_feed(&server, &made).await.text);
     let (is, due_now) = (&after[&call_uid], &after[&due_uid]);
     assert_eq!(instant(is.get_start()), "2026-12-08T12:00:00+00:00");
-    let said = is.get_description().unwrap();
-    assert!(said.contains("ETA: 2026-12-08 12:00 UTC, ±12 h"), "{said}");
+    let description = is.get_description().unwrap();
+    assert!(
+        description.contains("ETA: 2026-12-08 12:00 UTC, ±12 h"),
+        "{description}"
+    );
     assert_eq!(instant(due_now.get_start()), "2028-11-20");
     for (before, after) in [(was, is), (due, due_now)] {
         assert!(sequence(after) > sequence(before));
@@ -266,9 +269,9 @@ async fn a_vessels_calendar_follows_its_port_calls_and_due_dates(server: TestSer
     }
     // Nothing has changed: the same bytes at the next request.
     notify_of_needs(&server.app).await.unwrap();
-    let again = read_feed(&server, &made).await.text;
-    assert_eq!(again, read_feed(&server, &made).await.text);
-    assert_eq!(sequence(&events(&again)[&due_uid]), sequence(due_now));
+    let repeated = read_feed(&server, &made).await.text;
+    assert_eq!(repeated, read_feed(&server, &made).await.text);
+    assert_eq!(sequence(&events(&repeated)[&due_uid]), sequence(due_now));
 
     let why = json!({ "reason": "ice" });
     ada.post(&format!("{one}/withdraw"), &why).await.good();

@@ -179,11 +179,11 @@ async fn a_monthly_report_goes_once_to_its_recipients(server: TestServer) {
     let relay = Relay::start().await;
     let ada = server.admin("ada").await;
     due_vessel(&ada, "Nao").await;
-    let wanted =
+    let new_settings =
         json!({ "monthly_to": ["Chief@Example.com", "chief@example.com", "b@example.com"] });
-    let said = put(&ada, "/reports/settings", &wanted).await.good();
+    let stored = put(&ada, "/reports/settings", &new_settings).await.good();
     let kept = json!(["Chief@example.com", "chief@example.com", "b@example.com"]);
-    assert_eq!(said["monthly_to"], kept);
+    assert_eq!(stored["monthly_to"], kept);
     let fewer = json!({ "monthly_to": ["b@example.com"] });
     put(&ada, "/reports/settings", &fewer).await.good();
     // October ended before the list had a recipient.
@@ -231,9 +231,9 @@ async fn a_failing_report_does_not_block_other_operators(server: TestServer) {
         .run_sql("UPDATE vessel_particulars SET particulars = '{'")
         .await;
     due_vessel(&eve, "Pinta").await;
-    let wanted = json!({ "monthly_to": ["chief@example.com"] });
+    let new_settings = json!({ "monthly_to": ["chief@example.com"] });
     for admin in [&ada, &eve] {
-        put(admin, "/reports/settings", &wanted).await.good();
+        put(admin, "/reports/settings", &new_settings).await.good();
     }
     server.advance(10.0 * DAY_S);
     assert_eq!(make_due_reports(&server.app).await.unwrap(), 1);
@@ -244,8 +244,8 @@ async fn a_job_received_after_its_month_is_in_the_next_report(server: TestServer
     let relay = Relay::start().await;
     let job = Job::begin(&server).await;
     let ada = &job.person;
-    let wanted = json!({ "monthly_to": ["b@example.com"] });
-    put(ada, "/reports/settings", &wanted).await.good();
+    let new_settings = json!({ "monthly_to": ["b@example.com"] });
+    put(ada, "/reports/settings", &new_settings).await.good();
     job.complete().await;
     assert_eq!(report(ada, "").await["jobs"][0]["order_id"], job.order);
     // As if the phone had kept it until the second of December, 00:00 UTC.

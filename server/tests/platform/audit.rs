@@ -34,11 +34,11 @@ async fn lines(person: &Person, filter: &str) -> Vec<Value> {
 
 /// Returns the audited requests, in order: method, route, status.
 fn requests(lines: &[Value]) -> Vec<String> {
-    let said = |line: &Value| {
+    let problem = |line: &Value| {
         let word = |name: &str| line[name].as_str().unwrap().replace("/api/v1", "");
         format!("{} {} {}", word("method"), word("route"), line["status"])
     };
-    lines.iter().rev().map(said).collect()
+    lines.iter().rev().map(problem).collect()
 }
 
 async fn each_change_has_an_audit_line(server: TestServer) {

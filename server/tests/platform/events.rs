@@ -123,8 +123,8 @@ async fn a_dashboard_gets_an_event_of_a_logbook_entry(server: TestServer) {
     let mut source = EventSource::open(&ada, None).await;
     let lightning = json!({ "kind": "lightning", "from": DAY });
     ada.post(&nao.path("/logbook"), &lightning).await.good();
-    let (_, heard) = source.next().await.unwrap();
-    assert!(heard.contains("\"kind\":\"logbook\""), "{heard}");
+    let (_, received) = source.next().await.unwrap();
+    assert!(received.contains("\"kind\":\"logbook\""), "{received}");
     server.finish().await;
 }
 

@@ -10,14 +10,14 @@ async fn every_response_to_people_has_browser_security_headers() {
     let server = TestServer::start(Engine::Sqlite).await;
     for path in ["/", "/api/docs", "/api/v1/vessels", "/api/none", "/healthz"] {
         let response = ApiResponse::of(server.http.get(format!("{}{path}", server.url))).await;
-        let said = |name: &str| response.headers[name].to_str().unwrap().to_owned();
-        assert_eq!(said("x-content-type-options"), "nosniff", "{path}");
-        assert_eq!(said("x-frame-options"), "DENY");
-        assert_eq!(said("referrer-policy"), "same-origin");
-        assert_eq!(said("cross-origin-opener-policy"), "same-origin");
-        assert_eq!(said("cross-origin-resource-policy"), "same-origin");
-        assert!(said("permissions-policy").contains("geolocation=()"));
-        let policy = said("content-security-policy");
+        let header = |name: &str| response.headers[name].to_str().unwrap().to_owned();
+        assert_eq!(header("x-content-type-options"), "nosniff", "{path}");
+        assert_eq!(header("x-frame-options"), "DENY");
+        assert_eq!(header("referrer-policy"), "same-origin");
+        assert_eq!(header("cross-origin-opener-policy"), "same-origin");
+        assert_eq!(header("cross-origin-resource-policy"), "same-origin");
+        assert!(header("permissions-policy").contains("geolocation=()"));
+        let policy = header("content-security-policy");
         for part in [
             "default-src 'none'",
             "script-src 'self';",
@@ -29,7 +29,7 @@ async fn every_response_to_people_has_browser_security_headers() {
             assert!(policy.contains(part), "{policy}");
         }
         // The tests' server has an https public URL.
-        assert_eq!(said("strict-transport-security"), "max-age=31536000");
+        assert_eq!(header("strict-transport-security"), "max-age=31536000");
     }
     server.finish().await;
 }
@@ -55,8 +55,8 @@ async fn a_cross_site_request_changes_nothing_and_cannot_sign_in() {
         ("sec-fetch-site", "same-site"),
     ] {
         // Even with the cookie and the dashboard's own header.
-        let asked = ada.request(Method::POST, "/vessels").json(&vessel);
-        let refused = ApiResponse::of(asked.header(name, value)).await;
+        let request = ada.request(Method::POST, "/vessels").json(&vessel);
+        let refused = ApiResponse::of(request.header(name, value)).await;
         assert_eq!(refused.problem(), "forbidden", "{name}: {value}");
         let who = json!({ "email": "ada@example.com", "password": PASSWORD });
         let sign_in = server.http.post(format!("{}/api/v1/session", server.url));
@@ -70,8 +70,8 @@ async fn a_cross_site_request_changes_nothing_and_cannot_sign_in() {
         ("origin", "https://binnacle.example"),
         ("sec-fetch-site", "same-origin"),
     ] {
-        let asked = ada.request(Method::POST, "/vessels").json(&vessel);
-        let made = ApiResponse::of(asked.header(name, value)).await;
+        let request = ada.request(Method::POST, "/vessels").json(&vessel);
+        let made = ApiResponse::of(request.header(name, value)).await;
         assert_eq!(made.status, 201, "{name}: {value}: {made:?}");
     }
     server.finish().await;
@@ -107,14 +107,14 @@ async fn an_oversized_body_is_refused_with_a_problem_on_every_json_route() {
             let method = Method::from_bytes(method.to_uppercase().as_bytes()).unwrap();
             let tag = operation["tags"][0].as_str().unwrap();
             let filled = filled.join("/");
-            let asked = match tag {
+            let request = match tag {
                 "agents" => nao.request(method, &filled),
                 "platform" => root.request(method, &filled),
                 _ if filled.ends_with("/propose") => rosa.request(method, &filled),
                 _ => ada.request(method, &filled),
             };
-            let asked = asked.header("content-type", "application/json");
-            let refused = ApiResponse::of(asked.body(body.clone())).await;
+            let request = request.header("content-type", "application/json");
+            let refused = ApiResponse::of(request.body(body.clone())).await;
             assert_eq!(refused.problem(), "too-large", "{path}: {refused:?}");
             assert_eq!(refused.status, 413);
             tried += 1;

@@ -78,8 +78,8 @@ async fn a_code_works_once_and_for_a_week(server: TestServer) {
     let invited = invite(&ada, "grace@example.com", "viewer").await;
     let code = invited["invitation"]["code"].as_str().unwrap().to_owned();
     accept(&server, &code, STRONG_PASSWORD).await.good();
-    let again = accept(&server, &code, "another good long one").await;
-    assert_eq!(again.problem(), "not-found");
+    let repeated = accept(&server, &code, "another good long one").await;
+    assert_eq!(repeated.problem(), "not-found");
     let wrong = accept(&server, "AAAA-AAAA-AAAA-AAAA", STRONG_PASSWORD).await;
     assert_eq!(wrong.problem(), "not-found");
     let other = invite(&ada, "mary@example.com", "viewer").await;
@@ -255,12 +255,12 @@ async fn another_operators_people_are_not_found(server: TestServer) {
     let listed = eve.get("/users").await.good();
     assert_eq!(listed["items"].as_array().unwrap().len(), 1);
     let path = format!("/users/{}/invitation", id.as_str().unwrap());
-    let answers = [
+    let responses = [
         change(&eve, &id, json!({ "disabled": true })).await,
         remove(&eve, &id).await,
         eve.post(&path, &json!({})).await,
     ];
-    for response in answers {
+    for response in responses {
         assert_eq!(response.problem(), "not-found");
     }
     assert_eq!(ada.get("/me").await.status, 200);

@@ -83,17 +83,17 @@ async fn a_confirmed_factor_requires_a_code(server: TestServer) {
     let (secret, _) = set_up(&server, &ada).await;
     assert_eq!(other.get("/me").await.problem(), "unauthenticated");
     assert_eq!(ada.get("/me").await.good()["second_factor"], true);
-    let asked = try_sign_in(&server, &ada.email, PASSWORD).await;
-    assert_eq!(asked.problem(), "second-factor-needed");
-    assert!(asked.headers.get("set-cookie").is_none());
+    let first_step = try_sign_in(&server, &ada.email, PASSWORD).await;
+    assert_eq!(first_step.problem(), "second-factor-needed");
+    assert!(first_step.headers.get("set-cookie").is_none());
     assert_eq!(
         try_sign_in(&server, &ada.email, "wrong").await.problem(),
         "wrong-password"
     );
     let code = app_code(&secret, now_s(&server));
     assert_eq!(sign_in(&server, &ada.email, &code).await.status, 200);
-    let again = ada.post("/me/second-factor", &password()).await;
-    assert_eq!(again.problem(), "wrong-state");
+    let repeated = ada.post("/me/second-factor", &password()).await;
+    assert_eq!(repeated.problem(), "wrong-state");
     server.finish().await;
 }
 
@@ -102,11 +102,11 @@ async fn a_code_works_once_even_when_sent_twice_at_once(server: TestServer) {
     let (secret, _) = set_up(&server, &ada).await;
     let code = app_code(&secret, now_s(&server));
     let tries = (0..4).map(|_| sign_in(&server, &ada.email, &code));
-    let answers = futures_util::future::join_all(tries).await;
-    let mut statuses: Vec<u16> = answers.iter().map(|response| response.status).collect();
+    let responses = futures_util::future::join_all(tries).await;
+    let mut statuses: Vec<u16> = responses.iter().map(|response| response.status).collect();
     statuses.sort_unstable();
     assert_eq!(statuses, [200, 401, 401, 401]);
-    let seen = answers
+    let seen = responses
         .iter()
         .find(|response| response.status == 401)
         .unwrap();
@@ -144,8 +144,8 @@ async fn each_recovery_code_signs_in_once(server: TestServer) {
     assert_eq!(codes.len(), 10);
     let typed = codes[0].to_lowercase().replace('-', " ");
     assert_eq!(sign_in(&server, &ada.email, &typed).await.status, 200);
-    let again = sign_in(&server, &ada.email, &typed).await;
-    assert_eq!(again.problem(), "wrong-code");
+    let repeated = sign_in(&server, &ada.email, &typed).await;
+    assert_eq!(repeated.problem(), "wrong-code");
     let path = "/me/second-factor/recovery-codes";
     let renewed = ada.post(path, &password()).await.good();
     let old = sign_in(&server, &ada.email, &codes[1]).await;

@@ -13,7 +13,7 @@ use std::thread::JoinHandle;
 struct Program {
     child: Child,
     url: String,
-    said: JoinHandle<String>,
+    log_output: JoinHandle<String>,
 }
 
 impl Program {
@@ -30,7 +30,7 @@ impl Program {
             .spawn()
             .unwrap();
         let mut errors = child.stderr.take().unwrap();
-        let said = std::thread::spawn(move || {
+        let log_output = std::thread::spawn(move || {
             let mut all = Vec::new();
             errors.read_to_end(&mut all).unwrap();
             String::from_utf8_lossy(&all).into_owned()
@@ -42,7 +42,7 @@ impl Program {
         Program {
             url: url.to_owned(),
             child,
-            said,
+            log_output,
         }
     }
 
@@ -50,7 +50,7 @@ impl Program {
         let pid = rustix::process::Pid::from_child(&self.child);
         rustix::process::kill_process(pid, rustix::process::Signal::TERM).unwrap();
         self.child.wait().unwrap();
-        self.said.join().unwrap()
+        self.log_output.join().unwrap()
     }
 }
 
@@ -110,8 +110,8 @@ impl RecordingClient {
     /// Returns the redirect target, and records the value of the first cookie.
     async fn follow(&mut self, path: &str, cookie: &str) -> String {
         let url = format!("{}{path}", self.url);
-        let asked = self.http.get(url).header("cookie", cookie);
-        let response = asked.send().await.unwrap();
+        let request = self.http.get(url).header("cookie", cookie);
+        let response = request.send().await.unwrap();
         let set = response.headers()["set-cookie"].to_str().unwrap();
         let (_, value) = set.split(';').next().unwrap().split_once('=').unwrap();
         self.secrets.push(value.to_owned());
@@ -121,15 +121,15 @@ impl RecordingClient {
     async fn send(&self, key: &str, method: &str, path: &str, body: Value) -> (String, Value) {
         let method = reqwest::Method::from_bytes(method.as_bytes()).unwrap();
         let url = format!("{}/api/v1{path}", self.url);
-        let asked = self.http.request(method, url).json(&body);
-        let asked = if key.contains('=') {
-            asked
+        let request = self.http.request(method, url).json(&body);
+        let request = if key.contains('=') {
+            request
                 .header("cookie", key)
                 .header("x-binnacle-request", "1")
         } else {
-            asked.bearer_auth(key)
+            request.bearer_auth(key)
         };
-        let response = asked.send().await.unwrap();
+        let response = request.send().await.unwrap();
         let cookie = response.headers().get("set-cookie");
         let cookie = cookie.map_or("", |cookie| cookie.to_str().unwrap());
         let cookie = cookie.split(';').next().unwrap().to_owned();
@@ -155,104 +155,100 @@ async fn no_secret_is_in_the_most_verbose_log() {
     let folder = tempfile::tempdir().unwrap();
     let made = first_admin(folder.path());
     let program = Program::start(folder.path(), "trace", &provider.settings());
-    let mut drive = RecordingClient {
+    let mut api = RecordingClient {
         http: client(),
         url: program.url.clone(),
         secrets: vec!["smtp-pass-word".to_owned(), "a-wrong-guess".to_owned()],
     };
-    let password = drive.record(&made["password"]);
+    let password = api.record(&made["password"]);
     let email = "ada@example.com";
     let wrong = json!({ "email": email, "password": "a-wrong-guess" });
-    drive.send("", "POST", "/session", wrong).await;
+    api.send("", "POST", "/session", wrong).await;
     let right = json!({ "email": email, "password": password });
-    let (cookie, _) = drive.send("", "POST", "/session", right).await;
+    let (cookie, _) = api.send("", "POST", "/session", right).await;
     let session = cookie.split_once('=').unwrap().1.to_owned();
-    drive.secrets.push(session);
+    api.secrets.push(session);
 
     let lasting = Clock::System.now().micros() / 1_000_000 + 3600;
     provider.set_claims(json!({ "exp": lasting }));
-    drive.sign_in_through_provider().await;
-    drive.secrets.extend(provider.secrets());
-    drive.secrets.push(CLIENT_SECRET.to_owned());
+    api.sign_in_through_provider().await;
+    api.secrets.extend(provider.secrets());
+    api.secrets.push(CLIENT_SECRET.to_owned());
 
     let token = json!({ "name": "ERP", "scope": "write" });
-    let (_, token) = drive.send(&cookie, "POST", "/tokens", token).await;
-    let token = drive.record(&token["token"]);
+    let (_, token) = api.send(&cookie, "POST", "/tokens", token).await;
+    let token = api.record(&token["token"]);
     let vessel = json!({ "name": "Nao" });
-    let (_, vessel) = drive.send(&token, "POST", "/vessels", vessel).await;
+    let (_, vessel) = api.send(&token, "POST", "/vessels", vessel).await;
     let agents = format!("/vessels/{}/agents", vessel["id"].as_str().unwrap());
-    let (_, code) = drive.send(&token, "POST", &agents, json!({})).await;
-    let code = drive.record(&code["code"]);
+    let (_, code) = api.send(&token, "POST", &agents, json!({})).await;
+    let code = api.record(&code["code"]);
     let enrol = json!({ "code": code, "agent_version": "1" });
-    let (_, agent) = drive.send("", "POST", "/agents/enrol", enrol).await;
-    let agent = drive.record(&agent["token"]);
-    let (_, next) = drive.send(&agent, "POST", "/agents/token", json!({})).await;
-    let next = drive.record(&next["token"]);
+    let (_, agent) = api.send("", "POST", "/agents/enrol", enrol).await;
+    let agent = api.record(&agent["token"]);
+    let (_, next) = api.send(&agent, "POST", "/agents/token", json!({})).await;
+    let next = api.record(&next["token"]);
     let put = json!({ "token": next });
-    drive.send(&agent, "PUT", "/agents/token", put).await;
-    drive.send(&next, "POST", "/streams", json!({})).await;
+    api.send(&agent, "PUT", "/agents/token", put).await;
+    api.send(&next, "POST", "/streams", json!({})).await;
 
-    let hook = format!("{}/none?key=in-the-address", drive.url);
-    drive.secrets.push("in-the-address".to_owned());
+    let hook = format!("{}/none?key=in-the-address", api.url);
+    api.secrets.push("in-the-address".to_owned());
     let hook = json!({ "url": hook, "kinds": ["alert.raised"] });
-    let (_, hook) = drive.send(&cookie, "POST", "/webhooks", hook).await;
-    drive.record(&hook["secret"]);
+    let (_, hook) = api.send(&cookie, "POST", "/webhooks", hook).await;
+    api.record(&hook["secret"]);
     let hook = format!("/webhooks/{}", hook["id"].as_str().unwrap());
     let test = format!("{hook}/test");
-    drive.send(&cookie, "POST", &test, json!({})).await;
-    drive.wait_for_attempt(&cookie, &hook).await;
+    api.send(&cookie, "POST", &test, json!({})).await;
+    api.wait_for_attempt(&cookie, &hook).await;
     let mail = json!({ "address": "office@example.com" });
-    let (_, mail) = drive.send(&cookie, "POST", "/mail-recipients", mail).await;
+    let (_, mail) = api.send(&cookie, "POST", "/mail-recipients", mail).await;
     let mail = format!("/mail-recipients/{}", mail["id"].as_str().unwrap());
     let test = format!("{mail}/test");
-    drive.send(&cookie, "POST", &test, json!({})).await;
-    drive.wait_for_attempt(&cookie, &mail).await;
+    api.send(&cookie, "POST", &test, json!({})).await;
+    api.wait_for_attempt(&cookie, &mail).await;
     let feed = json!({ "name": "Fleet" });
-    let (_, feed) = drive.send(&cookie, "POST", "/calendar-feeds", feed).await;
+    let (_, feed) = api.send(&cookie, "POST", "/calendar-feeds", feed).await;
     let feed = feed["url"]
         .as_str()
         .unwrap()
         .split_once("?token=")
         .unwrap()
         .1;
-    let feed = drive.record(&json!(feed));
+    let feed = api.record(&json!(feed));
     let read = format!("/calendar.ics?token={feed}");
-    drive.send("", "GET", &read, json!({})).await;
+    api.send("", "GET", &read, json!({})).await;
 
-    let again = json!({ "password": password });
-    let (_, begun) = drive
-        .send(&cookie, "POST", "/me/second-factor", again)
-        .await;
-    let secret = drive.record(&begun["secret"]);
+    let proof = json!({ "password": password });
+    let (_, begun) = api.send(&cookie, "POST", "/me/second-factor", proof).await;
+    let secret = api.record(&begun["secret"]);
     let unix_s = Clock::System.now().micros() / 1_000_000;
     let code = json!({ "code": app_code(&secret, unix_s) });
     let confirm = "/me/second-factor/confirm";
-    let (_, codes) = drive.send(&cookie, "POST", confirm, code).await;
+    let (_, codes) = api.send(&cookie, "POST", confirm, code).await;
     for code in codes["recovery_codes"].as_array().unwrap() {
-        drive.record(code);
+        api.record(code);
     }
     let code = codes["recovery_codes"][0].clone();
     let right = json!({ "email": email, "password": password, "code": code });
-    let (cookie, _) = drive.send("", "POST", "/session", right).await;
+    let (cookie, _) = api.send("", "POST", "/session", right).await;
     let session = cookie.split_once('=').unwrap().1.to_owned();
-    drive.secrets.push(session);
+    api.secrets.push(session);
     let colleague = json!({ "email": "bob@example.com", "name": "Bob", "role": "viewer" });
-    let (_, bob) = drive.send(&cookie, "POST", "/users", colleague).await;
-    let code = drive.record(&bob["invitation"]["code"]);
-    drive
-        .secrets
-        .push("a lantern astern at midnight".to_owned());
+    let (_, bob) = api.send(&cookie, "POST", "/users", colleague).await;
+    let code = api.record(&bob["invitation"]["code"]);
+    api.secrets.push("a lantern astern at midnight".to_owned());
     let accept = json!({ "code": code, "password": "a lantern astern at midnight" });
-    drive.send("", "POST", "/invitations/accept", accept).await;
+    api.send("", "POST", "/invitations/accept", accept).await;
     let changed = json!({ "current": password, "new": "seven gulls over the quay" });
-    drive.secrets.push("seven gulls over the quay".to_owned());
-    drive.send(&cookie, "PUT", "/me/password", changed).await;
+    api.secrets.push("seven gulls over the quay".to_owned());
+    api.send(&cookie, "PUT", "/me/password", changed).await;
 
-    let said = program.stop();
-    assert!(said.contains("TRACE") && said.contains("sqlx"), "{said}");
-    for secret in &drive.secrets {
+    let log = program.stop();
+    assert!(log.contains("TRACE") && log.contains("sqlx"), "{log}");
+    for secret in &api.secrets {
         assert!(!secret.is_empty());
-        let line = said.lines().find(|line| line.contains(secret.as_str()));
+        let line = log.lines().find(|line| line.contains(secret.as_str()));
         assert_eq!(line, None, "{secret:?} is in the log");
     }
 }

@@ -51,8 +51,8 @@ async fn an_idle_session_expires_sooner(server: TestServer) {
     let ada = server.admin("ada").await;
     server.advance(24.0 * 3600.0);
     assert_eq!(ada.get("/me").await.problem(), "unauthenticated");
-    let again = Person::sign_in(&server, ada.operator, &ada.email).await;
-    let listed = again.get("/sessions").await.good();
+    let repeated = Person::sign_in(&server, ada.operator, &ada.email).await;
+    let listed = repeated.get("/sessions").await.good();
     assert_eq!(listed["items"].as_array().unwrap().len(), 1);
     server.finish().await;
 }
@@ -242,8 +242,8 @@ async fn guesses_are_rate_limited_whether_or_not_the_email_exists(server: TestSe
 
 async fn concurrent_guesses_cannot_bypass_the_rate_limit(server: TestServer) {
     let guesses = (0..30).map(|_| try_sign_in(&server, "ada@example.com", "wrong"));
-    let answers = futures_util::future::join_all(guesses).await;
-    let judged = answers
+    let responses = futures_util::future::join_all(guesses).await;
+    let judged = responses
         .iter()
         .filter(|response| response.status == 401)
         .count();
@@ -320,8 +320,8 @@ async fn a_token_has_its_scope_until_revoked(server: TestServer) {
 
 async fn a_token_expires(server: TestServer) {
     let ada = server.admin("ada").await;
-    let wanted = json!({ "name": "ERP", "scope": "read", "expires_at": "2026-11-21T08:00:00Z" });
-    let made = ada.post("/tokens", &wanted).await.good();
+    let new_token = json!({ "name": "ERP", "scope": "read", "expires_at": "2026-11-21T08:00:00Z" });
+    let made = ada.post("/tokens", &new_token).await.good();
     let ask = || {
         let request = server.http.get(format!("{}/api/v1/me", server.url));
         ApiResponse::of(request.bearer_auth(made["token"].as_str().unwrap()))
@@ -332,7 +332,7 @@ async fn a_token_expires(server: TestServer) {
     assert!(listed["items"][0].get("token").is_none());
     server.advance(3600.0);
     assert_eq!(ask().await.status, 401);
-    let over = ada.post("/tokens", &wanted).await;
+    let over = ada.post("/tokens", &new_token).await;
     assert_eq!(over.problem(), "invalid");
     server.finish().await;
 }

@@ -88,8 +88,8 @@ async fn an_endless_handshake_does_not_delay_others() {
     let served = serve(folder).await;
     let address = ("127.0.0.1", served.port);
     let _silent = TcpStream::connect(address).await.unwrap();
-    let asked = timeout(PATIENCE, ask(&served.url, &authority)).await;
-    assert_eq!(asked.unwrap().unwrap(), "ashore");
+    let result = timeout(PATIENCE, ask(&served.url, &authority)).await;
+    assert_eq!(result.unwrap().unwrap(), "ashore");
 }
 
 #[tokio::test]
@@ -124,7 +124,7 @@ async fn an_unusable_certificate_is_refused_by_file_name() {
     assert!(refusal().contains("chain.pem: contains no certificate"));
     renew_certificate(folder.path());
     fs::write(&files.chain, chain).unwrap();
-    assert!(refusal().contains("key.pem: not the certificate's key"));
+    assert!(refusal().contains("key.pem: is not the certificate's key"));
     fs::write(&files.key, "").unwrap();
     assert!(refusal().contains("key.pem"), "{}", refusal());
 }

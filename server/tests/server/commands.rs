@@ -32,15 +32,15 @@ fn deviation_reads_the_output_of_fit() {
     std::fs::write(folder.path().join("model.json"), &fitted).unwrap();
 
     let place = ["--lat", "48", "--lon=-6", "--date", "2026-11-15"];
-    let asked = ["deviation", "--model", "model.json", "--json"];
-    let rows = good(&run(folder.path(), &[&asked[..], &place].concat()));
+    let command_line = ["deviation", "--model", "model.json", "--json"];
+    let rows = good(&run(folder.path(), &[&command_line[..], &place].concat()));
     let rows: Value = serde_json::from_str(&rows).unwrap();
     let rows = rows["rows"].as_array().unwrap();
     assert_eq!(rows.len(), 24);
     assert!(rows[6]["band95_deg"].as_f64().unwrap() > 0.0);
 
-    let shown = good(&run(folder.path(), &[&asked[..3], &place].concat()));
-    assert_eq!(shown.lines().count(), 25, "{shown}");
+    let printed = good(&run(folder.path(), &[&command_line[..3], &place].concat()));
+    assert_eq!(printed.lines().count(), 25, "{printed}");
 }
 
 #[test]
@@ -52,8 +52,8 @@ fn a_model_file_may_have_parameters_alone() {
     }});
     std::fs::write(folder.path().join("m.json"), model.to_string()).unwrap();
     let field = ["--h-nt", "24000", "--z-nt=-38000", "--step-deg", "90"];
-    let asked = ["deviation", "--model", "m.json", "--json"];
-    let output = run(folder.path(), &[&asked[..], &field].concat());
+    let command_line = ["deviation", "--model", "m.json", "--json"];
+    let output = run(folder.path(), &[&command_line[..], &field].concat());
     let rows: Value = serde_json::from_str(&good(&output)).unwrap();
     assert_eq!(rows["rows"].as_array().unwrap().len(), 4);
     assert_eq!(rows["rows"][0]["band95_deg"], json!(null));
@@ -159,13 +159,13 @@ fn a_closed_output_pipe_is_not_an_error() {
     let folder = tempfile::tempdir().unwrap();
     samples_csv(folder.path());
     let created = ["admin", "create", "operator", "--name", "Nao"];
-    let asked: [&[&str]; 4] = [
+    let command_line: [&[&str]; 4] = [
         &["analyse", "samples.csv"],
         &["fit", "samples.csv"],
         &["openapi"],
         &created,
     ];
-    for arguments in asked {
+    for arguments in command_line {
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let output = command(
@@ -276,7 +276,7 @@ fn bad_input_is_refused_by_file_line_and_field() {
         "model.json",
         "{\n\"parameters_over_lambda\": {\"bx_nt\": 1}\n}",
     );
-    let asked = [
+    let command_line = [
         "deviation",
         "--model",
         "model.json",
@@ -285,9 +285,15 @@ fn bad_input_is_refused_by_file_line_and_field() {
         "--z-nt",
         "0",
     ];
-    assert_refused(&run(folder.path(), &asked), &["model.json:2", "chi13"]);
+    assert_refused(
+        &run(folder.path(), &command_line),
+        &["model.json:2", "chi13"],
+    );
     write("model.json", "{\n\"version\": 2,\n\"parameters\": {}\n}");
-    assert_refused(&run(folder.path(), &asked), &["model.json:2", "version 2"]);
+    assert_refused(
+        &run(folder.path(), &command_line),
+        &["model.json:2", "version 2"],
+    );
     let outside = ["field", "--lat", "95", "--lon", "0", "--date", "2026-01-01"];
     assert_refused(&run(folder.path(), &outside), &["--lat", "95"]);
     let old = ["field", "--lat", "45", "--lon", "0", "--date", "1850-01-01"];

@@ -49,8 +49,8 @@ async fn the_health_routes_report_the_servers_state() {
 #[tokio::test]
 async fn metrics_need_the_local_machine_or_a_token() {
     let read = async |server: &TestServer, header: (&str, &str)| {
-        let asked = server.http.get(format!("{}/metrics", server.url));
-        ApiResponse::of(asked.header(header.0, header.1))
+        let request = server.http.get(format!("{}/metrics", server.url));
+        ApiResponse::of(request.header(header.0, header.1))
             .await
             .status
     };

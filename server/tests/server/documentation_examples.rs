@@ -41,7 +41,7 @@ fn ship(binnacle: &Binnacle, berth: &Value) -> (Value, [f64; 3]) {
     let position = Position::new(number("lat"), number("lon")).unwrap();
     let found = field(FieldModel::Igrf14, position, 0.0, time).unwrap();
     let earth = found.for_ship();
-    let wanted = ShipMagnetism {
+    let target = ShipMagnetism {
         chi: [[-0.09, 0.001, -0.002], [0.002, -0.11, 0.001], [0.0; 3]],
         b_nt: [900.0, -600.0, 0.0],
     };
@@ -51,7 +51,7 @@ fn ship(binnacle: &Binnacle, berth: &Value) -> (Value, [f64; 3]) {
         correctors.as_ship(f64::INFINITY),
     );
     // The needles magnetise the spheres; they are out when the bowl is.
-    let mut bowl_out = wanted;
+    let mut bowl_out = target;
     for row in 0..3 {
         bowl_out.b_nt[row] += without.b_nt[row] - with.b_nt[row];
         for column in 0..3 {
@@ -67,7 +67,7 @@ fn ship(binnacle: &Binnacle, berth: &Value) -> (Value, [f64; 3]) {
     {
         covariance[index][index] = sd * sd;
     }
-    let parameters = wanted.parameters_over_lambda().unwrap();
+    let parameters = target.parameters_over_lambda().unwrap();
     let model = json!({ "parameters_over_lambda": parameters, "covariance": covariance });
     (model, field_nt)
 }
@@ -113,11 +113,11 @@ fn every_request_in_the_work_orders_page_is_in_the_openapi_document() {
         let path = path.replace('…', "/work-orders/{id}");
         let is_it = |known: &String| {
             let known = known.trim_start_matches("/api/v1");
-            let (known, asked) = (known.split('/'), path.split('/'));
-            let same = |(known, asked): (&str, &str)| {
-                known == asked || (known.starts_with('{') && asked.starts_with('{'))
+            let (known, requested) = (known.split('/'), path.split('/'));
+            let same = |(known, requested): (&str, &str)| {
+                known == requested || (known.starts_with('{') && requested.starts_with('{'))
             };
-            known.clone().count() == asked.clone().count() && known.zip(asked).all(same)
+            known.clone().count() == requested.clone().count() && known.zip(requested).all(same)
         };
         let found = paths.iter().find(|(known, _)| is_it(known));
         let (_, methods) = found.unwrap_or_else(|| panic!("no {path}"));

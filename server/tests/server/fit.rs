@@ -33,8 +33,8 @@ fn every_method_fits_a_perfect_swing() {
     std::fs::write(folder.path().join("swing.csv"), two_latitudes()).unwrap();
     let fields = [(24_000.0, 38_500.0), (18_000.0, 45_000.0)];
     for method in METHODS {
-        let asked = ["fit", "swing.csv", "--json", "--method", method];
-        let model: Model = serde_json::from_str(&good(&run(folder.path(), &asked))).unwrap();
+        let arguments = ["fit", "swing.csv", "--json", "--method", method];
+        let model: Model = serde_json::from_str(&good(&run(folder.path(), &arguments))).unwrap();
         assert_eq!((model.samples_used, model.samples_rejected), (72, 0));
         for (h_nt, z_nt) in fields {
             let earth = EarthField { h_nt, z_nt };

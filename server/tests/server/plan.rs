@@ -228,14 +228,15 @@ fn plan_checks_the_field_after_the_steps() {
             &[&["plan"], &files[..], &berths[..]].concat(),
         )
     };
-    let said = |after: &Value| -> Value { serde_json::from_str(&good(&judged(after))).unwrap() };
+    let judgement =
+        |after: &Value| -> Value { serde_json::from_str(&good(&judged(after))).unwrap() };
     let planned: Setting = serde_json::from_value(best["setting"].clone()).unwrap();
-    let right = said(&after(&planned));
+    let right = judgement(&after(&planned));
     assert_eq!(right["verdict"], "as_planned", "{right}");
     assert_eq!(right["parts"].as_array().unwrap().len(), 2);
     // No step was done.
     let found: Setting = serde_json::from_value(binnacle()["setting"].clone()).unwrap();
-    let wrong = said(&after(&found));
+    let wrong = judgement(&after(&found));
     assert_ne!(wrong["verdict"], "as_planned", "{wrong}");
     let with = |path: &str, value: Value| {
         let mut after = after(&planned);

@@ -163,8 +163,8 @@ async fn a_withdrawn_entry_stays_and_cannot_be_changed(server: TestServer) {
     assert_eq!(withdrawn["withdrawn_by"], "ada@example.com");
     assert_eq!(withdrawn["withdrawal_reason"], "another ship");
     server.advance(5.0);
-    let again = ada.post(&withdraw, &json!({ "reason": "no" })).await.good();
-    assert_eq!(again, withdrawn);
+    let repeated = ada.post(&withdraw, &json!({ "reason": "no" })).await.good();
+    assert_eq!(repeated, withdrawn);
     assert_eq!(
         patch(&ada, &path, &json!({ "note": "x" })).await.problem(),
         "gone"
@@ -236,9 +236,9 @@ async fn a_report_repeated_under_its_key_is_one_entry(server: TestServer) {
         let body = json!({ "kind": "shock", "from": DAY, "note": note });
         ApiResponse::of(request.header("idempotency-key", "k").json(&body)).await
     };
-    let (first, again) = (report("aground").await, report("aground").await);
-    assert_eq!((first.status, again.status), (201, 201));
-    assert_eq!(first.json(), again.json());
+    let (first, repeated) = (report("aground").await, report("aground").await);
+    assert_eq!((first.status, repeated.status), (201, 201));
+    assert_eq!(first.json(), repeated.json());
     assert_eq!(report("afloat").await.problem(), "idempotency-key-reused");
     assert_eq!(listed(&ada, &nao, "").await.len(), 1);
     server.finish().await;

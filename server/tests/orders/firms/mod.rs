@@ -52,8 +52,8 @@ async fn a_platform_admin_engages_a_firm_for_an_operator(server: TestServer) {
     let dismissed = ApiResponse::of(root.request(Method::DELETE, &between)).await;
     assert_eq!(dismissed.status, 204, "{dismissed:?}");
     assert_eq!(names(&ada.get("/firms").await.good()), [""; 0]);
-    let again = ApiResponse::of(root.request(Method::DELETE, &between)).await;
-    assert_eq!(again.problem(), "not-found");
+    let repeated = ApiResponse::of(root.request(Method::DELETE, &between)).await;
+    assert_eq!(repeated.problem(), "not-found");
     server.finish().await;
 }
 
@@ -64,22 +64,22 @@ async fn a_firm_with_an_open_order_cannot_be_disengaged(server: TestServer) {
         let between = format!("/operators/{}/firms/{firm}", parties.ada.operator);
         ApiResponse::of(root.request(Method::DELETE, &between)).await
     };
-    let [(asked, rosa), (waits, _)] = &parties.firms[..] else {
+    let [(offered, rosa), (waiting, _)] = &parties.firms[..] else {
         unreachable!("there are two")
     };
-    for firm in [asked, waits] {
+    for firm in [offered, waiting] {
         let refused = part(*firm).await;
         assert_eq!(refused.problem(), "wrong-state");
         assert!(refused.text.contains("asked for one order"), "{refused:?}");
     }
     parties.post(rosa, "/accept", &json!({})).await.good();
     // The waiting firm gets the offer when the first firm gives the order back.
-    for firm in [asked, waits] {
+    for firm in [offered, waiting] {
         assert_eq!(part(*firm).await.problem(), "wrong-state");
     }
     let sold = json!({ "text": "sold" });
     parties.post(&parties.ada, "/cancel", &sold).await.good();
-    for firm in [asked, waits] {
+    for firm in [offered, waiting] {
         assert_eq!(part(*firm).await.status, 204);
     }
     server.finish().await;

@@ -59,14 +59,14 @@ impl<'a> Client<'a> {
         stdin.write_all(input).await.unwrap();
         drop(stdin);
         let done = child.wait_with_output().await.unwrap();
-        let said = [done.stdout, done.stderr].concat();
-        (done.status.code(), String::from_utf8(said).unwrap())
+        let output = [done.stdout, done.stderr].concat();
+        (done.status.code(), String::from_utf8(output).unwrap())
     }
 
     async fn good(&self, arguments: &[&str]) -> String {
-        let (code, said) = self.run(arguments, b"").await;
-        assert_eq!(code, Some(0), "{arguments:?}: {said}");
-        said
+        let (code, output) = self.run(arguments, b"").await;
+        assert_eq!(code, Some(0), "{arguments:?}: {output}");
+        output
     }
 }
 
@@ -81,11 +81,11 @@ async fn the_example_client_asks_for_the_compass_reading_before_the_first_step(s
     silent.as_object_mut().unwrap().remove("compass_deg");
     std::fs::write(folder.path().join("reading.json"), silent.to_string()).unwrap();
     let adjust = ["adjust", order, "--reading", "reading.json"];
-    let (code, said) = client.run(&adjust, b"").await;
-    assert_ne!(code, Some(0), "nobody answered: {said}");
+    let (code, output) = client.run(&adjust, b"").await;
+    assert_ne!(code, Some(0), "nobody answered: {output}");
     assert!(
-        said.contains("the compass reads, before the step"),
-        "{said}"
+        output.contains("the compass reads, before the step"),
+        "{output}"
     );
     let adjusted = client.good(&["adjust", order, "--as-foretold"]).await;
     assert!(adjusted.contains("adjusting"), "{adjusted}");
@@ -129,9 +129,9 @@ async fn the_example_client_completes_an_order(server: TestServer) {
             .await
             .contains("offered, answer by")
     );
-    let (code, said) = client.run(&["on-board", order], b"").await;
+    let (code, output) = client.run(&["on-board", order], b"").await;
     assert_eq!(code, Some(2));
-    assert!(said.contains("wrong-state"), "{said}");
+    assert!(output.contains("wrong-state"), "{output}");
     let accepted = client.good(&[&["accept", order], &WHO[..]].concat()).await;
     assert!(accepted.contains("accepted"), "{accepted}");
     client.good(&["on-board", order]).await;
@@ -193,8 +193,8 @@ async fn the_example_client_completes_an_order(server: TestServer) {
         "--now",
         &now_s,
     ];
-    let (code, said) = client.run(&check, body.as_bytes()).await;
-    assert_eq!((code, said.trim()), (Some(0), "from Binnacle"));
+    let (code, output) = client.run(&check, body.as_bytes()).await;
+    assert_eq!((code, output.trim()), (Some(0), "from Binnacle"));
     let forged = body.replace("adjusted", "verified");
     assert_eq!(client.run(&check, forged.as_bytes()).await.0, Some(1));
     server.finish().await;
@@ -216,8 +216,8 @@ async fn the_example_client_negotiates_sends_messages_and_gets_events(server: Te
     let order = parties.order.as_str();
     let offered = client.good(&["order", order]).await;
     assert!(offered.contains("offered at 1800.00 euros"), "{offered}");
-    let (code, said) = client.run(&["propose", order], b"").await;
-    assert_eq!(code, Some(2), "{said}");
+    let (code, output) = client.run(&["propose", order], b"").await;
+    assert_eq!(code, Some(2), "{output}");
     let fee = ["propose", order, "--fee", "2100", "--text", "Two teams."];
     assert!(client.good(&fee).await.contains("proposed"));
     client
@@ -236,11 +236,11 @@ async fn the_example_client_negotiates_sends_messages_and_gets_events(server: Te
     assert!(agreed.contains("agreed at 2100.00 euros"), "{agreed}");
     // All entries since the start: offer, proposal, both messages, agreement.
     let none = Uuid::nil().to_string();
-    let heard = client
+    let events = client
         .good(&["events", "--last", &none, "--count", "5"])
         .await;
     let of_order = format!("work_order  order {order}");
-    assert_eq!(heard.matches(&of_order).count(), 5, "{heard}");
+    assert_eq!(events.matches(&of_order).count(), 5, "{events}");
     server.finish().await;
 }
 
@@ -335,8 +335,8 @@ async fn a_key_needs_proof_of_possession_and_signs_until_revoked(server: TestSer
     }
     let made = rosa.post(&path, &new(&public_key, &mine)).await;
     assert_eq!(made.status, 201, "{made:?}");
-    let again = rosa.post(&path, &new(&public_key, &mine)).await;
-    assert_eq!(again.problem(), "wrong-state");
+    let repeated = rosa.post(&path, &new(&public_key, &mine)).await;
+    assert_eq!(repeated.problem(), "wrong-state");
     for who in [&ada, &other] {
         let foreign = who.post(&path, &new(&public_key, &mine)).await;
         assert_eq!(foreign.problem(), "not-found");

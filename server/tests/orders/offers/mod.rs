@@ -80,9 +80,9 @@ async fn the_next_firm_gets_the_offer_when_one_declines_or_is_silent(server: Tes
     assert_eq!(no.status, 204, "{no:?}");
     assert_eq!(parties.offers().await, ["declined", "open", "waiting"]);
     assert_eq!(rosa.get(&parties.path("")).await.problem(), "not-found");
-    let again = parties.post(rosa, "/accept", &json!({})).await;
-    assert_eq!(again.problem(), "wrong-state");
-    assert!(again.text.contains("declined"), "{again:?}");
+    let repeated = parties.post(rosa, "/accept", &json!({})).await;
+    assert_eq!(repeated.problem(), "wrong-state");
+    assert!(repeated.text.contains("declined"), "{repeated:?}");
 
     assert_eq!(lapse(&server.app).await.unwrap(), 0);
     server.advance(HOUR_S + 1.0);
@@ -103,8 +103,8 @@ async fn the_next_firm_gets_the_offer_when_one_declines_or_is_silent(server: Tes
     assert_eq!(pepa.get("/work-orders").await.good()["items"], json!([]));
 
     // It is offered again, also to the firm that did not respond.
-    let again = json!({ "firms": [parties.firms[1].0], "text": "Please." });
-    parties.post(&parties.ada, "/offer", &again).await.good();
+    let repeated = json!({ "firms": [parties.firms[1].0], "text": "Please." });
+    parties.post(&parties.ada, "/offer", &repeated).await.good();
     assert_eq!(parties.offers().await, ["declined", "lapsed", "open"]);
     let taken = parties.post(juan, "/accept", &json!({})).await.good();
     assert_eq!(taken["offers"].as_array().unwrap().len(), 1, "{taken}");
@@ -222,8 +222,8 @@ async fn a_firm_proposes_other_terms_and_the_operator_agrees(server: TestServer)
     assert_eq!(agreed["planned_at"], NEXT_DAY);
     assert_eq!(agreed["berth"], "A7", "{agreed}");
     assert_eq!(agreed["firm"], "rosa");
-    let again = parties.post(&parties.ada, "/accept", &json!({})).await;
-    assert_eq!(again.problem(), "wrong-state");
+    let repeated = parties.post(&parties.ada, "/accept", &json!({})).await;
+    assert_eq!(repeated.problem(), "wrong-state");
     server.finish().await;
 }
 
@@ -306,8 +306,8 @@ async fn messages_are_visible_to_the_operator_and_one_firm(server: TestServer) {
         .post(&parties.ada, "/messages", &json!({ "text": "?" }))
         .await;
     assert_eq!(which.problem(), "invalid");
-    let asked = json!({ "text": "Is the gangway to port?\nOr to starboard?" });
-    let sent = parties.post(rosa, "/messages", &asked).await;
+    let message = json!({ "text": "Is the gangway to port?\nOr to starboard?" });
+    let sent = parties.post(rosa, "/messages", &message).await;
     assert_eq!(sent.status, 204, "{sent:?}");
     let response = json!({ "firm_id": rosas, "text": "To port." });
     let sent = parties.post(&parties.ada, "/messages", &response).await;
@@ -319,7 +319,7 @@ async fn messages_are_visible_to_the_operator_and_one_firm(server: TestServer) {
         if let [first, second] = &items[..] {
             assert_eq!(
                 (&first["text"], &first["from_firm"]),
-                (&asked["text"], &json!(true))
+                (&message["text"], &json!(true))
             );
             assert_eq!(
                 (&second["text"], &second["from_firm"]),
@@ -370,9 +370,9 @@ async fn an_invalid_offer_is_refused_whole(server: TestServer) {
         .await
         .good();
     assert_eq!(made["state"], "offered");
-    let again = ApiResponse::of(request().header("Idempotency-Key", "1"))
+    let repeated = ApiResponse::of(request().header("Idempotency-Key", "1"))
         .await
         .good();
-    assert_eq!(made["id"], again["id"]);
+    assert_eq!(made["id"], repeated["id"]);
     server.finish().await;
 }

@@ -46,8 +46,8 @@ async fn a_firms_webhook_gets_signed_events_of_its_orders_in_order(server: TestS
     offer["at_once"] = json!(true);
     parties.post(&parties.ada, "/offer", &offer).await.good();
     parties.post(rosa, "/propose", &proposal()).await.good();
-    let asked = json!({ "firm_id": parties.firms[1].0, "text": "And you?" });
-    parties.post(&parties.ada, "/messages", &asked).await;
+    let message = json!({ "firm_id": parties.firms[1].0, "text": "And you?" });
+    parties.post(&parties.ada, "/messages", &message).await;
     parties.post(juan, "/accept", &json!({})).await.good();
     parties.post(juan, "/on-board", &json!({})).await.good();
     deliver(&server).await;
@@ -111,8 +111,8 @@ async fn a_failing_delivery_delays_only_its_own_order(server: TestServer) {
     let offer_and_ask = async |parties: &OfferParties| {
         let offered = parties.post(&parties.ada, "/offer", &parties.offer()).await;
         offered.good();
-        let asked = parties.post(&parties.ada, "/messages", &ask).await;
-        assert_eq!(asked.status, 204, "{asked:?}");
+        let message = parties.post(&parties.ada, "/messages", &ask).await;
+        assert_eq!(message.status, 204, "{message:?}");
     };
     offer_and_ask(&parties).await;
     let first = parties.order.clone();
@@ -168,8 +168,8 @@ async fn a_firm_can_resend_its_dead_letter(server: TestServer) {
         .await
         .good();
     let id = dead["items"][0]["id"].as_str().unwrap().to_owned();
-    let again = path(&webhook, &format!("/deliveries/{id}/resend"));
-    assert_eq!(rosa.post(&again, &json!({})).await.status, 202);
+    let repeated = path(&webhook, &format!("/deliveries/{id}/resend"));
+    assert_eq!(rosa.post(&repeated, &json!({})).await.status, 202);
     assert_eq!(deliver(&server).await, [Sent::Delivered]);
     assert_eq!(receiver.kinds().len(), 3);
     server.finish().await;
@@ -198,25 +198,25 @@ async fn a_firm_gets_live_events_of_its_orders(server: TestServer) {
     let [(_, rosa), (_, juan)] = &parties.firms[..] else {
         unreachable!("there are two")
     };
-    let mut heard = Vec::new();
+    let mut events = Vec::new();
     for who in [rosa, juan] {
         let nil = "00000000-0000-0000-0000-000000000000";
         let request = who
             .request(Method::GET, "/events")
             .header("last-event-id", nil);
         let mut response = request.send().await.unwrap();
-        if heard.is_empty() {
+        if events.is_empty() {
             // Missed events come at once.
             let chunk = response.chunk().await.unwrap().unwrap();
-            heard.push(String::from_utf8(chunk.to_vec()).unwrap());
+            events.push(String::from_utf8(chunk.to_vec()).unwrap());
         } else {
             // Nothing was missed: the first event is about the new offer.
             parties.post(rosa, "/decline", &json!({})).await;
             let chunk = response.chunk().await.unwrap().unwrap();
-            heard.push(String::from_utf8(chunk.to_vec()).unwrap());
+            events.push(String::from_utf8(chunk.to_vec()).unwrap());
         }
     }
-    for text in &heard {
+    for text in &events {
         assert!(text.contains("work_order"), "{text}");
         assert!(text.contains(&parties.order), "{text}");
         assert_eq!(text.matches("event: vessel").count(), 1, "{text}");

@@ -24,12 +24,12 @@ async fn one_of_two_firms_accepting_at_once_gets_the_order(server: TestServer) {
     let yes = json!({});
     let accept = |index: usize| parties.post(&parties.firms[index].1, "/accept", &yes);
     let (a, b, c) = tokio::join!(accept(0), accept(1), accept(2));
-    let answers = [a, b, c];
+    let responses = [a, b, c];
     let won: Vec<usize> = (0..3)
-        .filter(|index| answers[*index].status == 200)
+        .filter(|index| responses[*index].status == 200)
         .collect();
-    assert_eq!(won.len(), 1, "{answers:?}");
-    for (index, response) in answers.iter().enumerate() {
+    assert_eq!(won.len(), 1, "{responses:?}");
+    for (index, response) in responses.iter().enumerate() {
         let (_, adjuster) = &parties.firms[index];
         if won.contains(&index) {
             assert_eq!(

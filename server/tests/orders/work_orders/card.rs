@@ -131,8 +131,8 @@ async fn an_order_closed_without_verification_keeps_its_card_predicted(server: T
     let card = job.card().await;
     assert_eq!(card["next_due"], Value::Null, "{card}");
     let log = job.person.get(&job.path("/entries")).await.good();
-    let said = "closed without verification: sold for scrap";
-    assert!(log.to_string().contains(said), "{log}");
+    let closing_text = "closed without verification: sold for scrap";
+    assert!(log.to_string().contains(closing_text), "{log}");
     let audit = job.person.get("/audit").await.good();
     let is_closing = |line: &Value| line["route"] == "/api/v1/work-orders/{id}/close";
     let lines = audit["items"].as_array().unwrap();
@@ -145,8 +145,8 @@ async fn an_order_closed_without_verification_keeps_its_card_predicted(server: T
     assert_eq!(sent["state"], "closed_unverified");
     assert_eq!(sent["verification"], Value::Null);
     job.expect_card_status("predicted").await;
-    let again = job.post("/close", &json!({ "text": "again" })).await;
-    assert_eq!(again.problem(), "wrong-state");
+    let repeated = job.post("/close", &json!({ "text": "again" })).await;
+    assert_eq!(repeated.problem(), "wrong-state");
     let needs = job.person.get("/needs").await.good();
     let reason = needs["items"][0]["reason"].as_str().unwrap();
     assert!(

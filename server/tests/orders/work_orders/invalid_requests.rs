@@ -39,8 +39,11 @@ async fn a_request_repeated_under_its_key_writes_one_entry(server: TestServer) {
         let first = send(rest, body.clone(), &key).await;
         assert_eq!(first.status, status, "{first:?}");
         let seq = job.view_order().await["last_seq"].clone();
-        let again = send(rest, body, &key).await;
-        assert_eq!((again.status, &again.text), (first.status, &first.text));
+        let repeated = send(rest, body, &key).await;
+        assert_eq!(
+            (repeated.status, &repeated.text),
+            (first.status, &first.text)
+        );
         assert_eq!(job.view_order().await["last_seq"], seq, "{rest}");
     }
     // A repeated step is not the next step.
@@ -48,9 +51,9 @@ async fn a_request_repeated_under_its_key_writes_one_entry(server: TestServer) {
     let path = format!("/steps/{}", step["number"]);
     let read = json!({ "after_deg": step["expected_compass_deg"] });
     let first = send(&path, read.clone(), "step").await.good();
-    let again = send(&path, read, "step").await.good();
+    let repeated = send(&path, read, "step").await.good();
     assert_eq!(first["steps_done"], 1);
-    assert_eq!(first, again);
+    assert_eq!(first, repeated);
     let other = send(&path, json!({ "after_deg": 1.0 }), "step").await;
     assert_eq!(other.problem(), "idempotency-key-reused");
     server.finish().await;
@@ -103,7 +106,7 @@ async fn a_bad_reading_is_logged_and_refused_with_likely_causes(server: TestServ
         body
     };
     let (forward, starboard) = (part("forward"), part("starboard"));
-    for (entries, (body, said)) in [
+    for (entries, (body, message)) in [
         (
             with(json!({ "forward": forward / 100.0, "starboard": starboard / 100.0 })),
             "the figures are in gauss",
@@ -127,7 +130,7 @@ async fn a_bad_reading_is_logged_and_refused_with_likely_causes(server: TestServ
         );
         let refusal = response.json()["refusals"][0].clone();
         let could_be = refusal["could_be"].to_string();
-        assert!(could_be.contains(said), "{said}: {refusal}");
+        assert!(could_be.contains(message), "{message}: {refusal}");
         assert!(!could_be.contains("across the needle"), "{refusal}");
         assert!(!refusal["cures"].as_array().unwrap().is_empty());
         let order = job.view_order().await;

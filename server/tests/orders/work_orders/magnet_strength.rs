@@ -78,9 +78,9 @@ async fn job_with_wrong_hole(server: &TestServer) -> (Job, Value, Value, f64) {
             let compass_deg = (before_deg + turned_deg).rem_euclid(360.0);
             let read = json!({ "after_deg": compass_deg });
             let order = job.post(&path, &read).await.good();
-            let said = &order["last_step"];
-            assert_eq!(said["verdict"], "other_strength", "{said}");
-            let words = said["words"].as_str().unwrap();
+            let new_setting = &order["last_step"];
+            assert_eq!(new_setting["verdict"], "other_strength", "{new_setting}");
+            let words = new_setting["words"].as_str().unwrap();
             assert!(
                 words.contains(&format!("or stands at hole {hole}")),
                 "{words}"
@@ -93,8 +93,8 @@ async fn job_with_wrong_hole(server: &TestServer) -> (Job, Value, Value, f64) {
 }
 
 /// Follows a new plan with magnets of catalogue strength.
-async fn follow_new_plan(job: &Job, said: &Value) {
-    let order = job.post("/corrector-settings", said).await.good();
+async fn follow_new_plan(job: &Job, new_setting: &Value) {
+    let order = job.post("/corrector-settings", new_setting).await.good();
     assert_eq!(order["last_step"], Value::Null);
     let mut order = job.post("/plan", &json!({})).await.good();
     while let Some(step) = order["next_step"].as_object() {
@@ -114,10 +114,10 @@ async fn follow_new_plan(job: &Job, said: &Value) {
 
 async fn a_tray_in_a_wrong_hole_does_not_change_the_magnet_strength(server: TestServer) {
     let (job, _, setting, compass_deg) = job_with_wrong_hole(&server).await;
-    let said = json!({
+    let new_setting = json!({
         "setting": setting, "compass_deg": compass_deg, "note": "counted from the top",
     });
-    follow_new_plan(&job, &said).await;
+    follow_new_plan(&job, &new_setting).await;
     server.finish().await;
 }
 
@@ -125,9 +125,9 @@ async fn a_corrected_tray_does_not_change_the_magnet_strength(server: TestServer
     let (job, step, setting, compass_deg) = job_with_wrong_hole(&server).await;
     let as_planned = &step["setting_after"];
     let compass_deg = compass_deg + turn_deg(&setting, as_planned);
-    let said = json!({
+    let new_setting = json!({
         "setting": as_planned, "compass_deg": compass_deg.rem_euclid(360.0),
     });
-    follow_new_plan(&job, &said).await;
+    follow_new_plan(&job, &new_setting).await;
     server.finish().await;
 }

@@ -95,8 +95,8 @@ async fn cargo_logged_after_the_reading_stops_the_work(server: TestServer) {
     job.withdraw(&steel).await;
     let order = job.follow_plan().await;
     let steel = job.load_steel(since).await;
-    let again = second_reading(&order["plan"]["plan"]["setting"]);
-    held(job.post("/second-reading", &again).await);
+    let repeated = second_reading(&order["plan"]["plan"]["setting"]);
+    held(job.post("/second-reading", &repeated).await);
     held(job.post("/complete", &completion_details()).await);
     job.withdraw(&steel).await;
     job.post("/complete", &completion_details()).await.good();
@@ -127,8 +127,8 @@ async fn a_completion_cannot_be_dated_before_its_steps(server: TestServer) {
     job.person = Person::sign_in(&server, job.person.operator, &job.person.email).await;
     let order = job.follow_plan().await;
     // This time is before the steps too, like that of the berth reading.
-    let again = second_reading(&order["plan"]["plan"]["setting"]);
-    let refused = job.post("/second-reading", &again).await;
+    let repeated = second_reading(&order["plan"]["plan"]["setting"]);
+    let refused = job.post("/second-reading", &repeated).await;
     assert_eq!(refused.problem(), "invalid");
     assert!(refused.text.contains("before the last step"), "{refused:?}");
     let mut early = completion_details();
@@ -150,14 +150,14 @@ async fn an_unverified_prediction_does_not_count_as_recent(server: TestServer) {
         .await
         .good();
     made["id"].as_str().unwrap().clone_into(&mut job.order);
-    let mut again = reading();
+    let mut repeated = reading();
     let there = second_reading(&done["setting"]);
     for part in ["forward", "starboard"] {
-        again[part] = there[part].clone();
+        repeated[part] = there[part].clone();
     }
-    again.as_object_mut().unwrap().remove("compass_deg");
-    again["at"] = json!(AT);
-    job.post("/berth-reading", &again).await.good();
+    repeated.as_object_mut().unwrap().remove("compass_deg");
+    repeated["at"] = json!(AT);
+    job.post("/berth-reading", &repeated).await.good();
     let offer = job.person.get(&job.path("/plan")).await.good();
     let note = offer["notes"][0].as_str().unwrap();
     assert!(

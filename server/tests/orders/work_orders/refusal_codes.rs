@@ -117,9 +117,9 @@ async fn a_lambda_contradicting_the_last_adjustment_needs_a_logbook_entry(server
         .clone_into(&mut job.order);
     let read = |times: f64| {
         let mut body = reading();
-        let again = second_reading(&setting);
+        let repeated = second_reading(&setting);
         for name in ["forward", "starboard"] {
-            body[name] = json!(again[name].as_f64().unwrap() * times);
+            body[name] = json!(repeated[name].as_f64().unwrap() * times);
         }
         body["compass_deg"] = Value::Null;
         body
@@ -172,9 +172,9 @@ async fn a_step_is_done_by_one_of_two_browsers(server: TestServer) {
     let path = format!("/steps/{}", step["number"]);
     let read = json!({ "after_deg": step["expected_compass_deg"] });
     let (one, other) = tokio::join!(job.post(&path, &read), job.post(&path, &read));
-    let mut answers = [one.status, other.status];
-    answers.sort_unstable();
-    assert_eq!(answers, [200, 409], "{one:?} {other:?}");
+    let mut statuses = [one.status, other.status];
+    statuses.sort_unstable();
+    assert_eq!(statuses, [200, 409], "{one:?} {other:?}");
     assert_eq!(job.view_order().await["last_seq"], 4, "it is done once");
     server.finish().await;
 }

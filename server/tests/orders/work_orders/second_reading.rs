@@ -38,9 +38,9 @@ async fn a_second_reading_confirms_an_adjustment(server: TestServer) {
         .post("/second-reading", &second_reading(&plan["setting"]))
         .await;
     let order = order.good();
-    let said = &order["second_reading"];
-    assert_eq!(said["verdict"], "as_planned", "{said}");
-    assert_eq!(said["parts"].as_array().unwrap().len(), 2);
+    let result = &order["second_reading"];
+    assert_eq!(result["verdict"], "as_planned", "{result}");
+    assert_eq!(result["parts"].as_array().unwrap().len(), 2);
     let done = job.post("/complete", &completion_details()).await.good();
     assert_ne!(
         done["completion"]["model"]["covariance"],
@@ -108,16 +108,16 @@ async fn a_found_corrector_setting_explains_a_second_reading(server: TestServer)
     let nothing_done = json!({ "at": AT, "unit": "microtesla",
         "forward": reading()["forward"], "starboard": reading()["starboard"] });
     let order = job.post("/second-reading", &nothing_done).await.good();
-    let said = &order["second_reading"];
-    assert_ne!(said["verdict"], "as_planned", "{said}");
+    let result = &order["second_reading"];
+    assert_ne!(result["verdict"], "as_planned", "{result}");
     // They stand as found: the reading is explained, and a plan is needed.
     let before: Value = serde_json::from_value(binnacle()["setting"].clone()).unwrap();
     let stand = json!({ "setting": before, "compass_deg": reading()["compass_deg"] });
     let order = job.post("/corrector-settings", &stand).await.good();
     assert_eq!(order["second_reading"], Value::Null);
     assert_eq!(order["state"], "measured");
-    let again = job.post("/second-reading", &nothing_done).await;
-    assert_eq!(again.problem(), "wrong-state");
+    let repeated = job.post("/second-reading", &nothing_done).await;
+    assert_eq!(repeated.problem(), "wrong-state");
     server.finish().await;
 }
 
@@ -133,20 +133,20 @@ async fn residuals_over_the_limits_are_planned_again_from_the_second_reading(ser
     let order = job.adjust().await;
     let setting = &order["plan"]["plan"]["setting"];
     let before = order["plan"]["plan"]["before"].clone();
-    let (mut said, mut off) = (Value::Null, Value::Null);
+    let (mut result, mut off) = (Value::Null, Value::Null);
     for (forward, starboard) in [(0.7, 0.7), (0.7, -0.7), (-0.7, 0.7), (-0.7, -0.7)] {
         off = second_reading(setting);
         off["forward"] = json!(number(&off["forward"]) + forward);
         off["starboard"] = json!(number(&off["starboard"]) + starboard);
         let order = job.post("/second-reading", &off).await.good();
-        said = order["second_reading"].clone();
-        if said["verdict"] == "replan" {
+        result = order["second_reading"].clone();
+        if result["verdict"] == "replan" {
             break;
         }
-        assert_eq!(said["verdict"], "as_planned", "{said}");
+        assert_eq!(result["verdict"], "as_planned", "{result}");
     }
-    assert_eq!(said["verdict"], "replan", "{said}");
-    assert_eq!(said["refusals"][0]["refusal"], "residual_too_large");
+    assert_eq!(result["verdict"], "replan", "{result}");
+    assert_eq!(result["refusals"][0]["refusal"], "residual_too_large");
     let held = job.post("/complete", &completion_details()).await;
     assert_eq!(held.problem(), "wrong-state");
     // Another reading may agree with the plan, and replaces the earlier one.
@@ -227,31 +227,31 @@ async fn a_compass_reading_against_the_field_is_not_confirmed(server: TestServer
     let job = Job::begin(&server).await;
     let order = job.adjust().await;
     let compass_deg = number(&order["compass_deg"]);
-    let mut again = second_reading(&order["plan"]["plan"]["setting"]);
-    again["compass_deg"] = json!((compass_deg + 145.0).rem_euclid(360.0));
-    let said = job.post("/second-reading", &again).await.good()["second_reading"].clone();
-    assert_eq!(said["verdict"], "unexplained");
-    let words = said["words"].as_str().unwrap();
+    let mut repeated = second_reading(&order["plan"]["plan"]["setting"]);
+    repeated["compass_deg"] = json!((compass_deg + 145.0).rem_euclid(360.0));
+    let result = job.post("/second-reading", &repeated).await.good()["second_reading"].clone();
+    assert_eq!(result["verdict"], "unexplained");
+    let words = result["words"].as_str().unwrap();
     assert!(words.starts_with("the compass read"), "{words}");
     assert_eq!(
-        said["could_be"][0],
+        result["could_be"][0],
         "the compass was misread, or its heading mistyped"
     );
     // A mistake that explains both is listed before one that explains the compass alone.
-    let mut swapped = again.clone();
+    let mut swapped = repeated.clone();
     swapped["compass_deg"] = json!(compass_deg);
-    swapped["forward"] = again["starboard"].clone();
-    swapped["starboard"] = again["forward"].clone();
-    let said = job.post("/second-reading", &swapped).await.good()["second_reading"].clone();
-    assert_eq!(said["verdict"], "unexplained");
-    assert_eq!(said["could_be"][0], "the magnetometer's axes are swapped");
+    swapped["forward"] = repeated["starboard"].clone();
+    swapped["starboard"] = repeated["forward"].clone();
+    let result = job.post("/second-reading", &swapped).await.good()["second_reading"].clone();
+    assert_eq!(result["verdict"], "unexplained");
+    assert_eq!(result["could_be"][0], "the magnetometer's axes are swapped");
     assert_eq!(
         job.post("/complete", &completion_details()).await.problem(),
         "wrong-state"
     );
-    again["compass_deg"] = json!(compass_deg);
-    let said = job.post("/second-reading", &again).await.good()["second_reading"].clone();
-    assert_eq!(said["verdict"], "as_planned", "{said}");
+    repeated["compass_deg"] = json!(compass_deg);
+    let result = job.post("/second-reading", &repeated).await.good()["second_reading"].clone();
+    assert_eq!(result["verdict"], "as_planned", "{result}");
     server.finish().await;
 }
 
@@ -302,11 +302,11 @@ async fn a_vertical_mismatch_needs_another_vertical_reading(server: TestServer) 
 async fn heeling_magnets_are_confirmed_only_by_the_vertical_part(server: TestServer) {
     let (job, first, setting) = adjusted_with_heeling_magnets(&server).await;
     let blind = without_down(&second_reading_after(&first, &setting));
-    let said = job.post("/second-reading", &blind).await.good()["second_reading"].clone();
-    assert_eq!(said["verdict"], "as_planned", "{said}");
+    let result = job.post("/second-reading", &blind).await.good()["second_reading"].clone();
+    assert_eq!(result["verdict"], "as_planned", "{result}");
     assert!(
-        said["words"].as_str().unwrap().contains("heeling"),
-        "{said}"
+        result["words"].as_str().unwrap().contains("heeling"),
+        "{result}"
     );
     job.post("/complete", &completion_details()).await.good();
     let record = job.person.get(&job.path("/record.json")).await.good();
@@ -336,8 +336,8 @@ async fn a_reading_of_an_unplanned_setting_is_a_basis_for_a_plan(server: TestSer
         .post("/second-reading", &second_reading(&other))
         .await
         .good();
-    let said = &order["second_reading"];
-    assert_eq!(said["verdict"], "replan", "{said}");
+    let result = &order["second_reading"];
+    assert_eq!(result["verdict"], "replan", "{result}");
     assert_eq!(order["state"], "measured");
     let offer = job.person.get(&job.path("/plan")).await.good();
     assert!(!offer["plans"].as_array().unwrap().is_empty());

@@ -192,9 +192,9 @@ async fn an_adjustment_after_a_failed_verification_resolves_it_on_its_day(server
 
 async fn another_orders_adjustment_resolves_a_failed_verification(server: TestServer) {
     let job = failed_verification(&server).await;
-    let mut again = job.new_order();
-    again["planned_at"] = json!("2026-11-23T09:00:00Z");
-    job.person.post("/work-orders", &again).await.good();
+    let mut repeated = job.new_order();
+    repeated["planned_at"] = json!("2026-11-23T09:00:00Z");
+    job.person.post("/work-orders", &repeated).await.good();
     // An hour after the first one, before the verification result.
     server
         .run_sql(

@@ -174,8 +174,8 @@ async fn a_digest_contains_everything_since_the_last_one(server: TestServer) {
         "time_zone": "Asia/Singapore", "ways": { "answered": "digest", "on_board": "digest" },
         "digest": { "every": "week", "on": "sunday", "at": "09:00" },
     });
-    let said = put_settings(&parties.ada, &weekly).await.good();
-    assert_eq!(said["next_digest_at"], "2026-11-22T01:00:00Z");
+    let stored = put_settings(&parties.ada, &weekly).await.good();
+    assert_eq!(stored["next_digest_at"], "2026-11-22T01:00:00Z");
     parties.post(rosa, "/accept", &json!({})).await.good();
     assert_eq!(sent_subjects(&server, &relay).await.len(), 1);
     server.advance(18.0 * HOUR_S);

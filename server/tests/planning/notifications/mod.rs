@@ -73,16 +73,20 @@ async fn an_offer_and_its_responses_notify_the_other_side(server: TestServer) {
     let terms = json!({ "planned_at": "2026-11-22T13:00:00Z", "berth": "A7", "fee_eur": 900.5 });
     let proposal = json!({ "terms": terms, "text": "At noon." });
     parties.post(juan, "/propose", &proposal).await.good();
-    let answers = [
+    let responses = [
         "Nao: rosa declines the job at Bilbao",
         "Nao: juan proposes other terms at Bilbao",
     ];
-    assert_eq!(subjects_of(&parties.ada).await, answers);
+    assert_eq!(subjects_of(&parties.ada).await, responses);
     let listed = parties.ada.get("/notifications?kind=answered").await.good();
     let newest = &listed["items"][0];
     assert_eq!(newest["order_id"], parties.order.as_str());
-    let said = "juan@adjusters.example: 2026-11-22 13:00 UTC, berth A7, for 900.50 euros. At noon.";
-    assert!(newest["text"].as_str().unwrap().contains(said), "{newest}");
+    let terms_text =
+        "juan@adjusters.example: 2026-11-22 13:00 UTC, berth A7, for 900.50 euros. At noon.";
+    assert!(
+        newest["text"].as_str().unwrap().contains(terms_text),
+        "{newest}"
+    );
 
     parties
         .post(&parties.ada, "/accept", &json!({}))

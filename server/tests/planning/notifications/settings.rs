@@ -33,16 +33,16 @@ async fn the_default_settings_apply_until_changed(server: TestServer) {
     let firms = parties.firms[0].1.get("/me/notifications").await.good();
     assert_eq!(firms["ways"]["offered"], "mail");
     assert_eq!(firms["ways"]["alert"], json!(null));
-    let wanted = json!({
+    let new_settings = json!({
         "time_zone": "Pacific/Auckland", "ways": { "answered": "off" },
         "quiet_hours": { "from": "20:00", "to": "06:00" },
         "digest": { "every": "week", "on": "friday", "at": "17:30" },
     });
-    put_settings(&viewer, &wanted).await.good();
-    let said = viewer.get("/me/notifications").await.good();
-    assert_eq!(said["settings"], wanted);
-    assert_eq!(said["ways"]["answered"], "off");
-    assert_eq!(said["next_digest_at"], "2026-11-27T04:30:00Z");
+    put_settings(&viewer, &new_settings).await.good();
+    let stored = viewer.get("/me/notifications").await.good();
+    assert_eq!(stored["settings"], new_settings);
+    assert_eq!(stored["ways"]["answered"], "off");
+    assert_eq!(stored["next_digest_at"], "2026-11-27T04:30:00Z");
     server.finish().await;
 }
 

@@ -102,7 +102,7 @@ async fn a_csv_of_a_european_spreadsheet_is_imported(server: TestServer) {
     let list = ada.get(&path(&nao)).await.good();
     assert_eq!(list["items"][0]["berth"], "A5, south");
     assert_eq!(list["items"][0]["eta_uncertainty_h"], 1.5);
-    for (file, said) in [
+    for (file, message) in [
         ("id;port,eta;etd\n", "has both commas and semicolons"),
         (
             "id;port;eta;etd\na,NLRTM,x,y\n",
@@ -116,7 +116,7 @@ async fn a_csv_of_a_european_spreadsheet_is_imported(server: TestServer) {
         let refused = import(&ada, &csv, file).await;
         assert_eq!(refused.problem(), "invalid");
         let detail = refused.json()["detail"].as_str().unwrap().to_owned();
-        assert!(detail.contains(said), "{detail}");
+        assert!(detail.contains(message), "{detail}");
     }
     server.finish().await;
 }
@@ -127,7 +127,7 @@ async fn a_csv_with_one_invalid_line_changes_nothing(server: TestServer) {
     ada.post(&path(&nao), &call("NLRTM", 20)).await.good();
     let csv = format!("{}.csv", path(&nao));
     let good = row("a", "NLRTM", 8);
-    for (rows, said) in [
+    for (rows, message) in [
         (
             format!("{good}b,BEANR,2026-12-10T06:00:00,2026-12-11T06:00:00Z,\n"),
             "file: line 3: eta: \"2026-12-10T06:00:00\" has no time zone",
@@ -156,7 +156,7 @@ async fn a_csv_with_one_invalid_line_changes_nothing(server: TestServer) {
         let response = import(&ada, &csv, format!("{HEADER}{rows}")).await;
         assert_eq!(response.problem(), "invalid");
         let detail = response.json()["detail"].as_str().unwrap().to_owned();
-        assert!(detail.starts_with(said), "{detail}\nis not\n{said}");
+        assert!(detail.starts_with(message), "{detail}\nis not\n{message}");
     }
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 20"]);
     server.finish().await;
@@ -221,13 +221,13 @@ async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(server: TestServe
     );
     let wrong = import(&ada, "/port-calls.csv", more).await.json();
     let wrong = wrong["detail"].as_str().unwrap();
-    for said in [
+    for message in [
         "line 2: vessel",
         "line 3: vessel",
         "line 4: eta",
         "line 5: eta: overlaps",
     ] {
-        assert!(wrong.contains(said), "{wrong}");
+        assert!(wrong.contains(message), "{wrong}");
     }
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 08"]);
     ada.create_vessel("Nao").await;
@@ -308,8 +308,8 @@ async fn an_exported_file_can_be_imported(server: TestServer) {
     let csv = format!("{}.csv", path(&nao));
     let exported = ada.get(&csv).await;
     assert!(exported.text.contains("\n'=1+1,"), "{exported:?}");
-    let again = import(&ada, &csv, exported.text.as_str()).await.good();
-    assert_eq!(again, import_counts(0, 0, 1, 0, 0));
+    let repeated = import(&ada, &csv, exported.text.as_str()).await.good();
+    assert_eq!(repeated, import_counts(0, 0, 1, 0, 0));
     server.finish().await;
 }
 

@@ -84,7 +84,7 @@ async fn each_revision_of_a_port_call_is_kept(server: TestServer) {
 async fn an_invalid_port_call_is_refused_by_field_and_not_stored(server: TestServer) {
     let ada = server.admin("ada").await;
     let nao = ada.create_vessel("Nao").await;
-    for (field, value, said) in [
+    for (field, value, message) in [
         ("eta", json!("2026-12-08T06:00:00"), "has no time zone"),
         ("eta", json!("tomorrow"), "is not an RFC 3339 time"),
         ("etd", json!("2026-12-08T06:00:00Z"), "is not after eta"),
@@ -103,7 +103,10 @@ async fn an_invalid_port_call_is_refused_by_field_and_not_stored(server: TestSer
         let response = ada.post(&path(&nao), &wrong).await;
         assert_eq!(response.problem(), "invalid", "{field}: {value}");
         let detail = response.json()["detail"].as_str().unwrap().to_owned();
-        assert!(detail.contains(field) && detail.contains(said), "{detail}");
+        assert!(
+            detail.contains(field) && detail.contains(message),
+            "{detail}"
+        );
     }
     let past =
         json!({ "port": "NLRTM", "eta": "2026-11-01T00:00:00Z", "etd": "2026-11-02T00:00:00Z" });
@@ -124,8 +127,8 @@ async fn port_calls_of_one_vessel_cannot_overlap(server: TestServer) {
     let overlapping = ada.post(&path(&nao), &call("BEANR", 9)).await;
     assert_eq!(overlapping.problem(), "wrong-state");
     assert!(overlapping.text.contains("NLRTM 2026-12-08T06:00:00Z"));
-    let again = ada.post(&path(&nao), &call("NLRTM", 8)).await;
-    assert!(again.text.contains("belongs to call"));
+    let repeated = ada.post(&path(&nao), &call("NLRTM", 8)).await;
+    assert!(repeated.text.contains("belongs to call"));
     let next = ada.post(&path(&nao), &call("BEANR", 10)).await.good();
     let one = format!("{}/{}", path(&nao), next["id"].as_str().unwrap());
     let into_first = json!({ "eta": "2026-12-09T17:59:00Z" });

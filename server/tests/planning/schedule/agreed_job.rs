@@ -52,10 +52,10 @@ impl AgreedJob {
     }
 
     pub(super) async fn retime(&self, at: &str) -> ApiResponse {
-        let asked = json!({ "terms": { "planned_at": at }, "answer_within_hours": 1,
+        let body = json!({ "terms": { "planned_at": at }, "answer_within_hours": 1,
                             "text": "She is late." });
         self.ada
-            .post(&format!("{}/retime", self.order), &asked)
+            .post(&format!("{}/retime", self.order), &body)
             .await
     }
 

@@ -68,9 +68,9 @@ async fn an_offer_has_the_fee_of_the_schedule(server: TestServer) {
         let taken = accept(&rosa, &path).await;
         assert_eq!(taken["fee_eur"], seen["offers"][0]["fee_eur"]);
         let log = ada.get(&format!("{path}/entries")).await.good();
-        let said = log["items"].as_array().unwrap().last().unwrap();
-        assert_eq!(said["entry"]["kind"], "accepted");
-        assert_eq!(said["entry"]["content"]["fee_eur"], taken["fee_eur"]);
+        let entry = log["items"].as_array().unwrap().last().unwrap();
+        assert_eq!(entry["entry"]["kind"], "accepted");
+        assert_eq!(entry["entry"]["content"]["fee_eur"], taken["fee_eur"]);
     }
     assert_eq!(fees, [1800.0, 400.5]);
     // An order offered by hand has the fee for one compass.
@@ -100,8 +100,8 @@ async fn a_firm_proposes_another_fee_alone_and_the_operator_agrees(server: TestS
     assert_eq!(proposed["state"], "proposed");
     let seen = ada.get(&order).await.good();
     assert_eq!(seen["offers"][0]["fee_eur"], 1800.0);
-    let asked = json!({ "planned_at": before["planned_at"], "fee_eur": 2100.0 });
-    assert_eq!(seen["offers"][0]["terms"], asked);
+    let new_terms = json!({ "planned_at": before["planned_at"], "fee_eur": 2100.0 });
+    assert_eq!(seen["offers"][0]["terms"], new_terms);
     let notifications = ada.get("/notifications?kind=answered").await.good();
     assert!(
         notifications.to_string().contains("for 2100.00 euros"),
@@ -123,7 +123,7 @@ async fn a_firm_proposes_another_fee_alone_and_the_operator_agrees(server: TestS
         .iter()
         .map(|(_, body)| serde_json::from_str(body).unwrap())
         .collect();
-    assert_eq!(bodies[0]["entry"]["terms"], asked);
+    assert_eq!(bodies[0]["entry"]["terms"], new_terms);
     assert_eq!(bodies[1]["entry"]["kind"], "proposal_accepted");
     assert_eq!(bodies[1]["entry"]["terms"]["fee_eur"], 2100.0);
     server.finish().await;

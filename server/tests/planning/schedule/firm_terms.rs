@@ -21,14 +21,14 @@ async fn a_firm_without_working_days_is_kept_and_reported_as_unusable(server: Te
     let mut idle = terms();
     idle["working_days"] = json!([]);
     let kept = put(&ada, &format!("/firms/{id}/terms"), &idle).await.good();
-    let said = "working_days: a firm that works on no day of the week serves nobody";
-    assert_eq!(kept["problems"], json!([said]));
+    let problem = "working_days: a firm that works on no day of the week serves nobody";
+    assert_eq!(kept["problems"], json!([problem]));
     let list = ada.get("/firm-terms").await.good();
     assert_eq!(list["items"][0]["firm_name"], "Maas Compass");
-    assert_eq!(list["items"][0]["problems"], json!([said]));
+    assert_eq!(list["items"][0]["problems"], json!([problem]));
     let plan = solve(&ada).await;
     assert_eq!(plan["left_out"][0]["firm_name"], "Maas Compass");
-    assert_eq!(plan["left_out"][0]["why"], said);
+    assert_eq!(plan["left_out"][0]["why"], problem);
     assert_eq!(plan["jobs"], json!([]));
     server.finish().await;
 }

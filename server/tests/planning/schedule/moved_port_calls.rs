@@ -45,9 +45,9 @@ async fn a_moved_eta_is_reported_to_both_sides_with_old_and_new_time(server: Tes
         let uid = format!("{}@binnacle", order["id"].as_str().unwrap());
         let job = calendar.remove(&uid).unwrap();
         assert_eq!(job.property_value("STATUS"), Some("TENTATIVE"));
-        let said = job.get_description().unwrap();
-        assert!(said.contains("call has moved since"), "{said}");
-        assert!(said.contains("a new day is needed"), "{said}");
+        let texts = job.get_description().unwrap();
+        assert!(texts.contains("call has moved since"), "{texts}");
+        assert!(texts.contains("a new day is needed"), "{texts}");
     }
     // The agreed time stands, marked as impossible.
     assert_eq!(order["planned_at"], "2026-12-15T07:00:00Z");
@@ -63,17 +63,17 @@ async fn a_moved_eta_is_reported_to_both_sides_with_old_and_new_time(server: Tes
         let items = list["items"].as_array().unwrap();
         assert_eq!(items.len(), 1, "{list}");
         let text = items[0]["text"].as_str().unwrap();
-        for said in [
+        for texts in [
             "from 2026-12-14 06:00 UTC (2026-12-14 07:00 port's time, UTC+01:00)",
             "and is from 2026-12-16 06:00 UTC",
             "agree on a new day",
         ] {
-            assert!(text.contains(said), "{text}");
+            assert!(text.contains(texts), "{text}");
         }
-        let said = messages(person, &agreed.order).await;
-        assert_eq!(said.len(), 1);
-        assert_eq!(said[0]["by"], "Binnacle");
-        assert!(said[0]["text"].as_str().unwrap().contains("has moved"));
+        let texts = messages(person, &agreed.order).await;
+        assert_eq!(texts.len(), 1);
+        assert_eq!(texts[0]["by"], "Binnacle");
+        assert!(texts[0]["text"].as_str().unwrap().contains("has moved"));
         let listed = person.get("/work-orders").await.good();
         assert_eq!(listed["items"][0]["call_fit"], "needs_new_day");
     }
@@ -116,14 +116,14 @@ async fn port_calls_moved_by_a_file_are_reported_like_those_by_a_request(server:
     assert_eq!(agreed.view_order().await["call_fit"], "needs_new_day");
     // A whole list without references: the missing port call is the new one.
     let row = |eta: &str, etd: &str| format!("port,eta,etd\nNLRTM,{eta},{etd}\n");
-    let again = row("2026-12-15T06:00:00Z", "2026-12-16T18:00:00Z");
-    let did = post(format!("{calls}.csv?replace=true"), "text/csv", again)
+    let repeated = row("2026-12-15T06:00:00Z", "2026-12-16T18:00:00Z");
+    let did = post(format!("{calls}.csv?replace=true"), "text/csv", repeated)
         .await
         .good();
     assert_eq!((&did["created"], &did["withdrawn"]), (&json!(1), &json!(1)));
     assert_eq!(agreed.view_order().await["call_fit"], "fits");
-    let again = row("2026-12-17T06:00:00Z", "2026-12-18T18:00:00Z");
-    post(format!("{calls}.csv?replace=true"), "text/csv", again)
+    let repeated = row("2026-12-17T06:00:00Z", "2026-12-18T18:00:00Z");
+    post(format!("{calls}.csv?replace=true"), "text/csv", repeated)
         .await
         .good();
     assert_eq!(agreed.view_order().await["call_fit"], "needs_new_day");
@@ -143,9 +143,9 @@ async fn port_calls_moved_by_a_file_are_reported_like_those_by_a_request(server:
         .await
         .good();
     assert_eq!(agreed.view_order().await["call_fit"], "no_call");
-    let said = messages(&agreed.rosa, &agreed.order).await;
-    assert_eq!(said.len(), 5);
-    assert!(said[4]["text"].as_str().unwrap().contains("is withdrawn"));
+    let texts = messages(&agreed.rosa, &agreed.order).await;
+    assert_eq!(texts.len(), 5);
+    assert!(texts[4]["text"].as_str().unwrap().contains("is withdrawn"));
     server.finish().await;
 }
 
@@ -154,10 +154,10 @@ async fn the_old_day_stands_until_a_new_one_is_agreed(server: TestServer) {
     agreed
         .move_port_call("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
         .await;
-    let asked = agreed.retime("2026-12-17T08:00:00Z").await.good();
-    assert_eq!(asked["planned_at"], "2026-12-15T07:00:00Z");
-    assert_eq!(asked["state"], "accepted");
-    let new = &asked["offers"][0]["new_terms"]["planned_at"];
+    let requested = agreed.retime("2026-12-17T08:00:00Z").await.good();
+    assert_eq!(requested["planned_at"], "2026-12-15T07:00:00Z");
+    assert_eq!(requested["state"], "accepted");
+    let new = &requested["offers"][0]["new_terms"]["planned_at"];
     assert_eq!(new, "2026-12-17T08:00:00Z");
     let last = subjects_of(&agreed.rosa).await.pop().unwrap();
     assert!(last.contains("another time is asked of you"), "{last}");
@@ -216,14 +216,14 @@ async fn a_new_day_is_within_the_port_call_and_the_firms_capacity(server: TestSe
     agreed
         .move_port_call("2026-12-16T06:00:00Z", "2026-12-18T18:00:00Z")
         .await;
-    for (at, said) in [
+    for (at, texts) in [
         ("2026-12-15T08:00:00Z", "no call at NLRTM"),
         ("2026-12-18T16:00:00Z", "lasts for three hours"),
         (&format!("{taken}T12:00:00Z"), "no team left"),
     ] {
         let refused = agreed.retime(at).await;
         assert_eq!(refused.problem(), "wrong-state");
-        assert!(refused.text.contains(said), "{at}: {refused:?}");
+        assert!(refused.text.contains(texts), "{at}: {refused:?}");
     }
     let over = agreed.retime("2026-11-20T08:00:00Z").await;
     assert_eq!(over.problem(), "invalid");

@@ -69,8 +69,8 @@ async fn an_agreed_job_stays_in_the_plan(server: TestServer) {
     let plan = solve(&ada).await;
     assert_eq!(plan["jobs"][0]["state"], "offered");
     assert_eq!(plan["jobs"][0]["orders"][0], seen["id"]);
-    let again = ada.post("/schedule/offer", &offer_of(&plan, &nao)).await;
-    assert_eq!(again.problem(), "wrong-state");
+    let repeated = ada.post("/schedule/offer", &offer_of(&plan, &nao)).await;
+    assert_eq!(repeated.problem(), "wrong-state");
     rosa.post(&format!("{order}/accept"), &json!({}))
         .await
         .good();
@@ -297,8 +297,8 @@ async fn a_firm_not_authorised_for_the_vessel_gets_no_order(server: TestServer) 
     some["flags"] = json!(["PA", "NO"]);
     put(&ada, &firms, &some).await.good();
     let particulars = format!("/vessels/{}/particulars", nao["id"].as_str().unwrap());
-    let asked = json!({ "flag_state": "NO", "licence": "NO-7" });
-    put(&ada, &particulars, &asked).await.good();
+    let requirements = json!({ "flag_state": "NO", "licence": "NO-7" });
+    put(&ada, &particulars, &requirements).await.good();
     let refused = ask().await;
     assert!(
         refused
@@ -322,8 +322,8 @@ async fn an_order_at_a_port_with_known_port_calls_needs_one_of_them(server: Test
         .post("/work-orders", &order("2026-12-18T08:00:00Z"))
         .await;
     assert_eq!(other.problem(), "invalid");
-    let said = "she is at Rotterdam (NLRTM) from 2026-12-14 06:00 UTC";
-    assert!(other.text.contains(said), "{other:?}");
+    let message = "she is at Rotterdam (NLRTM) from 2026-12-14 06:00 UTC";
+    assert!(other.text.contains(message), "{other:?}");
     let made = ada
         .post("/work-orders", &order("2026-12-15T08:00:00Z"))
         .await

@@ -24,8 +24,8 @@ async fn a_pinned_job_stays_until_it_is_unpinned(server: TestServer) {
     enter_port_call(&ada, &nao, "NLRTM", 8).await;
     let later = enter_port_call(&ada, &nao, "BEANR", 15).await;
     let firm = planned_firm(&server, &ada, "Maas Compass").await;
-    let wanted = pin(&nao, &later, &firm, "2026-12-15");
-    let kept = ada.post("/schedule/pins", &wanted).await.good();
+    let new_pin = pin(&nao, &later, &firm, "2026-12-15");
+    let kept = ada.post("/schedule/pins", &new_pin).await.good();
     assert_eq!(kept["created_by"], "ada@example.com");
     let made = solve(&ada).await;
     assert_eq!(first_job(&made), ("BEANR", "2026-12-15", "Maas Compass"));
@@ -55,8 +55,8 @@ async fn an_impossible_pin_is_dropped_with_its_reason(server: TestServer) {
     enter_port_call(&ada, &nao, "NLRTM", 8).await;
     let later = enter_port_call(&ada, &nao, "BEANR", 15).await;
     let firm = planned_firm(&server, &ada, "Maas Compass").await;
-    let wanted = pin(&nao, &later, &firm, "2026-12-15");
-    ada.post("/schedule/pins", &wanted).await.good();
+    let new_pin = pin(&nao, &later, &firm, "2026-12-15");
+    ada.post("/schedule/pins", &new_pin).await.good();
     solve(&ada).await;
     let call = format!(
         "{}/{}",

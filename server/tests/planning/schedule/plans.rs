@@ -56,10 +56,10 @@ async fn a_plan_is_reproducible_from_its_input(server: TestServer) {
     // The same input gives the same plan.
     assert_eq!(solve(&ada).await, made);
     assert_eq!(current(&ada).await["plan"], made);
-    let again = ada.get("/schedule/input").await;
-    let again = plan::plan(&input::read(&again.text).unwrap());
-    assert!((again.cost_eur - made["cost_eur"].as_f64().unwrap()).abs() < 1e-9);
-    assert_eq!(again.jobs.len(), 1);
+    let repeated = ada.get("/schedule/input").await;
+    let repeated = plan::plan(&input::read(&repeated.text).unwrap());
+    assert!((repeated.cost_eur - made["cost_eur"].as_f64().unwrap()).abs() < 1e-9);
+    assert_eq!(repeated.jobs.len(), 1);
     server.finish().await;
 }
 
@@ -261,12 +261,13 @@ async fn a_fleet_too_large_to_plan_gets_an_error(server: TestServer) {
             Pools::Postgres(_) => many_calls!("gen_random_uuid()"),
         })
         .await;
-    let said = "this fleet cannot be planned: port_calls: 50001 entries exceed the limit of 50000";
+    let message =
+        "this fleet cannot be planned: port_calls: 50001 entries exceed the limit of 50000";
     let refused = ada.post("/schedule/solve", &json!({})).await;
     assert_eq!(refused.problem(), "wrong-state");
-    assert_eq!(refused.json()["detail"], said);
+    assert_eq!(refused.json()["detail"], message);
     update_schedule(&server).await;
-    assert_eq!(current(&ada).await["problem"], said);
+    assert_eq!(current(&ada).await["problem"], message);
     server.finish().await;
 }
 

@@ -37,7 +37,7 @@ async fn no_offer_is_made_for_a_time_outside_opening_hours(server: TestServer) {
         let terms = json!({ "terms": { "planned_at": at } });
         ada.post(&format!("{order}/retime"), &terms).await
     };
-    for (at, said) in [
+    for (at, message) in [
         (
             "2026-12-14T09:00:00Z",
             "rosa does not work on 2026-12-14, a Monday",
@@ -49,13 +49,13 @@ async fn no_offer_is_made_for_a_time_outside_opening_hours(server: TestServer) {
     ] {
         let refused = retime(at).await;
         assert_eq!(refused.problem(), "wrong-state", "{at}");
-        assert!(refused.text.contains(said), "{refused:?}");
+        assert!(refused.text.contains(message), "{refused:?}");
     }
     retime("2026-12-15T10:00:00Z").await.good();
     let why = json!({ "text": "no more" });
     ada.post(&format!("{order}/cancel"), &why).await.good();
-    let asked = order_for_firm(&nao, "NLRTM", "2026-12-14T09:00:00Z", &id);
-    let refused = ada.post("/work-orders", &asked).await;
+    let new_order = order_for_firm(&nao, "NLRTM", "2026-12-14T09:00:00Z", &id);
+    let refused = ada.post("/work-orders", &new_order).await;
     assert!(refused.text.contains("does not work on"), "{refused:?}");
     server.finish().await;
 }
@@ -153,8 +153,8 @@ async fn a_team_booked_by_an_order_is_planned_for_no_other_ship(server: TestServ
     assert!(why.contains("not long enough in rosa's hours"), "{why}");
     // That brought no new information.
     assert_eq!(solve(ada).await["version"], plan["version"]);
-    let asked = order_for_firm(&pinta, "NLRTM", "2026-12-15T09:00:00Z", firm);
-    let full = ada.post("/work-orders", &asked).await;
+    let new_order = order_for_firm(&pinta, "NLRTM", "2026-12-15T09:00:00Z", firm);
+    let full = ada.post("/work-orders", &new_order).await;
     assert_eq!(full.problem(), "wrong-state");
     assert!(
         full.text

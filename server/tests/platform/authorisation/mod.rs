@@ -128,11 +128,11 @@ impl Trial<'_> {
         real: bool,
     ) -> ApiResponse {
         let path = url(&self.ada.fill(&one.path, role, real));
-        let mut asked = request(self.server, key, &one.method, &path);
+        let mut sent = request(self.server, key, &one.method, &path);
         if one.has_body {
-            asked = asked.json(&self.ada.body(&one.name));
+            sent = sent.json(&self.ada.body(&one.name));
         }
-        response(asked).await
+        response(sent).await
     }
 
     fn expect(&mut self, holds: bool, one: &Operation, who: &str, response: &ApiResponse) {

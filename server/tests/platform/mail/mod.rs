@@ -215,8 +215,8 @@ async fn a_recipient_is_added_once_changed_and_removed(server: TestServer) {
         (&made["address"], &made["severity"]),
         (&json!("Bridge@example.com"), &json!("warning"))
     );
-    let again = ada.post("/mail-recipients", &new).await;
-    assert_eq!(again.problem(), "invalid");
+    let repeated = ada.post("/mail-recipients", &new).await;
+    assert_eq!(repeated.problem(), "invalid");
     let listed = ada.get("/mail-recipients").await.good();
     assert_eq!(
         (&listed["items"], &listed["sending"]),
@@ -232,8 +232,8 @@ async fn a_recipient_is_added_once_changed_and_removed(server: TestServer) {
             "invalid"
         );
     }
-    let wanted = json!({ "severity": "critical" });
-    let request = ada.request(Method::PUT, &path(&made, "")).json(&wanted);
+    let change = json!({ "severity": "critical" });
+    let request = ada.request(Method::PUT, &path(&made, "")).json(&change);
     let changed = ApiResponse::of(request).await.good();
     assert_eq!(changed["severity"], "critical");
     let viewer = ada.viewer(&server).await;
@@ -254,7 +254,7 @@ async fn another_operators_recipients_are_not_found(server: TestServer) {
     let bridge = add(&ada, "bridge@example.com", "warning").await;
     let letter = test(&ada, &bridge).await;
     let resend = format!("/deliveries/{}/resend", letter["id"].as_str().unwrap());
-    let wanted = json!({ "severity": "notice" });
+    let change = json!({ "severity": "notice" });
     for (method, rest) in [
         (Method::GET, ""),
         (Method::PUT, ""),
@@ -265,7 +265,7 @@ async fn another_operators_recipients_are_not_found(server: TestServer) {
     ] {
         let request = eve
             .request(method.clone(), &path(&bridge, rest))
-            .json(&wanted);
+            .json(&change);
         let response = ApiResponse::of(request).await;
         assert_eq!(response.problem(), "not-found", "{method} {rest}");
     }

@@ -53,8 +53,8 @@ async fn a_temporary_failure_is_retried_and_a_refusal_is_final(server: TestServe
         let letter = test(&ada, &bridge).await;
         relay.behave_next(refusal);
         assert_eq!(deliver(&server, &relay).await, [Sent::Dead], "{refusal:?}");
-        let again = format!("/deliveries/{}/resend", letter["id"].as_str().unwrap());
-        ada.post(&path(&bridge, &again), &json!({})).await.good();
+        let repeated = format!("/deliveries/{}/resend", letter["id"].as_str().unwrap());
+        ada.post(&path(&bridge, &repeated), &json!({})).await.good();
         assert_eq!(deliver(&server, &relay).await, [Sent::Delivered]);
     }
     server.finish().await;
@@ -169,8 +169,8 @@ async fn a_relay_down_for_a_day_leaves_a_dead_letter_that_can_be_resent(server: 
         .await
         .good();
     assert_eq!(dead["items"][0]["id"], letter["id"]);
-    let again = format!("/deliveries/{}/resend", letter["id"].as_str().unwrap());
-    ada.post(&path(&bridge, &again), &json!({})).await.good();
+    let repeated = format!("/deliveries/{}/resend", letter["id"].as_str().unwrap());
+    ada.post(&path(&bridge, &repeated), &json!({})).await.good();
     assert_eq!(
         deliver(&server, &Relay::start().await).await,
         [Sent::Delivered]

@@ -72,10 +72,10 @@ async fn credentials_go_only_to_a_relay_with_a_valid_certificate() {
         assert_eq!(sent, Some(Sent::Delivered), "{scheme}: {problem}");
         assert!(relay.letters()[0].encrypted);
         // base64 of NUL ada NUL s@cret
-        let heard = relay.commands();
+        let commands = relay.commands();
         assert!(
-            heard.contains(&"AUTH PLAIN AGFkYQBzQGNyZXQ=".to_owned()),
-            "{heard:?}"
+            commands.contains(&"AUTH PLAIN AGFkYQBzQGNyZXQ=".to_owned()),
+            "{commands:?}"
         );
     }
 }
@@ -102,10 +102,10 @@ async fn a_relay_with_an_invalid_certificate_gets_no_letter_and_no_password() {
             "{problem}"
         );
         assert_eq!(relay.letters(), []);
-        let heard = relay.commands();
+        let commands = relay.commands();
         assert!(
-            heard.iter().all(|line| !line.starts_with("AUTH")),
-            "{heard:?}"
+            commands.iter().all(|line| !line.starts_with("AUTH")),
+            "{commands:?}"
         );
     }
 }

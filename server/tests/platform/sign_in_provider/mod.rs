@@ -257,8 +257,8 @@ async fn a_second_factor_is_required_after_the_provider(fixture: Fixture) {
     let me = with_cookie(server, "/me", &session_cookie(&right).unwrap()).await;
     assert_eq!(me.status, 200);
     server.advance(60.0);
-    let again = send_code(server, &cookie, &app_code(&secret, now_s(server))).await;
-    assert_eq!(again.problem(), "gone");
+    let repeated = send_code(server, &cookie, &app_code(&secret, now_s(server))).await;
+    assert_eq!(repeated.problem(), "gone");
 
     let (there, cookie) = start_sign_in(server).await;
     let back = callback_address(server, &there).await;

@@ -64,9 +64,9 @@ async fn a_callback_works_once_in_the_same_browser(fixture: Fixture) {
         redirect_target(&follow_callback(server, &back, &cookie).await),
         "/"
     );
-    let again = follow_callback(server, &back, &cookie).await;
-    assert_eq!(redirect_target(&again), "/?sign-in=over");
-    assert_eq!(session_cookie(&again), None);
+    let repeated = follow_callback(server, &back, &cookie).await;
+    assert_eq!(redirect_target(&repeated), "/?sign-in=over");
+    assert_eq!(session_cookie(&repeated), None);
 
     // A redeemed code with an unused sign-in.
     let (there, cookie) = start_sign_in(server).await;
@@ -170,9 +170,9 @@ async fn concurrent_callback_guesses_cannot_bypass_the_count(fixture: Fixture) {
     let back = callback_address(server, &there).await;
     follow_callback(server, &back, &cookie).await;
     let guesses = (0..40).map(|_| send_code(server, &cookie, "a guess"));
-    let answers = join_all(guesses).await;
-    let taken = answers.iter().filter(|one| one.problem() == "wrong-code");
-    assert!(taken.count() <= 10, "{answers:?}");
+    let responses = join_all(guesses).await;
+    let taken = responses.iter().filter(|one| one.problem() == "wrong-code");
+    assert!(taken.count() <= 10, "{responses:?}");
     fixture.server.finish().await;
 }
 

@@ -115,13 +115,13 @@ async fn messages_are_delivered_in_order_after_the_previous_one(server: TestServ
     assert_eq!(deliver(&server).await, [], "before the pause is over");
     server.advance(13.0);
     assert_eq!(deliver(&server).await, [Sent::Delivered; 3]);
-    let again = [
+    let repeated = [
         "alert.raised",
         "alert.raised",
         "alert.acknowledged",
         "alert.cleared",
     ];
-    assert_eq!(receiver.kinds(), again);
+    assert_eq!(receiver.kinds(), repeated);
     let got = receiver.received();
     assert_eq!(got[0].1, got[1].1, "the same message, to the byte");
     assert_ne!(got[0].0, got[1].0, "signed anew");
@@ -154,8 +154,11 @@ async fn a_receiver_down_for_a_day_leaves_a_dead_letter_that_can_be_resent(serve
     assert_eq!(letter["next_attempt_at"], Value::Null);
 
     receiver.respond_normally();
-    let again = format!("/deliveries/{}/resend", letter["id"].as_str().unwrap());
-    let queued = ada.post(&path(&webhook, &again), &json!({})).await.good();
+    let repeated = format!("/deliveries/{}/resend", letter["id"].as_str().unwrap());
+    let queued = ada
+        .post(&path(&webhook, &repeated), &json!({}))
+        .await
+        .good();
     assert_eq!(
         (&queued["state"], &queued["id"]),
         (&json!("pending"), &letter["id"])
@@ -251,13 +254,13 @@ async fn a_webhook_is_created_once_changed_and_removed(server: TestServer) {
     assert_eq!(listed["items"].as_array().unwrap().len(), 1);
     assert_eq!(listed["items"][0].get("secret"), None);
 
-    let wanted =
+    let change =
         json!({ "url": "https://example.com/b", "kinds": ["alert.cleared"], "enabled": false });
-    let request = ada.request(Method::PUT, &path(&made, "")).json(&wanted);
+    let request = ada.request(Method::PUT, &path(&made, "")).json(&change);
     let changed = ApiResponse::of(request).await.good();
     assert_eq!(
         (&changed["url"], &changed["enabled"]),
-        (&wanted["url"], &json!(false))
+        (&change["url"], &json!(false))
     );
     let viewer = ada.viewer(&server).await;
     let refused = ApiResponse::of(viewer.request(Method::DELETE, &path(&made, ""))).await;
@@ -294,7 +297,7 @@ async fn another_operators_webhooks_are_not_found(server: TestServer) {
     let webhook = make(&ada, "https://example.com/", &["alert.raised"]).await;
     let test = ada.post(&path(&webhook, "/test"), &json!({})).await.good();
     let resend = format!("/deliveries/{}/resend", test["id"].as_str().unwrap());
-    let wanted = json!({ "url": "https://example.com/", "kinds": ["alert.raised"] });
+    let change = json!({ "url": "https://example.com/", "kinds": ["alert.raised"] });
     for (method, rest) in [
         (Method::GET, ""),
         (Method::PUT, ""),
@@ -305,7 +308,7 @@ async fn another_operators_webhooks_are_not_found(server: TestServer) {
     ] {
         let request = eve
             .request(method.clone(), &path(&webhook, rest))
-            .json(&wanted);
+            .json(&change);
         assert_eq!(
             ApiResponse::of(request).await.problem(),
             "not-found",

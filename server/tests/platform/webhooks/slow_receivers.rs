@@ -20,15 +20,15 @@ on_both!(
 
 /// A program that accepts connections and does not respond until the test closes them.
 struct SilentReceiver {
-    heard: mpsc::Receiver<TcpStream>,
-    kept: Vec<TcpStream>,
+    connections: mpsc::Receiver<TcpStream>,
+    open: Vec<TcpStream>,
 }
 
 impl SilentReceiver {
     async fn start() -> (SilentReceiver, String) {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let url = format!("http://{}/hook", listener.local_addr().unwrap());
-        let (tell, heard) = mpsc::channel(10);
+        let (tell, connections) = mpsc::channel(10);
         tokio::spawn(async move {
             while let Ok((stream, _)) = listener.accept().await {
                 if tell.send(stream).await.is_err() {
@@ -36,14 +36,14 @@ impl SilentReceiver {
                 }
             }
         });
-        let kept = Vec::new();
-        (SilentReceiver { heard, kept }, url)
+        let open = Vec::new();
+        (SilentReceiver { connections, open }, url)
     }
 
     /// Waits for a connection.
     async fn wait_for_connection(&mut self) {
-        let stream = self.heard.recv().await.unwrap();
-        self.kept.push(stream);
+        let stream = self.connections.recv().await.unwrap();
+        self.open.push(stream);
     }
 }
 
