@@ -1,7 +1,7 @@
 //! Remarks on a work order, its cancellation and its closing.
 
 use crate::completion::complete::{write_binnacle, write_logbook};
-use crate::work_orders::log_entry::{Content, Said};
+use crate::work_orders::log_entry::{OrderEvent, Said};
 use crate::work_orders::order::{Order, State};
 use crate::work_orders::order_update::Change;
 use crate::work_orders::{order_update, shown};
@@ -46,7 +46,7 @@ pub(super) async fn remark(
     if done.is_none()
         && let Some(mut change) = update.begin(&whole).await?
     {
-        change.append(Content::Remark(said)).await?;
+        change.append(OrderEvent::Remark(said)).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
@@ -76,18 +76,18 @@ pub(super) async fn cancel_work_order(
         return shown(&app, writer.operator, id).await;
     }
     if !whole.summary.state.is_under_way() {
-        whole.must_be(&[], "it cannot be cancelled any more")?;
+        whole.require_state(&[], "it cannot be cancelled any more")?;
     }
     if let Some(mut change) = update.begin(&whole).await? {
-        leave_as_it_stands(&mut change).await?;
-        change.append(Content::Cancelled(said)).await?;
+        record_moved_correctors(&mut change).await?;
+        change.append(OrderEvent::Cancelled(said)).await?;
         change.commit().await?;
     }
     shown(&app, writer.operator, id).await
 }
 
 /// Notes correctors that were moved though the adjustment came to nothing.
-async fn leave_as_it_stands(change: &mut Change<'_>) -> Result<()> {
+async fn record_moved_correctors(change: &mut Change<'_>) -> Result<()> {
     let standing = change.whole.standing();
     if !standing.was_moved() {
         return Ok(());
@@ -146,7 +146,7 @@ pub(super) async fn close_work_order(
     let unverified = closing.without_verification && whole.summary.state == State::Adjusted;
     if !unverified {
         let allowed = [State::Verified, State::Failed];
-        whole.must_be(
+        whole.require_state(
             &allowed,
             "it is closed when headings at sea have spoken, or once adjusted without_verification",
         )?;
@@ -157,7 +157,7 @@ pub(super) async fn close_work_order(
         } else {
             text
         };
-        change.append(Content::Closed(Said { text })).await?;
+        change.append(OrderEvent::Closed(Said { text })).await?;
         change.commit().await?;
     }
     shown(&app, writer.operator, id).await

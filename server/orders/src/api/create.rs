@@ -1,7 +1,7 @@
 //! New work orders, and the withdrawal of one that every firm declined.
 
 use crate::dispatch::{offer_requests, port_call_check};
-use crate::work_orders::log_entry::{Author, Content, Said};
+use crate::work_orders::log_entry::{Author, OrderEvent, Said};
 use crate::work_orders::order::{NewOrder, Opened, Order, State};
 use crate::work_orders::order_update::Change;
 use crate::work_orders::{shown, store};
@@ -93,9 +93,9 @@ async fn open<'a>(
         vessel_name,
         compass_name,
     };
-    change.append(Content::Opened(Box::new(opened))).await?;
+    change.append(OrderEvent::Opened(Box::new(opened))).await?;
     let at = change.whole.summary.planned_at;
-    port_call_check::must_be_there(&mut change, at, "port").await?;
+    port_call_check::require_vessel_in_port(&mut change, at, "port").await?;
     if let Some(offer) = offer {
         let offered = offer.checked(&mut change.tx, operator).await?;
         offer_requests::offer(&mut change, offered).await?;
@@ -120,7 +120,7 @@ pub async fn write(
     let author = author(&mut tx, writer).await?;
     let new = new.checked(app.clock.now().into())?;
     let change = open(app, request, tx, writer.operator, id, new, author).await?;
-    change.settle().await
+    change.finish().await
 }
 
 /// Cancels an order that every firm declined, for another in its place, in a transaction that
@@ -150,8 +150,8 @@ pub async fn give_way(
     let now = app.clock.now().into();
     let mut change = Change::new(app, tx, whole, author, now, Uuid::now_v7());
     let text = "declined by every firm, and offered anew as the schedule has it".to_owned();
-    change.append(Content::Cancelled(Said { text })).await?;
-    change.settle().await
+    change.append(OrderEvent::Cancelled(Said { text })).await?;
+    change.finish().await
 }
 
 /// An operator's person, as entries name them.

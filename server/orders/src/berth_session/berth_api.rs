@@ -1,21 +1,23 @@
 //! What is done at the berth: the reading, the plan, its steps.
 
-use crate::berth_session::berth_reading::{Read, check, must_be_numbers};
+use crate::berth_session::berth_reading::{RecordedReading, check, check_reading_ranges};
 use crate::berth_session::plan::{
-    Choice, Planned, calculate, must_be_without_cargo, must_still_hold, offer,
+    ChosenPlan, PlanChoice, offer, refuse_magnetic_cargo, require_current_reading, run_planner,
 };
 use crate::berth_session::planning_inputs::Basis;
 use crate::berth_session::position_check;
-use crate::berth_session::second_reading::is_explained_by;
-use crate::berth_session::steps::{Moved, Stand, StepRead, judge, learn_anew};
-use crate::work_orders::log_entry::Content;
+use crate::berth_session::second_reading::explains_second_reading;
+use crate::berth_session::steps::{
+    CorrectorMove, CorrectorReport, StepReading, judge, revise_strength,
+};
+use crate::work_orders::log_entry::OrderEvent;
 use crate::work_orders::order::{Order, State};
 use crate::work_orders::order_update;
 use crate::work_orders::refusal::not_adjustable;
 use crate::work_orders::request_schema::BerthReadingSchema;
 use crate::work_orders::schema::OfferSchema;
 use crate::work_orders::shown;
-use crate::work_orders::store::{self, Whole};
+use crate::work_orders::store::{self, StoredOrder};
 use axum::extract::{FromRef, State as Shared};
 use binnacle_adjustment::adjust::{Outcome, ReadingForm};
 use binnacle_compass::angle::wrap_180;
@@ -87,21 +89,23 @@ async fn read_berth(
     let update = order_update(&app, request, writer, id, key, "berth reading", &given)?;
     let (whole, done) = update.look().await?;
     if let Some(entry) = done {
-        must_not_be_refused(&whole, entry)?;
+        repeat_refusal(&whole, entry)?;
         return shown(&app, writer.tenant, id).await;
     }
-    must_not_be_moved(&whole)?;
-    must_be_numbers(&given, app.clock.now().into())?;
-    position_check::must_be_of_now(&given, app.clock.now().into())?;
+    refuse_moved_correctors(&whole)?;
+    check_reading_ranges(&given, app.clock.now().into())?;
+    position_check::check_reading_age(&given, app.clock.now().into())?;
     let (vessel, compass) = (whole.summary.vessel_id, whole.summary.compass_id);
     let basis = Basis::load(&app, vessel, compass, &given).await?;
-    let doubt = position_check::doubt(&app, (vessel, compass), &whole.summary.port, &given).await?;
+    let doubt =
+        position_check::check_position(&app, (vessel, compass), &whole.summary.port, &given)
+            .await?;
     let (checked, refusal) = match (check(&given, &basis)?, doubt) {
         (Ok(checked), None) => (Some(checked), None),
         (Ok(_), Some(doubt)) => (None, Some(doubt)),
-        (Err(refusal), doubt) => (None, Some(refusal.doubted(doubt))),
+        (Err(refusal), doubt) => (None, Some(refusal.with_cause(doubt))),
     };
-    let read = Read {
+    let read = RecordedReading {
         given,
         basis: Some(basis),
         checked,
@@ -117,7 +121,9 @@ async fn read_berth(
             };
             change.tx.publish(&read).await?;
         }
-        change.append(Content::BerthReading(Box::new(read))).await?;
+        change
+            .append(OrderEvent::BerthReading(Box::new(read)))
+            .await?;
         change.commit().await?;
     }
     match refusal {
@@ -127,18 +133,18 @@ async fn read_berth(
 }
 
 /// A reading that was sent again is refused again.
-fn must_not_be_refused(whole: &Whole, entry: Uuid) -> Result<()> {
+fn repeat_refusal(whole: &StoredOrder, entry: Uuid) -> Result<()> {
     let mut found = whole.log.iter().filter(|known| known.id == entry);
     let refusal = found.find_map(|known| match &known.content {
-        Content::BerthReading(read) => read.refusal.clone(),
+        OrderEvent::BerthReading(read) => read.refusal.clone(),
         _ => None,
     });
     refusal.map_or(Ok(()), |refusal| Err(not_adjustable(vec![refusal])))
 }
 
 /// The model knows the correctors as they stood: what was moved since spoils a reading.
-fn must_not_be_moved(whole: &Whole) -> Result<()> {
-    whole.must_be(
+fn refuse_moved_correctors(whole: &StoredOrder) -> Result<()> {
+    whole.require_state(
         &AT_BERTH,
         "the berth is read between going on board and completion",
     )?;
@@ -169,15 +175,15 @@ async fn find_plan(
     Id(id): Id<OrderId>,
 ) -> Result<Json<Outcome>> {
     let whole = store::whole(&app.db, reader.tenant, id).await?;
-    whole.must_be(&AT_BERTH, "there is nothing to plan")?;
-    let prepared = whole.standing().prepared()?;
-    must_still_hold(&app, &whole.summary, &prepared).await?;
-    Ok(Json(offer(&app, &whole.summary, prepared).await?))
+    whole.require_state(&AT_BERTH, "there is nothing to plan")?;
+    let plan_request = whole.standing().plan_request()?;
+    require_current_reading(&app, &whole.summary, &plan_request).await?;
+    Ok(Json(offer(&app, &whole.summary, plan_request).await?))
 }
 
 /// Choose a plan
 #[utoipa::path(post, path = "/work-orders/{id}/plan", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Choice,
+    params(("id" = OrderId, Path), Key), request_body = PlanChoice,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "There is no reading to plan from", body = Problem),
@@ -188,25 +194,25 @@ async fn choose_plan(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    ValidOrNone(choice): ValidOrNone<Choice>,
+    ValidOrNone(choice): ValidOrNone<PlanChoice>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "plan", &choice)?;
     let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
-    whole.must_be(&AT_BERTH, "there is nothing to plan")?;
-    let prepared = whole.standing().prepared()?;
-    must_still_hold(&app, &whole.summary, &prepared).await?;
-    let outcome = offer(&app, &whole.summary, prepared).await?;
+    whole.require_state(&AT_BERTH, "there is nothing to plan")?;
+    let plan_request = whole.standing().plan_request()?;
+    require_current_reading(&app, &whole.summary, &plan_request).await?;
+    let outcome = offer(&app, &whole.summary, plan_request).await?;
     let offered = outcome.plans.len();
-    let planned = Planned::of(outcome, choice.plan.unwrap_or(1));
+    let planned = ChosenPlan::of(outcome, choice.plan.unwrap_or(1));
     let planned = planned.ok_or_else(|| Error::Invalid {
         field: "plan",
         detail: format!("there are plans 1 to {offered}"),
     })?;
     if let Some(mut change) = update.begin(&whole).await? {
-        change.append(Content::Plan(Box::new(planned))).await?;
+        change.append(OrderEvent::Plan(Box::new(planned))).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
@@ -216,7 +222,7 @@ async fn choose_plan(
 ///
 /// The step is confirmed, or there is a new plan from what was read.
 #[utoipa::path(post, path = "/work-orders/{id}/steps/{n}", tag = "adjusting",
-    params(("id" = OrderId, Path), ("n" = u32, Path), Key), request_body = StepRead,
+    params(("id" = OrderId, Path), ("n" = u32, Path), Key), request_body = StepReading,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "It is not the step to do now", body = Problem),
@@ -227,7 +233,7 @@ async fn read_step(
     writer: PartyWriter,
     Id((id, number)): Id<(OrderId, u32)>,
     key: Key,
-    Valid(read): Valid<StepRead>,
+    Valid(read): Valid<StepReading>,
 ) -> Result<Json<Order>> {
     let update = order_update(
         &app,
@@ -258,27 +264,30 @@ async fn read_step(
             .to_owned(),
     })?;
     degrees("before_deg", before_deg, 0.0, 360.0)?;
-    must_lie_still(before_deg, standing.compass_deg)?;
-    let prepared = standing.prepared()?;
-    must_be_without_cargo(&app, &whole.summary, &prepared).await?;
-    let judged = calculate(&app, move || judge(&prepared, step, before_deg, after_deg)).await?;
+    require_still_compass(before_deg, standing.compass_deg)?;
+    let plan_request = standing.plan_request()?;
+    refuse_magnetic_cargo(&app, &whole.summary, &plan_request).await?;
+    let judged = run_planner(&app, move || {
+        judge(&plan_request, step, before_deg, after_deg)
+    })
+    .await?;
     if let Some(mut change) = update.begin(&whole).await? {
-        change.append(Content::Step(Box::new(judged))).await?;
+        change.append(OrderEvent::Step(Box::new(judged))).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
 }
 
 /// At a berth a compass that nothing was done to turns by no more, degrees.
-const LIES_STILL_DEG: f64 = 3.0;
+const STILL_TOLERANCE_DEG: f64 = 3.0;
 
 /// What a step turns the compass by is foretold for the heading on which the berth was read.
-fn must_lie_still(before_deg: f64, last_deg: Option<f64>) -> Result<()> {
+fn require_still_compass(before_deg: f64, last_deg: Option<f64>) -> Result<()> {
     let Some(last_deg) = last_deg else {
         return Ok(());
     };
     let turned_deg = wrap_180(before_deg - last_deg);
-    if turned_deg.abs() <= LIES_STILL_DEG {
+    if turned_deg.abs() <= STILL_TOLERANCE_DEG {
         return Ok(());
     }
     Err(Error::Invalid {
@@ -295,7 +304,7 @@ fn must_lie_still(before_deg: f64, last_deg: Option<f64>) -> Result<()> {
 ///
 /// When they stand otherwise than the plan has it, there has to be another plan.
 #[utoipa::path(post, path = "/work-orders/{id}/corrector-settings", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Stand,
+    params(("id" = OrderId, Path), Key), request_body = CorrectorReport,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "Not before the berth was read", body = Problem),
@@ -306,7 +315,7 @@ async fn set_correctors(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(stand): Valid<Stand>,
+    Valid(stand): Valid<CorrectorReport>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "corrector settings", &stand)?;
     let (whole, done) = update.look().await?;
@@ -314,19 +323,23 @@ async fn set_correctors(
         return shown(&app, writer.tenant, id).await;
     }
     let what = "correctors are set between the reading and the completion";
-    whole.must_be(&[State::Measured, State::Adjusting], what)?;
+    whole.require_state(&[State::Measured, State::Adjusting], what)?;
     let mut moved = moved(&whole, stand, app.clock.now().into())?;
-    moved.learnt_anew = learn_anew(&app, &whole.standing(), &moved).await?;
-    moved.explains_reading = is_explained_by(&app, &whole.standing(), &moved).await?;
+    moved.learnt_anew = revise_strength(&app, &whole.standing(), &moved).await?;
+    moved.explains_reading = explains_second_reading(&app, &whole.standing(), &moved).await?;
     if let Some(mut change) = update.begin(&whole).await? {
-        let content = Content::CorrectorSettings(Box::new(moved));
+        let content = OrderEvent::CorrectorSettings(Box::new(moved));
         change.append(content).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
 }
 
-fn moved(whole: &Whole, stand: Stand, now: binnacle_platform::time::Time) -> Result<Moved> {
+fn moved(
+    whole: &StoredOrder,
+    stand: CorrectorReport,
+    now: binnacle_platform::time::Time,
+) -> Result<CorrectorMove> {
     let standing = whole.standing();
     let wrong = || Error::WrongState("the berth has not been read yet".to_owned());
     let binnacle = standing.binnacle.as_ref().ok_or_else(wrong)?;
@@ -334,7 +347,7 @@ fn moved(whole: &Whole, stand: Stand, now: binnacle_platform::time::Time) -> Res
         .with_setting(stand.setting.clone())
         .map_err(binnacle_fleet::binnacles::invalid_binnacle)?;
     let compass_deg = stand.compass_deg;
-    Ok(Moved {
+    Ok(CorrectorMove {
         before: standing.setting().ok_or_else(wrong)?.clone(),
         after: stand.setting,
         compass_deg: compass_deg

@@ -15,13 +15,13 @@ use utoipa::ToSchema;
 
 /// A reading as the log has it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Read {
+pub struct RecordedReading {
     /// What was read.
     pub given: ReadingForm,
     /// What it was held against; none when that could not be found.
     pub basis: Option<Basis>,
     /// What it told; none when it was refused.
-    pub checked: Option<Checked>,
+    pub checked: Option<BerthCheck>,
     /// Why it was refused; none when it was taken.
     pub refusal: Option<Refusal>,
 }
@@ -29,7 +29,7 @@ pub struct Read {
 /// What a reading told.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = BerthCheck)]
-pub struct Checked {
+pub struct BerthCheck {
     /// λ, the mean share of the earth's horizontal field that reaches the compass; every
     /// heading tells it equally well.
     pub lambda: f64,
@@ -48,15 +48,15 @@ pub struct Checked {
 }
 
 /// A clock on board may be so much before the server's, seconds.
-const FAST_CLOCK_S: f64 = 300.0;
+const MAX_CLOCK_LEAD_S: f64 = 300.0;
 
 /// Refuses what cannot be a number of its kind, or a time.
-pub(crate) fn must_be_numbers(given: &ReadingForm, now: Time) -> Result<()> {
+pub(crate) fn check_reading_ranges(given: &ReadingForm, now: Time) -> Result<()> {
     given.check_ranges().map_err(|error| Error::Invalid {
         field: error.field,
         detail: error.what,
     })?;
-    if given.at.seconds_since(now.0) > FAST_CLOCK_S {
+    if given.at.seconds_since(now.0) > MAX_CLOCK_LEAD_S {
         return Err(Error::Invalid {
             field: "at",
             detail: "lies in the future".to_owned(),
@@ -69,7 +69,7 @@ pub(crate) fn must_be_numbers(given: &ReadingForm, now: Time) -> Result<()> {
 pub(crate) fn check(
     given: &ReadingForm,
     basis: &Basis,
-) -> Result<std::result::Result<Checked, Refusal>> {
+) -> Result<std::result::Result<BerthCheck, Refusal>> {
     let variation = basis.variation()?;
     let checked = given.check(
         &basis.model.model,
@@ -78,15 +78,15 @@ pub(crate) fn check(
         &basis.binnacle,
     );
     Ok(match checked {
-        Ok((reading, estimate)) => Ok(Checked::new(&reading, &estimate)),
+        Ok((reading, estimate)) => Ok(BerthCheck::new(&reading, &estimate)),
         Err(refused) => Err(Refusal::from(&*refused)),
     })
 }
 
-impl Checked {
-    fn new(reading: &BerthReading, estimate: &BerthEstimate) -> Checked {
+impl BerthCheck {
+    fn new(reading: &BerthReading, estimate: &BerthEstimate) -> BerthCheck {
         let (lambda, consistency) = (estimate.lambda, estimate.consistency);
-        Checked {
+        BerthCheck {
             lambda: lambda.value,
             lambda_sd: lambda.standard_error,
             consistency_deg: consistency.angle_deg,

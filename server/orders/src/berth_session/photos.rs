@@ -21,7 +21,7 @@ pub const MOST: usize = 40;
 /// A photograph as the log has it.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = OrderPhoto)]
-pub struct PhotoTaken {
+pub struct Photo {
     /// Its id.
     pub photo: PhotoId,
     /// SHA-256, hexadecimal.
@@ -44,12 +44,12 @@ pub struct Caption {
     caption: Option<String>,
 }
 
-impl PhotoTaken {
+impl Photo {
     /// A photograph of this id.
     ///
     /// # Errors
     /// When it is too large, or of no kind that is taken.
-    pub fn new(id: PhotoId, bytes: &[u8], caption: &Caption) -> Result<PhotoTaken> {
+    pub fn new(id: PhotoId, bytes: &[u8], caption: &Caption) -> Result<Photo> {
         if bytes.len() > MAX_BYTES {
             return Err(Error::TooLarge(MAX_BYTES));
         }
@@ -62,7 +62,7 @@ impl PhotoTaken {
                 "the file begins as {media_type} and is no picture: it is cut off, or damaged"
             )));
         }
-        Ok(PhotoTaken {
+        Ok(Photo {
             photo: id,
             sha256: sha256_hex(bytes),
             media_type: media_type.to_owned(),

@@ -1,8 +1,8 @@
 //! The plan: what the planner offers, and what was chosen of it.
 
-use crate::berth_session::planning_inputs::Prepared;
+use crate::berth_session::planning_inputs::PlanRequest;
 use crate::work_orders::order::Summary;
-use crate::work_orders::order_state::Standing;
+use crate::work_orders::order_state::OrderState;
 use crate::work_orders::refusal::{Cure, Refusal, not_adjustable};
 use binnacle_adjustment::adjust::{
     AdjustError, Optimality, Outcome, Plan, UpdatedPrediction, check_total_turn, plan,
@@ -21,11 +21,11 @@ use utoipa::ToSchema;
 
 /// A plan that was chosen.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Planned {
+pub struct ChosenPlan {
     /// Which of those that were offered, from 1.
     pub chosen: usize,
     /// All that were offered, in short.
-    pub offered: Vec<InShort>,
+    pub offered: Vec<PlanSummary>,
     /// What the adjuster should know of it.
     pub notes: Vec<String>,
     /// How well the search knows that nothing is better.
@@ -36,7 +36,7 @@ pub struct Planned {
 
 /// A plan in short.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct InShort {
+pub struct PlanSummary {
     /// Movements of hand that it takes.
     pub moves: u32,
     /// Worst foretold residual, weighted over the waters, degrees.
@@ -49,18 +49,18 @@ pub struct InShort {
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = PlanChoice, example = json!({ "plan": 1 }))]
-pub(crate) struct Choice {
+pub(crate) struct PlanChoice {
     /// Which of those that are offered, from 1: the recommended one where it is not said.
     #[schema(minimum = 1)]
     pub plan: Option<usize>,
 }
 
-impl Standing {
+impl OrderState {
     /// What the planner is asked now.
     ///
     /// # Errors
     /// [`Error::WrongState`] before there is a reading.
-    pub(crate) fn prepared(&self) -> Result<Prepared> {
+    pub(crate) fn plan_request(&self) -> Result<PlanRequest> {
         let wrong = || Error::WrongState("there is no reading to plan from yet".to_owned());
         let read = self.read.as_ref().ok_or_else(wrong)?;
         let basis = read.basis.clone().ok_or_else(wrong)?;
@@ -68,7 +68,7 @@ impl Standing {
             .given
             .reading(basis.variation()?)
             .map_err(|error| anyhow::anyhow!("a reading that was taken: {error}"))?;
-        Ok(Prepared {
+        Ok(PlanRequest {
             reading,
             given: read.given.clone(),
             binnacle: self.binnacle.clone().ok_or_else(wrong)?,
@@ -81,35 +81,35 @@ impl Standing {
 }
 
 /// What is read at a berth holds no longer: by then she may lie elsewhere.
-pub(crate) const READING_HOLDS_S: f64 = 48.0 * 3600.0;
+pub(crate) const READING_VALIDITY_S: f64 = 48.0 * 3600.0;
 
 /// Refuses a reading that is too old, or older than a change of the ship's magnetism, of
 /// what is known of her binnacle or of cargo.
 ///
 /// # Errors
 /// [`Error::WrongState`].
-pub(crate) async fn must_still_hold(
+pub(crate) async fn require_current_reading(
     app: &App,
     summary: &Summary,
-    prepared: &Prepared,
+    plan_request: &PlanRequest,
 ) -> Result<()> {
-    let age_s = app.clock.now().seconds_since(prepared.given.at);
-    if age_s > READING_HOLDS_S {
+    let age_s = app.clock.now().seconds_since(plan_request.given.at);
+    if age_s > READING_VALIDITY_S {
         let hours = age_s / 3600.0;
         let words = format!("the berth was read {hours:.0} hours ago: read it again");
         return Err(Error::WrongState(words));
     }
-    must_be_without_cargo(app, summary, prepared).await?;
+    refuse_magnetic_cargo(app, summary, plan_request).await?;
     let (vessel, compass) = (summary.vessel_id, summary.compass_id);
     let binnacle = binnacles::current(&app.db, vessel, compass).await?;
-    if binnacle.is_some_and(|now| now.revision != prepared.basis.binnacle_revision) {
+    if binnacle.is_some_and(|now| now.revision != plan_request.basis.binnacle_revision) {
         return Err(Error::WrongState(
             "the binnacle was written anew since the berth was read: read the berth again"
                 .to_owned(),
         ));
     }
     let model = models::current(&app.db, vessel, compass).await?;
-    let known_until = prepared.basis.model.data_until;
+    let known_until = plan_request.basis.model.data_until;
     let holds = model.is_some_and(|model| model.epoch_from.is_none_or(|from| from <= known_until));
     if !holds {
         return Err(Error::WrongState(
@@ -127,20 +127,20 @@ pub(crate) async fn must_still_hold(
 ///
 /// # Errors
 /// [`Error::WrongState`].
-pub(crate) async fn must_be_without_cargo(
+pub(crate) async fn refuse_magnetic_cargo(
     app: &App,
     summary: &Summary,
-    prepared: &Prepared,
+    plan_request: &PlanRequest,
 ) -> Result<()> {
     let logbook = logbook::of_compass(&app.db, summary.vessel_id, summary.compass_id).await?;
-    let (read_at, now) = (prepared.given.at, app.clock.now());
+    let (read_at, now) = (plan_request.given.at, app.clock.now());
     let mut since = logbook.iter().filter(|entry| {
         entry.kind == LogbookKind::MagneticCargo
             && entry.from <= now
             && entry.to.is_none_or(|to| to > read_at)
     });
-    if prepared.basis.cargo_on_board {
-        if prepared.given.cargo_on_board || since.any(|entry| entry.from <= read_at) {
+    if plan_request.basis.cargo_on_board {
+        if plan_request.given.cargo_on_board || since.any(|entry| entry.from <= read_at) {
             return Ok(());
         }
         return Err(Error::WrongState(
@@ -164,7 +164,7 @@ pub(crate) async fn must_be_without_cargo(
 ///
 /// # Errors
 /// `not-adjustable` with what would cure it.
-pub(crate) fn must_keep_to_limits(standing: &Standing) -> Result<()> {
+pub(crate) fn require_within_limits(standing: &OrderState) -> Result<()> {
     let basis = standing.read.as_ref().and_then(|read| read.basis.as_ref());
     let followed = standing.plan.as_ref().zip(basis);
     let beyond = followed
@@ -181,21 +181,21 @@ pub(crate) fn must_keep_to_limits(standing: &Standing) -> Result<()> {
 ///
 /// # Errors
 /// [`Error::WrongState`].
-pub(crate) async fn must_have_turned(
+pub(crate) async fn require_total_turn(
     app: &App,
-    standing: &Standing,
-    prepared: Prepared,
+    standing: &OrderState,
+    plan_request: PlanRequest,
 ) -> Result<()> {
     let looked = standing.looked_at == standing.steps.len();
-    let read = (prepared.given.compass_deg, prepared.compass_deg);
+    let read = (plan_request.given.compass_deg, plan_request.compass_deg);
     let (Some(first_deg), Some(now_deg)) = read else {
         return Ok(());
     };
     if standing.learnt().is_some() || looked {
         return Ok(());
     }
-    let in_all = calculate(app, move || {
-        let adjustment = prepared.adjustment();
+    let in_all = run_planner(app, move || {
+        let adjustment = plan_request.adjustment();
         check_total_turn(&adjustment, first_deg, adjustment.standing(), now_deg)
     });
     let in_all = in_all.await?;
@@ -213,15 +213,15 @@ pub(crate) async fn must_have_turned(
 ///
 /// # Errors
 /// `not-adjustable` where what is left open is beyond the order's limits.
-pub(crate) async fn foretold(app: &App, standing: &Standing) -> Result<UpdatedPrediction> {
+pub(crate) async fn foretold(app: &App, standing: &OrderState) -> Result<UpdatedPrediction> {
     if let Some(learnt) = standing.learnt() {
         return Ok(learnt.clone());
     }
-    let prepared = standing.prepared()?;
-    let (limits, waters) = (standing.limits, prepared.basis.waters.clone());
+    let plan_request = standing.plan_request()?;
+    let (limits, waters) = (standing.limits, plan_request.basis.waters.clone());
     let steps = standing.steps.clone();
-    let learnt = calculate(app, move || {
-        predict_by_compass(&prepared.adjustment(), &steps)
+    let learnt = run_planner(app, move || {
+        predict_by_compass(&plan_request.adjustment(), &steps)
     })
     .await?;
     let Some(beyond) = learnt.limit_violation(&limits, &waters) else {
@@ -240,11 +240,15 @@ pub(crate) async fn foretold(app: &App, standing: &Standing) -> Result<UpdatedPr
 ///
 /// # Errors
 /// `not-adjustable` with what would cure it.
-pub(crate) async fn offer(app: &App, summary: &Summary, prepared: Prepared) -> Result<Outcome> {
+pub(crate) async fn offer(
+    app: &App,
+    summary: &Summary,
+    plan_request: PlanRequest,
+) -> Result<Outcome> {
     let (vessel, compass) = (summary.vessel_id, summary.compass_id);
     let alerts = alerts::list_in_force(&app.db, vessel, compass).await?;
-    let unproved = prepared.basis.model.headings_until;
-    let mut outcome = calculate(app, move || plan(&prepared.adjustment())).await?;
+    let unproved = plan_request.basis.model.headings_until;
+    let mut outcome = run_planner(app, move || plan(&plan_request.adjustment())).await?;
     if let Some(until) = unproved {
         outcome.notes.insert(
             0,
@@ -267,7 +271,7 @@ pub(crate) async fn offer(app: &App, summary: &Summary, prepared: Prepared) -> R
 }
 
 /// Runs the planner on a blocking thread, a few at a time.
-pub(crate) async fn calculate<T: Send + 'static>(
+pub(crate) async fn run_planner<T: Send + 'static>(
     app: &App,
     what: impl FnOnce() -> std::result::Result<T, AdjustError> + Send + 'static,
 ) -> Result<T> {
@@ -288,15 +292,15 @@ pub(crate) fn refusals(outcome: &Outcome) -> Vec<Refusal> {
     outcome.refusals.iter().map(Refusal::from).collect()
 }
 
-impl Planned {
+impl ChosenPlan {
     /// What was chosen of an outcome, from 1; none when there are not so many.
-    pub fn of(outcome: Outcome, chosen: usize) -> Option<Planned> {
-        let in_short = |plan: &Plan| InShort {
+    pub fn of(outcome: Outcome, chosen: usize) -> Option<ChosenPlan> {
+        let in_short = |plan: &Plan| PlanSummary {
             moves: plan.moves,
             worst_residual_deg: plan.worst_residual_deg,
             widest_band_deg: plan.widest_band_deg,
         };
-        Some(Planned {
+        Some(ChosenPlan {
             chosen,
             offered: outcome.plans.iter().map(in_short).collect(),
             notes: outcome.notes,

@@ -1,7 +1,7 @@
 //! What a reading is held against and a plan rests on: model, field, binnacle and
 //! waters, as they were when the magnetometer was read.
 
-use crate::berth_session::previous_lambda::{self, EarlierBerth};
+use crate::berth_session::previous_lambda::{self, PreviousBerth};
 use crate::work_orders::order::State;
 use crate::work_orders::store;
 use binnacle_adjustment::adjust::{Adjustment, Circumstances, Limits, ReadingForm, Water};
@@ -50,7 +50,7 @@ pub struct Basis {
     pub cargo_on_board: bool,
     /// What the compass's last adjustment told of λ.
     #[serde(default)]
-    pub earlier: Option<EarlierBerth>,
+    pub earlier: Option<PreviousBerth>,
     /// Whether the model has learnt from a reading at this berth.
     #[serde(default)]
     pub is_updated_here: bool,
@@ -78,7 +78,7 @@ pub struct ModelUsed {
 }
 
 /// A plan's argument with all that it borrows.
-pub(crate) struct Prepared {
+pub(crate) struct PlanRequest {
     /// What it rests on.
     pub basis: Basis,
     /// The reading as the science takes it.
@@ -169,7 +169,7 @@ impl From<StoredModel> for ModelUsed {
     }
 }
 
-impl Prepared {
+impl PlanRequest {
     /// What the planner is asked.
     pub(crate) fn adjustment(&self) -> Adjustment<'_> {
         let model = &self.basis.model;
@@ -226,7 +226,7 @@ async fn headings_until(app: &App, vessel: VesselId, model: &StoredModel) -> Res
 /// Cells of the horizontal and the vertical field, nT: within one a compass feels the same.
 const CELL_NT: (f64, f64) = (3_000.0, 6_000.0);
 /// So many waters at most, those where she was most.
-const MOST_WATERS: usize = 5;
+const MAX_WATERS: usize = 5;
 
 /// Where the vessel was, as a compass feels it; the berth where nothing is known.
 async fn waters(
@@ -251,7 +251,7 @@ async fn waters(
     });
     let mut waters: Vec<Water> = read.await??;
     waters.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-    waters.truncate(MOST_WATERS);
+    waters.truncate(MAX_WATERS);
     tell_apart(&mut waters);
     if waters.is_empty() {
         waters.push(Water {

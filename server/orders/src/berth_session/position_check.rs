@@ -3,7 +3,7 @@
 //! What always holds: a reading is doubted by what the server knows without it, the port of
 //! the order and the vessel's own track; where it knows neither there is no doubt.
 
-use crate::berth_session::plan::READING_HOLDS_S;
+use crate::berth_session::plan::READING_VALIDITY_S;
 use crate::firms::port_meant;
 use crate::work_orders::refusal::{Cure, Refusal};
 use binnacle_adjustment::adjust::ReadingForm;
@@ -16,13 +16,13 @@ use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
 
 /// The farthest berth of a port from where the list of ports has it, nautical miles.
-const FROM_PORT_NM: f64 = 60.0;
+const MAX_BERTH_DISTANCE_NM: f64 = 60.0;
 /// No ship of ours makes more, knots.
-const FASTEST_KN: f64 = 30.0;
+const MAX_SPEED_KN: f64 = 30.0;
 /// What a track and a berth on the chart differ by, nautical miles.
-const SLACK_NM: f64 = 5.0;
+const TRACK_TOLERANCE_NM: f64 = 5.0;
 /// So far from a reading the track is looked at, seconds.
-const AROUND_S: f64 = 48.0 * 3600.0;
+const TRACK_WINDOW_S: f64 = 48.0 * 3600.0;
 /// Mean radius of the earth, nautical miles.
 const EARTH_NM: f64 = 3440.07;
 
@@ -30,15 +30,15 @@ const EARTH_NM: f64 = 3440.07;
 ///
 /// # Errors
 /// Names the field.
-pub(crate) fn must_be_of_now(given: &ReadingForm, now: Time) -> Result<()> {
+pub(crate) fn check_reading_age(given: &ReadingForm, now: Time) -> Result<()> {
     let age_s = now.0.seconds_since(given.at);
-    if age_s > READING_HOLDS_S {
+    if age_s > READING_VALIDITY_S {
         return Err(Error::Invalid {
             field: "at",
             detail: format!(
                 "lies {:.0} hours back: a reading holds for {:.0}",
                 age_s / 3600.0,
-                READING_HOLDS_S / 3600.0
+                READING_VALIDITY_S / 3600.0
             ),
         });
     }
@@ -46,7 +46,7 @@ pub(crate) fn must_be_of_now(given: &ReadingForm, now: Time) -> Result<()> {
 }
 
 /// Why she cannot have lain there then; none where nothing speaks against it.
-pub(crate) async fn doubt(
+pub(crate) async fn check_position(
     app: &App,
     (vessel, compass): (VesselId, CompassId),
     port: &str,
@@ -58,7 +58,7 @@ pub(crate) async fn doubt(
     if let Some(words) = not_in_port(berth, port) {
         return Ok(Some(refusal(words)));
     }
-    let around = [-AROUND_S, AROUND_S].map(|s| Some(Time(given.at.plus_seconds(s))));
+    let around = [-TRACK_WINDOW_S, TRACK_WINDOW_S].map(|s| Some(Time(given.at.plus_seconds(s))));
     let chunks = analysis::chunks(&app.db, vessel, compass, around[0], around[1]).await?;
     let mut nearest: Option<(f64, Position)> = None;
     for chunk in &chunks {
@@ -89,7 +89,7 @@ fn refusal(words: String) -> Refusal {
 fn not_in_port(berth: Position, port: &str) -> Option<String> {
     let known = port_meant(port)?;
     let (apart_nm, name) = (distance_nm(berth, known.position), known.name);
-    (apart_nm > FROM_PORT_NM).then(|| {
+    (apart_nm > MAX_BERTH_DISTANCE_NM).then(|| {
         format!(
             "the position of the reading is {apart_nm:.0} nautical miles from {name}, where the \
              order is to be done"
@@ -101,7 +101,7 @@ fn not_in_port(berth: Position, port: &str) -> Option<String> {
 fn too_far(berth: Position, (apart_s, seen): (f64, Position)) -> Option<String> {
     let apart_nm = distance_nm(berth, seen);
     let hours = apart_s / 3600.0;
-    (apart_nm > SLACK_NM + FASTEST_KN * hours).then(|| {
+    (apart_nm > TRACK_TOLERANCE_NM + MAX_SPEED_KN * hours).then(|| {
         format!(
             "the position of the reading is {apart_nm:.0} nautical miles from where her track \
              has her, {hours:.1} hours from then"

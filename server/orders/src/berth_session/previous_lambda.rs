@@ -21,14 +21,14 @@ use serde::{Deserialize, Serialize};
 
 /// λ at an earlier berth.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct EarlierBerth {
+pub struct PreviousBerth {
     /// As it was told.
     pub lambda: EarlierLambda,
     /// How the correctors stood then.
     pub stood: Setting,
 }
 
-impl EarlierBerth {
+impl PreviousBerth {
     /// With the correctors as this binnacle has them.
     pub fn set_as(&self, binnacle: &Binnacle) -> Option<EarlierLambda> {
         self.lambda.adapted_to(binnacle, &self.stood)
@@ -37,7 +37,7 @@ impl EarlierBerth {
 
 /// What of a record λ follows from.
 #[derive(Deserialize)]
-struct Recorded {
+struct RecordedAdjustment {
     reading: ReadingForm,
     model_before: Model,
     earth_at_berth: Earth,
@@ -68,7 +68,7 @@ pub(crate) async fn of_compass(
     compass: CompassId,
     now: Timestamp,
     logbook: &[LogbookEntry],
-) -> Result<Option<EarlierBerth>> {
+) -> Result<Option<PreviousBerth>> {
     let found = row!(
         &app.db,
         (Option<String>,),
@@ -83,7 +83,7 @@ pub(crate) async fn of_compass(
         return Ok(None);
     };
     // A record of a time when less was written down tells nothing.
-    let Ok(recorded) = serde_json::from_str::<Recorded>(&record) else {
+    let Ok(recorded) = serde_json::from_str::<RecordedAdjustment>(&record) else {
         return Ok(None);
     };
     let since = recorded.reading.at;
@@ -104,8 +104,8 @@ fn changes_iron(kind: LogbookKind) -> bool {
     )
 }
 
-impl Recorded {
-    fn told(&self) -> Option<EarlierBerth> {
+impl RecordedAdjustment {
+    fn told(&self) -> Option<PreviousBerth> {
         let variation = Variation::try_from(self.earth_at_berth.variation_deg).ok()?;
         let binnacle = &self.binnacle_before.binnacle;
         let adjustment = Adjustment {
@@ -124,7 +124,7 @@ impl Recorded {
             circumstances: Circumstances::default(),
             limits: Limits::default(),
         };
-        Some(EarlierBerth {
+        Some(PreviousBerth {
             lambda: EarlierLambda::from_berth(self.reading.at, &adjustment).ok()??,
             stood: binnacle.setting.clone(),
         })

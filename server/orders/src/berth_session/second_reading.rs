@@ -3,12 +3,14 @@
 //! What always holds: it is judged against the correctors as they are said to stand, by
 //! the first reading and the model that was held against that.
 
-use crate::berth_session::berth_reading::{Read, check};
-use crate::berth_session::plan::calculate;
-use crate::berth_session::planning_inputs::{Basis, Prepared};
-use crate::berth_session::second_reading_api::{AgainSaid, AgainVerdict, ReadAgain};
-use crate::berth_session::steps::Moved;
-use crate::work_orders::order_state::Standing;
+use crate::berth_session::berth_reading::{RecordedReading, check};
+use crate::berth_session::plan::run_planner;
+use crate::berth_session::planning_inputs::{Basis, PlanRequest};
+use crate::berth_session::second_reading_api::{
+    RecordedSecondReading, SecondReadingResult, SecondReadingVerdict,
+};
+use crate::berth_session::steps::CorrectorMove;
+use crate::work_orders::order_state::OrderState;
 use crate::work_orders::refusal::Refusal;
 use binnacle_adjustment::adjust::{
     AdjustError, CardCheck, CompletedStep, Corrector, PostCheck, ReadingForm, SecondReadingForm,
@@ -20,34 +22,37 @@ use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
 
 /// Parts of a reading that has the vertical one.
-pub(crate) const WHOLE: usize = 3;
+pub(crate) const PARTS_WITH_VERTICAL: usize = 3;
 
 const FITS_UNPLANNED: &str =
     "the correctors do what they should where they are said to stand: plan anew from this reading";
-const BEYOND: &str = "the correctors seem to stand as planned, but more is left than the limits \
+const BEYOND_LIMITS: &str = "the correctors seem to stand as planned, but more is left than the limits \
     allow: read once more, away from steel and cranes; if it is so again, plan anew from this \
     reading";
 
 /// A second reading as it was given, as one of its own, and as the science takes it.
-pub(crate) struct Second {
+pub(crate) struct SecondReading {
     given: SecondReadingForm,
     pub(crate) form: ReadingForm,
     reading: BerthReading,
 }
 
-impl Second {
-    pub(crate) fn new(given: SecondReadingForm, prepared: &Prepared) -> Result<Second> {
-        let form = given.as_reading(&prepared.given);
+impl SecondReading {
+    pub(crate) fn new(
+        given: SecondReadingForm,
+        plan_request: &PlanRequest,
+    ) -> Result<SecondReading> {
+        let form = given.as_reading(&plan_request.given);
         let form = form.map_err(|error| Error::Invalid {
             field: error.field,
             detail: error.what,
         })?;
-        let reading = form.reading(prepared.basis.variation()?);
+        let reading = form.reading(plan_request.basis.variation()?);
         let reading = reading.map_err(|error| Error::Invalid {
             field: "forward, starboard",
             detail: error.to_string(),
         })?;
-        Ok(Second {
+        Ok(SecondReading {
             given,
             form,
             reading,
@@ -56,11 +61,11 @@ impl Second {
 
     fn read(
         &self,
-        prepared: &Prepared,
+        plan_request: &PlanRequest,
         steps: &[CompletedStep],
     ) -> std::result::Result<PostCheck, AdjustError> {
         check_second_reading(
-            &prepared.adjustment(),
+            &plan_request.adjustment(),
             steps,
             &self.reading,
             self.form.vertical(),
@@ -73,14 +78,14 @@ impl Second {
     /// where it fits, and there is no plan that was followed.
     pub(crate) fn judge(
         self,
-        prepared: &Prepared,
+        plan_request: &PlanRequest,
         steps: &[CompletedStep],
         looked_at: usize,
         planned: bool,
-    ) -> std::result::Result<(ReadAgain, Option<Basis>), AdjustError> {
-        let again = self.read(prepared, steps)?;
-        let mut said = AgainSaid {
-            verdict: AgainVerdict::AsPlanned,
+    ) -> std::result::Result<(RecordedSecondReading, Option<Basis>), AdjustError> {
+        let again = self.read(plan_request, steps)?;
+        let mut said = SecondReadingResult {
+            verdict: SecondReadingVerdict::AsPlanned,
             words: as_planned(steps, again.parts.len()),
             parts: again.parts,
             step: None,
@@ -91,7 +96,7 @@ impl Second {
             could_be: Vec::new(),
         };
         let from_here = |learnt: &UpdatedPrediction, binnacle: Binnacle| {
-            let mut basis = prepared.basis.clone();
+            let mut basis = plan_request.basis.clone();
             basis.model.model = learnt.model_after.clone();
             basis.binnacle = binnacle;
             // The first reading was held against it.
@@ -103,12 +108,12 @@ impl Second {
         match again.verdict {
             Verdict::AsPlanned { updated: learnt } if planned => foretold = Some(*learnt),
             Verdict::AsPlanned { updated: learnt } => {
-                said.verdict = AgainVerdict::Replan;
+                said.verdict = SecondReadingVerdict::Replan;
                 FITS_UNPLANNED.clone_into(&mut said.words);
-                let standing = prepared.adjustment().standing().clone();
+                let standing = plan_request.adjustment().standing().clone();
                 anew = Some(from_here(
                     &learnt,
-                    prepared.binnacle.with_setting(standing)?,
+                    plan_request.binnacle.with_setting(standing)?,
                 ));
                 foretold = Some(*learnt);
             }
@@ -118,8 +123,8 @@ impl Second {
                 binnacle,
                 ..
             } => {
-                said.verdict = AgainVerdict::Replan;
-                BEYOND.clone_into(&mut said.words);
+                said.verdict = SecondReadingVerdict::Replan;
+                BEYOND_LIMITS.clone_into(&mut said.words);
                 said.refusals = refusals.iter().map(Refusal::from).collect();
                 anew = Some(from_here(&learnt, *binnacle));
                 foretold = Some(*learnt);
@@ -130,7 +135,7 @@ impl Second {
                 setting,
                 ..
             } => {
-                said.verdict = AgainVerdict::Slip;
+                said.verdict = SecondReadingVerdict::Slip;
                 said.words = suspected(steps, step, slip);
                 said.step = u32::try_from(looked_at).ok().map(|before| before + step);
                 said.setting = Some(setting);
@@ -138,7 +143,7 @@ impl Second {
             Verdict::Unexplained {
                 misreadings: mistakes,
             } => {
-                said.verdict = AgainVerdict::Unexplained;
+                said.verdict = SecondReadingVerdict::Unexplained;
                 said.words = unexplained(looked_at);
                 said.could_be = mistakes.iter().map(ToString::to_string).collect();
                 if let Some(card) = again.card.filter(CardCheck::is_refused) {
@@ -149,7 +154,7 @@ impl Second {
         }
         said.worst_residual_deg = foretold.as_ref().map(|learnt| learnt.worst_residual_deg);
         said.widest_band_deg = foretold.as_ref().map(|learnt| learnt.widest_band_deg);
-        let read = ReadAgain {
+        let read = RecordedSecondReading {
             given: self.given,
             said,
             learnt: foretold,
@@ -160,19 +165,23 @@ impl Second {
 }
 
 /// Whether the reading that did not fit fits the correctors as they are said to stand now.
-pub(crate) async fn is_explained_by(app: &App, standing: &Standing, moved: &Moved) -> Result<bool> {
+pub(crate) async fn explains_second_reading(
+    app: &App,
+    standing: &OrderState,
+    moved: &CorrectorMove,
+) -> Result<bool> {
     let Some(disproof) = standing.disproof() else {
         return Ok(false);
     };
     let mut before = standing.clone();
-    before.step_back();
-    let mut prepared = before.prepared()?;
-    prepared.moved_to = Some(moved.after.clone());
+    before.restore_first_reading();
+    let mut plan_request = before.plan_request()?;
+    plan_request.moved_to = Some(moved.after.clone());
     if let Some(anew) = &moved.learnt_anew {
-        prepared.binnacle = anew.binnacle.clone();
+        plan_request.binnacle = anew.binnacle.clone();
     }
-    let second = Second::new(disproof.given.clone(), &prepared)?;
-    let again = calculate(app, move || second.read(&prepared, &[])).await?;
+    let second = SecondReading::new(disproof.given.clone(), &plan_request)?;
+    let again = run_planner(app, move || second.read(&plan_request, &[])).await?;
     Ok(matches!(
         again.verdict,
         Verdict::AsPlanned { .. } | Verdict::Replan { .. }
@@ -180,12 +189,12 @@ pub(crate) async fn is_explained_by(app: &App, standing: &Standing, moved: &Move
 }
 
 /// The second reading as one to plan from, held against what is known now.
-pub(crate) fn to_plan_from(basis: Basis, given: ReadingForm) -> Result<Box<Read>> {
+pub(crate) fn as_first_reading(basis: Basis, given: ReadingForm) -> Result<Box<RecordedReading>> {
     let (checked, refusal) = match check(&given, &basis)? {
         Ok(checked) => (Some(checked), None),
         Err(refusal) => (None, Some(refusal)),
     };
-    Ok(Box::new(Read {
+    Ok(Box::new(RecordedReading {
         given,
         basis: Some(basis),
         checked,
@@ -208,7 +217,7 @@ fn unexplained(looked_at: usize) -> String {
 fn as_planned(steps: &[CompletedStep], parts: usize) -> String {
     let heels = |done: &CompletedStep| done.step.corrector == Corrector::Heeling;
     let mut words = "the correctors do what was planned".to_owned();
-    if parts < WHOLE && steps.iter().any(heels) {
+    if parts < PARTS_WITH_VERTICAL && steps.iter().any(heels) {
         words += "; the vertical part was not read both times, and nothing confirms the heeling \
                   magnets";
     }

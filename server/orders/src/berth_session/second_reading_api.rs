@@ -6,13 +6,13 @@
 //! until the field was read as foretold, a plan was made from this very reading, or someone
 //! has found the correctors to stand otherwise.
 
-use crate::berth_session::berth_reading::{Read, must_be_numbers};
-use crate::berth_session::plan::{calculate, must_still_hold};
-use crate::berth_session::second_reading::{Second, WHOLE, to_plan_from};
+use crate::berth_session::berth_reading::{RecordedReading, check_reading_ranges};
+use crate::berth_session::plan::{require_current_reading, run_planner};
+use crate::berth_session::second_reading::{PARTS_WITH_VERTICAL, SecondReading, as_first_reading};
 use crate::completion::complete;
-use crate::work_orders::log_entry::Content;
+use crate::work_orders::log_entry::OrderEvent;
 use crate::work_orders::order::{Order, State};
-use crate::work_orders::order_state::Standing;
+use crate::work_orders::order_state::OrderState;
 use crate::work_orders::order_update;
 use crate::work_orders::refusal::Refusal;
 use crate::work_orders::shown;
@@ -35,31 +35,31 @@ use utoipa_axum::routes;
 
 /// A second reading as the log has it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct ReadAgain {
+pub struct RecordedSecondReading {
     /// What was read.
     pub given: SecondReadingForm,
     /// What it told.
     #[serde(flatten)]
-    pub said: AgainSaid,
+    pub said: SecondReadingResult,
     /// What is foretold now, where it told that.
     pub learnt: Option<UpdatedPrediction>,
     /// The reading to plan from anew, where what is left is beyond the limits.
-    pub anew: Option<Box<Read>>,
+    pub anew: Option<Box<RecordedReading>>,
 }
 
-impl ReadAgain {
+impl RecordedSecondReading {
     /// Whether it does not confirm how the correctors stand.
     pub(crate) fn is_disproof(&self) -> bool {
-        self.said.verdict != AgainVerdict::AsPlanned
+        self.said.verdict != SecondReadingVerdict::AsPlanned
     }
 }
 
 /// What a second reading told.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = SecondReadingSaid)]
-pub struct AgainSaid {
+pub struct SecondReadingResult {
     /// In a word.
-    pub verdict: AgainVerdict,
+    pub verdict: SecondReadingVerdict,
     /// In words.
     pub words: String,
     /// Forward, to starboard and, where it was read both times, down.
@@ -92,7 +92,7 @@ pub struct AgainSaid {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = SecondReadingVerdict)]
-pub enum AgainVerdict {
+pub enum SecondReadingVerdict {
     /// The correctors do what was planned.
     AsPlanned,
     /// They seem to, but what is left is beyond the limits, or no plan led here: read once
@@ -180,32 +180,34 @@ async fn read_field_again(
         return shown(&app, writer.tenant, id).await;
     }
     let mut standing = whole.standing();
-    standing.step_back();
-    must_be_done(&standing)?;
-    let prepared = standing.prepared()?;
-    must_still_hold(&app, &whole.summary, &prepared).await?;
-    let second = Second::new(given, &prepared)?;
+    standing.restore_first_reading();
+    require_steps_done(&standing)?;
+    let plan_request = standing.plan_request()?;
+    require_current_reading(&app, &whole.summary, &plan_request).await?;
+    let second = SecondReading::new(given, &plan_request)?;
     let form = second.form.clone();
-    must_be_numbers(&form, app.clock.now().into())?;
-    complete::must_follow_the_steps(&whole, form.at.into())?;
-    must_answer_a_disproof(&standing, &form)?;
+    check_reading_ranges(&form, app.clock.now().into())?;
+    complete::require_after_last_step(&whole, form.at.into())?;
+    require_vertical_part(&standing, &form)?;
     // Of a step that someone has looked at since, no slip is suspected any more.
     let looked_at = standing.looked_at;
     let steps = standing.steps[looked_at..].to_vec();
     let planned = standing.plan.is_some();
-    let judge = move || second.judge(&prepared, &steps, looked_at, planned);
-    let (mut judged, basis) = calculate(&app, judge).await?;
-    judged.anew = basis.map(|basis| to_plan_from(basis, form)).transpose()?;
+    let judge = move || second.judge(&plan_request, &steps, looked_at, planned);
+    let (mut judged, basis) = run_planner(&app, judge).await?;
+    judged.anew = basis
+        .map(|basis| as_first_reading(basis, form))
+        .transpose()?;
     if let Some(mut change) = update.begin(&whole).await? {
         change
-            .append(Content::SecondReading(Box::new(judged)))
+            .append(OrderEvent::SecondReading(Box::new(judged)))
             .await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
 }
 
-fn must_be_done(standing: &Standing) -> Result<()> {
+fn require_steps_done(standing: &OrderState) -> Result<()> {
     if let Some(step) = standing.next_step() {
         let number = step.number;
         return Err(Error::WrongState(format!("step {number} is not done")));
@@ -220,9 +222,9 @@ fn must_be_done(standing: &Standing) -> Result<()> {
 }
 
 /// What a part of the field disproved is not confirmed without that part.
-fn must_answer_a_disproof(standing: &Standing, form: &ReadingForm) -> Result<()> {
+fn require_vertical_part(standing: &OrderState, form: &ReadingForm) -> Result<()> {
     let disproof = standing.disproof();
-    let was_whole = disproof.is_some_and(|again| again.said.parts.len() == WHOLE);
+    let was_whole = disproof.is_some_and(|again| again.said.parts.len() == PARTS_WITH_VERTICAL);
     if form.down.is_some() || !was_whole {
         return Ok(());
     }

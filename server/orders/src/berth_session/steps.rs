@@ -1,8 +1,8 @@
 //! Steps at the binnacle: what the compass read after each, and what follows.
 
-use crate::berth_session::plan::{Planned, calculate, refusals};
-use crate::berth_session::planning_inputs::Prepared;
-use crate::work_orders::order_state::{Standing, Strength};
+use crate::berth_session::plan::{ChosenPlan, refusals, run_planner};
+use crate::berth_session::planning_inputs::PlanRequest;
+use crate::work_orders::order_state::{InferredStrength, OrderState};
 use crate::work_orders::refusal::Refusal;
 use binnacle_adjustment::adjust::{
     AdjustError, Outcome, Step, StepCheck, check_step, check_step_with_setting, check_total_turn,
@@ -18,7 +18,7 @@ use utoipa::ToSchema;
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = StepReading, example = json!({ "after_deg": 308.5 }))]
-pub(crate) struct StepRead {
+pub(crate) struct StepReading {
     /// What it read before; the last reading where it is not said.
     #[schema(minimum = 0, maximum = 360)]
     pub before_deg: Option<f64>,
@@ -29,7 +29,7 @@ pub(crate) struct StepRead {
 
 /// What became of a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StepSaid {
+pub struct StepResult {
     /// The step's number in its plan.
     pub number: u32,
     /// What the compass read before.
@@ -41,7 +41,7 @@ pub struct StepSaid {
     /// How far off that may be.
     pub tolerance_deg: f64,
     /// In a word.
-    pub verdict: Verdict,
+    pub verdict: StepVerdict,
     /// In words.
     pub words: String,
 }
@@ -50,7 +50,7 @@ pub struct StepSaid {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = StepVerdict)]
-pub enum Verdict {
+pub enum StepVerdict {
     /// It did what was expected.
     Confirmed,
     /// On this heading the compass does not show it, and showed nothing.
@@ -65,10 +65,10 @@ pub enum Verdict {
 
 /// A step as the log has it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct StepDone {
+pub struct RecordedStep {
     /// What became of it.
     #[serde(flatten)]
-    pub said: StepSaid,
+    pub said: StepResult,
     /// The step.
     pub step: Step,
     /// How the correctors stand now; none when that is not known to be otherwise.
@@ -76,7 +76,7 @@ pub struct StepDone {
     /// The binnacle, where a corrector was found to be of another strength.
     pub binnacle: Option<Binnacle>,
     /// The plan from there.
-    pub replanned: Option<Box<Planned>>,
+    pub replanned: Option<Box<ChosenPlan>>,
     /// Why there is none from there.
     pub refusals: Vec<Refusal>,
 }
@@ -85,7 +85,7 @@ pub struct StepDone {
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = CorrectorSettings)]
-pub(crate) struct Stand {
+pub(crate) struct CorrectorReport {
     /// How each stands.
     #[schema(value_type = binnacle_fleet::binnacles::SettingSchema)]
     pub setting: Setting,
@@ -101,7 +101,7 @@ pub(crate) struct Stand {
 
 /// The same as the log has it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Moved {
+pub struct CorrectorMove {
     /// How they stood before.
     pub before: Setting,
     /// How they stand now.
@@ -115,24 +115,24 @@ pub struct Moved {
     pub explains_reading: bool,
     /// What is known instead of a strength that was learnt from how they did not stand.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub learnt_anew: Option<Box<LearntAnew>>,
+    pub learnt_anew: Option<Box<RevisedStrength>>,
     /// When.
     pub at: Time,
 }
 
 /// What is known instead of a strength that was learnt before.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct LearntAnew {
+pub struct RevisedStrength {
     /// The step from which it was learnt, its corrector where it stands.
     pub step: Step,
     /// The binnacle as it is now believed to be.
     pub binnacle: Binnacle,
 }
 
-impl StepSaid {
+impl StepResult {
     /// Whether the next step may follow.
     pub fn is_confirmed(&self) -> bool {
-        matches!(self.verdict, Verdict::Confirmed | Verdict::NotSeen)
+        matches!(self.verdict, StepVerdict::Confirmed | StepVerdict::NotSeen)
     }
 }
 
@@ -142,12 +142,12 @@ impl StepSaid {
 /// # Errors
 /// When the readings are no headings.
 pub(crate) fn judge(
-    prepared: &Prepared,
+    plan_request: &PlanRequest,
     step: Step,
     before_deg: f64,
     after_deg: f64,
-) -> std::result::Result<StepDone, AdjustError> {
-    let said = |verdict, words: String| StepSaid {
+) -> std::result::Result<RecordedStep, AdjustError> {
+    let said = |verdict, words: String| StepResult {
         number: step.number,
         before_deg,
         after_deg,
@@ -156,11 +156,11 @@ pub(crate) fn judge(
         verdict,
         words,
     };
-    let rechecked = check_step(&prepared.adjustment(), &step, before_deg, after_deg)?;
+    let rechecked = check_step(&plan_request.adjustment(), &step, before_deg, after_deg)?;
     let (said, setting, binnacle, outcome) = match rechecked {
         StepCheck::Confirmed { off_deg, proven } => (
             said(
-                Verdict::Confirmed,
+                StepVerdict::Confirmed,
                 format!("within {:.1} degrees: {}", off_deg.abs(), proven),
             ),
             Some(step.setting_after.clone()),
@@ -169,7 +169,7 @@ pub(crate) fn judge(
         ),
         StepCheck::NotSeen { .. } => (
             said(
-                Verdict::NotSeen,
+                StepVerdict::NotSeen,
                 "on this heading the compass does not show the step: look at it again".to_owned(),
             ),
             Some(step.setting_after.clone()),
@@ -182,7 +182,7 @@ pub(crate) fn judge(
             outcome,
         } => (
             said(
-                Verdict::WrongEnd,
+                StepVerdict::WrongEnd,
                 format!(
                     "the compass turned by {turned_deg:.1} degrees: the magnets are in with \
                      the wrong end"
@@ -200,14 +200,14 @@ pub(crate) fn judge(
             outcome,
             ..
         } => (
-            said(Verdict::OtherStrength, of_strength(share, other_hole)),
+            said(StepVerdict::OtherStrength, strength_text(share, other_hole)),
             Some(setting),
             Some(*binnacle),
             Some(outcome),
         ),
         StepCheck::Unexplained { unmoved: true, .. } => (
             said(
-                Verdict::Unexplained,
+                StepVerdict::Unexplained,
                 format!(
                     "the compass stands as it stood, where {:.1} degrees were expected: was the \
                      step done, and does the card turn freely? Tap the bowl and read again",
@@ -220,7 +220,7 @@ pub(crate) fn judge(
         ),
         StepCheck::Unexplained { off_deg, .. } => (
             said(
-                Verdict::Unexplained,
+                StepVerdict::Unexplained,
                 format!(
                     "it is off by {off_deg:.1} degrees, which no strength of the corrector \
                      explains: read again, see whether the ship moved, and look for magnetism \
@@ -233,11 +233,11 @@ pub(crate) fn judge(
         ),
     };
     let said = match &setting {
-        Some(setting) if said.is_confirmed() => in_all(prepared, said, setting)?,
+        Some(setting) if said.is_confirmed() => in_all(plan_request, said, setting)?,
         _ => said,
     };
     let (replanned, refusals) = outcome.map_or((None, Vec::new()), |outcome| followed(*outcome));
-    Ok(StepDone {
+    Ok(RecordedStep {
         said,
         step,
         setting,
@@ -247,7 +247,7 @@ pub(crate) fn judge(
     })
 }
 
-fn of_strength(share: f64, other_hole: Option<u16>) -> String {
+fn strength_text(share: f64, other_hole: Option<u16>) -> String {
     let words = format!("the corrector is {share:.2} times as strong as was taken");
     match other_hole {
         Some(hole) => format!(
@@ -259,47 +259,55 @@ fn of_strength(share: f64, other_hole: Option<u16>) -> String {
 }
 
 /// What is known instead of a strength that this word disputes.
-pub(crate) async fn learn_anew(
+pub(crate) async fn revise_strength(
     app: &App,
-    standing: &Standing,
-    moved: &Moved,
-) -> Result<Option<Box<LearntAnew>>> {
-    let Some((prepared, strength)) = disputed(standing, moved)? else {
+    standing: &OrderState,
+    moved: &CorrectorMove,
+) -> Result<Option<Box<RevisedStrength>>> {
+    let Some((plan_request, strength)) = disputed(standing, moved)? else {
         return Ok(None);
     };
     let (after, compass_deg) = (moved.after.clone(), moved.compass_deg);
-    let learnt = calculate(app, move || {
-        let (adjustment, step) = (prepared.adjustment(), &strength.step);
+    let learnt = run_planner(app, move || {
+        let (adjustment, step) = (plan_request.adjustment(), &strength.step);
         check_step_with_setting(&adjustment, step, strength.before_deg, &after, compass_deg)
     });
     let (step, binnacle) = learnt.await?;
-    Ok(Some(Box::new(LearntAnew { step, binnacle })))
+    Ok(Some(Box::new(RevisedStrength { step, binnacle })))
 }
 
 /// The strength that this word disputes, with what was known before it was learnt.
-fn disputed(standing: &Standing, moved: &Moved) -> Result<Option<(Box<Prepared>, Box<Strength>)>> {
+fn disputed(
+    standing: &OrderState,
+    moved: &CorrectorMove,
+) -> Result<Option<(Box<PlanRequest>, Box<InferredStrength>)>> {
     let mut standing = standing.clone();
     if standing.setting() != Some(&moved.after) {
-        standing.step_back();
+        standing.restore_first_reading();
     }
     let Some(strength) = standing.disputed_by(moved).cloned() else {
         return Ok(None);
     };
-    let mut prepared = standing.prepared()?;
-    prepared.binnacle = strength.binnacle.clone();
-    Ok(Some((Box::new(prepared), Box::new(strength))))
+    let mut plan_request = standing.plan_request()?;
+    plan_request.binnacle = strength.binnacle.clone();
+    Ok(Some((Box::new(plan_request), Box::new(strength))))
 }
 
 /// With what the steps so far come to together, where that is not what was expected.
 fn in_all(
-    prepared: &Prepared,
-    said: StepSaid,
+    plan_request: &PlanRequest,
+    said: StepResult,
     setting: &Setting,
-) -> std::result::Result<StepSaid, AdjustError> {
-    let Some(first_deg) = prepared.given.compass_deg else {
+) -> std::result::Result<StepResult, AdjustError> {
+    let Some(first_deg) = plan_request.given.compass_deg else {
         return Ok(said);
     };
-    let in_all = check_total_turn(&prepared.adjustment(), first_deg, setting, said.after_deg)?;
+    let in_all = check_total_turn(
+        &plan_request.adjustment(),
+        first_deg,
+        setting,
+        said.after_deg,
+    )?;
     if in_all.agrees() {
         return Ok(said);
     }
@@ -307,10 +315,10 @@ fn in_all(
         "{}; but {}: see that each corrector stands as it should before you finish",
         said.words, in_all
     );
-    Ok(StepSaid { words, ..said })
+    Ok(StepResult { words, ..said })
 }
 
-fn followed(outcome: Outcome) -> (Option<Box<Planned>>, Vec<Refusal>) {
+fn followed(outcome: Outcome) -> (Option<Box<ChosenPlan>>, Vec<Refusal>) {
     let refused = refusals(&outcome);
-    (Planned::of(outcome, 1).map(Box::new), refused)
+    (ChosenPlan::of(outcome, 1).map(Box::new), refused)
 }

@@ -5,11 +5,11 @@
 //! stands now, the logbook's entry at the moment of the adjustment and the model that
 //! is foretold from then on all come about, or none of them.
 
-use crate::completion::record::{self, Aboard};
-use crate::work_orders::log_entry::{Content, sha256_hex};
-use crate::work_orders::order_state::Standing;
+use crate::completion::record::{self, VesselAndCompass};
+use crate::work_orders::log_entry::{OrderEvent, sha256_hex};
+use crate::work_orders::order_state::OrderState;
 use crate::work_orders::order_update::Change;
-use crate::work_orders::store::{self, Whole};
+use crate::work_orders::store::{self, StoredOrder};
 use binnacle_adjustment::adjust::UpdatedPrediction;
 use binnacle_adjustment::binnacle::Setting;
 use binnacle_compass::model::Model;
@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// The name under which foretold models are stored.
-pub const FORETOLD: &str = "adjustment-plan-1";
+pub const PREDICTED_BY_PLAN: &str = "adjustment-plan-1";
 
 /// The adjuster's word that it is done.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
@@ -35,7 +35,7 @@ pub const FORETOLD: &str = "adjustment-plan-1";
     "adjuster_name": "M. Etxeberria", "adjuster_licence": "ES-CA-114",
     "firm": "Nervión Compass", "signature": "M. Etxeberria"
 }))]
-pub struct Word {
+pub struct SignOff {
     /// The moment of the adjustment; now where it is not said.
     #[serde(default)]
     pub at: Option<Time>,
@@ -57,7 +57,7 @@ pub struct Word {
 /// A completion as the log has it.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = CompletionMade)]
-pub struct Completed {
+pub struct Completion {
     /// The moment of the adjustment.
     pub at: Time,
     /// The adjuster.
@@ -85,7 +85,7 @@ pub struct Completed {
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = RecordSignature)]
-pub struct Signed {
+pub struct SubmittedSignature {
     /// The Ed25519 public key (RFC 8032), 64 hexadecimal digits.
     #[schema(min_length = 64, max_length = 64)]
     pub public_key: String,
@@ -96,10 +96,10 @@ pub struct Signed {
 
 /// A signature with what is known of its key.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct SignedBy {
+pub struct RecordedSignature {
     /// The signature.
     #[serde(flatten)]
-    pub signed: Signed,
+    pub signed: SubmittedSignature,
     /// Whose key it is; none for a key that the order's firm has not registered.
     #[serde(default)]
     pub key: Option<KnownKey>,
@@ -118,9 +118,9 @@ pub struct KnownKey {
     pub firm_name: String,
 }
 
-impl Word {
+impl SignOff {
     /// The word, its words trimmed, at a moment that can be.
-    pub(crate) fn checked(self, whole: &Whole, now: Time) -> Result<(Word, Time)> {
+    pub(crate) fn checked(self, whole: &StoredOrder, now: Time) -> Result<(SignOff, Time)> {
         let standing = whole.standing();
         let at = self.at.unwrap_or(now);
         let again = standing.again.as_ref().map(|again| again.given.at);
@@ -132,8 +132,8 @@ impl Word {
                 detail: "lies in the future, or before the last reading at the berth".to_owned(),
             });
         }
-        must_follow_the_steps(whole, at)?;
-        let word = Word {
+        require_after_last_step(whole, at)?;
+        let word = SignOff {
             at: Some(at),
             adjuster_name: text("adjuster_name", &self.adjuster_name)?,
             adjuster_licence: text("adjuster_licence", &self.adjuster_licence)?,
@@ -151,17 +151,17 @@ impl Word {
 }
 
 /// What is done without a connection is sent so much later at most, seconds.
-const SENT_LATER_S: f64 = 12.0 * 3600.0;
+const MAX_SEND_DELAY_S: f64 = 12.0 * 3600.0;
 
 /// Refuses a moment long before correctors were moved for the last time.
-pub(crate) fn must_follow_the_steps(whole: &Whole, at: Time) -> Result<()> {
+pub(crate) fn require_after_last_step(whole: &StoredOrder, at: Time) -> Result<()> {
     let moved = whole.log.iter().rev().find(|entry| {
         matches!(
             entry.content,
-            Content::Step(_) | Content::CorrectorSettings(_)
+            OrderEvent::Step(_) | OrderEvent::CorrectorSettings(_)
         )
     });
-    if moved.is_some_and(|moved| moved.at.0.seconds_since(at.0) > SENT_LATER_S) {
+    if moved.is_some_and(|moved| moved.at.0.seconds_since(at.0) > MAX_SEND_DELAY_S) {
         return Err(Error::Invalid {
             field: "at",
             detail: "lies long before the last step".to_owned(),
@@ -171,7 +171,7 @@ pub(crate) fn must_follow_the_steps(whole: &Whole, at: Time) -> Result<()> {
 }
 
 /// The plan's setting, if it stands so.
-pub(crate) fn must_stand_as_planned(standing: &Standing) -> Result<&Setting> {
+pub(crate) fn require_planned_setting(standing: &OrderState) -> Result<&Setting> {
     let wrong = |detail: String| Err(Error::WrongState(detail));
     let Some(plan) = &standing.plan else {
         return wrong("there is no plan for how the correctors stand: choose one".to_owned());
@@ -194,13 +194,13 @@ pub(crate) fn must_stand_as_planned(standing: &Standing) -> Result<&Setting> {
 /// Completes an order.
 pub(crate) async fn complete(
     change: &mut Change<'_>,
-    aboard: &Aboard,
+    aboard: &VesselAndCompass,
     learnt: UpdatedPrediction,
-    word: Word,
+    word: SignOff,
     at: Time,
 ) -> Result<()> {
     let standing = change.whole.standing();
-    let setting = must_stand_as_planned(&standing)?.clone();
+    let setting = require_planned_setting(&standing)?.clone();
     let (Some(basis), Some(binnacle)) = (
         standing.read.as_ref().and_then(|read| read.basis.as_ref()),
         standing.binnacle.as_ref(),
@@ -216,7 +216,7 @@ pub(crate) async fn complete(
         change.whole.summary.vessel_id,
         change.whole.summary.compass_id,
     );
-    let completed = Completed {
+    let completed = Completion {
         at,
         adjuster_name: word.adjuster_name.clone(),
         adjuster_licence: word.adjuster_licence.clone(),
@@ -247,7 +247,7 @@ pub(crate) async fn complete(
         version: 0,
         created_at: change.now,
         input_hash: completed.record_sha256.clone(),
-        estimator: FORETOLD.to_owned(),
+        estimator: PREDICTED_BY_PLAN.to_owned(),
         epoch_from: Some(at),
         epoch_to: None,
         epoch_begun_by: Some("adjustment".to_owned()),
@@ -270,7 +270,7 @@ pub(crate) async fn complete(
     let when = (at, change.now);
     store::complete(&mut change.tx, &summary, when, &record).await?;
     change
-        .append(Content::Completion(Box::new(completed)))
+        .append(OrderEvent::Completion(Box::new(completed)))
         .await?;
     change.tell(Kind::Model).await?;
     change.tell(Kind::Logbook).await
@@ -324,7 +324,7 @@ pub(crate) async fn write_logbook(
     logbook::write_adjustment(&mut change.tx, &written).await
 }
 
-impl Signed {
+impl SubmittedSignature {
     /// Whether the key signed this record.
     ///
     /// # Errors

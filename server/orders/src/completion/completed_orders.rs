@@ -11,7 +11,7 @@ use binnacle_platform::time::Time;
 
 /// An adjustment that was completed.
 #[derive(Clone, Debug)]
-pub struct Done {
+pub struct CompletedOrder {
     /// The order.
     pub order_id: OrderId,
     /// The vessel.
@@ -40,7 +40,7 @@ pub struct Done {
 
 /// Which adjustments that were completed.
 #[derive(Clone, Copy, Debug)]
-pub struct Span {
+pub struct CompletionPeriod {
     /// From this time on.
     pub from: Time,
     /// Until this.
@@ -53,7 +53,11 @@ pub struct Span {
 }
 
 /// An operator's orders that were completed within a time, in order.
-pub async fn done(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Done>> {
+pub async fn completed_orders(
+    db: &Db,
+    operator: OperatorId,
+    span: CompletionPeriod,
+) -> Result<Vec<CompletedOrder>> {
     let found = rows!(
         db,
         (OrderId,),
@@ -85,7 +89,7 @@ pub async fn done(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Done>
         let Some(completed_at) = summary.completed_at else {
             continue;
         };
-        done.push(Done {
+        done.push(CompletedOrder {
             order_id: summary.id,
             vessel_id: summary.vessel_id,
             vessel_name: summary.vessel_name,

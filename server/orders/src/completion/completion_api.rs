@@ -1,19 +1,19 @@
 //! Photographs, completion, signatures, and the archive of evidence.
 
-use crate::berth_session::photos::{Caption, MAX_BYTES, MOST, PhotoTaken};
+use crate::berth_session::photos::{Caption, MAX_BYTES, MOST, Photo};
 use crate::berth_session::plan::{
-    foretold, must_have_turned, must_keep_to_limits, must_still_hold,
+    foretold, require_current_reading, require_total_turn, require_within_limits,
 };
-use crate::completion::complete::{self, Signed, SignedBy, Word};
-use crate::completion::record::Aboard;
+use crate::completion::complete::{self, RecordedSignature, SignOff, SubmittedSignature};
+use crate::completion::record::VesselAndCompass;
 use crate::evidence::{Evidence, File, Line, archive, predicted_csv, record_pdf, record_svg};
 use crate::firms::keys;
 use crate::work_orders::firm_view;
-use crate::work_orders::log_entry::Content;
+use crate::work_orders::log_entry::OrderEvent;
 use crate::work_orders::order::{Order, State};
 use crate::work_orders::order_update;
 use crate::work_orders::shown;
-use crate::work_orders::store::{self, Whole};
+use crate::work_orders::store::{self, StoredOrder};
 use axum::body::{Body, Bytes};
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{DefaultBodyLimit, FromRef, State as Shared};
@@ -81,13 +81,13 @@ async fn add_photo(
     body: std::result::Result<Bytes, BytesRejection>,
 ) -> Result<Json<Order>> {
     let bytes = body.map_err(|_| Error::TooLarge(MAX_BYTES))?;
-    let taken = PhotoTaken::new(PhotoId::new(), &bytes, &caption)?;
+    let taken = Photo::new(PhotoId::new(), &bytes, &caption)?;
     let update = order_update(&app, request, writer, id, key, "photo", &taken.sha256)?;
     let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
-    whole.must_be(
+    whole.require_state(
         &WITH_PHOTOS,
         "nothing is added before a firm has it, or any more",
     )?;
@@ -105,15 +105,15 @@ async fn add_photo(
             &bytes,
         )
         .await?;
-        change.append(Content::Photo(taken)).await?;
+        change.append(OrderEvent::Photo(taken)).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
 }
 
-fn photos(whole: &Whole) -> impl Iterator<Item = (i64, &PhotoTaken)> {
+fn photos(whole: &StoredOrder) -> impl Iterator<Item = (i64, &Photo)> {
     whole.log.iter().filter_map(|entry| match &entry.content {
-        Content::Photo(photo) => Some((entry.seq, photo)),
+        OrderEvent::Photo(photo) => Some((entry.seq, photo)),
         _ => None,
     })
 }
@@ -145,7 +145,7 @@ async fn find_photo(
 /// logbook has the adjustment, the ship gets the model that is foretold, and the card is
 /// a prediction until headings at sea agree.
 #[utoipa::path(post, path = "/work-orders/{id}/complete", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Word,
+    params(("id" = OrderId, Path), Key), request_body = SignOff,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "A step is not done", body = Problem),
@@ -156,21 +156,21 @@ async fn complete_work_order(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(word): Valid<Word>,
+    Valid(word): Valid<SignOff>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "completion", &word)?;
     let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
-    whole.must_be(&[State::Adjusting], "there is no plan that was followed")?;
+    whole.require_state(&[State::Adjusting], "there is no plan that was followed")?;
     let standing = whole.standing();
-    let prepared = standing.prepared()?;
-    must_still_hold(&app, &whole.summary, &prepared).await?;
-    must_keep_to_limits(&standing)?;
+    let plan_request = standing.plan_request()?;
+    require_current_reading(&app, &whole.summary, &plan_request).await?;
+    require_within_limits(&standing)?;
     let (word, at) = word.checked(&whole, app.clock.now().into())?;
-    complete::must_stand_as_planned(&standing)?;
-    must_have_turned(&app, &standing, prepared).await?;
+    complete::require_planned_setting(&standing)?;
+    require_total_turn(&app, &standing, plan_request).await?;
     let learnt = foretold(&app, &standing).await?;
     let aboard = aboard(&app, &whole).await?;
     if let Some(mut change) = update.begin(&whole).await? {
@@ -180,11 +180,11 @@ async fn complete_work_order(
     shown(&app, writer.tenant, id).await
 }
 
-async fn aboard(app: &App, whole: &Whole) -> Result<Aboard> {
+async fn aboard(app: &App, whole: &StoredOrder) -> Result<VesselAndCompass> {
     let summary = &whole.summary;
     let vessel = vessels::find_row(&app.db, summary.operator_id, summary.vessel_id).await?;
     let vessel = vessel.ok_or(Error::NotFound("vessel"))?;
-    Ok(Aboard {
+    Ok(VesselAndCompass {
         vessel_name: vessel.name,
         imo_number: vessel.imo_number,
         call_sign: vessel.call_sign,
@@ -199,7 +199,7 @@ async fn aboard(app: &App, whole: &Whole) -> Result<Aboard> {
 /// is when the order's firm has registered it (`/firms/{id}/keys`), and otherwise that the
 /// key is unknown.
 #[utoipa::path(post, path = "/work-orders/{id}/signatures", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Signed,
+    params(("id" = OrderId, Path), Key), request_body = SubmittedSignature,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "There is no record yet", body = Problem),
@@ -210,7 +210,7 @@ async fn sign_record(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(signed): Valid<Signed>,
+    Valid(signed): Valid<SubmittedSignature>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "signature", &signed)?;
     let (whole, done) = update.look().await?;
@@ -223,8 +223,8 @@ async fn sign_record(
     if let Some(mut change) = update.begin(&whole).await? {
         let holder = change.whole.summary.firm_id;
         let key = keys::find_active(&mut change.tx, holder, &signed.public_key).await?;
-        let signed = SignedBy { signed, key };
-        change.append(Content::Signature(signed)).await?;
+        let signed = RecordedSignature { signed, key };
+        change.append(OrderEvent::Signature(signed)).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
@@ -267,7 +267,7 @@ async fn print_record(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Response> {
-    let bytes = made_of_record(&app, reader, id, record_pdf).await?;
+    let bytes = render_record(&app, reader, id, record_pdf).await?;
     Ok(record_file(id, "pdf", "application/pdf", bytes))
 }
 
@@ -284,7 +284,7 @@ async fn draw_record(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Response> {
-    let text = made_of_record(&app, reader, id, record_svg).await?;
+    let text = render_record(&app, reader, id, record_svg).await?;
     Ok(record_file(id, "svg", "image/svg+xml", text))
 }
 
@@ -301,11 +301,11 @@ async fn tabulate_record(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Response> {
-    let text = made_of_record(&app, reader, id, predicted_csv).await?;
+    let text = render_record(&app, reader, id, predicted_csv).await?;
     Ok(record_file(id, "csv", "text/csv; charset=utf-8", text))
 }
 
-async fn made_of_record<T: Send + 'static>(
+async fn render_record<T: Send + 'static>(
     app: &App,
     reader: PartyReader,
     id: OrderId,

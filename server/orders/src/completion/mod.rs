@@ -5,4 +5,4 @@ mod completed_orders;
 pub(crate) mod completion_api;
 mod record;
 
-pub use completed_orders::{Done, Span, done};
+pub use completed_orders::{CompletedOrder, CompletionPeriod, completed_orders};

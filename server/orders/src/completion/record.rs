@@ -3,10 +3,10 @@
 //! What always holds: it is made once, when the order is completed, and kept as that
 //! text; a signature is over its hash. It says of itself that it is no certificate.
 
-use crate::completion::complete::Word;
-use crate::work_orders::log_entry::{Content, canonical};
+use crate::completion::complete::SignOff;
+use crate::work_orders::log_entry::{OrderEvent, canonical};
 use crate::work_orders::order::NOT_A_CERTIFICATE;
-use crate::work_orders::store::Whole;
+use crate::work_orders::store::StoredOrder;
 use binnacle_adjustment::adjust::{HeelingPlan, UpdatedPrediction};
 use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_fleet::compasses::Compass;
@@ -15,7 +15,7 @@ use binnacle_platform::time::Time;
 use serde_json::json;
 
 /// Whose compass it is.
-pub(crate) struct Aboard {
+pub(crate) struct VesselAndCompass {
     pub(crate) vessel_name: String,
     pub(crate) imo_number: Option<String>,
     pub(crate) call_sign: Option<String>,
@@ -25,10 +25,10 @@ pub(crate) struct Aboard {
 
 /// The record of an order that is about to be completed.
 pub(crate) fn text(
-    aboard: &Aboard,
-    whole: &Whole,
+    aboard: &VesselAndCompass,
+    whole: &StoredOrder,
     learnt: &UpdatedPrediction,
-    word: &Word,
+    word: &SignOff,
     account: &str,
     after: &Binnacle,
 ) -> Result<String> {
@@ -109,14 +109,14 @@ const NOT_SHOWN: &str = "the compass does not show these steps on the berth's he
     by headings at sea";
 
 fn second_reading(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
-    let Content::SecondReading(read) = &entry.content else {
+    let OrderEvent::SecondReading(read) = &entry.content else {
         return None;
     };
     Some(json!({ "at": at(entry.at), "given": read.given, "said": read.said }))
 }
 
 fn step(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
-    let Content::Step(done) = &entry.content else {
+    let OrderEvent::Step(done) = &entry.content else {
         return None;
     };
     Some(json!({
@@ -126,7 +126,7 @@ fn step(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Valu
 }
 
 fn settings(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
-    let Content::CorrectorSettings(moved) = &entry.content else {
+    let OrderEvent::CorrectorSettings(moved) = &entry.content else {
         return None;
     };
     Some(json!({
@@ -135,7 +135,7 @@ fn settings(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::
 }
 
 fn photo(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
-    let Content::Photo(photo) = &entry.content else {
+    let OrderEvent::Photo(photo) = &entry.content else {
         return None;
     };
     Some(json!(photo))

@@ -2,9 +2,9 @@
 //!
 //! What always holds: a message is an entry of the order's log; no other firm reads it.
 
-use crate::dispatch::offer_requests::{message, must_be_own};
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::offer_state::{Between, Offer, OfferState, Offers};
+use crate::dispatch::offer_requests::{message, require_own_firm};
+use crate::work_orders::log_entry::OrderEvent;
+use crate::work_orders::offer_state::{Exchange, Offer, OfferState, Offers};
 use crate::work_orders::order_update;
 use crate::work_orders::store;
 use axum::extract::{FromRef, State as Shared};
@@ -47,7 +47,7 @@ struct NewMessage {
 /// A message.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = OrderMessage)]
-struct Sent {
+struct Message {
     /// Its number in the order's log.
     seq: i64,
     /// When it was sent.
@@ -69,7 +69,7 @@ struct Sent {
 #[schema(as = OrderMessageList)]
 struct MessageList {
     /// The oldest first.
-    items: Vec<Sent>,
+    items: Vec<Message>,
     /// `after` of the next page.
     #[schema(required)]
     next: Option<String>,
@@ -93,11 +93,11 @@ async fn list_messages(
     let mine = |firm: FirmId| reader.tenant.firm().is_none_or(|mine| mine == firm);
     let sent = whole.log.into_iter().filter_map(|entry| {
         let said = match entry.content {
-            Content::Message(said) => said,
-            Content::CallMoved(moved) => moved.said,
+            OrderEvent::Message(said) => said,
+            OrderEvent::CallMoved(moved) => moved.said,
             _ => return None,
         };
-        (entry.seq > after && mine(said.firm.firm_id)).then(|| Sent {
+        (entry.seq > after && mine(said.firm.firm_id)).then(|| Message {
             seq: entry.seq,
             at: entry.at,
             by: entry.author.name,
@@ -107,7 +107,7 @@ async fn list_messages(
             text: said.text.unwrap_or_default(),
         })
     });
-    let listed = page.cut(sent.collect(), |message: &Sent| message.seq.to_string());
+    let listed = page.cut(sent.collect(), |message: &Message| message.seq.to_string());
     Ok(Json(MessageList {
         items: listed.items,
         next: listed.next,
@@ -132,7 +132,7 @@ async fn send_message(
     Valid(new): Valid<NewMessage>,
 ) -> Result<StatusCode> {
     let update = order_update(&app, request, writer, id, key, "message", &new)?;
-    must_be_own(writer.tenant, new.firm_id)?;
+    require_own_firm(writer.tenant, new.firm_id)?;
     let text = message(&new.text)?;
     let summary = store::summary(&app.db, writer.tenant, id).await?;
     if summary.state.is_over() {
@@ -140,11 +140,11 @@ async fn send_message(
     }
     if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
         let offers = change.whole.standing().offers;
-        let said = Between {
+        let said = Exchange {
             text: Some(text),
-            ..Between::with(partner(&offers, writer.tenant, new.firm_id)?.firm())
+            ..Exchange::with(partner(&offers, writer.tenant, new.firm_id)?.firm())
         };
-        change.append(Content::Message(said)).await?;
+        change.append(OrderEvent::Message(said)).await?;
         change.commit().await?;
     }
     Ok(StatusCode::NO_CONTENT)

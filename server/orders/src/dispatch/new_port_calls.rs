@@ -5,7 +5,7 @@
 //! lies in it; who was told that its call is gone is told that there is one again.
 
 use crate::dispatch::call_links;
-use crate::dispatch::port_call_changes::{self, Alongside, CallChange, CallFit, Moving};
+use crate::dispatch::port_call_changes::{self, Alongside, CallChange, CallFit, CallUpdate};
 use crate::firms::port_meant;
 use crate::work_orders::store;
 use binnacle_platform::db::Tx;
@@ -19,7 +19,7 @@ use binnacle_platform::time::Time;
 ///
 /// # Errors
 /// When the database cannot be written.
-pub async fn calls_come(
+pub async fn attach_new_calls(
     tx: &mut Tx,
     vessel: VesselId,
     new: &[(CallId, Alongside)],
@@ -46,7 +46,7 @@ pub async fn calls_come(
         };
         call_links::link(tx, vessel, order.id, *id).await?;
         if let Some(gone) = gone {
-            let moving = Moving {
+            let moving = CallUpdate {
                 call_id: gone.call_id,
                 then_id: *id,
                 was: gone.is.unwrap_or(gone.was),

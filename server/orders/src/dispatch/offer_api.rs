@@ -1,9 +1,9 @@
 //! Offering an order to firms, and what these answer.
 
 use crate::dispatch::offer_requests::{
-    self, Answer, Boarded, FirmSays, NewOffer, Proposal, firm_says, operator_says,
+    self, Boarding, FirmAnswer, NewOffer, OfferAnswer, Proposal, answer_as_firm, answer_as_operator,
 };
-use crate::work_orders::log_entry::Content;
+use crate::work_orders::log_entry::OrderEvent;
 use crate::work_orders::order::{Order, State};
 use crate::work_orders::order_update;
 use crate::work_orders::shown;
@@ -58,7 +58,7 @@ async fn offer_work_order(
         return shown(&app, operator, id).await;
     }
     let allowed = [State::Planned, State::Declined];
-    whole.must_be(
+    whole.require_state(
         &allowed,
         "it is offered before a firm has it, and not twice at a time",
     )?;
@@ -84,7 +84,7 @@ async fn vessel_of(app: &App, tenant: Tenant, id: OrderId) -> Result<VesselId> {
 /// A firm takes the order as it is offered; an operator agrees to what a firm has
 /// proposed. Of those who accept at once one has it.
 #[utoipa::path(post, path = "/work-orders/{id}/accept", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Answer,
+    params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "There is nothing to accept, or not any more", body = Problem),
@@ -95,15 +95,17 @@ async fn accept_work_order(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    ValidOrNone(answer): ValidOrNone<Answer>,
+    ValidOrNone(answer): ValidOrNone<OfferAnswer>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "yes", &answer)?;
     let answer = answer.checked(writer.tenant)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     if let Some(mut change) = update.begin_on(vessel).await? {
         match writer.tenant {
-            Tenant::Firm(firm) => firm_says(&mut change, firm, FirmSays::Yes(answer)).await?,
-            Tenant::Operator(_) => operator_says(&mut change, answer, true).await?,
+            Tenant::Firm(firm) => {
+                answer_as_firm(&mut change, firm, FirmAnswer::Accept(answer)).await?
+            }
+            Tenant::Operator(_) => answer_as_operator(&mut change, answer, true).await?,
         }
         change.commit().await?;
     }
@@ -115,7 +117,7 @@ async fn accept_work_order(
 /// A firm will not have the order, or gives it back before it is on board; an operator
 /// does not agree to what a firm has proposed. The next firm is asked.
 #[utoipa::path(post, path = "/work-orders/{id}/decline", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Answer,
+    params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 204), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "There is nothing to decline, or not any more", body = Problem),
@@ -126,15 +128,17 @@ async fn decline_work_order(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    ValidOrNone(answer): ValidOrNone<Answer>,
+    ValidOrNone(answer): ValidOrNone<OfferAnswer>,
 ) -> Result<StatusCode> {
     let update = order_update(&app, request, writer, id, key, "no", &answer)?;
     let answer = answer.checked(writer.tenant)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     if let Some(mut change) = update.begin_on(vessel).await? {
         match writer.tenant {
-            Tenant::Firm(firm) => firm_says(&mut change, firm, FirmSays::No(answer)).await?,
-            Tenant::Operator(_) => operator_says(&mut change, answer, false).await?,
+            Tenant::Firm(firm) => {
+                answer_as_firm(&mut change, firm, FirmAnswer::Decline(answer)).await?
+            }
+            Tenant::Operator(_) => answer_as_operator(&mut change, answer, false).await?,
         }
         change.commit().await?;
     }
@@ -170,7 +174,7 @@ async fn propose_terms(
     let now = app.clock.now().into();
     if let Some(mut change) = update.begin_on(vessel).await? {
         let proposal = proposal.checked(change.whole.summary.planned_at, now)?;
-        firm_says(&mut change, firm, FirmSays::Instead(proposal)).await?;
+        answer_as_firm(&mut change, firm, FirmAnswer::Propose(proposal)).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
@@ -180,7 +184,7 @@ async fn propose_terms(
 ///
 /// The next thing is to read the berth.
 #[utoipa::path(post, path = "/work-orders/{id}/on-board", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Boarded,
+    params(("id" = OrderId, Path), Key), request_body = Boarding,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "No firm has accepted it yet, or the work has begun", body = Problem),
@@ -191,7 +195,7 @@ async fn go_on_board(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    ValidOrNone(boarded): ValidOrNone<Boarded>,
+    ValidOrNone(boarded): ValidOrNone<Boarding>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "on board", &boarded)?;
     let (whole, done) = update.look().await?;
@@ -199,10 +203,10 @@ async fn go_on_board(
         return shown(&app, writer.tenant, id).await;
     }
     let allowed = [State::Planned, State::Accepted];
-    whole.must_be(&allowed, "the adjuster goes on board once a firm has it")?;
+    whole.require_state(&allowed, "the adjuster goes on board once a firm has it")?;
     let boarded = boarded.checked(app.clock.now().into())?;
     if let Some(mut change) = update.begin(&whole).await? {
-        change.append(Content::OnBoard(boarded)).await?;
+        change.append(OrderEvent::OnBoard(boarded)).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await

@@ -1,8 +1,8 @@
 //! The clock on answers: an offer that nobody answers lapses, and the next firm is asked.
 
-use crate::dispatch::offer_sequence::ask_next;
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::offer_state::{Between, OfferState};
+use crate::dispatch::offer_sequence::send_next_offers;
+use crate::work_orders::log_entry::OrderEvent;
+use crate::work_orders::offer_state::{Exchange, OfferState};
 use crate::work_orders::order_update::Change;
 use crate::work_orders::store;
 use binnacle_platform::app::App;
@@ -12,9 +12,9 @@ use std::time::Duration;
 use tracing::{error, info};
 
 /// How often to look for answers that are overdue.
-const LOOK_EVERY: Duration = Duration::from_secs(20);
+const POLL_INTERVAL: Duration = Duration::from_secs(20);
 /// So many orders at a time.
-const AT_A_TIME: i64 = 100;
+const BATCH_SIZE: i64 = 100;
 
 /// Looks for answers that are overdue until the server stops.
 pub async fn watch(app: App) {
@@ -24,7 +24,7 @@ pub async fn watch(app: App) {
         }
         tokio::select! {
             () = app.stopping.cancelled() => {}
-            () = tokio::time::sleep(LOOK_EVERY) => {}
+            () = tokio::time::sleep(POLL_INTERVAL) => {}
         }
     }
 }
@@ -34,7 +34,7 @@ pub async fn watch(app: App) {
 pub async fn lapse(app: &App) -> Result<usize> {
     let mut went_on = 0;
     loop {
-        let overdue = store::overdue(&app.db, app.clock.now().into(), AT_A_TIME).await?;
+        let overdue = store::overdue(&app.db, app.clock.now().into(), BATCH_SIZE).await?;
         let found = overdue.len();
         let before = went_on;
         for (vessel, order) in overdue {
@@ -43,7 +43,7 @@ pub async fn lapse(app: &App) -> Result<usize> {
                 Err(error) => error!(?error, %order, "an overdue answer cannot lapse"),
             }
         }
-        if found < AT_A_TIME as usize || went_on == before {
+        if found < BATCH_SIZE as usize || went_on == before {
             return Ok(went_on);
         }
     }
@@ -62,17 +62,17 @@ async fn lapse_of(app: &App, vessel: VesselId, order: OrderId) -> Result<bool> {
         return Ok(false);
     }
     for offer in overdue {
-        let between = Between::with(offer.firm());
+        let between = Exchange::with(offer.firm());
         // Who has the order has it, whether or not another time is agreed on.
         let lapsed = if offer.state == OfferState::Accepted {
-            Content::RetimeLapsed(between)
+            OrderEvent::RetimeLapsed(between)
         } else {
-            Content::Lapsed(between)
+            OrderEvent::Lapsed(between)
         };
         info!(%order, firm = %offer.firm_id, "an offer has lapsed");
         change.append(lapsed).await?;
     }
-    ask_next(&mut change).await?;
+    send_next_offers(&mut change).await?;
     change.commit().await?;
     Ok(true)
 }

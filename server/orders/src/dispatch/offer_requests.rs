@@ -1,12 +1,16 @@
 //! What is asked and answered between an operator and firms, as requests have it.
 
-use crate::dispatch::offer_sequence::{answer_by, ask, ask_next, must_be_ahead, share_ends};
+use crate::dispatch::offer_sequence::{
+    answer_by, require_future_job, send_next_offers, send_offers, share_deadline,
+};
 use crate::dispatch::port_call_check;
-use crate::dispatch::reschedule::at_its_call;
-use crate::firms::{self, Told, Visit};
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::offer_state::{Asked, Between, OfferState, Offered, OfferedTo, Terms};
-use crate::work_orders::order::{State, must_be_near};
+use crate::dispatch::reschedule::link_call_at;
+use crate::firms::{self, Requester, Visit};
+use crate::work_orders::log_entry::OrderEvent;
+use crate::work_orders::offer_state::{
+    Exchange, NamedFirm, OfferRound, OfferState, OfferedFirm, Terms,
+};
+use crate::work_orders::order::{State, require_near_date};
 use crate::work_orders::order_update::Change;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::{Error, Result};
@@ -19,9 +23,9 @@ use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
 /// So many firms at most.
-const MOST_FIRMS: usize = 20;
-pub(crate) const LONGEST_H: u32 = 720;
-const MOST_EUR: f64 = 1e6;
+const MAX_FIRMS: usize = 20;
+pub(crate) const MAX_ANSWER_HOURS: u32 = 720;
+const MAX_FEE_EUR: f64 = 1e6;
 /// Longest text of a message, in characters.
 pub(crate) const MAX_MESSAGE: usize = 2000;
 
@@ -35,7 +39,7 @@ pub struct NewOffer {
     /// The firms, in the order in which they are asked: 1 to 20 that you work with.
     pub firms: Vec<FirmId>,
     /// So long each has for an answer, 1 to 720 hours; then the next is asked.
-    #[serde(default = "two_days")]
+    #[serde(default = "default_answer_hours")]
     #[schema(minimum = 1, maximum = 720)]
     pub answer_within_hours: u32,
     /// Ask all of them at once: the first to accept has it.
@@ -51,7 +55,7 @@ pub struct NewOffer {
     pub fees_eur: BTreeMap<FirmId, f64>,
 }
 
-pub(crate) fn two_days() -> u32 {
+pub(crate) fn default_answer_hours() -> u32 {
     48
 }
 
@@ -61,7 +65,7 @@ pub(crate) fn two_days() -> u32 {
 #[schema(as = OfferAnswer, example = json!({
     "adjuster_name": "M. Etxeberria", "adjuster_licence": "ES-CA-114", "text": "See you there."
 }))]
-pub(crate) struct Answer {
+pub(crate) struct OfferAnswer {
     /// Whose proposal an operator answers; may be left out where there is one.
     #[serde(default)]
     pub firm_id: Option<FirmId>,
@@ -88,7 +92,7 @@ pub(crate) struct Answer {
 }))]
 pub(crate) struct Proposal {
     /// The terms: what is left out is as it was offered.
-    pub terms: NewTerms,
+    pub terms: ProposedTerms,
     /// In words.
     #[serde(default)]
     #[schema(max_length = 200)]
@@ -99,7 +103,7 @@ pub(crate) struct Proposal {
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = ProposedTerms, example = json!({ "fee_eur": 900.0 }))]
-pub(crate) struct NewTerms {
+pub(crate) struct ProposedTerms {
     /// When it is to be done, if at another time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub planned_at: Option<Time>,
@@ -117,7 +121,7 @@ pub(crate) struct NewTerms {
 #[derive(Clone, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = OnBoard, example = json!({ "text": "Gangway on the starboard side." }))]
-pub struct Boarded {
+pub struct Boarding {
     /// When; now where it is not said.
     #[serde(default)]
     pub at: Option<Time>,
@@ -129,17 +133,17 @@ pub struct Boarded {
 
 impl NewOffer {
     /// The offer, if the operator works with all of the firms.
-    pub(crate) async fn checked(self, tx: &mut Tx, operator: OperatorId) -> Result<Offered> {
+    pub(crate) async fn checked(self, tx: &mut Tx, operator: OperatorId) -> Result<OfferRound> {
         let invalid = |field, detail: String| Err(Error::Invalid { field, detail });
-        if self.firms.is_empty() || self.firms.len() > MOST_FIRMS {
-            return invalid("firms", format!("is not 1 to {MOST_FIRMS} firms"));
+        if self.firms.is_empty() || self.firms.len() > MAX_FIRMS {
+            return invalid("firms", format!("is not 1 to {MAX_FIRMS} firms"));
         }
-        if !(1..=LONGEST_H).contains(&self.answer_within_hours) {
+        if !(1..=MAX_ANSWER_HOURS).contains(&self.answer_within_hours) {
             let hours = self.answer_within_hours;
-            let detail = format!("{hours} is outside 1 to {LONGEST_H}");
+            let detail = format!("{hours} is outside 1 to {MAX_ANSWER_HOURS}");
             return invalid("answer_within_hours", detail);
         }
-        let mut firms: Vec<OfferedTo> = Vec::new();
+        let mut firms: Vec<OfferedFirm> = Vec::new();
         for firm_id in self.firms {
             if firms.iter().any(|one| one.firm.firm_id == firm_id) {
                 return invalid("firms", format!("{firm_id} stands there twice"));
@@ -153,10 +157,10 @@ impl NewOffer {
                 let terms = firms::terms_for(tx, operator, firm_id).await?;
                 terms.map(|terms| f64::from(terms.fee_eur))
             };
-            let firm = Asked { firm_id, firm_name };
-            firms.push(OfferedTo { firm, fee_eur });
+            let firm = NamedFirm { firm_id, firm_name };
+            firms.push(OfferedFirm { firm, fee_eur });
         }
-        Ok(Offered {
+        Ok(OfferRound {
             firms,
             answer_within_hours: self.answer_within_hours,
             at_once: self.at_once,
@@ -166,7 +170,7 @@ impl NewOffer {
 }
 
 /// Refuses a firm that speaks for another.
-pub(crate) fn must_be_own(tenant: Tenant, named: Option<FirmId>) -> Result<()> {
+pub(crate) fn require_own_firm(tenant: Tenant, named: Option<FirmId>) -> Result<()> {
     match (tenant.firm(), named) {
         (Some(own), Some(firm)) if own != firm => Err(Error::Invalid {
             field: "firm_id",
@@ -176,15 +180,15 @@ pub(crate) fn must_be_own(tenant: Tenant, named: Option<FirmId>) -> Result<()> {
     }
 }
 
-impl Answer {
+impl OfferAnswer {
     /// The same, its words trimmed.
     ///
     /// # Errors
     /// [`Error::Invalid`] where a firm answers for another.
-    pub(crate) fn checked(self, tenant: Tenant) -> Result<Answer> {
-        must_be_own(tenant, self.firm_id)?;
+    pub(crate) fn checked(self, tenant: Tenant) -> Result<OfferAnswer> {
+        require_own_firm(tenant, self.firm_id)?;
         let optional = |field, value: Option<String>| optional_text(field, value.as_deref());
-        Ok(Answer {
+        Ok(OfferAnswer {
             firm_id: self.firm_id,
             adjuster_name: optional("adjuster_name", self.adjuster_name)?,
             adjuster_licence: optional("adjuster_licence", self.adjuster_licence)?,
@@ -193,12 +197,12 @@ impl Answer {
     }
 
     /// What it says of a firm.
-    pub(crate) fn between(self, firm: Asked) -> Between {
-        Between {
+    pub(crate) fn between(self, firm: NamedFirm) -> Exchange {
+        Exchange {
             adjuster_name: self.adjuster_name,
             adjuster_licence: self.adjuster_licence,
             text: self.text,
-            ..Between::with(firm)
+            ..Exchange::with(firm)
         }
     }
 }
@@ -211,18 +215,18 @@ pub(crate) fn checked_terms(terms: Terms, now: Time) -> Result<Terms> {
             detail: format!("{} is over", terms.planned_at.0),
         });
     }
-    must_be_near(terms.planned_at, now)?;
+    require_near_date(terms.planned_at, now)?;
     checked_words(terms)
 }
 
 /// Terms, their berth trimmed, for a fee that can be, in whole cents.
 fn checked_words(mut terms: Terms) -> Result<Terms> {
     if let Some(fee) = terms.fee_eur
-        && !(0.0..=MOST_EUR).contains(&fee)
+        && !(0.0..=MAX_FEE_EUR).contains(&fee)
     {
         return Err(Error::Invalid {
             field: "fee_eur",
-            detail: format!("{fee} is outside 0 to {MOST_EUR}"),
+            detail: format!("{fee} is outside 0 to {MAX_FEE_EUR}"),
         });
     }
     terms.fee_eur = terms.fee_eur.map(|fee| (fee * 100.0).round() / 100.0);
@@ -235,7 +239,7 @@ impl Proposal {
     ///
     /// # Errors
     /// [`Error::Invalid`] where it proposes nothing, or what cannot be.
-    pub(crate) fn checked(self, planned_at: Time, now: Time) -> Result<Proposed> {
+    pub(crate) fn checked(self, planned_at: Time, now: Time) -> Result<CheckedProposal> {
         let new = self.terms;
         let terms = Terms {
             planned_at: new.planned_at.unwrap_or(planned_at),
@@ -253,7 +257,7 @@ impl Proposal {
                 detail: "say nothing else: give planned_at, berth or fee_eur".to_owned(),
             });
         }
-        Ok(Proposed {
+        Ok(CheckedProposal {
             terms,
             text: optional_text("text", self.text.as_deref())?,
         })
@@ -261,14 +265,14 @@ impl Proposal {
 }
 
 /// What a firm proposes, whole.
-pub(crate) struct Proposed {
+pub(crate) struct CheckedProposal {
     terms: Terms,
     text: Option<String>,
 }
 
-impl Boarded {
+impl Boarding {
     /// The same at a moment that can be.
-    pub(crate) fn checked(self, now: Time) -> Result<Boarded> {
+    pub(crate) fn checked(self, now: Time) -> Result<Boarding> {
         let at = self.at.unwrap_or(now);
         if at > now {
             return Err(Error::Invalid {
@@ -276,7 +280,7 @@ impl Boarded {
                 detail: "lies in the future".to_owned(),
             });
         }
-        Ok(Boarded {
+        Ok(Boarding {
             at: Some(at),
             text: optional_text("text", self.text.as_deref())?,
         })
@@ -304,26 +308,26 @@ pub(crate) fn message(said: &str) -> Result<String> {
 /// # Errors
 /// [`Error::WrongState`] when its time is over, or one of the firms has no team left that day
 /// or does not work then.
-pub(crate) async fn offer(change: &mut Change<'_>, offered: Offered) -> Result<()> {
+pub(crate) async fn offer(change: &mut Change<'_>, offered: OfferRound) -> Result<()> {
     let at = change.whole.summary.planned_at;
-    must_be_ahead(change, at)?;
+    require_future_job(change, at)?;
     // Everybody locks them in one order.
-    let mut firms: Vec<&Asked> = offered.firms.iter().map(|one| &one.firm).collect();
+    let mut firms: Vec<&NamedFirm> = offered.firms.iter().map(|one| &one.firm).collect();
     firms.sort_by_key(|firm| firm.firm_id.0);
     for firm in firms {
-        must_have_room(change, firm, at, Told::Operator).await?;
+        require_capacity(change, firm, at, Requester::Operator).await?;
     }
-    change.append(Content::Offered(offered)).await?;
+    change.append(OrderEvent::OfferRound(offered)).await?;
     // Whom the operator names first is asked at however short notice.
-    ask(change).await
+    send_offers(change).await
 }
 
 /// Refuses a time at which a firm has no team left.
-pub(crate) async fn must_have_room(
+pub(crate) async fn require_capacity(
     change: &mut Change<'_>,
-    firm: &Asked,
+    firm: &NamedFirm,
     at: Time,
-    told: Told,
+    told: Requester,
 ) -> Result<()> {
     let summary = &change.whole.summary;
     let visit = Visit {
@@ -333,73 +337,77 @@ pub(crate) async fn must_have_room(
         at,
     };
     let name = (firm.firm_id, firm.firm_name.as_str());
-    firms::must_have_room(&mut change.tx, name, &visit, told).await
+    firms::require_capacity(&mut change.tx, name, &visit, told).await
 }
 
 /// A firm's yes or no, or its other terms.
-pub(crate) enum FirmSays {
-    Yes(Answer),
-    No(Answer),
-    Instead(Proposed),
+pub(crate) enum FirmAnswer {
+    Accept(OfferAnswer),
+    Decline(OfferAnswer),
+    Propose(CheckedProposal),
 }
 
 /// Takes a firm's answer.
 ///
 /// # Errors
 /// [`Error::WrongState`] when it is not asked, or not any more.
-pub(crate) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmSays) -> Result<()> {
+pub(crate) async fn answer_as_firm(
+    change: &mut Change<'_>,
+    firm: FirmId,
+    says: FirmAnswer,
+) -> Result<()> {
     let offers = change.whole.standing().offers;
     let offer = offers.of(firm).ok_or(Error::NotFound("work order"))?;
     let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
-    let gives_back = matches!(says, FirmSays::No(_))
+    let gives_back = matches!(says, FirmAnswer::Decline(_))
         && offer.state == OfferState::Accepted
         && change.whole.summary.state == State::Accepted;
     // A firm may think better of its own proposal.
-    let takes_back = matches!(says, FirmSays::No(_) | FirmSays::Instead(_))
+    let takes_back = matches!(says, FirmAnswer::Decline(_) | FirmAnswer::Propose(_))
         && offer.state == OfferState::Proposed;
     if change.whole.summary.state == State::Cancelled {
         return wrong("the order is cancelled");
     }
     if offer.state != OfferState::Open && !gives_back && !takes_back {
-        return wrong(offer.state.why_not());
+        return wrong(offer.state.reason_closed());
     }
     if !gives_back && offer.answer_by.is_some_and(|by| by < change.now) {
-        return wrong(OfferState::Lapsed.why_not());
+        return wrong(OfferState::Lapsed.reason_closed());
     }
     let asked = offer.firm();
     match says {
-        FirmSays::Yes(answer) => {
+        FirmAnswer::Accept(answer) => {
             let at = change.whole.summary.planned_at;
-            must_be_ahead(change, at)?;
-            must_have_room(change, &asked, at, Told::Firm).await?;
-            let taken = Between {
+            require_future_job(change, at)?;
+            require_capacity(change, &asked, at, Requester::Firm).await?;
+            let taken = Exchange {
                 fee_eur: offer.fee_eur,
                 ..answer.between(asked)
             };
-            change.append(Content::Accepted(taken)).await
+            change.append(OrderEvent::Accepted(taken)).await
         }
-        FirmSays::No(answer) => {
+        FirmAnswer::Decline(answer) => {
             change
-                .append(Content::Declined(answer.between(asked)))
+                .append(OrderEvent::Declined(answer.between(asked)))
                 .await?;
-            ask_next(change).await
+            send_next_offers(change).await
         }
-        FirmSays::Instead(proposal) => {
+        FirmAnswer::Propose(proposal) => {
             let at = proposal.terms.planned_at;
-            must_have_room(change, &asked, at, Told::Firm).await?;
+            require_capacity(change, &asked, at, Requester::Firm).await?;
             if at != change.whole.summary.planned_at {
-                port_call_check::must_be_there(change, at, "planned_at").await?;
+                port_call_check::require_vessel_in_port(change, at, "planned_at").await?;
             }
             let until = answer_by(change, offers.answer_within_hours, at);
-            let share = share_ends(change, &offers, 0).await?;
+            let share = share_deadline(change, &offers, 0).await?;
             let until = share.map_or(until, |share| share.min(until));
-            let proposed = Between {
+            let proposed = Exchange {
                 answer_by: Some(until),
                 terms: Some(proposal.terms),
                 text: proposal.text,
-                ..Between::with(asked)
+                ..Exchange::with(asked)
             };
-            change.append(Content::Proposed(proposed)).await
+            change.append(OrderEvent::Proposed(proposed)).await
         }
     }
 }
@@ -408,9 +416,9 @@ pub(crate) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmS
 ///
 /// # Errors
 /// [`Error::WrongState`] when nothing is proposed, or it has lapsed.
-pub(crate) async fn operator_says(
+pub(crate) async fn answer_as_operator(
     change: &mut Change<'_>,
-    answer: Answer,
+    answer: OfferAnswer,
     yes: bool,
 ) -> Result<()> {
     let offers = change.whole.standing().offers;
@@ -431,10 +439,10 @@ pub(crate) async fn operator_says(
     if offer.answer_by.is_some_and(|by| by < change.now) {
         return wrong("the proposal has lapsed");
     }
-    let mut between = Between {
+    let mut between = Exchange {
         terms: offer.terms.clone(),
         text: answer.text,
-        ..Between::with(offer.firm())
+        ..Exchange::with(offer.firm())
     };
     if yes {
         let (firm, fee_eur) = (between.firm.clone(), offer.fee());
@@ -442,15 +450,15 @@ pub(crate) async fn operator_says(
             // What a firm says nothing of is as it was offered.
             terms.fee_eur = fee_eur;
             let at = terms.planned_at;
-            must_be_ahead(change, at)?;
-            must_have_room(change, &firm, at, Told::Operator).await?;
+            require_future_job(change, at)?;
+            require_capacity(change, &firm, at, Requester::Operator).await?;
             if at != change.whole.summary.planned_at {
-                port_call_check::must_be_there(change, at, "planned_at").await?;
-                at_its_call(change, at).await?;
+                port_call_check::require_vessel_in_port(change, at, "planned_at").await?;
+                link_call_at(change, at).await?;
             }
         }
-        return change.append(Content::ProposalAccepted(between)).await;
+        return change.append(OrderEvent::ProposalAccepted(between)).await;
     }
-    change.append(Content::ProposalDeclined(between)).await?;
-    ask_next(change).await
+    change.append(OrderEvent::ProposalDeclined(between)).await?;
+    send_next_offers(change).await
 }

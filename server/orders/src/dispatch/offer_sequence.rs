@@ -1,8 +1,8 @@
 //! Whose turn it is to be asked for an order, and until when they may answer.
 
 use crate::firms;
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::offer_state::{Between, Offer, OfferState, Offers};
+use crate::work_orders::log_entry::OrderEvent;
+use crate::work_orders::offer_state::{Exchange, Offer, OfferState, Offers};
 use crate::work_orders::order::State;
 use crate::work_orders::order_update::Change;
 use binnacle_platform::error::{Error, Result};
@@ -17,7 +17,7 @@ fn due(change: &Change<'_>, hours: u32) -> Time {
 }
 
 /// Refuses a job whose time is over.
-pub(crate) fn must_be_ahead(change: &Change<'_>, at: Time) -> Result<()> {
+pub(crate) fn require_future_job(change: &Change<'_>, at: Time) -> Result<()> {
     if latest(at) > change.now {
         return Ok(());
     }
@@ -47,7 +47,7 @@ pub(crate) fn answer_by(change: &Change<'_>, within_hours: u32, at: Time) -> Tim
 /// Until when an answer leaves those whose turn comes after so many others time for theirs:
 /// the time until the job, or until they are to be asked by their terms, is shared out among
 /// all who come before and themselves. None where nobody comes after.
-pub(crate) async fn share_ends(
+pub(crate) async fn share_deadline(
     change: &mut Change<'_>,
     offers: &Offers,
     asked: usize,
@@ -83,7 +83,7 @@ fn is_in_time(change: &Change<'_>, lead_s: f64) -> bool {
 
 /// Asks whom it is the turn of, where nobody else is waited for. Whom it is too late to ask is
 /// passed over.
-pub(crate) async fn ask_next(change: &mut Change<'_>) -> Result<()> {
+pub(crate) async fn send_next_offers(change: &mut Change<'_>) -> Result<()> {
     let offers = change.whole.standing().offers;
     if offers.state() == State::Declined {
         let waiting = offers.all.into_iter();
@@ -98,18 +98,18 @@ pub(crate) async fn ask_next(change: &mut Change<'_>) -> Result<()> {
             } else {
                 "not asked: the time of the job is over".to_owned()
             };
-            let passed = Between {
+            let passed = Exchange {
                 text: Some(text),
-                ..Between::with(offer.firm())
+                ..Exchange::with(offer.firm())
             };
-            change.append(Content::Lapsed(passed)).await?;
+            change.append(OrderEvent::Lapsed(passed)).await?;
         }
     }
-    ask(change).await
+    send_offers(change).await
 }
 
 /// Asks those whose turn it is, if it is anyone's, and says until when they may answer.
-pub(crate) async fn ask(change: &mut Change<'_>) -> Result<()> {
+pub(crate) async fn send_offers(change: &mut Change<'_>) -> Result<()> {
     let offers = change.whole.standing().offers;
     let next: Vec<Offer> = offers.next().cloned().collect();
     if next.is_empty() {
@@ -117,16 +117,16 @@ pub(crate) async fn ask(change: &mut Change<'_>) -> Result<()> {
     }
     let at = change.whole.summary.planned_at;
     let until = answer_by(change, offers.answer_within_hours, at);
-    let share = share_ends(change, &offers, next.len()).await?;
+    let share = share_deadline(change, &offers, next.len()).await?;
     let answer_by = share.map_or(until, |share| share.min(until));
     for next in next {
-        let asked = Between {
+        let asked = Exchange {
             answer_by: Some(answer_by),
             fee_eur: next.fee_eur,
             text: next.text.clone(),
-            ..Between::with(next.firm())
+            ..Exchange::with(next.firm())
         };
-        change.append(Content::Asked(asked)).await?;
+        change.append(OrderEvent::OfferSent(asked)).await?;
     }
     Ok(())
 }

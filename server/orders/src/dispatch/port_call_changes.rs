@@ -5,8 +5,8 @@
 //! agree on another.
 
 use crate::dispatch::call_links;
-use crate::work_orders::log_entry::{Author, Content};
-use crate::work_orders::offer_state::{Between, Offer};
+use crate::work_orders::log_entry::{Author, OrderEvent};
+use crate::work_orders::offer_state::{Exchange, Offer};
 use crate::work_orders::publish::{self, Before};
 use crate::work_orders::store;
 use binnacle_platform::db::{Tx, execute, rows};
@@ -79,13 +79,13 @@ pub struct CallChange {
 pub struct CallMoved {
     /// To whom, and in words.
     #[serde(flatten)]
-    pub said: Between,
+    pub said: Exchange,
     /// What became of the call.
     pub call: CallChange,
 }
 
 /// A call about to be written otherwise.
-pub struct Moving {
+pub struct CallUpdate {
     /// The call as it is known.
     pub call_id: CallId,
     /// The call that is there afterwards; another one where a file names it anew.
@@ -130,7 +130,7 @@ impl Alongside {
         }
     }
 
-    pub(crate) fn in_words(&self) -> String {
+    pub(crate) fn describe(&self) -> String {
         let zone = zone_of(&self.port);
         let (eta, etd) = (both(self.eta, zone), both(self.etd, zone));
         format!("from {eta} to {etd}")
@@ -156,7 +156,7 @@ fn both(at: Time, zone: Zone) -> String {
 
 /// An order that may be done at a call.
 #[derive(sqlx::FromRow)]
-pub(crate) struct Affected {
+pub(crate) struct AffectedOrder {
     pub(crate) id: OrderId,
     pub(crate) planned_at: Time,
     call_id: Option<CallId>,
@@ -169,10 +169,10 @@ pub(crate) struct Affected {
 ///
 /// # Errors
 /// When the database cannot be written.
-pub async fn calls_move(
+pub async fn announce_call_updates(
     tx: &mut Tx,
     vessel: VesselId,
-    moving: &[Moving],
+    moving: &[CallUpdate],
     by: &str,
     now: Time,
 ) -> Result<Vec<Event>> {
@@ -181,7 +181,7 @@ pub async fn calls_move(
     }
     let mut told = Vec::new();
     for order in under_way(tx, vessel).await? {
-        let at = |one: &&Moving| {
+        let at = |one: &&CallUpdate| {
             let is_then = one.was.eta <= order.planned_at && order.planned_at <= one.was.etd;
             order.call_id == Some(one.call_id) || order.is_adrift && is_then
         };
@@ -195,7 +195,7 @@ pub async fn calls_move(
 
 /// The orders of a vessel that may be done at a call, none of which changes until the
 /// transaction ends.
-pub(crate) async fn under_way(tx: &mut Tx, vessel: VesselId) -> Result<Vec<Affected>> {
+pub(crate) async fn under_way(tx: &mut Tx, vessel: VesselId) -> Result<Vec<AffectedOrder>> {
     // Who agrees to another time meanwhile waits, or is waited for.
     execute!(
         &mut *tx,
@@ -206,7 +206,7 @@ pub(crate) async fn under_way(tx: &mut Tx, vessel: VesselId) -> Result<Vec<Affec
     )?;
     Ok(rows!(
         in &mut *tx,
-        Affected,
+        AffectedOrder,
         "SELECT o.id, o.planned_at, l.call_id,
                 CASE WHEN c.id IS NULL OR c.withdrawn_at IS NOT NULL THEN TRUE ELSE FALSE END
                     AS is_adrift
@@ -224,7 +224,7 @@ pub(crate) async fn tell(
     tx: &mut Tx,
     vessel: VesselId,
     order: OrderId,
-    moving: &Moving,
+    moving: &CallUpdate,
     by: &str,
     now: Time,
 ) -> Result<Vec<Event>> {
@@ -247,12 +247,12 @@ pub(crate) async fn tell(
     };
     let seen = |offer: &&Offer| offer.state.is_seen();
     for offer in standing.offers.all.iter().filter(seen) {
-        let said = Between {
-            text: Some(call.in_words(planned_at)),
-            ..Between::with(offer.firm())
+        let said = Exchange {
+            text: Some(call.describe(planned_at)),
+            ..Exchange::with(offer.firm())
         };
         let call = call.clone();
-        let moved = Content::CallMoved(Box::new(CallMoved { said, call }));
+        let moved = OrderEvent::CallMoved(Box::new(CallMoved { said, call }));
         store::append(
             tx,
             &mut whole,
@@ -268,32 +268,32 @@ pub(crate) async fn tell(
 
 impl CallChange {
     /// What became of the call, and what is to be done, in sentences.
-    fn in_words(&self, planned_at: Time) -> String {
+    fn describe(&self, planned_at: Time) -> String {
         let became = match &self.is {
             None => format!(
                 "The port call at {}, {}, is withdrawn.",
                 self.was.port,
-                self.was.in_words()
+                self.was.describe()
             ),
             Some(is) if is.port != self.was.port => format!(
                 "The port call at {}, {}, is at {} now, {}.",
                 self.was.port,
-                self.was.in_words(),
+                self.was.describe(),
                 is.port,
-                is.in_words()
+                is.describe()
             ),
             Some(is) if *is == self.was => {
                 format!(
                     "The port call at {} is there again, {}.",
                     is.port,
-                    is.in_words()
+                    is.describe()
                 )
             }
             Some(is) => format!(
                 "The port call at {} has moved: it was {}, and is {}.",
                 is.port,
-                self.was.in_words(),
-                is.in_words()
+                self.was.describe(),
+                is.describe()
             ),
         };
         let agreed = both(planned_at, zone_of(&self.was.port));

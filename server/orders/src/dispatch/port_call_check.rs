@@ -53,7 +53,7 @@ async fn coming(
 ///
 /// # Errors
 /// [`Error::Invalid`], of a field.
-pub(crate) async fn must_be_there(
+pub(crate) async fn require_vessel_in_port(
     change: &mut Change<'_>,
     at: Time,
     field: &'static str,
@@ -68,7 +68,7 @@ pub(crate) async fn must_be_there(
         .filter_map(|(code,)| port_meant(code))
         .collect();
     let Some(other) = there.first() else {
-        return must_lie_in_a_call(change, meant, at, field).await;
+        return require_port_call(change, meant, at, field).await;
     };
     if there.iter().any(|port| port.code == meant.code) {
         return Ok(());
@@ -80,7 +80,7 @@ pub(crate) async fn must_be_there(
     Err(Error::Invalid { field, detail })
 }
 
-async fn must_lie_in_a_call(
+async fn require_port_call(
     change: &mut Change<'_>,
     meant: &Port,
     at: Time,
@@ -94,7 +94,7 @@ async fn must_lie_in_a_call(
     if calls.is_empty() || calls.iter().any(is_that_day) {
         return Ok(());
     }
-    let there: Vec<String> = calls.iter().map(Alongside::in_words).collect();
+    let there: Vec<String> = calls.iter().map(Alongside::describe).collect();
     let detail = format!(
         "by her port calls she is at {} ({port}) {}, not on the day of {}: choose a time in a \
          call, or enter the call that is not known yet",

@@ -5,13 +5,15 @@
 //! which the firm has a team left by its terms: when it is asked, and when it says yes.
 
 use crate::dispatch::call_links;
-use crate::dispatch::offer_requests::{Answer, LONGEST_H, checked_terms, must_have_room, two_days};
+use crate::dispatch::offer_requests::{
+    MAX_ANSWER_HOURS, OfferAnswer, checked_terms, default_answer_hours, require_capacity,
+};
 use crate::dispatch::offer_sequence::answer_by;
 use crate::dispatch::port_call_changes::CallFit;
 use crate::dispatch::port_call_check;
-use crate::firms::{Told, port_meant};
-use crate::work_orders::log_entry::Content;
-use crate::work_orders::offer_state::{Asked, Between, Offer, Terms};
+use crate::firms::{Requester, port_meant};
+use crate::work_orders::log_entry::OrderEvent;
+use crate::work_orders::offer_state::{Exchange, NamedFirm, Offer, Terms};
 use crate::work_orders::order::{Order, State};
 use crate::work_orders::order_update;
 use crate::work_orders::order_update::Change;
@@ -50,11 +52,11 @@ where
     "terms": { "planned_at": "2026-12-10T08:00:00Z" }, "answer_within_hours": 24,
     "text": "She is two days late."
 }))]
-struct Retime {
+struct RetimeRequest {
     /// The time, and the berth if another.
     terms: Terms,
     /// So long the firm has for an answer, 1 to 720 hours; what was agreed stands after it.
-    #[serde(default = "two_days")]
+    #[serde(default = "default_answer_hours")]
     #[schema(minimum = 1, maximum = 720)]
     answer_within_hours: u32,
     /// In words.
@@ -68,7 +70,7 @@ struct Retime {
 /// For the operator, before the adjuster is on board. What was agreed stands until the firm
 /// accepts; asked again, the firm answers what was asked last.
 #[utoipa::path(post, path = "/work-orders/{id}/retime", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Retime,
+    params(("id" = OrderId, Path), Key), request_body = RetimeRequest,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "No firm has it, the work has begun, she is not \
@@ -80,7 +82,7 @@ async fn propose_retime(
     writer: Writer,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(retime): Valid<Retime>,
+    Valid(retime): Valid<RetimeRequest>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "retime", &retime)?;
     let (whole, done) = update.look().await?;
@@ -88,25 +90,25 @@ async fn propose_retime(
         return shown(&app, writer.operator, id).await;
     }
     let hours = retime.answer_within_hours;
-    if !(1..=LONGEST_H).contains(&hours) {
+    if !(1..=MAX_ANSWER_HOURS).contains(&hours) {
         return Err(Error::Invalid {
             field: "answer_within_hours",
-            detail: format!("{hours} is outside 1 to {LONGEST_H}"),
+            detail: format!("{hours} is outside 1 to {MAX_ANSWER_HOURS}"),
         });
     }
     let terms = checked_terms(retime.terms, app.clock.now().into())?;
     let text = optional_text("text", retime.text.as_deref())?;
-    whole.must_be(&[State::Accepted], "a firm that has it is asked")?;
+    whole.require_state(&[State::Accepted], "a firm that has it is asked")?;
     if let Some(mut change) = update.begin(&whole).await? {
         let holder = holder(&change)?;
-        must_be_possible(&mut change, &holder.firm(), &terms, Told::Operator).await?;
-        let between = Between {
+        require_possible_time(&mut change, &holder.firm(), &terms, Requester::Operator).await?;
+        let between = Exchange {
             answer_by: Some(answer_by(&change, hours, terms.planned_at)),
             terms: Some(terms),
             text,
-            ..Between::with(holder.firm())
+            ..Exchange::with(holder.firm())
         };
-        change.append(Content::RetimeProposed(between)).await?;
+        change.append(OrderEvent::RetimeProposed(between)).await?;
         change.commit().await?;
     }
     shown(&app, writer.operator, id).await
@@ -116,7 +118,7 @@ async fn propose_retime(
 ///
 /// For the firm that has the order.
 #[utoipa::path(post, path = "/work-orders/{id}/retime/accept", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Answer,
+    params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "Nothing is asked, or not any more, or the call has \
@@ -128,7 +130,7 @@ async fn accept_retime(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    ValidOrNone(answer): ValidOrNone<Answer>,
+    ValidOrNone(answer): ValidOrNone<OfferAnswer>,
 ) -> Result<Json<Order>> {
     let update = order_update(
         &app,
@@ -159,14 +161,14 @@ async fn accept_retime(
             fee_eur: terms.fee_eur.or_else(|| offer.fee()),
             ..terms
         };
-        must_be_possible(&mut change, &offer.firm(), &terms, Told::Firm).await?;
-        at_its_call(&mut change, terms.planned_at).await?;
-        let agreed = Between {
+        require_possible_time(&mut change, &offer.firm(), &terms, Requester::Firm).await?;
+        link_call_at(&mut change, terms.planned_at).await?;
+        let agreed = Exchange {
             terms: Some(terms),
             text: answer.text,
-            ..Between::with(offer.firm())
+            ..Exchange::with(offer.firm())
         };
-        change.append(Content::RetimeAccepted(agreed)).await?;
+        change.append(OrderEvent::RetimeAccepted(agreed)).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
@@ -176,7 +178,7 @@ async fn accept_retime(
 ///
 /// What was agreed stands. The operator takes its question back in the same way.
 #[utoipa::path(post, path = "/work-orders/{id}/retime/decline", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Answer,
+    params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "Nothing is asked, or not any more", body = Problem),
@@ -187,7 +189,7 @@ async fn decline_retime(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    ValidOrNone(answer): ValidOrNone<Answer>,
+    ValidOrNone(answer): ValidOrNone<OfferAnswer>,
 ) -> Result<Json<Order>> {
     let update = order_update(
         &app,
@@ -216,11 +218,11 @@ async fn decline_retime(
             });
         }
         asked_terms(&change, &offer)?;
-        let between = Between {
+        let between = Exchange {
             text: answer.text,
-            ..Between::with(offer.firm())
+            ..Exchange::with(offer.firm())
         };
-        change.append(Content::RetimeDeclined(between)).await?;
+        change.append(OrderEvent::RetimeDeclined(between)).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
@@ -230,7 +232,7 @@ async fn decline_retime(
 fn holder(change: &Change<'_>) -> Result<Offer> {
     change
         .whole
-        .must_be(&[State::Accepted], "a firm that has it is asked")?;
+        .require_state(&[State::Accepted], "a firm that has it is asked")?;
     let offers = change.whole.standing().offers;
     let holder = offers.holder().cloned();
     holder.ok_or_else(|| Error::WrongState("no firm has the order".to_owned()))
@@ -268,7 +270,7 @@ async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
 }
 
 /// Notes at which call an order is to be done whose time is another now.
-pub(crate) async fn at_its_call(change: &mut Change<'_>, at: Time) -> Result<()> {
+pub(crate) async fn link_call_at(change: &mut Change<'_>, at: Time) -> Result<()> {
     let (vessel, id) = (change.whole.summary.vessel_id, change.whole.summary.id);
     if let Some(call) = call_links::call_at(&mut change.tx, vessel, at).await? {
         call_links::link(&mut change.tx, vessel, id, call.id).await?;
@@ -280,16 +282,16 @@ pub(crate) async fn at_its_call(change: &mut Change<'_>, at: Time) -> Result<()>
 ///
 /// # Errors
 /// [`Error::WrongState`], which says what is in the way.
-async fn must_be_possible(
+async fn require_possible_time(
     change: &mut Change<'_>,
-    firm: &Asked,
+    firm: &NamedFirm,
     terms: &Terms,
-    told: Told,
+    told: Requester,
 ) -> Result<()> {
     // Without any call nobody knows where she will be: the firm judges for itself.
     let Some(port) = order_port(change).await? else {
-        port_call_check::must_be_there(change, terms.planned_at, "planned_at").await?;
-        return must_have_room(change, firm, terms.planned_at, told).await;
+        port_call_check::require_vessel_in_port(change, terms.planned_at, "planned_at").await?;
+        return require_capacity(change, firm, terms.planned_at, told).await;
     };
     let (at, vessel) = (terms.planned_at, change.whole.summary.vessel_id);
     let call = call_links::call_at(&mut change.tx, vessel, at).await?;
@@ -303,5 +305,5 @@ async fn must_be_possible(
             at.to_the_minute()
         )));
     }
-    must_have_room(change, firm, at, told).await
+    require_capacity(change, firm, at, told).await
 }

@@ -45,13 +45,13 @@ pub(super) struct Manifest {
     pub(super) order: String,
     /// SHA-256 by name.
     pub(super) files: BTreeMap<String, String>,
-    pub(super) log: Head,
+    pub(super) log: LogHead,
 }
 
 /// How far the log went.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Head {
+pub(super) struct LogHead {
     pub(super) entries: i64,
     pub(super) last_sha256: String,
 }
@@ -69,7 +69,7 @@ pub fn archive(evidence: Evidence) -> anyhow::Result<Vec<u8>> {
     let mut log = texts.join("\n");
     log.push('\n');
     let last = evidence.lines.last().context("an order without a log")?;
-    let head = Head {
+    let head = LogHead {
         entries: evidence.lines.len() as i64,
         last_sha256: last.sha256.clone(),
     };

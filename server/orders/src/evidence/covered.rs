@@ -3,14 +3,14 @@
 //!
 //! What always holds: a file that is not covered is said to be so, or is a problem.
 
-use super::archive::Head;
+use super::archive::LogHead;
 use super::sheets::{predicted_csv, record_pdf};
-use super::verify::Found;
+use super::verify::Findings;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// How far the log went when the record was made, by the record.
-pub(super) fn head(files: &BTreeMap<String, Vec<u8>>) -> Option<Head> {
+pub(super) fn head(files: &BTreeMap<String, Vec<u8>>) -> Option<LogHead> {
     let record: Value = serde_json::from_slice(files.get("record.json")?).ok()?;
     serde_json::from_value(record["log"].clone()).ok()
 }
@@ -21,7 +21,7 @@ pub(super) fn covered(
     files: &BTreeMap<String, Vec<u8>>,
     entries: i64,
     signatures: usize,
-    found: &mut Found,
+    found: &mut Findings,
 ) {
     made_from_the_record(files, found);
     let Some(head) = head(files) else {
@@ -65,7 +65,7 @@ pub(super) fn covered(
     }
 }
 
-fn made_from_the_record(files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+fn made_from_the_record(files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     let text = files
         .get("record.json")
         .map(|bytes| std::str::from_utf8(bytes));

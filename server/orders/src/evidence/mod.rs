@@ -12,7 +12,7 @@ mod verify;
 
 pub use archive::{Evidence, File, Line, archive};
 pub use sheets::{predicted_csv, record_pdf, record_svg};
-pub use verify::{Found, verify};
+pub use verify::{Findings, verify};
 
 /// What says how to check it, in every archive.
 const README: &str = include_str!("README.txt");

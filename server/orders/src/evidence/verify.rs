@@ -1,9 +1,9 @@
 //! Checking an archive with nothing but what is in it.
 
-use super::archive::{File, Head, Manifest, write};
+use super::archive::{File, LogHead, Manifest, write};
 use super::covered::{self, covered};
-use crate::berth_session::photos::PhotoTaken;
-use crate::completion::complete::{Completed, SignedBy};
+use crate::berth_session::photos::Photo;
+use crate::completion::complete::{Completion, RecordedSignature};
 use crate::work_orders::log_entry::sha256_hex;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -12,7 +12,7 @@ use std::io::{Cursor, Read};
 use zip::ZipArchive;
 
 /// More than this is no evidence of one adjustment.
-const MOST_BYTES: u64 = 1 << 30;
+const MAX_ARCHIVE_BYTES: u64 = 1 << 30;
 
 /// The files of every archive; photographs are those of the log.
 const OF_THE_FORM: [&str; 6] = [
@@ -29,22 +29,22 @@ const UNSIGNED: &str = "the log says, and no signature covers it:";
 
 /// What was found.
 #[derive(Clone, Debug, Default)]
-pub struct Found {
+pub struct Findings {
     /// What is wrong, a sentence each; empty when all is well.
     pub problems: Vec<String>,
     /// What it is and says, a sentence each.
     pub facts: Vec<String>,
 }
 
-impl Found {
+impl Findings {
     fn wrong(&mut self, problem: impl Into<String>) {
         self.problems.push(problem.into());
     }
 }
 
 /// Checks an archive.
-pub fn verify(bytes: &[u8]) -> Found {
-    let mut found = Found::default();
+pub fn verify(bytes: &[u8]) -> Findings {
+    let mut found = Findings::default();
     let files = match unpack(bytes, &mut found) {
         Ok(files) => files,
         Err(problem) => {
@@ -74,7 +74,7 @@ pub fn verify(bytes: &[u8]) -> Found {
     found
 }
 
-fn unpack(bytes: &[u8], found: &mut Found) -> Result<BTreeMap<String, Vec<u8>>, String> {
+fn unpack(bytes: &[u8], found: &mut Findings) -> Result<BTreeMap<String, Vec<u8>>, String> {
     let mut archive =
         ZipArchive::new(Cursor::new(bytes)).map_err(|error| format!("no archive: {error}"))?;
     let mut files = BTreeMap::new();
@@ -85,7 +85,10 @@ fn unpack(bytes: &[u8], found: &mut Found) -> Result<BTreeMap<String, Vec<u8>>, 
         let name = name.map_err(|error| format!("file {}: {error}", index + 1))?;
         let mut content = Vec::new();
         // A file that says it is small and is not comes to its end here.
-        let read = file.by_ref().take(MOST_BYTES).read_to_end(&mut content);
+        let read = file
+            .by_ref()
+            .take(MAX_ARCHIVE_BYTES)
+            .read_to_end(&mut content);
         if let Err(error) = read {
             found.wrong(format!("{name}: {error}"));
         }
@@ -102,7 +105,7 @@ fn unpack(bytes: &[u8], found: &mut Found) -> Result<BTreeMap<String, Vec<u8>>, 
 
 /// Finds whatever is in the archive beside its files: before, between or behind them, or in
 /// what is said of them twice. These files alone make these octets alone.
-fn nothing_else(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+fn nothing_else(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     if !found.problems.is_empty() {
         return;
     }
@@ -122,7 +125,7 @@ fn nothing_else(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found: &mut Fou
     }
 }
 
-fn hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+fn hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     for (name, sha256) in &manifest.files {
         match files.get(name) {
             None => found.wrong(format!("{name} is missing")),
@@ -139,7 +142,7 @@ fn hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &mut Fo
     }
 }
 
-fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     let Some(text) = files.get("entries.ndjson") else {
         found.wrong("entries.ndjson is missing");
         return;
@@ -152,7 +155,7 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
     let mut signed = 0;
     let mut withheld: Vec<String> = Vec::new();
     let mut known: Vec<String> = OF_THE_FORM.map(str::to_owned).to_vec();
-    let mut completed: Option<Completed> = None;
+    let mut completed: Option<Completion> = None;
     let mut entries: i64 = 0;
     let recorded = covered::head(files);
     for line in text.lines() {
@@ -215,7 +218,7 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
     if completed.is_none() {
         found.wrong("the log has no completion");
     }
-    let head = Head {
+    let head = LogHead {
         entries,
         last_sha256: previous.unwrap_or_default(),
     };
@@ -239,13 +242,13 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
     }
 }
 
-fn content<T: DeserializeOwned>(entry: &Value, at: &str, found: &mut Found) -> Option<T> {
+fn content<T: DeserializeOwned>(entry: &Value, at: &str, found: &mut Findings) -> Option<T> {
     let read = serde_json::from_value(entry["content"].clone());
     read.map_err(|error| found.wrong(format!("{at}: {error}")))
         .ok()
 }
 
-fn record(completed: Option<&Completed>, files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+fn record(completed: Option<&Completion>, files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     let Some(completed) = completed else {
         return;
     };
@@ -276,9 +279,9 @@ fn photo(
     number: i64,
     at: &str,
     files: &BTreeMap<String, Vec<u8>>,
-    found: &mut Found,
+    found: &mut Findings,
 ) -> Option<String> {
-    let photo = content::<PhotoTaken>(entry, at, found)?;
+    let photo = content::<Photo>(entry, at, found)?;
     let name = photo.file(number);
     match files.get(&name) {
         None => found.wrong(format!("{name} is missing")),
@@ -291,8 +294,13 @@ fn photo(
 }
 
 /// How many signatures hold: one or none.
-fn signature(entry: &Value, completed: Option<&Completed>, at: &str, found: &mut Found) -> usize {
-    let Some(by) = content::<SignedBy>(entry, at, found) else {
+fn signature(
+    entry: &Value,
+    completed: Option<&Completion>,
+    at: &str,
+    found: &mut Findings,
+) -> usize {
+    let Some(by) = content::<RecordedSignature>(entry, at, found) else {
         return 0;
     };
     let Some(completed) = completed else {

@@ -131,7 +131,7 @@ async fn rows(db: &Db, firm: FirmId, page: &Page) -> Result<Vec<FirmKey>> {
 }
 
 /// Whoever may change the firm's keys: its own adjusters. To others it is not there.
-fn must_be_of(writer: PartyWriter, firm: FirmId) -> Result<()> {
+fn require_own_keys(writer: PartyWriter, firm: FirmId) -> Result<()> {
     if writer.tenant == Tenant::Firm(firm) {
         return Ok(());
     }
@@ -155,7 +155,7 @@ async fn register_key(
     key: RequestKey,
     Valid(new): Valid<NewFirmKey>,
 ) -> Result<(StatusCode, Json<FirmKey>)> {
-    must_be_of(writer, firm)?;
+    require_own_keys(writer, firm)?;
     let request_hash = idempotency::request_hash("firm key", &new)?;
     let new = new.checked(firm)?;
     let now = app.clock.now().into();
@@ -227,7 +227,7 @@ async fn revoke_key(
     writer: PartyWriter,
     Id((firm, key)): Id<(FirmId, KeyId)>,
 ) -> Result<StatusCode> {
-    must_be_of(writer, firm)?;
+    require_own_keys(writer, firm)?;
     let now: Time = app.clock.now().into();
     let mut tx = request.begin().await?;
     let revoked = execute!(

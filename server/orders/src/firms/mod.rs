@@ -8,7 +8,7 @@ mod room;
 mod store;
 mod terms;
 
-pub use room::{Booking, Told, Visit, bookings, must_have_room, port_meant, teams_taken};
+pub use room::{Booking, Requester, Visit, bookings, port_meant, require_capacity, teams_taken};
 pub use store::{create, engage, exists, name_for};
 pub use terms::{Terms, TermsChanged, of_operator, terms_for};
 

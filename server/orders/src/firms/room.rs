@@ -20,7 +20,7 @@ use chrono::NaiveDate;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A port's day is within so many hours of any of its instants, in whatever zone.
-const AROUND_H: f64 = 40.0;
+const MAX_DAY_OFFSET_H: f64 = 40.0;
 
 /// An order that a firm is asked for, or has.
 #[derive(Clone, Debug, sqlx::FromRow)]
@@ -53,7 +53,7 @@ pub struct Visit<'a> {
 
 /// Who is told that there is no room.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Told {
+pub enum Requester {
     /// The operator who asks, for whom what it has asked the firm already counts.
     Operator,
     /// The firm that says yes.
@@ -155,7 +155,12 @@ pub async fn bookings(db: &Db, firm: FirmId, from: Time) -> Result<Vec<Booking>>
 }
 
 /// Refuses a visit at a time at which a firm is closed, or to a ship that it may not adjust.
-async fn must_suit(tx: &mut Tx, firm_name: &str, terms: &Terms, visit: &Visit<'_>) -> Result<()> {
+async fn require_suitable_firm(
+    tx: &mut Tx,
+    firm_name: &str,
+    terms: &Terms,
+    visit: &Visit<'_>,
+) -> Result<()> {
     let wrong = |why: String, instead: &str| {
         Err(Error::WrongState(format!(
             "by the terms that you have said, {firm_name} {why}: choose another {instead}, or \
@@ -176,11 +181,11 @@ async fn must_suit(tx: &mut Tx, firm_name: &str, terms: &Terms, visit: &Visit<'_
 ///
 /// # Errors
 /// [`Error::WrongState`], in words for whom it is told.
-pub async fn must_have_room(
+pub async fn require_capacity(
     tx: &mut Tx,
     (firm, firm_name): (FirmId, &str),
     visit: &Visit<'_>,
-    told: Told,
+    told: Requester,
 ) -> Result<()> {
     // Whoever books the firm meanwhile waits.
     execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
@@ -193,8 +198,8 @@ pub async fn must_have_room(
         return Ok(());
     }
     let (from, to) = (
-        Time(visit.at.0.plus_seconds(-AROUND_H * 3600.0)),
-        Time(visit.at.0.plus_seconds(AROUND_H * 3600.0)),
+        Time(visit.at.0.plus_seconds(-MAX_DAY_OFFSET_H * 3600.0)),
+        Time(visit.at.0.plus_seconds(MAX_DAY_OFFSET_H * 3600.0)),
     );
     let around = rows!(
         in tx,
@@ -210,16 +215,17 @@ pub async fn must_have_room(
         .find(|(operator, _)| *operator == visit.operator);
     // When and for whom it works is the operator's word of the firm, which may know better
     // itself.
-    if told == Told::Operator
+    if told == Requester::Operator
         && let Some((_, terms)) = mine
     {
-        must_suit(tx, firm_name, terms, visit).await?;
+        require_suitable_firm(tx, firm_name, terms, visit).await?;
     }
     let that_day = day(visit.port, visit.at);
     let there = (place(visit.port), visit.vessel);
     let others: Vec<&Booking> = around.iter().filter(|one| one.day() == that_day).collect();
-    let counts =
-        |one: &Booking| one.is_taken || told == Told::Operator && one.operator_id == visit.operator;
+    let counts = |one: &Booking| {
+        one.is_taken || told == Requester::Operator && one.operator_id == visit.operator
+    };
     // Each operator knows how many teams work for it: the most that anybody knows of are all.
     let most = |figure: fn(&Terms) -> u32| said.iter().map(|(_, terms)| figure(terms)).max();
     let all = (
@@ -240,7 +246,7 @@ pub async fn must_have_room(
         return Ok(());
     }
     Err(Error::WrongState(match told {
-        Told::Operator => {
+        Requester::Operator => {
             let mine = others
                 .iter()
                 .filter(|one| counts(one) && one.operator_id == visit.operator);
@@ -262,7 +268,7 @@ pub async fn must_have_room(
             };
             format!("{firm_name} has no team left on {that_day}{holding}")
         }
-        Told::Firm => {
+        Requester::Firm => {
             let ships = others.iter().filter(|one| one.is_taken);
             let ships: BTreeSet<String> = ships
                 .map(|one| format!("{} at {}", one.vessel_name, one.port))

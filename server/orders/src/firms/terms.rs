@@ -141,7 +141,7 @@ fn eighteen() -> f64 {
 /// A firm that an operator works with, and on what terms.
 #[derive(Serialize, ToSchema)]
 #[schema(as = FirmWithTerms)]
-struct WithTerms {
+struct FirmWithTerms {
     /// The firm.
     firm_id: FirmId,
     /// Its name.
@@ -159,7 +159,7 @@ struct WithTerms {
 #[schema(as = FirmTermsList)]
 struct TermsList {
     /// In the order in which they were entered.
-    items: Vec<WithTerms>,
+    items: Vec<FirmWithTerms>,
 }
 
 /// List on what terms firms work for you
@@ -167,7 +167,7 @@ struct TermsList {
     responses((status = 200, body = TermsList), (status = 401, body = Problem)))]
 async fn list_terms(State(app): State<App>, reader: Reader) -> Result<Json<TermsList>> {
     let items = of_operator(&app.db, reader.operator).await?;
-    let items = items.into_iter().map(WithTerms::new).collect();
+    let items = items.into_iter().map(FirmWithTerms::new).collect();
     Ok(Json(TermsList { items }))
 }
 
@@ -198,7 +198,7 @@ pub async fn terms_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Resul
 /// and said to be a problem.
 #[utoipa::path(put, path = "/firms/{id}/terms", tag = "adjusting",
     params(("id" = FirmId, Path)), request_body = Terms,
-    responses((status = 200, body = WithTerms), (status = 401, body = Problem),
+    responses((status = 200, body = FirmWithTerms), (status = 401, body = Problem),
               (status = 403, body = Problem),
               (status = 404, description = "Also when you do not work with it", body = Problem),
               (status = 422, body = Problem)))]
@@ -208,7 +208,7 @@ async fn set_terms(
     writer: Writer,
     Id(firm): Id<FirmId>,
     Valid(terms): Valid<Terms>,
-) -> Result<Json<WithTerms>> {
+) -> Result<Json<FirmWithTerms>> {
     let terms = terms.checked()?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
@@ -224,7 +224,7 @@ async fn set_terms(
     })
     .await?;
     tx.commit().await?;
-    Ok(Json(WithTerms::new((firm, name, Some(terms)))))
+    Ok(Json(FirmWithTerms::new((firm, name, Some(terms)))))
 }
 
 /// Plan with a firm no more
@@ -253,10 +253,10 @@ async fn end_terms(
     Ok(StatusCode::NO_CONTENT)
 }
 
-impl WithTerms {
-    fn new((firm_id, firm_name, terms): (FirmId, String, Option<Terms>)) -> WithTerms {
+impl FirmWithTerms {
+    fn new((firm_id, firm_name, terms): (FirmId, String, Option<Terms>)) -> FirmWithTerms {
         let none = || vec!["terms: nobody has said on what terms it works".to_owned()];
-        WithTerms {
+        FirmWithTerms {
             firm_id,
             firm_name,
             problems: terms.as_ref().map_or_else(none, Terms::problems),

@@ -6,7 +6,7 @@
 //! order stands failed; what has passed stays so, and a later change of the ship ends the
 //! epoch instead.
 
-use crate::work_orders::log_entry::{Author, Content};
+use crate::work_orders::log_entry::{Author, OrderEvent};
 use crate::work_orders::order::State;
 use crate::work_orders::publish::{self, Before};
 use crate::work_orders::store;
@@ -30,7 +30,7 @@ const HEADING_SD_DEG: f64 = 0.7;
 /// What the headings at sea say.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = OrderVerification)]
-pub struct Verified {
+pub struct SeaVerification {
     /// The verdict with its figures: `passed`, `more_needed` or `alarm`.
     #[schema(value_type = crate::work_orders::schema::SeaVerdictSchema)]
     pub verification: Verification,
@@ -50,8 +50,8 @@ fn agree(headings: usize) -> String {
     }
 }
 
-impl Verified {
-    fn new(verification: Verification, samples: usize, until: Time) -> Verified {
+impl SeaVerification {
+    fn new(verification: Verification, samples: usize, until: Time) -> SeaVerification {
         let words = match &verification {
             Verification::Passed {
                 headings,
@@ -77,7 +77,7 @@ impl Verified {
                  what was foretold (standard error {standard_error_deg:.1})"
             ),
         };
-        Verified {
+        SeaVerification {
             verification,
             words,
             samples,
@@ -91,8 +91,8 @@ impl Verified {
     }
 
     /// Whether it says something that this does not.
-    fn is_news_after(&self, last: Option<&Verified>) -> bool {
-        let headings = |verified: &Verified| match verified.verification {
+    fn differs_from(&self, last: Option<&SeaVerification>) -> bool {
+        let headings = |verified: &SeaVerification| match verified.verification {
             Verification::MoreNeeded { headings, .. } => Some(headings),
             Verification::Passed { .. } | Verification::Alarm { .. } => None,
         };
@@ -138,8 +138,8 @@ pub async fn after_analysis(
             return Ok(Vec::new());
         }
     };
-    let verified = Verified::new(verification, settled.len(), Time(last.sample.time));
-    if !verified.is_news_after(standing.verified.as_ref()) {
+    let verified = SeaVerification::new(verification, settled.len(), Time(last.sample.time));
+    if !verified.differs_from(standing.verified.as_ref()) {
         return Ok(Vec::new());
     }
     if matches!(verified.verification, Verification::Passed { .. }) {
@@ -147,7 +147,7 @@ pub async fn after_analysis(
         store::verified(tx, &whole.summary, now, &text).await?;
     }
     let author = Author::server();
-    let content = Content::Verification(Box::new(verified));
+    let content = OrderEvent::Verification(Box::new(verified));
     store::append(tx, &mut whole, Uuid::now_v7(), &author, now, content).await?;
     publish::tell(tx, &whole, &before, now).await
 }
@@ -199,7 +199,7 @@ mod tests {
             };
             let so_far = Verification::MoreNeeded { headings, needed };
             let until = Timestamp::parse("2026-11-21T12:00:00Z").unwrap();
-            Verified::new(so_far, headings, until.into()).words
+            SeaVerification::new(so_far, headings, until.into()).words
         };
         assert_eq!(words(1, 4), "1 heading agrees so far; 4 more are needed");
         assert_eq!(words(4, 1), "4 headings agree so far; 1 more is needed");

@@ -4,16 +4,16 @@
 //! and is kept as that text; its hash is the SHA-256 of the text, and the next entry
 //! names it. So a log can be checked with nothing but SHA-256.
 
-use crate::berth_session::berth_reading::Read;
-use crate::berth_session::photos::PhotoTaken;
-use crate::berth_session::plan::Planned;
-use crate::berth_session::second_reading_api::ReadAgain;
-use crate::berth_session::steps::{Moved, StepDone};
-use crate::completion::complete::{Completed, SignedBy};
-use crate::dispatch::offer_requests::Boarded;
+use crate::berth_session::berth_reading::RecordedReading;
+use crate::berth_session::photos::Photo;
+use crate::berth_session::plan::ChosenPlan;
+use crate::berth_session::second_reading_api::RecordedSecondReading;
+use crate::berth_session::steps::{CorrectorMove, RecordedStep};
+use crate::completion::complete::{Completion, RecordedSignature};
+use crate::dispatch::offer_requests::Boarding;
 use crate::dispatch::port_call_changes::CallMoved;
-use crate::verification::Verified;
-use crate::work_orders::offer_state::{Between, Offered};
+use crate::verification::SeaVerification;
+use crate::work_orders::offer_state::{Exchange, OfferRound};
 use crate::work_orders::order::Opened;
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{FirmId, OrderId};
@@ -42,7 +42,7 @@ pub struct Entry {
     pub author: Author,
     /// What happened.
     #[serde(flatten)]
-    pub content: Content,
+    pub content: OrderEvent,
 }
 
 /// Who wrote an entry.
@@ -71,59 +71,59 @@ impl Author {
 /// What happened to an order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(tag = "kind", content = "content", rename_all = "snake_case")]
-pub enum Content {
+pub enum OrderEvent {
     /// The order was written.
     Opened(Box<Opened>),
     /// It is to be offered to firms.
-    Offered(Offered),
+    OfferRound(OfferRound),
     /// A firm is asked.
-    Asked(Between),
+    OfferSent(Exchange),
     /// A firm takes it as it was offered.
-    Accepted(Between),
+    Accepted(Exchange),
     /// A firm will not have it, or gives it back.
-    Declined(Between),
+    Declined(Exchange),
     /// A firm would have it on other terms.
-    Proposed(Between),
+    Proposed(Exchange),
     /// The operator agrees to a firm's terms.
-    ProposalAccepted(Between),
+    ProposalAccepted(Exchange),
     /// The operator does not.
-    ProposalDeclined(Between),
+    ProposalDeclined(Exchange),
     /// There was no answer in time.
-    Lapsed(Between),
+    Lapsed(Exchange),
     /// The operator asks the firm that has it for another time.
-    RetimeProposed(Between),
+    RetimeProposed(Exchange),
     /// The firm agrees.
-    RetimeAccepted(Between),
+    RetimeAccepted(Exchange),
     /// The firm does not, or the operator thinks better of it.
-    RetimeDeclined(Between),
+    RetimeDeclined(Exchange),
     /// The firm did not answer in time: what was agreed stands.
-    RetimeLapsed(Between),
+    RetimeLapsed(Exchange),
     /// The port call at which it is to be done has moved, or is withdrawn.
     CallMoved(Box<CallMoved>),
     /// A message between the operator and a firm.
-    Message(Between),
+    Message(Exchange),
     /// The adjuster is on board.
-    OnBoard(Boarded),
+    OnBoard(Boarding),
     /// The magnetometer was read at the berth.
-    BerthReading(Box<Read>),
+    BerthReading(Box<RecordedReading>),
     /// A plan was chosen.
-    Plan(Box<Planned>),
+    Plan(Box<ChosenPlan>),
     /// A step was done, and the compass read.
-    Step(Box<StepDone>),
+    Step(Box<RecordedStep>),
     /// The magnetometer was read once more, after the steps.
-    SecondReading(Box<ReadAgain>),
+    SecondReading(Box<RecordedSecondReading>),
     /// How the correctors stand, as they were found.
-    CorrectorSettings(Box<Moved>),
+    CorrectorSettings(Box<CorrectorMove>),
     /// A photograph.
-    Photo(PhotoTaken),
+    Photo(Photo),
     /// Something said.
     Remark(Said),
     /// The adjuster has finished and signed.
-    Completion(Box<Completed>),
+    Completion(Box<Completion>),
     /// The firm's key signed the record.
-    Signature(SignedBy),
+    Signature(RecordedSignature),
     /// Headings at sea were held against the prediction.
-    Verification(Box<Verified>),
+    Verification(Box<SeaVerification>),
     /// It is done with.
     Closed(Said),
     /// It is not to be done, or no further.
@@ -137,39 +137,39 @@ pub struct Said {
     pub text: String,
 }
 
-impl Content {
+impl OrderEvent {
     /// What is between the operator and one firm, if it is that.
-    pub fn between(&self) -> Option<&Between> {
+    pub fn between(&self) -> Option<&Exchange> {
         match self {
-            Content::Asked(said)
-            | Content::Accepted(said)
-            | Content::Declined(said)
-            | Content::Proposed(said)
-            | Content::ProposalAccepted(said)
-            | Content::ProposalDeclined(said)
-            | Content::Lapsed(said)
-            | Content::RetimeProposed(said)
-            | Content::RetimeAccepted(said)
-            | Content::RetimeDeclined(said)
-            | Content::RetimeLapsed(said)
-            | Content::Message(said) => Some(said),
-            Content::CallMoved(moved) => Some(&moved.said),
+            OrderEvent::OfferSent(said)
+            | OrderEvent::Accepted(said)
+            | OrderEvent::Declined(said)
+            | OrderEvent::Proposed(said)
+            | OrderEvent::ProposalAccepted(said)
+            | OrderEvent::ProposalDeclined(said)
+            | OrderEvent::Lapsed(said)
+            | OrderEvent::RetimeProposed(said)
+            | OrderEvent::RetimeAccepted(said)
+            | OrderEvent::RetimeDeclined(said)
+            | OrderEvent::RetimeLapsed(said)
+            | OrderEvent::Message(said) => Some(said),
+            OrderEvent::CallMoved(moved) => Some(&moved.said),
             _ => None,
         }
     }
 
     /// Whether a firm may know of it, whose order it is.
     pub fn is_seen_by(&self, firm: FirmId) -> bool {
-        let others = matches!(self, Content::Offered(_));
+        let others = matches!(self, OrderEvent::OfferRound(_));
         !others && self.between().is_none_or(|said| said.firm.firm_id == firm)
     }
 
     /// Whether offers may stand otherwise after it.
     pub fn is_about_offers(&self) -> bool {
         let said = self.between().is_some()
-            && !matches!(self, Content::Message(_) | Content::CallMoved(_));
-        let ends = matches!(self, Content::OnBoard(_) | Content::Cancelled(_));
-        said || ends || matches!(self, Content::Offered(_))
+            && !matches!(self, OrderEvent::Message(_) | OrderEvent::CallMoved(_));
+        let ends = matches!(self, OrderEvent::OnBoard(_) | OrderEvent::Cancelled(_));
+        said || ends || matches!(self, OrderEvent::OfferRound(_))
     }
 }
 

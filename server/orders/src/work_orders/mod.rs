@@ -42,7 +42,7 @@ use binnacle_platform::tenants::Tenant;
 use order::Order;
 use order_update::OrderUpdate;
 use serde::Serialize;
-use store::Whole;
+use store::StoredOrder;
 
 /// A request to change an order, told from others by what it asks.
 pub(crate) fn order_update<'a>(
@@ -71,7 +71,7 @@ pub(crate) async fn shown(
     id: OrderId,
 ) -> Result<Json<Order>> {
     let tenant = tenant.into();
-    let whole: Whole = store::whole(&app.db, tenant, id).await?;
+    let whole: StoredOrder = store::whole(&app.db, tenant, id).await?;
     let standing = whole.standing();
     Ok(Json(Order::new(whole.summary, standing, tenant)))
 }

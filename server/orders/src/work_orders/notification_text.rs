@@ -4,8 +4,8 @@
 //! all are; what is between the operator and one firm is told to no other.
 
 use crate::dispatch::port_call_changes::{CallFit, CallMoved};
-use crate::work_orders::log_entry::{Content, Entry};
-use crate::work_orders::offer_state::{Between, OfferState};
+use crate::work_orders::log_entry::{Entry, OrderEvent};
+use crate::work_orders::offer_state::{Exchange, OfferState};
 use crate::work_orders::order::Summary;
 use binnacle_adjustment::adjust::Verification;
 use binnacle_platform::mail;
@@ -27,47 +27,47 @@ pub(crate) fn for_operator(
     was: Option<OfferState>,
 ) -> Option<Notice> {
     let by_firm = entry.author.firm_id.is_some();
-    let firm = |said: &Between| said.firm.firm_name.clone();
+    let firm = |said: &Exchange| said.firm.firm_name.clone();
     let (kind, what) = match &entry.content {
-        Content::Accepted(said) => (Kind::Answered, format!("{} accepts the job", firm(said))),
-        Content::Declined(said) if by_firm && was == Some(OfferState::Accepted) => {
+        OrderEvent::Accepted(said) => (Kind::Answered, format!("{} accepts the job", firm(said))),
+        OrderEvent::Declined(said) if by_firm && was == Some(OfferState::Accepted) => {
             (Kind::Answered, format!("{} gives the job back", firm(said)))
         }
-        Content::Declined(said) if by_firm => {
+        OrderEvent::Declined(said) if by_firm => {
             (Kind::Answered, format!("{} declines the job", firm(said)))
         }
-        Content::Proposed(said) => (
+        OrderEvent::Proposed(said) => (
             Kind::Answered,
             format!("{} proposes other terms", firm(said)),
         ),
-        Content::Lapsed(said) if was == Some(OfferState::Waiting) => (
+        OrderEvent::Lapsed(said) if was == Some(OfferState::Waiting) => (
             Kind::AnswerLate,
             format!("{} cannot be asked in time", firm(said)),
         ),
-        Content::Lapsed(said) if was == Some(OfferState::Proposed) => (
+        OrderEvent::Lapsed(said) if was == Some(OfferState::Proposed) => (
             Kind::AnswerLate,
             format!("no answer in time to the terms of {}", firm(said)),
         ),
-        Content::Lapsed(said) => (
+        OrderEvent::Lapsed(said) => (
             Kind::AnswerLate,
             format!("no answer in time from {}", firm(said)),
         ),
-        Content::RetimeAccepted(said) => (
+        OrderEvent::RetimeAccepted(said) => (
             Kind::Answered,
             format!("{} agrees to another time", firm(said)),
         ),
-        Content::RetimeDeclined(said) if by_firm => (
+        OrderEvent::RetimeDeclined(said) if by_firm => (
             Kind::Answered,
             format!("{} does not agree to another time", firm(said)),
         ),
-        Content::RetimeLapsed(said) => (
+        OrderEvent::RetimeLapsed(said) => (
             Kind::AnswerLate,
             format!("no answer in time from {} to another time", firm(said)),
         ),
-        Content::CallMoved(moved) => (Kind::CallMoved, call_moved(moved).to_owned()),
-        Content::Message(said) if by_firm => (Kind::Message, format!("{} writes", firm(said))),
-        Content::OnBoard(_) => (Kind::OnBoard, "the adjuster is on board".to_owned()),
-        Content::Completion(_) => (Kind::Completed, "adjusted, and signed".to_owned()),
+        OrderEvent::CallMoved(moved) => (Kind::CallMoved, call_moved(moved).to_owned()),
+        OrderEvent::Message(said) if by_firm => (Kind::Message, format!("{} writes", firm(said))),
+        OrderEvent::OnBoard(_) => (Kind::OnBoard, "the adjuster is on board".to_owned()),
+        OrderEvent::Completion(_) => (Kind::Completed, "adjusted, and signed".to_owned()),
         content => {
             let (kind, what) = verified(content)?;
             (kind, what.to_owned())
@@ -90,24 +90,24 @@ pub(crate) fn for_firm(
 ) -> Option<Notice> {
     let by_firm = entry.author.firm_id.is_some();
     let (kind, what) = match &entry.content {
-        Content::Asked(_) => (Kind::Offered, "a job is offered to you"),
-        Content::ProposalAccepted(_) => (Kind::Answered, "your terms are agreed to"),
-        Content::ProposalDeclined(_) => (Kind::Answered, "your terms are declined"),
-        Content::Lapsed(_) if was == Some(OfferState::Proposed) => {
+        OrderEvent::OfferSent(_) => (Kind::Offered, "a job is offered to you"),
+        OrderEvent::ProposalAccepted(_) => (Kind::Answered, "your terms are agreed to"),
+        OrderEvent::ProposalDeclined(_) => (Kind::Answered, "your terms are declined"),
+        OrderEvent::Lapsed(_) if was == Some(OfferState::Proposed) => {
             (Kind::AnswerLate, "no answer in time to your terms")
         }
-        Content::Lapsed(_) => (Kind::AnswerLate, "you have not answered in time"),
-        Content::RetimeProposed(_) => (Kind::Offered, "another time is asked of you"),
-        Content::RetimeDeclined(_) if !by_firm => {
+        OrderEvent::Lapsed(_) => (Kind::AnswerLate, "you have not answered in time"),
+        OrderEvent::RetimeProposed(_) => (Kind::Offered, "another time is asked of you"),
+        OrderEvent::RetimeDeclined(_) if !by_firm => {
             (Kind::Answered, "another time is asked of you no more")
         }
-        Content::RetimeLapsed(_) => (
+        OrderEvent::RetimeLapsed(_) => (
             Kind::AnswerLate,
             "you have not answered in time to another time",
         ),
-        Content::CallMoved(moved) => (Kind::CallMoved, call_moved(moved)),
-        Content::Message(_) if !by_firm => (Kind::Message, "the operator writes"),
-        Content::Cancelled(_) => (Kind::Withdrawn, "the job is cancelled"),
+        OrderEvent::CallMoved(moved) => (Kind::CallMoved, call_moved(moved)),
+        OrderEvent::Message(_) if !by_firm => (Kind::Message, "the operator writes"),
+        OrderEvent::Cancelled(_) => (Kind::Withdrawn, "the job is cancelled"),
         content => verified(content)?,
     };
     Some(told(kind, what, facts(summary, Side::Firm), summary, entry))
@@ -138,8 +138,8 @@ fn call_moved(moved: &CallMoved) -> &'static str {
     }
 }
 
-fn verified(content: &Content) -> Option<(Kind, &'static str)> {
-    let Content::Verification(verified) = content else {
+fn verified(content: &OrderEvent) -> Option<(Kind, &'static str)> {
+    let OrderEvent::Verification(verified) = content else {
         return None;
     };
     match verified.verification {
@@ -195,11 +195,11 @@ fn facts(summary: &Summary, reader: Side) -> String {
 }
 
 /// What was said, and what is proposed, in words.
-fn said(content: &Content) -> Option<String> {
-    if let Content::Verification(verified) = content {
+fn said(content: &OrderEvent) -> Option<String> {
+    if let OrderEvent::Verification(verified) = content {
         return Some(verified.words.clone());
     }
-    if let Content::Cancelled(said) = content {
+    if let OrderEvent::Cancelled(said) = content {
         return Some(said.text.clone());
     }
     let said = content.between()?;

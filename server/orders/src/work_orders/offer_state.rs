@@ -4,7 +4,7 @@
 //! What always holds: at most one firm has accepted. Whoever is asked has a deadline, and
 //! so has the operator whom a firm asks for other terms; nothing said after it counts.
 
-use crate::work_orders::log_entry::Content;
+use crate::work_orders::log_entry::OrderEvent;
 use crate::work_orders::order::State;
 use binnacle_platform::ids::FirmId;
 use binnacle_platform::time::Time;
@@ -13,9 +13,9 @@ use utoipa::ToSchema;
 
 /// The firms that an order is offered to, in the order in which they are asked.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Offered {
+pub struct OfferRound {
     /// The firms.
-    pub firms: Vec<OfferedTo>,
+    pub firms: Vec<OfferedFirm>,
     /// So long they have for an answer.
     pub answer_within_hours: u32,
     /// Whether all are asked at once.
@@ -27,10 +27,10 @@ pub struct Offered {
 
 /// A firm that is to be asked, and for how much.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct OfferedTo {
+pub struct OfferedFirm {
     /// The firm.
     #[serde(flatten)]
-    pub firm: Asked,
+    pub firm: NamedFirm,
     /// The fee that it is offered, euros; none where nobody has said on what terms it works.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fee_eur: Option<f64>,
@@ -38,7 +38,7 @@ pub struct OfferedTo {
 
 /// A firm, by its name then.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Asked {
+pub struct NamedFirm {
     /// Its id.
     pub firm_id: FirmId,
     /// Its name.
@@ -47,10 +47,10 @@ pub struct Asked {
 
 /// What is said between the operator and one firm: nobody else's business.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Between {
+pub struct Exchange {
     /// The firm, whoever of the two speaks.
     #[serde(flatten)]
-    pub firm: Asked,
+    pub firm: NamedFirm,
     /// Until when an answer is waited for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub answer_by: Option<Time>,
@@ -150,39 +150,39 @@ pub(crate) struct Offers {
 
 impl Offers {
     /// Goes on by an entry.
-    pub(crate) fn take(&mut self, content: &Content) {
+    pub(crate) fn take(&mut self, content: &OrderEvent) {
         match content {
-            Content::Offered(offered) => self.begin(offered),
-            Content::Asked(said) => self.set(said, OfferState::Open),
-            Content::Accepted(said) | Content::ProposalAccepted(said) => {
+            OrderEvent::OfferRound(offered) => self.begin(offered),
+            OrderEvent::OfferSent(said) => self.set(said, OfferState::Open),
+            OrderEvent::Accepted(said) | OrderEvent::ProposalAccepted(said) => {
                 self.set(said, OfferState::Accepted);
                 self.withdraw_unless(|state| state == OfferState::Waiting);
             }
-            Content::Declined(said) | Content::ProposalDeclined(said) => {
+            OrderEvent::Declined(said) | OrderEvent::ProposalDeclined(said) => {
                 self.set(said, OfferState::Declined);
             }
-            Content::Proposed(said) => self.set(said, OfferState::Proposed),
-            Content::Lapsed(said) => self.set(said, OfferState::Lapsed),
-            Content::RetimeProposed(said) => self.ask_anew(said),
-            Content::RetimeAccepted(said) => self.set(said, OfferState::Accepted),
-            Content::RetimeDeclined(said) | Content::RetimeLapsed(said) => {
+            OrderEvent::Proposed(said) => self.set(said, OfferState::Proposed),
+            OrderEvent::Lapsed(said) => self.set(said, OfferState::Lapsed),
+            OrderEvent::RetimeProposed(said) => self.propose_retime_to(said),
+            OrderEvent::RetimeAccepted(said) => self.set(said, OfferState::Accepted),
+            OrderEvent::RetimeDeclined(said) | OrderEvent::RetimeLapsed(said) => {
                 // What was agreed stands.
-                let agreed = Between {
+                let agreed = Exchange {
                     terms: None,
                     ..said.clone()
                 };
                 self.set(&agreed, OfferState::Accepted);
             }
-            Content::OnBoard(_) => self.ask_no_more(),
-            Content::Cancelled(_) => {
-                self.ask_no_more();
+            OrderEvent::OnBoard(_) => self.drop_retime(),
+            OrderEvent::Cancelled(_) => {
+                self.drop_retime();
                 self.withdraw_unless(|_| false);
             }
             _ => {}
         }
     }
 
-    fn begin(&mut self, offered: &Offered) {
+    fn begin(&mut self, offered: &OfferRound) {
         self.answer_within_hours = offered.answer_within_hours;
         self.at_once = offered.at_once;
         // Firms of an earlier round stay known: they see that it is over.
@@ -210,7 +210,7 @@ impl Offers {
     }
 
     /// Asks the firm that has the order for another time.
-    fn ask_anew(&mut self, said: &Between) {
+    fn propose_retime_to(&mut self, said: &Exchange) {
         if let Some(offer) = self.to(said.firm.firm_id) {
             offer.answer_by = said.answer_by;
             offer.new_terms.clone_from(&said.terms);
@@ -219,7 +219,7 @@ impl Offers {
     }
 
     /// Another time is not waited for any more.
-    fn ask_no_more(&mut self) {
+    fn drop_retime(&mut self) {
         for offer in self
             .all
             .iter_mut()
@@ -229,7 +229,7 @@ impl Offers {
         }
     }
 
-    fn set(&mut self, said: &Between, state: OfferState) {
+    fn set(&mut self, said: &Exchange, state: OfferState) {
         let Some(offer) = self.to(said.firm.firm_id) else {
             return;
         };
@@ -303,7 +303,7 @@ impl OfferState {
     }
 
     /// Why a firm can answer no more.
-    pub(crate) fn why_not(self) -> &'static str {
+    pub(crate) fn reason_closed(self) -> &'static str {
         match self {
             OfferState::Waiting => "it is not offered to your firm yet",
             OfferState::Open => "it is offered to your firm",
@@ -318,8 +318,8 @@ impl OfferState {
 
 impl Offer {
     /// The firm as entries name it.
-    pub(crate) fn firm(&self) -> Asked {
-        Asked {
+    pub(crate) fn firm(&self) -> NamedFirm {
+        NamedFirm {
             firm_id: self.firm_id,
             firm_name: self.firm_name.clone(),
         }
@@ -333,10 +333,10 @@ impl Offer {
     }
 }
 
-impl Between {
+impl Exchange {
     /// Nothing said yet.
-    pub(crate) fn with(firm: Asked) -> Between {
-        Between {
+    pub(crate) fn with(firm: NamedFirm) -> Exchange {
+        Exchange {
             firm,
             answer_by: None,
             fee_eur: None,

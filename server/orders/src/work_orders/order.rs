@@ -1,15 +1,15 @@
 //! An order to adjust a compass, as it is asked for and shown.
 
-use crate::berth_session::berth_reading::Checked;
-use crate::berth_session::photos::PhotoTaken;
-use crate::berth_session::plan::Planned;
-use crate::berth_session::second_reading_api::AgainSaid;
-use crate::completion::complete::{Completed, KnownKey, SignedBy};
+use crate::berth_session::berth_reading::BerthCheck;
+use crate::berth_session::photos::Photo;
+use crate::berth_session::plan::ChosenPlan;
+use crate::berth_session::second_reading_api::SecondReadingResult;
+use crate::completion::complete::{Completion, KnownKey, RecordedSignature};
 use crate::dispatch::offer_requests::NewOffer;
 use crate::dispatch::port_call_changes::{CallChange, CallFit};
-use crate::verification::Verified;
+use crate::verification::SeaVerification;
 use crate::work_orders::offer_state::{Offer, OfferState};
-use crate::work_orders::order_state::Standing;
+use crate::work_orders::order_state::OrderState;
 use crate::work_orders::request_schema::{BerthReadingSchema, LimitsSchema};
 use crate::work_orders::schema::{ChosenPlanSchema, StepSchema, VerdictSchema};
 use binnacle_adjustment::adjust::{Limits, ReadingForm, Step};
@@ -28,7 +28,7 @@ use utoipa::{IntoParams, ToSchema};
 pub(crate) const NOT_A_CERTIFICATE: &str = "predicted, not a certificate";
 
 /// No order is for later.
-const MOST_DAYS_AHEAD: f64 = 730.0;
+const MAX_DAYS_AHEAD: f64 = 730.0;
 
 /// How far an order has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
@@ -254,10 +254,10 @@ pub(crate) struct Order {
     pub reading: Option<ReadingForm>,
     /// What that told.
     #[schema(required)]
-    pub berth_check: Option<Checked>,
+    pub berth_check: Option<BerthCheck>,
     /// The plan that is followed.
     #[schema(required, value_type = Option<ChosenPlanSchema>)]
-    pub plan: Option<Planned>,
+    pub plan: Option<ChosenPlan>,
     /// How many of its steps are done.
     pub steps_done: usize,
     /// The step to do now; none when all are done, or there is no plan.
@@ -265,10 +265,10 @@ pub(crate) struct Order {
     pub next_step: Option<Step>,
     /// What became of the last step.
     #[schema(required, value_type = Option<VerdictSchema>)]
-    pub last_step: Option<crate::berth_session::steps::StepSaid>,
+    pub last_step: Option<crate::berth_session::steps::StepResult>,
     /// What the magnetometer said after the steps, the correctors standing as they stand.
     #[schema(required)]
-    pub second_reading: Option<AgainSaid>,
+    pub second_reading: Option<SecondReadingResult>,
     /// Whether someone has said since that reading how the correctors stand.
     pub looked_since: bool,
     /// How the correctors stand now; none before the first reading.
@@ -279,12 +279,12 @@ pub(crate) struct Order {
     pub compass_deg: Option<f64>,
     /// How it was completed.
     #[schema(required)]
-    pub completion: Option<Completed>,
+    pub completion: Option<Completion>,
     /// What the headings at sea say.
     #[schema(required)]
-    pub verification: Option<Verified>,
+    pub verification: Option<SeaVerification>,
     /// Photographs, in order.
-    pub photos: Vec<PhotoTaken>,
+    pub photos: Vec<Photo>,
     /// Signatures over the record by firms' keys, and whose they are.
     pub signatures: Vec<KeySignature>,
     /// What became of its offers, in the order in which firms are asked; a firm sees its
@@ -305,8 +305,8 @@ pub(crate) struct KeySignature {
     pub key: Option<KnownKey>,
 }
 
-impl From<SignedBy> for KeySignature {
-    fn from(by: SignedBy) -> KeySignature {
+impl From<RecordedSignature> for KeySignature {
+    fn from(by: RecordedSignature) -> KeySignature {
         KeySignature {
             public_key: by.signed.public_key,
             signature: by.signed.signature,
@@ -335,7 +335,7 @@ impl Summary {
 
 impl Order {
     /// The order with what follows from its log.
-    pub(crate) fn new(summary: Summary, standing: Standing, tenant: Tenant) -> Order {
+    pub(crate) fn new(summary: Summary, standing: OrderState, tenant: Tenant) -> Order {
         let setting = standing.setting().cloned();
         // Held against what the compass reads now, as the next step will be.
         let next_step = standing.next_step().map(|step| Step {
@@ -382,13 +382,13 @@ impl Order {
 }
 
 /// Refuses a time that nobody plans for.
-pub(crate) fn must_be_near(planned_at: Time, now: Time) -> Result<()> {
-    if planned_at.0.seconds_since(now.0) <= MOST_DAYS_AHEAD * 86_400.0 {
+pub(crate) fn require_near_date(planned_at: Time, now: Time) -> Result<()> {
+    if planned_at.0.seconds_since(now.0) <= MAX_DAYS_AHEAD * 86_400.0 {
         return Ok(());
     }
     Err(Error::Invalid {
         field: "planned_at",
-        detail: format!("{} is more than {MOST_DAYS_AHEAD} days ahead", planned_at.0),
+        detail: format!("{} is more than {MAX_DAYS_AHEAD} days ahead", planned_at.0),
     })
 }
 
@@ -404,7 +404,7 @@ impl NewOrder {
                 detail: format!("{} is over", self.planned_at.0),
             });
         }
-        must_be_near(self.planned_at, now)?;
+        require_near_date(self.planned_at, now)?;
         let optional = |field, value: Option<String>| optional_text(field, value.as_deref());
         if let Some(limits) = &self.limits {
             limits.check_ranges().map_err(|error| Error::Invalid {

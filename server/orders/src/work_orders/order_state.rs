@@ -3,16 +3,16 @@
 //! What always holds: it is a function of the log alone, so that the state in the
 //! database can be derived again.
 
-use crate::berth_session::berth_reading::Read;
-use crate::berth_session::photos::PhotoTaken;
-use crate::berth_session::plan::Planned;
-use crate::berth_session::second_reading::WHOLE;
-use crate::berth_session::second_reading_api::ReadAgain;
-use crate::berth_session::steps::{Moved, StepSaid, Verdict};
-use crate::completion::complete::{Completed, SignedBy};
+use crate::berth_session::berth_reading::RecordedReading;
+use crate::berth_session::photos::Photo;
+use crate::berth_session::plan::ChosenPlan;
+use crate::berth_session::second_reading::PARTS_WITH_VERTICAL;
+use crate::berth_session::second_reading_api::RecordedSecondReading;
+use crate::berth_session::steps::{CorrectorMove, StepResult, StepVerdict};
+use crate::completion::complete::{Completion, RecordedSignature};
 use crate::dispatch::port_call_changes::CallChange;
-use crate::verification::Verified;
-use crate::work_orders::log_entry::Content;
+use crate::verification::SeaVerification;
+use crate::work_orders::log_entry::OrderEvent;
 use crate::work_orders::offer_state::Offers;
 use crate::work_orders::order::State;
 use binnacle_adjustment::adjust::{
@@ -24,7 +24,7 @@ use binnacle_platform::time::Time;
 
 /// How an order stands.
 #[derive(Clone, Debug)]
-pub(crate) struct Standing {
+pub(crate) struct OrderState {
     /// How far it has come.
     pub state: State,
     /// What became of its offers to firms.
@@ -38,20 +38,20 @@ pub(crate) struct Standing {
     /// What a plan must keep to.
     pub limits: Limits,
     /// The last reading that was taken.
-    pub read: Option<Read>,
+    pub read: Option<RecordedReading>,
     /// The binnacle, its correctors as strong as they were found to be, standing as they
     /// stood when the magnetometer was read.
     pub binnacle: Option<Binnacle>,
     /// What of that was learnt from steps, in order.
-    strengths: Vec<Strength>,
+    strengths: Vec<InferredStrength>,
     /// How they stand now, where they were moved since.
     pub moved_to: Option<Setting>,
     /// The plan that is followed.
-    pub plan: Option<Planned>,
+    pub plan: Option<ChosenPlan>,
     /// How many of its steps are done.
     pub steps_done: usize,
     /// What became of the last step.
-    pub last_step: Option<StepSaid>,
+    pub last_step: Option<StepResult>,
     /// All steps that were done since the last reading, with what the compass showed.
     pub steps: Vec<CompletedStep>,
     /// Heeling magnets moved before a second reading without its vertical part that became
@@ -60,31 +60,31 @@ pub(crate) struct Standing {
     /// At how many of them someone has looked since, to say how the correctors stand.
     pub looked_at: usize,
     /// What the magnetometer said after them, the correctors standing as they stand.
-    pub again: Option<Box<ReadAgain>>,
+    pub again: Option<Box<RecordedSecondReading>>,
     /// Someone has said since that reading how the correctors stand.
     pub looked_since: bool,
     /// The first reading of an order that was planned anew from a second one.
-    pub first: Option<Box<Read>>,
+    pub first: Option<Box<RecordedReading>>,
     /// How the compass was before, by the last plan from the first reading.
     pub before: Option<Box<Before>>,
     /// How it stood before a second reading became the one to plan from: until something
     /// else is done it may be read once more.
-    undone: Option<Box<Standing>>,
+    undone: Option<Box<OrderState>>,
     /// What the compass read last at the berth, degrees.
     pub compass_deg: Option<f64>,
     /// How it was completed.
-    pub completed: Option<Completed>,
+    pub completed: Option<Completion>,
     /// What the headings at sea say.
-    pub verified: Option<Verified>,
+    pub verified: Option<SeaVerification>,
     /// Photographs, in order.
-    pub photos: Vec<PhotoTaken>,
+    pub photos: Vec<Photo>,
     /// Signatures by firms' keys, in order.
-    pub signatures: Vec<SignedBy>,
+    pub signatures: Vec<RecordedSignature>,
 }
 
 /// A strength that was learnt from what the compass showed of a step.
 #[derive(Clone, Debug)]
-pub(crate) struct Strength {
+pub(crate) struct InferredStrength {
     /// The step, its corrector where it is taken to stand.
     pub step: Step,
     /// What the compass read before it, degrees.
@@ -102,10 +102,10 @@ pub(crate) struct Before {
     pub heeling_deg_per_deg: Option<f64>,
 }
 
-impl Standing {
+impl OrderState {
     /// How an order stands whose log says this.
-    pub(crate) fn of<'a>(log: impl Iterator<Item = &'a Content>) -> Standing {
-        let mut standing = Standing {
+    pub(crate) fn of<'a>(log: impl Iterator<Item = &'a OrderEvent>) -> OrderState {
+        let mut standing = OrderState {
             state: State::Planned,
             offers: Offers::default(),
             planned_at: None,
@@ -140,66 +140,67 @@ impl Standing {
     }
 
     /// Goes on by an entry.
-    pub(crate) fn take(&mut self, content: &Content) {
+    pub(crate) fn take(&mut self, content: &OrderEvent) {
         self.offers.take(content);
-        if let Content::ProposalAccepted(said) | Content::RetimeAccepted(said) = content
+        if let OrderEvent::ProposalAccepted(said) | OrderEvent::RetimeAccepted(said) = content
             && let Some(terms) = &said.terms
         {
             let at = Some(terms.planned_at);
             // Another time was agreed, as the call is now; a fee alone says nothing of it.
-            if self.planned_at != at || matches!(content, Content::RetimeAccepted(_)) {
+            if self.planned_at != at || matches!(content, OrderEvent::RetimeAccepted(_)) {
                 (self.planned_at, self.call) = (at, None);
             }
         }
         match content {
-            Content::Offered(_)
-            | Content::Asked(_)
-            | Content::Accepted(_)
-            | Content::Declined(_)
-            | Content::Proposed(_)
-            | Content::ProposalAccepted(_)
-            | Content::ProposalDeclined(_)
-            | Content::Lapsed(_) => self.state = self.offers.state(),
-            Content::CallMoved(moved) => {
+            OrderEvent::OfferRound(_)
+            | OrderEvent::OfferSent(_)
+            | OrderEvent::Accepted(_)
+            | OrderEvent::Declined(_)
+            | OrderEvent::Proposed(_)
+            | OrderEvent::ProposalAccepted(_)
+            | OrderEvent::ProposalDeclined(_)
+            | OrderEvent::Lapsed(_) => self.state = self.offers.state(),
+            OrderEvent::CallMoved(moved) => {
                 self.port.get_or_insert_with(|| moved.call.was.port.clone());
                 self.call = Some(moved.call.clone());
             }
-            Content::OnBoard(_) => self.state = State::OnBoard,
-            Content::Photo(photo) => self.photos.push(photo.clone()),
-            Content::Signature(signature) => self.signatures.push(signature.clone()),
-            Content::Opened(opened) => {
+            OrderEvent::OnBoard(_) => self.state = State::OnBoard,
+            OrderEvent::Photo(photo) => self.photos.push(photo.clone()),
+            OrderEvent::Signature(signature) => self.signatures.push(signature.clone()),
+            OrderEvent::Opened(opened) => {
                 self.limits = opened.order.limits.unwrap_or_default();
                 self.planned_at = Some(opened.order.planned_at);
             }
-            Content::RetimeProposed(_)
-            | Content::RetimeAccepted(_)
-            | Content::RetimeDeclined(_)
-            | Content::RetimeLapsed(_)
-            | Content::Remark(_)
-            | Content::Message(_) => {}
-            Content::BerthReading(read) => {
+            OrderEvent::RetimeProposed(_)
+            | OrderEvent::RetimeAccepted(_)
+            | OrderEvent::RetimeDeclined(_)
+            | OrderEvent::RetimeLapsed(_)
+            | OrderEvent::Remark(_)
+            | OrderEvent::Message(_) => {}
+            OrderEvent::BerthReading(read) => {
                 if self.take_reading(read) {
                     (self.first, self.before, self.undone) = (None, None, None);
                     self.unshown.clear();
                 }
             }
-            Content::SecondReading(read) => self.take_again(read),
-            Content::Plan(planned) => self.follow(planned.as_ref().clone()),
-            Content::Step(done) => {
+            OrderEvent::SecondReading(read) => self.take_second_reading(read),
+            OrderEvent::Plan(planned) => self.follow(planned.as_ref().clone()),
+            OrderEvent::Step(done) => {
                 self.undone = None;
-                self.keep_only_a_disproof();
+                self.drop_confirmation();
                 // What nothing explains is read again, from where it was.
-                if done.said.verdict != Verdict::Unexplained {
+                if done.said.verdict != StepVerdict::Unexplained {
                     self.compass_deg = Some(done.said.after_deg);
                 }
                 self.last_step = Some(done.said.clone());
                 if let Some(binnacle) = &done.binnacle {
                     let before = self.binnacle.replace(binnacle.clone());
-                    self.strengths.extend(before.map(|binnacle| Strength {
-                        step: done.step.clone(),
-                        before_deg: done.said.before_deg,
-                        binnacle,
-                    }));
+                    self.strengths
+                        .extend(before.map(|binnacle| InferredStrength {
+                            step: done.step.clone(),
+                            before_deg: done.said.before_deg,
+                            binnacle,
+                        }));
                 }
                 if let Some(setting) = &done.setting {
                     self.moved_to = Some(setting.clone());
@@ -219,12 +220,12 @@ impl Standing {
                     self.follow(plan.as_ref().clone());
                 }
             }
-            Content::CorrectorSettings(moved) => self.take_settings(moved),
-            Content::Completion(completed) => {
+            OrderEvent::CorrectorSettings(moved) => self.take_settings(moved),
+            OrderEvent::Completion(completed) => {
                 self.completed = Some(completed.as_ref().clone());
                 self.state = State::Adjusted;
             }
-            Content::Verification(verified) => {
+            OrderEvent::Verification(verified) => {
                 self.state = match verified.verification {
                     Verification::Passed { .. } => State::Verified,
                     Verification::MoreNeeded { .. } => State::Adjusted,
@@ -232,18 +233,18 @@ impl Standing {
                 };
                 self.verified = Some(verified.as_ref().clone());
             }
-            Content::Closed(_) => {
+            OrderEvent::Closed(_) => {
                 self.state = match self.state {
                     State::Adjusted => State::ClosedUnverified,
                     _ => State::Closed,
                 };
             }
-            Content::Cancelled(_) => self.state = State::Cancelled,
+            OrderEvent::Cancelled(_) => self.state = State::Cancelled,
         }
     }
 
     /// Whether it was taken.
-    fn take_reading(&mut self, read: &Read) -> bool {
+    fn take_reading(&mut self, read: &RecordedReading) -> bool {
         let Some(basis) = &read.basis else {
             return false;
         };
@@ -265,14 +266,14 @@ impl Standing {
         true
     }
 
-    fn take_settings(&mut self, moved: &Moved) {
+    fn take_settings(&mut self, moved: &CorrectorMove) {
         let stands = self.setting() == Some(&moved.after);
         // What it read before they were moved says nothing of how it reads now.
         let still = self.compass_deg.filter(|_| stands);
         if !stands {
             // What was learnt of them held for how they were taken to stand.
             let again = self.again.take().filter(|_| !moved.explains_reading);
-            self.step_back();
+            self.restore_first_reading();
             self.again = again.filter(|again| again.is_disproof());
         }
         if let Some(anew) = &moved.learnt_anew
@@ -303,17 +304,17 @@ impl Standing {
 
     /// The strength that this word disputes: its corrector stands elsewhere than it was
     /// taken to, or the compass was read once more after its step.
-    pub(crate) fn disputed_by(&self, moved: &Moved) -> Option<&Strength> {
+    pub(crate) fn disputed_by(&self, moved: &CorrectorMove) -> Option<&InferredStrength> {
         let index = self.disputed(moved)?;
         self.strengths.get(index)
     }
 
-    fn disputed(&self, moved: &Moved) -> Option<usize> {
+    fn disputed(&self, moved: &CorrectorMove) -> Option<usize> {
         let taken = self.setting()?;
         let mut strengths = self.strengths.iter();
         let elsewhere =
             strengths.position(|strength| strength.step.is_contradicted(taken, &moved.after));
-        let is_last = |said: &StepSaid| said.verdict == Verdict::OtherStrength;
+        let is_last = |said: &StepResult| said.verdict == StepVerdict::OtherStrength;
         let is_read_again = *taken == moved.after
             && moved.compass_deg.is_some()
             && self.last_step.as_ref().is_some_and(is_last);
@@ -323,13 +324,13 @@ impl Standing {
         })
     }
 
-    fn take_again(&mut self, read: &ReadAgain) {
-        self.step_back();
+    fn take_second_reading(&mut self, read: &RecordedSecondReading) {
+        self.restore_first_reading();
         let before = self.clone();
         if let (Some(anew), Some(first)) = (&read.anew, before.read.clone())
             && self.take_reading(anew)
         {
-            if read.said.parts.len() < WHOLE {
+            if read.said.parts.len() < PARTS_WITH_VERTICAL {
                 let heels = |done: &&CompletedStep| done.step.corrector == Corrector::Heeling;
                 self.unshown
                     .extend(before.steps.iter().filter(heels).cloned());
@@ -347,7 +348,7 @@ impl Standing {
 
     /// As it stood before the last second reading became the one to plan from, where
     /// nothing was done about it since.
-    pub(crate) fn step_back(&mut self) {
+    pub(crate) fn restore_first_reading(&mut self) {
         let Some(before) = self.undone.take() else {
             return;
         };
@@ -369,12 +370,12 @@ impl Standing {
         self.compass_deg = before.compass_deg;
     }
 
-    fn follow(&mut self, planned: Planned) {
+    fn follow(&mut self, planned: ChosenPlan) {
         // Only a plan from a second reading knows what that has shown.
-        if self.is_read_anew() {
+        if self.plans_from_second_reading() {
             self.again = None;
         }
-        self.keep_only_a_disproof();
+        self.drop_confirmation();
         self.undone = None;
         if self.first.is_none() {
             self.before = Some(Box::new(Before {
@@ -388,14 +389,14 @@ impl Standing {
     }
 
     /// Whether the second reading is the one to plan from.
-    fn is_read_anew(&self) -> bool {
+    fn plans_from_second_reading(&self) -> bool {
         let anew = self.again.as_ref().and_then(|again| again.anew.as_ref());
         anew.is_some_and(|anew| anew.refusal.is_none())
     }
 
     /// What confirmed the correctors as they stood says nothing of how they stand now; what
     /// did not is not undone by moving more of them.
-    fn keep_only_a_disproof(&mut self) {
+    fn drop_confirmation(&mut self) {
         self.again = self.again.take().filter(|again| again.is_disproof());
     }
 
@@ -429,7 +430,7 @@ impl Standing {
     }
 
     /// What the magnetometer said after the steps, where it did not confirm them.
-    pub(crate) fn disproof(&self) -> Option<&ReadAgain> {
+    pub(crate) fn disproof(&self) -> Option<&RecordedSecondReading> {
         self.again.as_deref().filter(|again| again.is_disproof())
     }
 
@@ -437,7 +438,8 @@ impl Standing {
     pub(crate) fn hidden_steps(&self) -> Vec<&str> {
         let confirmed = self.learnt().and(self.again.as_ref());
         let shows = |corrector: Corrector| {
-            let is_whole = |again: &ReadAgain| again.said.parts.len() == WHOLE;
+            let is_whole =
+                |again: &RecordedSecondReading| again.said.parts.len() == PARTS_WITH_VERTICAL;
             confirmed.is_some_and(|again| corrector != Corrector::Heeling || is_whole(again))
         };
         let hidden = self.unshown.iter().chain(&self.steps);

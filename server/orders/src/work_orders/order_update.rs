@@ -5,10 +5,10 @@
 //! and the same request under the same key writes one entry.
 
 use crate::work_orders::idempotency_keys;
-use crate::work_orders::log_entry::{Author, Content};
+use crate::work_orders::log_entry::{Author, OrderEvent};
 use crate::work_orders::order::State;
 use crate::work_orders::publish::{self, Before};
-use crate::work_orders::store::{self, Whole};
+use crate::work_orders::store::{self, StoredOrder};
 use binnacle_platform::access::PartyWriter;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -36,7 +36,7 @@ pub(crate) struct OrderUpdate<'a> {
 pub(crate) struct Change<'a> {
     app: &'a App,
     pub(crate) tx: Tx,
-    pub(crate) whole: Whole,
+    pub(crate) whole: StoredOrder,
     pub(crate) author: Author,
     pub(crate) now: Time,
     /// The id of the entry to be written.
@@ -48,7 +48,7 @@ pub(crate) struct Change<'a> {
 
 impl<'a> OrderUpdate<'a> {
     /// The order as it is, and whether this request has been done already.
-    pub(crate) async fn look(&self) -> Result<(Whole, Option<Uuid>)> {
+    pub(crate) async fn look(&self) -> Result<(StoredOrder, Option<Uuid>)> {
         let tenant = self.writer.tenant;
         let whole = store::whole(&self.app.db, tenant, self.order).await?;
         let db = &self.app.db;
@@ -59,7 +59,7 @@ impl<'a> OrderUpdate<'a> {
 
     /// Begins to change it, unless it has gone on since it was looked at; none when this
     /// request has been done meanwhile.
-    pub(crate) async fn begin(self, seen: &Whole) -> Result<Option<Change<'a>>> {
+    pub(crate) async fn begin(self, seen: &StoredOrder) -> Result<Option<Change<'a>>> {
         let begun = self.begin_on(seen.summary.vessel_id).await?;
         if let Some(change) = &begun
             && change.whole.summary.last_seq != seen.summary.last_seq
@@ -98,7 +98,7 @@ impl<'a> Change<'a> {
     pub(crate) fn new(
         app: &'a App,
         tx: Tx,
-        whole: Whole,
+        whole: StoredOrder,
         author: Author,
         now: Time,
         id: Uuid,
@@ -129,7 +129,7 @@ impl<'a> Change<'a> {
     }
 
     /// Writes the next entry.
-    pub(crate) async fn append(&mut self, content: Content) -> Result<()> {
+    pub(crate) async fn append(&mut self, content: OrderEvent) -> Result<()> {
         // The first entry is the one that the request's key stands for.
         let id = std::mem::replace(&mut self.id, Uuid::now_v7());
         let (tx, whole) = (&mut self.tx, &mut self.whole);
@@ -147,7 +147,7 @@ impl<'a> Change<'a> {
     /// Makes it durable, and tells both sides.
     pub(crate) async fn commit(self) -> Result<()> {
         let app = self.app;
-        let (tx, told) = self.settle().await?;
+        let (tx, told) = self.finish().await?;
         tx.commit().await?;
         for event in told {
             app.publish(event);
@@ -158,7 +158,7 @@ impl<'a> Change<'a> {
 
     /// Ends it in a transaction that goes on; the events are to be published, and the work
     /// that follows to be woken, once that is committed.
-    pub(crate) async fn settle(mut self) -> Result<(Tx, Vec<Event>)> {
+    pub(crate) async fn finish(mut self) -> Result<(Tx, Vec<Event>)> {
         let news = publish::tell(&mut self.tx, &self.whole, &self.before, self.now);
         let news = news.await?;
         self.told.extend(news);
@@ -166,9 +166,9 @@ impl<'a> Change<'a> {
     }
 }
 
-impl Whole {
+impl StoredOrder {
     /// Refuses what cannot be done to an order in its state.
-    pub(crate) fn must_be(&self, allowed: &[State], what: &str) -> Result<()> {
+    pub(crate) fn require_state(&self, allowed: &[State], what: &str) -> Result<()> {
         if allowed.contains(&self.summary.state) {
             return Ok(());
         }

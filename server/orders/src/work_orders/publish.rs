@@ -4,11 +4,11 @@
 //! told of what is between it and the operator, and of everything else only while the
 //! order is its own.
 
-use crate::work_orders::log_entry::{Content, Entry};
+use crate::work_orders::log_entry::{Entry, OrderEvent};
 use crate::work_orders::notification_text;
 use crate::work_orders::offer_state::{Offer, OfferState, Offers};
 use crate::work_orders::order::{State, Summary};
-use crate::work_orders::store::Whole;
+use crate::work_orders::store::StoredOrder;
 use binnacle_adjustment::adjust::Verification;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
@@ -29,7 +29,7 @@ pub(crate) struct Before {
 }
 
 impl Before {
-    pub(crate) fn of(whole: &Whole) -> Before {
+    pub(crate) fn of(whole: &StoredOrder) -> Before {
         Before {
             last_seq: whole.summary.last_seq,
             offers: whole.standing().offers,
@@ -47,7 +47,7 @@ impl Before {
 /// Tells of what was written since; the live events, to be published after the commit.
 pub(crate) async fn tell(
     tx: &mut Tx,
-    whole: &Whole,
+    whole: &StoredOrder,
     before: &Before,
     now: Time,
 ) -> Result<Vec<Event>> {
@@ -56,7 +56,7 @@ pub(crate) async fn tell(
     let new: Vec<&Entry> = whole.log.iter().filter(new).collect();
     // The operator is told once of what several firms are told.
     let once = new.iter().copied().enumerate().filter(|(at, entry)| {
-        let moved = |entry: &Entry| matches!(entry.content, Content::CallMoved(_));
+        let moved = |entry: &Entry| matches!(entry.content, OrderEvent::CallMoved(_));
         !moved(entry) || !new[..*at].iter().any(|earlier| moved(earlier))
     });
     let once: Vec<&Entry> = once.map(|(_, entry)| entry).collect();
@@ -123,12 +123,12 @@ fn messages_for(
 ) -> Vec<Message> {
     let seen = summary.seen_with(offer);
     let mut told = Vec::new();
-    for entry in new.iter().filter(|entry| offer.lets_see(entry)) {
+    for entry in new.iter().filter(|entry| offer.shows(entry)) {
         if let Some(kind) = kind(&entry.content) {
             told.push(message(kind, &seen, entry, now));
         }
     }
-    if offer.is_taken_back(was)
+    if offer.is_withdrawn_since(was)
         && let Some(last) = new.last()
     {
         // Why is not the firm's business: another may have it.
@@ -146,11 +146,11 @@ fn notices_for(
     new: &[&Entry],
 ) -> Vec<Notice> {
     let seen = summary.seen_with(offer);
-    let theirs = new.iter().filter(|entry| offer.lets_see(entry));
+    let theirs = new.iter().filter(|entry| offer.shows(entry));
     let mut told: Vec<Notice> = theirs
         .filter_map(|entry| notification_text::for_firm(&seen, entry, was))
         .collect();
-    if offer.is_taken_back(was) {
+    if offer.is_withdrawn_since(was) {
         told.extend(
             new.last()
                 .map(|last| notification_text::withdrawn(&seen, last)),
@@ -161,13 +161,13 @@ fn notices_for(
 
 impl Offer {
     /// Whether the firm may know of a new entry.
-    fn lets_see(&self, entry: &Entry) -> bool {
+    fn shows(&self, entry: &Entry) -> bool {
         let holds = self.state == OfferState::Accepted;
         let between = entry.content.between();
         between.map_or(holds, |said| said.firm.firm_id == self.firm_id)
     }
 
-    fn is_taken_back(&self, was: Option<OfferState>) -> bool {
+    fn is_withdrawn_since(&self, was: Option<OfferState>) -> bool {
         self.state == OfferState::Withdrawn && was.is_some_and(OfferState::is_seen)
     }
 }
@@ -177,39 +177,39 @@ fn author(new: &[&Entry]) -> Option<UserId> {
     new.last().and_then(|entry| entry.author.id).map(UserId)
 }
 
-fn kind(content: &Content) -> Option<Kind> {
+fn kind(content: &OrderEvent) -> Option<Kind> {
     Some(match content {
-        Content::Offered(_) => return None,
-        Content::Asked(_) => Kind::OrderOffered,
-        Content::Accepted(_)
-        | Content::Declined(_)
-        | Content::Proposed(_)
-        | Content::ProposalAccepted(_)
-        | Content::ProposalDeclined(_)
-        | Content::RetimeAccepted(_)
-        | Content::RetimeDeclined(_) => Kind::OrderAnswered,
-        Content::Lapsed(_) | Content::RetimeLapsed(_) => Kind::OrderLapsed,
-        Content::RetimeProposed(_) => Kind::OrderRetimeProposed,
-        Content::CallMoved(_) => Kind::OrderCallMoved,
-        Content::Message(_) => Kind::OrderMessage,
-        Content::Completion(_) => Kind::OrderCompleted,
-        Content::Verification(verified) => match verified.verification {
+        OrderEvent::OfferRound(_) => return None,
+        OrderEvent::OfferSent(_) => Kind::OrderOffered,
+        OrderEvent::Accepted(_)
+        | OrderEvent::Declined(_)
+        | OrderEvent::Proposed(_)
+        | OrderEvent::ProposalAccepted(_)
+        | OrderEvent::ProposalDeclined(_)
+        | OrderEvent::RetimeAccepted(_)
+        | OrderEvent::RetimeDeclined(_) => Kind::OrderAnswered,
+        OrderEvent::Lapsed(_) | OrderEvent::RetimeLapsed(_) => Kind::OrderLapsed,
+        OrderEvent::RetimeProposed(_) => Kind::OrderRetimeProposed,
+        OrderEvent::CallMoved(_) => Kind::OrderCallMoved,
+        OrderEvent::Message(_) => Kind::OrderMessage,
+        OrderEvent::Completion(_) => Kind::OrderCompleted,
+        OrderEvent::Verification(verified) => match verified.verification {
             Verification::Passed { .. } => Kind::OrderVerified,
             Verification::MoreNeeded { .. } => Kind::OrderUpdated,
             Verification::Alarm { .. } => Kind::OrderFailed,
         },
-        Content::Closed(_) => Kind::OrderClosed,
-        Content::Cancelled(_) => Kind::OrderCancelled,
-        Content::Opened(_)
-        | Content::OnBoard(_)
-        | Content::BerthReading(_)
-        | Content::Plan(_)
-        | Content::Step(_)
-        | Content::SecondReading(_)
-        | Content::CorrectorSettings(_)
-        | Content::Photo(_)
-        | Content::Remark(_)
-        | Content::Signature(_) => Kind::OrderUpdated,
+        OrderEvent::Closed(_) => Kind::OrderClosed,
+        OrderEvent::Cancelled(_) => Kind::OrderCancelled,
+        OrderEvent::Opened(_)
+        | OrderEvent::OnBoard(_)
+        | OrderEvent::BerthReading(_)
+        | OrderEvent::Plan(_)
+        | OrderEvent::Step(_)
+        | OrderEvent::SecondReading(_)
+        | OrderEvent::CorrectorSettings(_)
+        | OrderEvent::Photo(_)
+        | OrderEvent::Remark(_)
+        | OrderEvent::Signature(_) => Kind::OrderUpdated,
     })
 }
 
@@ -218,7 +218,7 @@ fn message(kind: Kind, summary: &Summary, entry: &Entry, now: Time) -> Message {
     let what = serde_json::to_value(&entry.content).ok();
     let what = what.and_then(|value| value.get("kind").cloned());
     let call = match &entry.content {
-        Content::CallMoved(moved) => Some(&moved.call),
+        OrderEvent::CallMoved(moved) => Some(&moved.call),
         _ => None,
     };
     let entry = json!({

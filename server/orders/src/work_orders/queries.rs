@@ -4,7 +4,7 @@
 //! has proposed terms, or has it.
 
 use crate::work_orders::order::{Filter, Summary};
-use crate::work_orders::store::{Whole, read};
+use crate::work_orders::store::{StoredOrder, read};
 use binnacle_platform::db::{self, Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{FirmId, OrderId, VesselId};
@@ -137,7 +137,7 @@ pub(crate) async fn overdue(db: &Db, now: Time, limit: i64) -> Result<Vec<(Vesse
 
 /// The order as its operator sees it, within a transaction, of a vessel that is known:
 /// others who would change it wait.
-pub(crate) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<Whole> {
+pub(crate) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<StoredOrder> {
     execute!(
         &mut *tx,
         "UPDATE work_orders SET state = state WHERE vessel_id = $1 AND id = $2",
@@ -163,11 +163,11 @@ pub(crate) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<W
         id
     )?;
     let log = read(lines)?;
-    Ok(Whole { summary, log })
+    Ok(StoredOrder { summary, log })
 }
 
 /// An order that the tenant sees, with its log.
-pub(crate) async fn whole(db: &Db, tenant: Tenant, id: OrderId) -> Result<Whole> {
+pub(crate) async fn whole(db: &Db, tenant: Tenant, id: OrderId) -> Result<StoredOrder> {
     let summary = summary(db, tenant, id).await?;
     let lines = rows!(
         db,
@@ -179,7 +179,7 @@ pub(crate) async fn whole(db: &Db, tenant: Tenant, id: OrderId) -> Result<Whole>
         id
     )?;
     let log = read(lines)?;
-    Ok(Whole { summary, log })
+    Ok(StoredOrder { summary, log })
 }
 
 /// Lines of an order's log as they were hashed, with their hashes, from after a number.

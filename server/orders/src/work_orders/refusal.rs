@@ -57,7 +57,7 @@ impl Refusal {
     }
 
     /// The same, a doubt of the place before all else that could explain it.
-    pub(crate) fn doubted(mut self, doubt: Option<Refusal>) -> Refusal {
+    pub(crate) fn with_cause(mut self, doubt: Option<Refusal>) -> Refusal {
         if let Some(doubt) = doubt {
             self.could_be.insert(0, doubt.words);
         }

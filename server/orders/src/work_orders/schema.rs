@@ -1,6 +1,6 @@
 //! How the OpenAPI document describes plans; they themselves are the science crate's.
 
-use crate::berth_session::steps::Verdict;
+use crate::berth_session::steps::StepVerdict;
 use binnacle_fleet::binnacles::{BarSchema, BucketSchema, PairSchema, SettingSchema, TraySchema};
 use serde::Serialize;
 use serde_json::Value;
@@ -302,7 +302,7 @@ pub(crate) struct VerdictSchema {
     /// How far off that may be.
     tolerance_deg: f64,
     /// In a word.
-    verdict: Verdict,
+    verdict: StepVerdict,
     /// In words.
     words: String,
 }

@@ -1,9 +1,9 @@
 //! Orders and their logs on their way into the database.
 
-use crate::work_orders::log_entry::{Author, Content, Entry, canonical, sha256_hex};
-use crate::work_orders::offer_state::{Between, Offers};
+use crate::work_orders::log_entry::{Author, Entry, OrderEvent, canonical, sha256_hex};
+use crate::work_orders::offer_state::{Exchange, Offers};
 use crate::work_orders::order::{NewOrder, State, Summary};
-use crate::work_orders::order_state::Standing;
+use crate::work_orders::order_state::OrderState;
 pub(crate) use crate::work_orders::queries::{
     lines, list, lock, overdue, summary, vessel_of_asked, whole,
 };
@@ -14,19 +14,19 @@ use binnacle_platform::time::Time;
 use uuid::Uuid;
 
 /// An order with its log.
-pub(crate) struct Whole {
+pub(crate) struct StoredOrder {
     pub(crate) summary: Summary,
     pub(crate) log: Vec<Entry>,
 }
 
-impl Whole {
+impl StoredOrder {
     /// How it stands.
-    pub(crate) fn standing(&self) -> Standing {
-        Standing::of(self.log.iter().map(|entry| &entry.content))
+    pub(crate) fn standing(&self) -> OrderState {
+        OrderState::of(self.log.iter().map(|entry| &entry.content))
     }
 
     /// Brings the line about the order in step with its last entry.
-    fn follow(&mut self, standing: &Standing) {
+    fn follow(&mut self, standing: &OrderState) {
         let summary = &mut self.summary;
         summary.state = standing.state;
         summary.answer_by = standing.offers.answer_by();
@@ -41,17 +41,17 @@ impl Whole {
         }
         summary.firm_id = holder;
         match self.log.last().map(|entry| &entry.content) {
-            Some(Content::Accepted(said)) => {
+            Some(OrderEvent::Accepted(said)) => {
                 summary.firm = Some(said.firm.firm_name.clone());
                 summary.adjuster_name.clone_from(&said.adjuster_name);
                 summary.adjuster_licence.clone_from(&said.adjuster_licence);
             }
-            Some(Content::ProposalAccepted(said)) => {
+            Some(OrderEvent::ProposalAccepted(said)) => {
                 summary.firm = Some(said.firm.firm_name.clone());
                 (summary.adjuster_name, summary.adjuster_licence) = (None, None);
                 summary.agree(said);
             }
-            Some(Content::RetimeAccepted(said)) => summary.agree(said),
+            Some(OrderEvent::RetimeAccepted(said)) => summary.agree(said),
             _ => {}
         }
     }
@@ -59,7 +59,7 @@ impl Whole {
 
 impl Summary {
     /// Is to be done as was agreed on.
-    fn agree(&mut self, said: &Between) {
+    fn agree(&mut self, said: &Exchange) {
         if let Some(terms) = &said.terms {
             self.planned_at = terms.planned_at;
             self.berth = terms.berth.clone().or(self.berth.take());
@@ -207,11 +207,11 @@ pub(crate) async fn insert(
 /// Writes the next entry of an order's log, and what follows from it.
 pub(crate) async fn append(
     tx: &mut Tx,
-    whole: &mut Whole,
+    whole: &mut StoredOrder,
     id: Uuid,
     author: &Author,
     now: Time,
-    content: Content,
+    content: OrderEvent,
 ) -> Result<()> {
     let summary = &mut whole.summary;
     let previous = (summary.last_seq > 0).then(|| summary.last_sha256.clone());
@@ -277,7 +277,7 @@ pub(crate) async fn append(
     Ok(())
 }
 
-async fn write_offers(tx: &mut Tx, whole: &Whole, offers: &Offers) -> Result<()> {
+async fn write_offers(tx: &mut Tx, whole: &StoredOrder, offers: &Offers) -> Result<()> {
     for offer in &offers.all {
         execute!(
             &mut *tx,

@@ -27,7 +27,7 @@ pub use subscriber::note_berth_heading;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_fleet::vessels;
-use binnacle_orders::dispatch::{calls_come, calls_move};
+use binnacle_orders::dispatch::{announce_call_updates, attach_new_calls};
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -142,7 +142,7 @@ async fn enter_port_call(
         let author = Author::of(&mut tx, writer.user, now).await?;
         store::insert(&mut tx, vessel, wanted, &call, Source::Api, &author).await?;
         let came = [(wanted, moving::alongside(&call))];
-        let told = calls_come(&mut tx, vessel, &came, &author.name, now).await?;
+        let told = attach_new_calls(&mut tx, vessel, &came, &author.name, now).await?;
         commit(&app, tx, &[vessel], told, now).await?;
     }
     let shown = shown(&app, writer.operator, vessel, CallId(made)).await?;
@@ -201,10 +201,11 @@ async fn amend_port_call(
     must_fit(&known, Some(id), &amended)?;
     let author = Author::of(&mut tx, writer.user, now).await?;
     let moving = moving::amended(current, &amended)?;
-    let mut told = calls_move(&mut tx, vessel, moving.as_slice(), &author.name, now).await?;
+    let mut told =
+        announce_call_updates(&mut tx, vessel, moving.as_slice(), &author.name, now).await?;
     store::revise(&mut tx, current, &amended, Source::Api, &author).await?;
     let is = [(id, moving::alongside(&amended))];
-    told.extend(calls_come(&mut tx, vessel, &is, &author.name, now).await?);
+    told.extend(attach_new_calls(&mut tx, vessel, &is, &author.name, now).await?);
     commit(&app, tx, &[vessel], told, now).await?;
     Ok(Json(shown(&app, writer.operator, vessel, id).await?))
 }
@@ -233,7 +234,7 @@ async fn withdraw_port_call(
     if current.withdrawn_at.is_none() {
         let author = Author::of(&mut tx, writer.user, now).await?;
         let moving = [moving::withdrawn(current)?];
-        let told = calls_move(&mut tx, vessel, &moving, &author.name, now).await?;
+        let told = announce_call_updates(&mut tx, vessel, &moving, &author.name, now).await?;
         store::withdraw(&mut tx, current, reason.as_deref(), &author).await?;
         commit(&app, tx, &[vessel], told, now).await?;
     } else {

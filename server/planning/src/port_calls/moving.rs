@@ -3,7 +3,7 @@
 use super::call::Content;
 use super::file::Taken;
 use super::store::Row;
-use binnacle_orders::dispatch::{Alongside, Moving};
+use binnacle_orders::dispatch::{Alongside, CallUpdate};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::CallId;
 use std::collections::BTreeMap;
@@ -13,12 +13,12 @@ use std::collections::BTreeMap;
 const SAME_CALL_H: f64 = 21.0 * 24.0;
 
 /// A call that is amended; none where it is where and when it was, or counted no more.
-pub(super) fn amended(row: &Row, call: &Content) -> Result<Option<Moving>> {
+pub(super) fn amended(row: &Row, call: &Content) -> Result<Option<CallUpdate>> {
     let (was, is) = (row.alongside()?, alongside(call));
     if was == is && row.withdrawn_at.is_none() {
         return Ok(None);
     }
-    Ok(Some(Moving {
+    Ok(Some(CallUpdate {
         call_id: row.id,
         then_id: row.id,
         was,
@@ -27,8 +27,8 @@ pub(super) fn amended(row: &Row, call: &Content) -> Result<Option<Moving>> {
 }
 
 /// A call that is withdrawn.
-pub(super) fn withdrawn(row: &Row) -> Result<Moving> {
-    Ok(Moving {
+pub(super) fn withdrawn(row: &Row) -> Result<CallUpdate> {
+    Ok(CallUpdate {
         call_id: row.id,
         then_id: row.id,
         was: row.alongside()?,
@@ -37,7 +37,7 @@ pub(super) fn withdrawn(row: &Row) -> Result<Moving> {
 }
 
 /// Returns the moves that a file brings about; its new calls have these ids.
-pub(super) fn taken(taken: &Taken<'_>, new: &[(CallId, &Content)]) -> Result<Vec<Moving>> {
+pub(super) fn taken(taken: &Taken<'_>, new: &[(CallId, &Content)]) -> Result<Vec<CallUpdate>> {
     let mut all = Vec::new();
     for (row, call) in &taken.amended {
         all.extend(amended(row, call)?);
@@ -58,7 +58,7 @@ pub(super) fn taken(taken: &Taken<'_>, new: &[(CallId, &Content)]) -> Result<Vec
         let moving = withdrawn(row)?;
         let port = at_port.get_mut(&row.port);
         all.push(match port.and_then(|port| port.becomes(row)) {
-            Some((then_id, call)) => Moving {
+            Some((then_id, call)) => CallUpdate {
                 then_id: *then_id,
                 is: Some(alongside(call)),
                 ..moving

@@ -9,7 +9,7 @@ use axum::body::Body;
 use axum::extract::{FromRef, State};
 use axum::response::Response;
 use binnacle_fleet::vessels;
-use binnacle_orders::dispatch::{calls_come, calls_move};
+use binnacle_orders::dispatch::{announce_call_updates, attach_new_calls};
 use binnacle_platform::access::{Reader, Writer};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -262,7 +262,7 @@ async fn take(
         for (id, call) in &new {
             store::insert(&mut tx, vessel, *id, call, source, &author).await?;
         }
-        told.extend(calls_move(&mut tx, vessel, &moving, &author.name, now).await?);
+        told.extend(announce_call_updates(&mut tx, vessel, &moving, &author.name, now).await?);
         for (row, call) in amended {
             store::revise(&mut tx, row, call, source, &author).await?;
         }
@@ -272,7 +272,7 @@ async fn take(
         let is = new.iter().map(|(id, call)| (*id, *call));
         let is = is.chain(amended.iter().map(|(row, call)| (row.id, call)));
         let is: Vec<_> = is.map(|(id, call)| (id, moving::alongside(call))).collect();
-        told.extend(calls_come(&mut tx, vessel, &is, &author.name, now).await?);
+        told.extend(attach_new_calls(&mut tx, vessel, &is, &author.name, now).await?);
     }
     faults.unless(()).map_err(invalid_file)?;
     commit(app, tx, &changed, told, now).await?;

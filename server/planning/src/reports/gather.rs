@@ -6,7 +6,7 @@ use crate::needs::{Facts, need, of_fleet};
 use crate::schedule;
 use binnacle_compass::time::Timestamp;
 use binnacle_fleet::models::{self, StoredModel};
-use binnacle_orders::completion::{self, Done, Span};
+use binnacle_orders::completion::{self, CompletedOrder, CompletionPeriod};
 use binnacle_orders::firms;
 use binnacle_orders::work_orders::State;
 use binnacle_platform::app::App;
@@ -35,7 +35,7 @@ pub(super) async fn gather(
     let models = models::current_of_fleet(&app.db, operator, all.0, all.1).await?;
     let terms = schedule::terms(&app.db, operator).await?;
     let under_way = under_way(&app.db, operator).await?;
-    let span = Span {
+    let span = CompletionPeriod {
         from: midnight("from", from)?,
         until: midnight("to", to + Days::new(1))?,
         late_since,
@@ -139,8 +139,8 @@ fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
     all
 }
 
-async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
-    let done = completion::done(db, operator, span).await?;
+async fn jobs(db: &Db, operator: OperatorId, span: CompletionPeriod) -> Result<Vec<Job>> {
+    let done = completion::completed_orders(db, operator, span).await?;
     let terms = firms::of_operator(db, operator).await?;
     let visits = visits(&done);
     let usual = |nth: usize| {
@@ -161,7 +161,7 @@ async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
         agreed.or_else(|| usual(nth).map(|eur| (eur, FeeFrom::Terms)))
     };
     let fees: Vec<Option<(f64, FeeFrom)>> = (0..done.len()).map(fee).collect();
-    let job = |((done, visit), fee): ((Done, usize), Option<(f64, FeeFrom)>)| Job {
+    let job = |((done, visit), fee): ((CompletedOrder, usize), Option<(f64, FeeFrom)>)| Job {
         order_id: done.order_id,
         vessel_id: done.vessel_id,
         vessel_name: done.vessel_name,
@@ -181,7 +181,7 @@ async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
 
 /// Returns the visit of each job, in the jobs' order. A visit is a vessel's jobs in one port,
 /// each within a day of the one before.
-fn visits(done: &[Done]) -> Vec<usize> {
+fn visits(done: &[CompletedOrder]) -> Vec<usize> {
     let mut last: BTreeMap<VesselId, usize> = BTreeMap::new();
     let mut visits: Vec<usize> = Vec::with_capacity(done.len());
     for (nth, job) in done.iter().enumerate() {
