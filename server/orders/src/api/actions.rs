@@ -1,9 +1,10 @@
 //! Remarks on a work order, its cancellation and its closing.
 
 use crate::completion::complete::{write_binnacle, write_logbook};
-use crate::work_orders::log_entry::{OrderEvent, Said};
-use crate::work_orders::order::{Order, State};
+use crate::work_orders::events::{Cancelled, Closed, OrderEvent, Remark};
+use crate::work_orders::order::Order;
 use crate::work_orders::order_update::Change;
+use crate::work_orders::state::State;
 use crate::work_orders::{order_update, shown};
 use axum::extract::State as Shared;
 use binnacle_platform::access::{PartyWriter, Writer};
@@ -20,7 +21,7 @@ use utoipa::ToSchema;
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = OrderRemark, example = json!({ "text": "Crane alongside until noon." }))]
-pub(super) struct Remark {
+pub(super) struct RemarkForm {
     /// In words.
     #[schema(min_length = 1, max_length = 200)]
     text: String,
@@ -28,7 +29,7 @@ pub(super) struct Remark {
 
 /// Say something of a work order
 #[utoipa::path(post, path = "/work-orders/{id}/remarks", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Remark,
+    params(("id" = OrderId, Path), Key), request_body = RemarkForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 422, body = Problem)))]
@@ -38,15 +39,15 @@ pub(super) async fn remark(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(remark): Valid<Remark>,
+    Valid(remark): Valid<RemarkForm>,
 ) -> Result<Json<Order>> {
-    let said = said(&remark)?;
+    let text = checked_text(&remark)?;
     let update = order_update(&app, request, writer, id, key, "remark", &remark)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_none()
-        && let Some(mut change) = update.begin(&whole).await?
+        && let Some(mut change) = update.begin(&stored).await?
     {
-        change.append(OrderEvent::Remark(said)).await?;
+        change.append(OrderEvent::Remark(Remark { text })).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
@@ -57,7 +58,7 @@ pub(super) async fn remark(
 /// For the operator; a firm declines. Correctors that were moved stay as they stand: the binnacle's next revision says so,
 /// and the logbook has the moment.
 #[utoipa::path(post, path = "/work-orders/{id}/cancel", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Remark,
+    params(("id" = OrderId, Path), Key), request_body = RemarkForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, body = Problem), (status = 422, body = Problem)))]
@@ -67,20 +68,22 @@ pub(super) async fn cancel_work_order(
     writer: Writer,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(remark): Valid<Remark>,
+    Valid(remark): Valid<RemarkForm>,
 ) -> Result<Json<Order>> {
-    let said = said(&remark)?;
+    let reason = checked_text(&remark)?;
     let update = order_update(&app, request, writer, id, key, "cancellation", &remark)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.operator, id).await;
     }
-    if !whole.summary.state.is_under_way() {
-        whole.require_state(&[], "it cannot be cancelled any more")?;
+    if !stored.summary.state.is_under_way() {
+        stored.require_state(&[], "it cannot be cancelled any more")?;
     }
-    if let Some(mut change) = update.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&stored).await? {
         record_moved_correctors(&mut change).await?;
-        change.append(OrderEvent::Cancelled(said)).await?;
+        change
+            .append(OrderEvent::Cancelled(Cancelled { text: reason }))
+            .await?;
         change.commit().await?;
     }
     shown(&app, writer.operator, id).await
@@ -88,18 +91,18 @@ pub(super) async fn cancel_work_order(
 
 /// Notes correctors that were moved though the adjustment came to nothing.
 async fn record_moved_correctors(change: &mut Change<'_>) -> Result<()> {
-    let standing = change.whole.standing();
-    if !standing.was_moved() {
+    let state = change.stored.state();
+    if !state.has_moved_correctors() {
         return Ok(());
     }
-    let (Some(binnacle), Some(setting)) = (&standing.binnacle, standing.setting()) else {
+    let (Some(binnacle), Some(setting)) = (&state.binnacle, state.setting()) else {
         return Ok(());
     };
     let left = binnacle
         .with_setting(setting.clone())
         .map_err(binnacle_fleet::binnacles::invalid_binnacle)?;
     write_binnacle(change, &left, "left").await?;
-    let (now, port) = (change.now, change.whole.summary.port.clone());
+    let (now, port) = (change.now, change.stored.summary.port.clone());
     write_logbook(change, binnacle_platform::ids::EntryId::new(), now, &port).await
 }
 
@@ -139,32 +142,30 @@ pub(super) async fn close_work_order(
 ) -> Result<Json<Order>> {
     let text = text("text", &closing.text)?;
     let update = order_update(&app, request, writer, id, key, "closing", &closing)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.operator, id).await;
     }
-    let unverified = closing.without_verification && whole.summary.state == State::Adjusted;
+    let unverified = closing.without_verification && stored.summary.state == State::Adjusted;
     if !unverified {
         let allowed = [State::Verified, State::Failed];
-        whole.require_state(
+        stored.require_state(
             &allowed,
             "it is closed when headings at sea have spoken, or once adjusted without_verification",
         )?;
     }
-    if let Some(mut change) = update.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&stored).await? {
         let text = if unverified {
             format!("closed without verification: {text}")
         } else {
             text
         };
-        change.append(OrderEvent::Closed(Said { text })).await?;
+        change.append(OrderEvent::Closed(Closed { text })).await?;
         change.commit().await?;
     }
     shown(&app, writer.operator, id).await
 }
 
-fn said(remark: &Remark) -> Result<Said> {
-    Ok(Said {
-        text: text("text", &remark.text)?,
-    })
+fn checked_text(remark: &RemarkForm) -> Result<String> {
+    text("text", &remark.text)
 }

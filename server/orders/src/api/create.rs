@@ -1,9 +1,12 @@
 //! New work orders, and the withdrawal of one that every firm declined.
 
 use crate::dispatch::{offer_requests, port_call_check};
-use crate::work_orders::log_entry::{Author, OrderEvent, Said};
-use crate::work_orders::order::{NewOrder, Opened, Order, State};
+use crate::work_orders::events::{Cancelled, Opened, OrderEvent};
+use crate::work_orders::log::entry::Author;
+use crate::work_orders::new_order::NewOrder;
+use crate::work_orders::order::Order;
 use crate::work_orders::order_update::Change;
+use crate::work_orders::state::State;
 use crate::work_orders::{shown, store};
 use axum::extract::State as Shared;
 use axum::http::StatusCode;
@@ -86,15 +89,15 @@ async fn open<'a>(
     let now = app.clock.now().into();
     request.concerns_vessel(vessel, Some(id));
     store::insert(&mut tx, id, &new, &author, now).await?;
-    let whole = store::lock(&mut tx, vessel, id).await?;
-    let mut change = Change::new(app, tx, whole, author, now, Uuid::now_v7());
+    let stored = store::lock(&mut tx, vessel, id).await?;
+    let mut change = Change::new(app, tx, stored, author, now, Uuid::now_v7());
     let opened = Opened {
         order: new,
         vessel_name,
         compass_name,
     };
     change.append(OrderEvent::Opened(Box::new(opened))).await?;
-    let at = change.whole.summary.planned_at;
+    let at = change.stored.summary.planned_at;
     port_call_check::require_vessel_in_port(&mut change, at, "port").await?;
     if let Some(offer) = offer {
         let offered = offer.checked(&mut change.tx, operator).await?;
@@ -136,8 +139,8 @@ pub async fn give_way(
     id: OrderId,
 ) -> Result<(Tx, Vec<Event>)> {
     let author = author(&mut tx, writer).await?;
-    let whole = store::lock(&mut tx, vessel, id).await?;
-    let state = whole.summary.state;
+    let stored = store::lock(&mut tx, vessel, id).await?;
+    let state = stored.summary.state;
     if !state.is_under_way() {
         return Ok((tx, Vec::new()));
     }
@@ -148,9 +151,11 @@ pub async fn give_way(
         )));
     }
     let now = app.clock.now().into();
-    let mut change = Change::new(app, tx, whole, author, now, Uuid::now_v7());
+    let mut change = Change::new(app, tx, stored, author, now, Uuid::now_v7());
     let text = "declined by every firm, and offered anew as the schedule has it".to_owned();
-    change.append(OrderEvent::Cancelled(Said { text })).await?;
+    change
+        .append(OrderEvent::Cancelled(Cancelled { text }))
+        .await?;
     change.finish().await
 }
 

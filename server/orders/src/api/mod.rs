@@ -8,10 +8,12 @@ pub use create::{give_way, write};
 use crate::berth_session::{berth_api, firm_vessel_view, second_reading_api};
 use crate::completion::completion_api;
 use crate::dispatch::{messages, offer_api, reschedule};
-use crate::work_orders::log_entry::Entry;
-use crate::work_orders::order::{Filter, Order, OrderList};
+use crate::work_orders::log::entry::Entry;
+use crate::work_orders::log::firm_view;
+use crate::work_orders::order::Order;
 use crate::work_orders::schema::{LineList, LineSchema};
-use crate::work_orders::{firm_view, queries, shown, store};
+use crate::work_orders::summary::{Filter, OrderList};
+use crate::work_orders::{shown, store};
 use axum::extract::{FromRef, RawPathParams, Request, State as Shared};
 use axum::middleware::{Next, from_fn};
 use axum::response::Response;
@@ -67,7 +69,7 @@ async fn log_order(
 ) -> Response {
     let mut ids = path.iter().map(|(_, value)| Uuid::parse_str(value));
     if let Some(order) = ids.find_map(std::result::Result::ok) {
-        context.concerns_order(OrderId(order), queries::vessel_of);
+        context.concerns_order(OrderId(order), store::vessel_of);
     }
     context.log_reads_of_firms();
     next.run(request).await

@@ -1,23 +1,23 @@
 //! What is done at the berth: the reading, the plan, its steps.
 
-use crate::berth_session::berth_reading::{RecordedReading, check, check_reading_ranges};
+use crate::berth_session::berth_reading::{check, check_reading_ranges};
 use crate::berth_session::plan::{
-    ChosenPlan, PlanChoice, offer, refuse_magnetic_cargo, require_current_reading, run_planner,
+    PlanChoice, offer, refuse_magnetic_cargo, require_current_reading, run_planner,
 };
-use crate::berth_session::planning_inputs::Basis;
 use crate::berth_session::position_check;
 use crate::berth_session::second_reading::explains_second_reading;
-use crate::berth_session::steps::{
-    CorrectorMove, CorrectorReport, StepReading, judge, revise_strength,
-};
-use crate::work_orders::log_entry::OrderEvent;
-use crate::work_orders::order::{Order, State};
-use crate::work_orders::order_update;
+use crate::berth_session::steps::{CorrectorReport, StepReading, judge, revise_strength};
+use crate::work_orders::events::{CorrectorMove, OrderEvent};
+use crate::work_orders::order::Order;
+use crate::work_orders::payload::basis::Basis;
+use crate::work_orders::payload::chosen_plan::ChosenPlan;
+use crate::work_orders::payload::recorded_reading::RecordedReading;
 use crate::work_orders::refusal::not_adjustable;
 use crate::work_orders::request_schema::BerthReadingSchema;
 use crate::work_orders::schema::OfferSchema;
-use crate::work_orders::shown;
-use crate::work_orders::store::{self, StoredOrder};
+use crate::work_orders::state::State;
+use crate::work_orders::store::StoredOrder;
+use crate::work_orders::{order_update, shown, store};
 use axum::extract::{FromRef, State as Shared};
 use binnacle_adjustment::adjust::{Outcome, ReadingForm};
 use binnacle_compass::angle::wrap_180;
@@ -87,18 +87,18 @@ async fn read_berth(
     Valid(given): Valid<ReadingForm>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "berth reading", &given)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if let Some(entry) = done {
-        repeat_refusal(&whole, entry)?;
+        repeat_refusal(&stored, entry)?;
         return shown(&app, writer.tenant, id).await;
     }
-    refuse_moved_correctors(&whole)?;
+    refuse_moved_correctors(&stored)?;
     check_reading_ranges(&given, app.clock.now().into())?;
     position_check::check_reading_age(&given, app.clock.now().into())?;
-    let (vessel, compass) = (whole.summary.vessel_id, whole.summary.compass_id);
+    let (vessel, compass) = (stored.summary.vessel_id, stored.summary.compass_id);
     let basis = Basis::load(&app, vessel, compass, &given).await?;
     let doubt =
-        position_check::check_position(&app, (vessel, compass), &whole.summary.port, &given)
+        position_check::check_position(&app, (vessel, compass), &stored.summary.port, &given)
             .await?;
     let (checked, refusal) = match (check(&given, &basis)?, doubt) {
         (Ok(checked), None) => (Some(checked), None),
@@ -111,7 +111,7 @@ async fn read_berth(
         checked,
         refusal: refusal.clone(),
     };
-    if let Some(mut change) = update.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&stored).await? {
         if refusal.is_none() {
             let (at, heading_deg) = (Time(read.given.at), read.given.heading_true_deg);
             let read = BerthHeadingRead {
@@ -133,8 +133,8 @@ async fn read_berth(
 }
 
 /// A reading that was sent again is refused again.
-fn repeat_refusal(whole: &StoredOrder, entry: Uuid) -> Result<()> {
-    let mut found = whole.log.iter().filter(|known| known.id == entry);
+fn repeat_refusal(stored: &StoredOrder, entry: Uuid) -> Result<()> {
+    let mut found = stored.log.iter().filter(|known| known.id == entry);
     let refusal = found.find_map(|known| match &known.content {
         OrderEvent::BerthReading(read) => read.refusal.clone(),
         _ => None,
@@ -143,12 +143,12 @@ fn repeat_refusal(whole: &StoredOrder, entry: Uuid) -> Result<()> {
 }
 
 /// The model knows the correctors as they stood: what was moved since spoils a reading.
-fn refuse_moved_correctors(whole: &StoredOrder) -> Result<()> {
-    whole.require_state(
+fn refuse_moved_correctors(stored: &StoredOrder) -> Result<()> {
+    stored.require_state(
         &AT_BERTH,
         "the berth is read between going on board and completion",
     )?;
-    if whole.standing().was_moved() {
+    if stored.state().has_moved_correctors() {
         return Err(Error::WrongState(
             "correctors were moved since the reading, and the model does not know them so: what \
              the magnetometer reads after the steps is a second reading. To begin again, put \
@@ -174,11 +174,11 @@ async fn find_plan(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Json<Outcome>> {
-    let whole = store::whole(&app.db, reader.tenant, id).await?;
-    whole.require_state(&AT_BERTH, "there is nothing to plan")?;
-    let plan_request = whole.standing().plan_request()?;
-    require_current_reading(&app, &whole.summary, &plan_request).await?;
-    Ok(Json(offer(&app, &whole.summary, plan_request).await?))
+    let stored = store::find(&app.db, reader.tenant, id).await?;
+    stored.require_state(&AT_BERTH, "there is nothing to plan")?;
+    let plan_request = stored.state().plan_request()?;
+    require_current_reading(&app, &stored.summary, &plan_request).await?;
+    Ok(Json(offer(&app, &stored.summary, plan_request).await?))
 }
 
 /// Choose a plan
@@ -197,21 +197,21 @@ async fn choose_plan(
     ValidOrNone(choice): ValidOrNone<PlanChoice>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "plan", &choice)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
-    whole.require_state(&AT_BERTH, "there is nothing to plan")?;
-    let plan_request = whole.standing().plan_request()?;
-    require_current_reading(&app, &whole.summary, &plan_request).await?;
-    let outcome = offer(&app, &whole.summary, plan_request).await?;
+    stored.require_state(&AT_BERTH, "there is nothing to plan")?;
+    let plan_request = stored.state().plan_request()?;
+    require_current_reading(&app, &stored.summary, &plan_request).await?;
+    let outcome = offer(&app, &stored.summary, plan_request).await?;
     let offered = outcome.plans.len();
     let planned = ChosenPlan::of(outcome, choice.plan.unwrap_or(1));
     let planned = planned.ok_or_else(|| Error::Invalid {
         field: "plan",
         detail: format!("there are plans 1 to {offered}"),
     })?;
-    if let Some(mut change) = update.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&stored).await? {
         change.append(OrderEvent::Plan(Box::new(planned))).await?;
         change.commit().await?;
     }
@@ -244,19 +244,19 @@ async fn read_step(
         &format!("step {number}"),
         &read,
     )?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
-    let standing = whole.standing();
+    let state = stored.state();
     let wrong = |detail: String| Error::WrongState(detail);
-    let next = standing.next_step().cloned();
+    let next = state.next_step().cloned();
     let step = next.ok_or_else(|| wrong("there is no step to do now".to_owned()))?;
     if step.number != number {
         return Err(wrong(format!("the step to do now is {}", step.number)));
     }
     let after_deg = degrees("after_deg", read.after_deg, 0.0, 360.0)?;
-    let before_deg = read.before_deg.or(standing.compass_deg);
+    let before_deg = read.before_deg.or(state.compass_deg);
     let before_deg = before_deg.ok_or_else(|| Error::Invalid {
         field: "before_deg",
         detail: "give what the compass read before the step: neither the berth's reading nor a \
@@ -264,14 +264,14 @@ async fn read_step(
             .to_owned(),
     })?;
     degrees("before_deg", before_deg, 0.0, 360.0)?;
-    require_still_compass(before_deg, standing.compass_deg)?;
-    let plan_request = standing.plan_request()?;
-    refuse_magnetic_cargo(&app, &whole.summary, &plan_request).await?;
+    require_still_compass(before_deg, state.compass_deg)?;
+    let plan_request = state.plan_request()?;
+    refuse_magnetic_cargo(&app, &stored.summary, &plan_request).await?;
     let judged = run_planner(&app, move || {
         judge(&plan_request, step, before_deg, after_deg)
     })
     .await?;
-    if let Some(mut change) = update.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&stored).await? {
         change.append(OrderEvent::Step(Box::new(judged))).await?;
         change.commit().await?;
     }
@@ -318,16 +318,16 @@ async fn set_correctors(
     Valid(stand): Valid<CorrectorReport>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "corrector settings", &stand)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
     let what = "correctors are set between the reading and the completion";
-    whole.require_state(&[State::Measured, State::Adjusting], what)?;
-    let mut moved = moved(&whole, stand, app.clock.now().into())?;
-    moved.learnt_anew = revise_strength(&app, &whole.standing(), &moved).await?;
-    moved.explains_reading = explains_second_reading(&app, &whole.standing(), &moved).await?;
-    if let Some(mut change) = update.begin(&whole).await? {
+    stored.require_state(&[State::Measured, State::Adjusting], what)?;
+    let mut moved = moved(&stored, stand, app.clock.now().into())?;
+    moved.learnt_anew = revise_strength(&app, &stored.state(), &moved).await?;
+    moved.explains_reading = explains_second_reading(&app, &stored.state(), &moved).await?;
+    if let Some(mut change) = update.begin(&stored).await? {
         let content = OrderEvent::CorrectorSettings(Box::new(moved));
         change.append(content).await?;
         change.commit().await?;
@@ -336,19 +336,19 @@ async fn set_correctors(
 }
 
 fn moved(
-    whole: &StoredOrder,
+    stored: &StoredOrder,
     stand: CorrectorReport,
     now: binnacle_platform::time::Time,
 ) -> Result<CorrectorMove> {
-    let standing = whole.standing();
+    let state = stored.state();
     let wrong = || Error::WrongState("the berth has not been read yet".to_owned());
-    let binnacle = standing.binnacle.as_ref().ok_or_else(wrong)?;
+    let binnacle = state.binnacle.as_ref().ok_or_else(wrong)?;
     binnacle
         .with_setting(stand.setting.clone())
         .map_err(binnacle_fleet::binnacles::invalid_binnacle)?;
     let compass_deg = stand.compass_deg;
     Ok(CorrectorMove {
-        before: standing.setting().ok_or_else(wrong)?.clone(),
+        before: state.setting().ok_or_else(wrong)?.clone(),
         after: stand.setting,
         compass_deg: compass_deg
             .map(|deg| degrees("compass_deg", deg, 0.0, 360.0))

@@ -4,48 +4,13 @@
 //! taken keeps with it everything that a plan from it depends on, so that the same plan
 //! can be made again from the log alone. Its words are those of `plan` (docs/plan.md).
 
-use crate::berth_session::planning_inputs::Basis;
+use crate::work_orders::payload::basis::Basis;
+use crate::work_orders::payload::recorded_reading::BerthCheck;
 use crate::work_orders::refusal::Refusal;
 use binnacle_adjustment::adjust::ReadingForm;
 use binnacle_adjustment::berth::{BerthEstimate, BerthReading};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::time::Time;
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
-
-/// A reading as the log has it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct RecordedReading {
-    /// What was read.
-    pub given: ReadingForm,
-    /// What it was held against; none when that could not be found.
-    pub basis: Option<Basis>,
-    /// What it told; none when it was refused.
-    pub checked: Option<BerthCheck>,
-    /// Why it was refused; none when it was taken.
-    pub refusal: Option<Refusal>,
-}
-
-/// What a reading told.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[schema(as = BerthCheck)]
-pub struct BerthCheck {
-    /// λ, the mean share of the earth's horizontal field that reaches the compass; every
-    /// heading tells it equally well.
-    pub lambda: f64,
-    /// Its standard error.
-    #[schema(required)]
-    pub lambda_sd: Option<f64>,
-    /// Between the field read and the field expected, degrees.
-    pub consistency_deg: f64,
-    /// The standard error of that, degrees.
-    #[schema(required)]
-    pub consistency_sd_deg: Option<f64>,
-    /// What to make of it: `consistent`, or `loose` where wide errors explain it.
-    pub verdict: String,
-    /// Magnetic heading at the berth, degrees.
-    pub magnetic_deg: f64,
-}
 
 /// A clock on board may be so much before the server's, seconds.
 const MAX_CLOCK_LEAD_S: f64 = 300.0;

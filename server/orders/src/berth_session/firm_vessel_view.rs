@@ -3,8 +3,8 @@
 //! What always holds: a firm reads model and binnacle only of the order's compass, only
 //! from the offer until the adjustment is completed, and each time is in the audit log.
 
-use crate::work_orders::order::Summary;
 use crate::work_orders::store;
+use crate::work_orders::summary::Summary;
 use axum::extract::{FromRef, State as Shared};
 use binnacle_fleet::binnacles::{self, BinnacleRevision};
 use binnacle_fleet::models::{self, ModelVersion};

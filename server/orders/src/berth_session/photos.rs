@@ -4,12 +4,13 @@
 //! called, and it has that kind's header with a size that a picture can have; it is given
 //! out as that kind and never as a page.
 
-use crate::work_orders::log_entry::sha256_hex;
+use crate::work_orders::log::canonical_json::sha256_hex;
+use crate::work_orders::payload::photograph::Photo;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::http::optional_text;
 use binnacle_platform::ids::PhotoId;
-use serde::{Deserialize, Serialize};
-use utoipa::{IntoParams, ToSchema};
+use serde::Deserialize;
+use utoipa::IntoParams;
 
 /// A photograph is not larger.
 pub const MAX_BYTES: usize = 10 * 1024 * 1024;
@@ -17,23 +18,6 @@ pub const MAX_BYTES: usize = 10 * 1024 * 1024;
 const SIDE: std::ops::RangeInclusive<u32> = 16..=32_768;
 /// So many belong to an order at most.
 pub const MOST: usize = 40;
-
-/// A photograph as the log has it.
-#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
-#[schema(as = OrderPhoto)]
-pub struct Photo {
-    /// Its id.
-    pub photo: PhotoId,
-    /// SHA-256, hexadecimal.
-    pub sha256: String,
-    /// `image/jpeg`, `image/png` or `image/webp`.
-    pub media_type: String,
-    /// How large it is.
-    pub bytes: usize,
-    /// What it shows.
-    #[schema(required)]
-    pub caption: Option<String>,
-}
 
 /// What a photograph shows.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -49,7 +33,7 @@ impl Photo {
     ///
     /// # Errors
     /// When it is too large, or of no kind that is taken.
-    pub fn new(id: PhotoId, bytes: &[u8], caption: &Caption) -> Result<Photo> {
+    pub(crate) fn new(id: PhotoId, bytes: &[u8], caption: &Caption) -> Result<Photo> {
         if bytes.len() > MAX_BYTES {
             return Err(Error::TooLarge(MAX_BYTES));
         }
@@ -69,12 +53,6 @@ impl Photo {
             bytes: bytes.len(),
             caption: optional_text("caption", caption.caption.as_deref())?,
         })
-    }
-
-    /// Its name in the archive, after the number of its entry.
-    pub fn file(&self, seq: i64) -> String {
-        let ending = self.media_type.rsplit('/').next().unwrap_or("bin");
-        format!("photos/{seq:04}.{ending}")
     }
 }
 

@@ -1,12 +1,11 @@
 //! The plan: what the planner offers, and what was chosen of it.
 
 use crate::berth_session::planning_inputs::PlanRequest;
-use crate::work_orders::order::Summary;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::refusal::{Cure, Refusal, not_adjustable};
+use crate::work_orders::summary::Summary;
 use binnacle_adjustment::adjust::{
-    AdjustError, Optimality, Outcome, Plan, UpdatedPrediction, check_total_turn, plan,
-    predict_by_compass,
+    AdjustError, Outcome, UpdatedPrediction, check_total_turn, plan, predict_by_compass,
 };
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_fleet::alerts::{self, Effect};
@@ -18,32 +17,6 @@ use binnacle_platform::error::{Error, Result};
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
-
-/// A plan that was chosen.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct ChosenPlan {
-    /// Which of those that were offered, from 1.
-    pub chosen: usize,
-    /// All that were offered, in short.
-    pub offered: Vec<PlanSummary>,
-    /// What the adjuster should know of it.
-    pub notes: Vec<String>,
-    /// How well the search knows that nothing is better.
-    pub optimality: Option<Optimality>,
-    /// The plan.
-    pub plan: Plan,
-}
-
-/// A plan in short.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct PlanSummary {
-    /// Movements of hand that it takes.
-    pub moves: u32,
-    /// Worst foretold residual, weighted over the waters, degrees.
-    pub worst_residual_deg: f64,
-    /// The widest 95 % band, degrees.
-    pub widest_band_deg: f64,
-}
 
 /// Which plan.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ToSchema)]
@@ -62,7 +35,7 @@ impl OrderState {
     /// [`Error::WrongState`] before there is a reading.
     pub(crate) fn plan_request(&self) -> Result<PlanRequest> {
         let wrong = || Error::WrongState("there is no reading to plan from yet".to_owned());
-        let read = self.read.as_ref().ok_or_else(wrong)?;
+        let read = self.reading.as_ref().ok_or_else(wrong)?;
         let basis = read.basis.clone().ok_or_else(wrong)?;
         let reading = read
             .given
@@ -164,11 +137,11 @@ pub(crate) async fn refuse_magnetic_cargo(
 ///
 /// # Errors
 /// `not-adjustable` with what would cure it.
-pub(crate) fn require_within_limits(standing: &OrderState) -> Result<()> {
-    let basis = standing.read.as_ref().and_then(|read| read.basis.as_ref());
-    let followed = standing.plan.as_ref().zip(basis);
-    let beyond = followed
-        .and_then(|(plan, basis)| plan.plan.limit_violation(&standing.limits, &basis.waters));
+pub(crate) fn require_within_limits(state: &OrderState) -> Result<()> {
+    let basis = state.reading.as_ref().and_then(|read| read.basis.as_ref());
+    let followed = state.plan.as_ref().zip(basis);
+    let beyond =
+        followed.and_then(|(plan, basis)| plan.plan.limit_violation(&state.limits, &basis.waters));
     match beyond {
         Some(refused) => Err(not_adjustable(vec![Refusal::from(&refused)])),
         None => Ok(()),
@@ -183,15 +156,15 @@ pub(crate) fn require_within_limits(standing: &OrderState) -> Result<()> {
 /// [`Error::WrongState`].
 pub(crate) async fn require_total_turn(
     app: &App,
-    standing: &OrderState,
+    state: &OrderState,
     plan_request: PlanRequest,
 ) -> Result<()> {
-    let looked = standing.looked_at == standing.steps.len();
+    let looked = state.inspected_steps == state.steps.len();
     let read = (plan_request.given.compass_deg, plan_request.compass_deg);
     let (Some(first_deg), Some(now_deg)) = read else {
         return Ok(());
     };
-    if standing.learnt().is_some() || looked {
+    if state.confirmed_prediction().is_some() || looked {
         return Ok(());
     }
     let in_all = run_planner(app, move || {
@@ -213,13 +186,13 @@ pub(crate) async fn require_total_turn(
 ///
 /// # Errors
 /// `not-adjustable` where what is left open is beyond the order's limits.
-pub(crate) async fn foretold(app: &App, standing: &OrderState) -> Result<UpdatedPrediction> {
-    if let Some(learnt) = standing.learnt() {
+pub(crate) async fn foretold(app: &App, state: &OrderState) -> Result<UpdatedPrediction> {
+    if let Some(learnt) = state.confirmed_prediction() {
         return Ok(learnt.clone());
     }
-    let plan_request = standing.plan_request()?;
-    let (limits, waters) = (standing.limits, plan_request.basis.waters.clone());
-    let steps = standing.steps.clone();
+    let plan_request = state.plan_request()?;
+    let (limits, waters) = (state.limits, plan_request.basis.waters.clone());
+    let steps = state.steps.clone();
     let learnt = run_planner(app, move || {
         predict_by_compass(&plan_request.adjustment(), &steps)
     })
@@ -290,22 +263,4 @@ pub(crate) async fn run_planner<T: Send + 'static>(
 /// Why an outcome has no plans.
 pub(crate) fn refusals(outcome: &Outcome) -> Vec<Refusal> {
     outcome.refusals.iter().map(Refusal::from).collect()
-}
-
-impl ChosenPlan {
-    /// What was chosen of an outcome, from 1; none when there are not so many.
-    pub fn of(outcome: Outcome, chosen: usize) -> Option<ChosenPlan> {
-        let in_short = |plan: &Plan| PlanSummary {
-            moves: plan.moves,
-            worst_residual_deg: plan.worst_residual_deg,
-            widest_band_deg: plan.widest_band_deg,
-        };
-        Some(ChosenPlan {
-            chosen,
-            offered: outcome.plans.iter().map(in_short).collect(),
-            notes: outcome.notes,
-            optimality: outcome.optimality,
-            plan: outcome.plans.into_iter().nth(chosen.checked_sub(1)?)?,
-        })
-    }
 }

@@ -1,16 +1,15 @@
 //! What a reading is held against and a plan rests on: model, field, binnacle and
 //! waters, as they were when the magnetometer was read.
 
-use crate::berth_session::previous_lambda::{self, PreviousBerth};
-use crate::work_orders::order::State;
+use crate::berth_session::previous_lambda;
+use crate::work_orders::payload::basis::{Basis, ModelUsed};
+use crate::work_orders::state::State;
 use crate::work_orders::store;
 use binnacle_adjustment::adjust::{Adjustment, Circumstances, Limits, ReadingForm, Water};
 use binnacle_adjustment::berth::BerthReading;
 use binnacle_adjustment::binnacle::{Binnacle, Setting};
-use binnacle_compass::angle::Variation;
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::logbook::LogbookKind;
-use binnacle_compass::model::Model;
 use binnacle_compass::position::Position;
 use binnacle_compass::result::SampleDiagnostic;
 use binnacle_compass::ship::EarthField;
@@ -21,61 +20,11 @@ use binnacle_fleet::models::{self, StoredModel};
 use binnacle_platform::app::App;
 use binnacle_platform::db::row;
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::ids::{CompassId, ModelId, VesselId};
+use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
-
-/// What a plan rests on.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Basis {
-    /// The ship's model.
-    pub model: ModelUsed,
-    /// The earth's field at the berth: variation, degrees, east positive.
-    pub variation_deg: f64,
-    /// Its horizontal part, nT.
-    pub h_nt: f64,
-    /// Its vertical part, nT, down positive.
-    pub z_nt: f64,
-    /// Which model of the earth's field says so.
-    pub field_model: String,
-    /// The binnacle's revision.
-    pub binnacle_revision: i64,
-    /// The binnacle, with its correctors as they stood.
-    pub binnacle: Binnacle,
-    /// Where the vessel trades, from her own track.
-    pub waters: Vec<Water>,
-    /// Whether magnetic cargo is on board, by the logbook or the reading.
-    pub cargo_on_board: bool,
-    /// What the compass's last adjustment told of λ.
-    #[serde(default)]
-    pub earlier: Option<PreviousBerth>,
-    /// Whether the model has learnt from a reading at this berth.
-    #[serde(default)]
-    pub is_updated_here: bool,
-}
-
-/// The model that a plan rests on.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct ModelUsed {
-    /// Its id.
-    pub id: ModelId,
-    /// Counts the compass's models from 1.
-    pub version: i64,
-    /// SHA-256 of everything that it was made from.
-    pub input_hash: String,
-    /// The estimator that made it.
-    pub estimator: String,
-    /// The time of its last sample.
-    pub data_until: Time,
-    /// The time of the last heading behind it, where an adjustment foretold it and no
-    /// heading at sea has confirmed that.
-    #[serde(default)]
-    pub headings_until: Option<Time>,
-    /// The model with its covariance.
-    pub model: Model,
-}
 
 /// A plan's argument with all that it borrows.
 pub(crate) struct PlanRequest {
@@ -97,7 +46,7 @@ pub(crate) struct PlanRequest {
 
 impl Basis {
     /// What there is to hold a reading against.
-    pub async fn load(
+    pub(crate) async fn load(
         app: &App,
         vessel: VesselId,
         compass: CompassId,
@@ -139,19 +88,6 @@ impl Basis {
                 ..ModelUsed::from(model)
             },
         })
-    }
-
-    /// The earth's field at the berth.
-    pub fn earth(&self) -> EarthField {
-        EarthField {
-            h_nt: self.h_nt,
-            z_nt: self.z_nt,
-        }
-    }
-
-    /// Variation at the berth.
-    pub fn variation(&self) -> Result<Variation> {
-        Ok(Variation::try_from(self.variation_deg).map_err(anyhow::Error::from)?)
     }
 }
 

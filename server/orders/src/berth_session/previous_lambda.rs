@@ -4,10 +4,11 @@
 //! What always holds: it is calculated anew from the record that was signed; and where the
 //! logbook has work on the hull or at the compass since, it is nothing to go by.
 
+use crate::work_orders::payload::basis::PreviousBerth;
 use binnacle_adjustment::adjust::{
     Adjustment, Circumstances, EarlierLambda, Limits, ReadingForm, Water,
 };
-use binnacle_adjustment::binnacle::{Binnacle, Setting};
+use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_compass::angle::Variation;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::model::Model;
@@ -17,23 +18,7 @@ use binnacle_platform::app::App;
 use binnacle_platform::db::row;
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, VesselId};
-use serde::{Deserialize, Serialize};
-
-/// λ at an earlier berth.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct PreviousBerth {
-    /// As it was told.
-    pub lambda: EarlierLambda,
-    /// How the correctors stood then.
-    pub stood: Setting,
-}
-
-impl PreviousBerth {
-    /// With the correctors as this binnacle has them.
-    pub fn set_as(&self, binnacle: &Binnacle) -> Option<EarlierLambda> {
-        self.lambda.adapted_to(binnacle, &self.stood)
-    }
-}
+use serde::Deserialize;
 
 /// What of a record λ follows from.
 #[derive(Deserialize)]

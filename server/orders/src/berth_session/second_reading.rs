@@ -3,14 +3,16 @@
 //! What always holds: it is judged against the correctors as they are said to stand, by
 //! the first reading and the model that was held against that.
 
-use crate::berth_session::berth_reading::{RecordedReading, check};
+use crate::berth_session::berth_reading::check;
 use crate::berth_session::plan::run_planner;
-use crate::berth_session::planning_inputs::{Basis, PlanRequest};
-use crate::berth_session::second_reading_api::{
-    RecordedSecondReading, SecondReadingResult, SecondReadingVerdict,
-};
-use crate::berth_session::steps::CorrectorMove;
+use crate::berth_session::planning_inputs::PlanRequest;
+use crate::work_orders::events::CorrectorMove;
 use crate::work_orders::order_state::OrderState;
+use crate::work_orders::payload::basis::Basis;
+use crate::work_orders::payload::recorded_reading::RecordedReading;
+use crate::work_orders::payload::recorded_second_reading::{
+    PARTS_WITH_VERTICAL, RecordedSecondReading, SecondReadingResult, SecondReadingVerdict,
+};
 use crate::work_orders::refusal::Refusal;
 use binnacle_adjustment::adjust::{
     AdjustError, CardCheck, CompletedStep, Corrector, PostCheck, ReadingForm, SecondReadingForm,
@@ -20,9 +22,6 @@ use binnacle_adjustment::berth::BerthReading;
 use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
-
-/// Parts of a reading that has the vertical one.
-pub(crate) const PARTS_WITH_VERTICAL: usize = 3;
 
 const FITS_UNPLANNED: &str =
     "the correctors do what they should where they are said to stand: plan anew from this reading";
@@ -110,10 +109,10 @@ impl SecondReading {
             Verdict::AsPlanned { updated: learnt } => {
                 said.verdict = SecondReadingVerdict::Replan;
                 FITS_UNPLANNED.clone_into(&mut said.words);
-                let standing = plan_request.adjustment().standing().clone();
+                let setting = plan_request.adjustment().standing().clone();
                 anew = Some(from_here(
                     &learnt,
-                    plan_request.binnacle.with_setting(standing)?,
+                    plan_request.binnacle.with_setting(setting)?,
                 ));
                 foretold = Some(*learnt);
             }
@@ -167,20 +166,20 @@ impl SecondReading {
 /// Whether the reading that did not fit fits the correctors as they are said to stand now.
 pub(crate) async fn explains_second_reading(
     app: &App,
-    standing: &OrderState,
+    state: &OrderState,
     moved: &CorrectorMove,
 ) -> Result<bool> {
-    let Some(disproof) = standing.disproof() else {
+    let Some(contradiction) = state.contradicting_reading() else {
         return Ok(false);
     };
-    let mut before = standing.clone();
+    let mut before = state.clone();
     before.restore_first_reading();
     let mut plan_request = before.plan_request()?;
     plan_request.moved_to = Some(moved.after.clone());
     if let Some(anew) = &moved.learnt_anew {
         plan_request.binnacle = anew.binnacle.clone();
     }
-    let second = SecondReading::new(disproof.given.clone(), &plan_request)?;
+    let second = SecondReading::new(contradiction.given.clone(), &plan_request)?;
     let again = run_planner(app, move || second.read(&plan_request, &[])).await?;
     Ok(matches!(
         again.verdict,

@@ -6,21 +6,18 @@
 //! until the field was read as foretold, a plan was made from this very reading, or someone
 //! has found the correctors to stand otherwise.
 
-use crate::berth_session::berth_reading::{RecordedReading, check_reading_ranges};
+use crate::berth_session::berth_reading::check_reading_ranges;
 use crate::berth_session::plan::{require_current_reading, run_planner};
-use crate::berth_session::second_reading::{PARTS_WITH_VERTICAL, SecondReading, as_first_reading};
-use crate::completion::complete;
-use crate::work_orders::log_entry::OrderEvent;
-use crate::work_orders::order::{Order, State};
+use crate::berth_session::second_reading::{SecondReading, as_first_reading};
+use crate::berth_session::steps::require_after_last_step;
+use crate::work_orders::events::OrderEvent;
+use crate::work_orders::order::Order;
 use crate::work_orders::order_state::OrderState;
-use crate::work_orders::order_update;
-use crate::work_orders::refusal::Refusal;
-use crate::work_orders::shown;
+use crate::work_orders::payload::recorded_second_reading::PARTS_WITH_VERTICAL;
+use crate::work_orders::state::State;
+use crate::work_orders::{order_update, shown};
 use axum::extract::{FromRef, State as Shared};
-use binnacle_adjustment::adjust::{
-    FieldComponent, ReadingForm, SecondReadingForm, UpdatedPrediction,
-};
-use binnacle_adjustment::binnacle::Setting;
+use binnacle_adjustment::adjust::{ReadingForm, SecondReadingForm};
 use binnacle_platform::access::PartyWriter;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -28,97 +25,9 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Valid};
 use binnacle_platform::idempotency::Key;
 use binnacle_platform::ids::OrderId;
-use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
-
-/// A second reading as the log has it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct RecordedSecondReading {
-    /// What was read.
-    pub given: SecondReadingForm,
-    /// What it told.
-    #[serde(flatten)]
-    pub said: SecondReadingResult,
-    /// What is foretold now, where it told that.
-    pub learnt: Option<UpdatedPrediction>,
-    /// The reading to plan from anew, where what is left is beyond the limits.
-    pub anew: Option<Box<RecordedReading>>,
-}
-
-impl RecordedSecondReading {
-    /// Whether it does not confirm how the correctors stand.
-    pub(crate) fn is_disproof(&self) -> bool {
-        self.said.verdict != SecondReadingVerdict::AsPlanned
-    }
-}
-
-/// What a second reading told.
-#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
-#[schema(as = SecondReadingSaid)]
-pub struct SecondReadingResult {
-    /// In a word.
-    pub verdict: SecondReadingVerdict,
-    /// In words.
-    pub words: String,
-    /// Forward, to starboard and, where it was read both times, down.
-    #[schema(value_type = Vec<PartSchema>)]
-    pub parts: Vec<FieldComponent>,
-    /// The step that is suspected, of all that were done since the first reading, from 1.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub step: Option<u32>,
-    /// How the correctors would stand with that slip.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(value_type = Option<binnacle_fleet::binnacles::SettingSchema>)]
-    pub setting: Option<Setting>,
-    /// The worst residual foretold now, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub worst_residual_deg: Option<f64>,
-    /// The widest 95 % band now, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub widest_band_deg: Option<f64>,
-    /// What is beyond the limits.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schema(required = false)]
-    pub refusals: Vec<Refusal>,
-    /// Mistakes each of which alone would explain it.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schema(required = false)]
-    pub could_be: Vec<String>,
-}
-
-/// What a second reading came to, in a word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-#[schema(as = SecondReadingVerdict)]
-pub enum SecondReadingVerdict {
-    /// The correctors do what was planned.
-    AsPlanned,
-    /// They seem to, but what is left is beyond the limits, or no plan led here: read once
-    /// more, or plan anew from this reading.
-    Replan,
-    /// A step is suspected: look at it, and say how the correctors stand.
-    Slip,
-    /// Nothing explains it: read again.
-    Unexplained,
-}
-
-/// One part of the field, nT.
-#[derive(ToSchema)]
-#[schema(as = SecondReadingPart)]
-#[allow(
-    dead_code,
-    clippy::struct_field_names,
-    reason = "describes binnacle_adjustment::adjust::FieldComponent"
-)]
-struct PartSchema {
-    /// What was foretold.
-    expected_nt: f64,
-    read_nt: f64,
-    /// Of the difference.
-    standard_error_nt: f64,
-}
 
 /// What the magnetometer of the first reading read after the steps, in the same place.
 #[derive(ToSchema)]
@@ -175,30 +84,30 @@ async fn read_field_again(
     Valid(given): Valid<SecondReadingForm>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "second reading", &given)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
-    let mut standing = whole.standing();
-    standing.restore_first_reading();
-    require_steps_done(&standing)?;
-    let plan_request = standing.plan_request()?;
-    require_current_reading(&app, &whole.summary, &plan_request).await?;
+    let mut state = stored.state();
+    state.restore_first_reading();
+    require_steps_done(&state)?;
+    let plan_request = state.plan_request()?;
+    require_current_reading(&app, &stored.summary, &plan_request).await?;
     let second = SecondReading::new(given, &plan_request)?;
     let form = second.form.clone();
     check_reading_ranges(&form, app.clock.now().into())?;
-    complete::require_after_last_step(&whole, form.at.into())?;
-    require_vertical_part(&standing, &form)?;
+    require_after_last_step(&stored, form.at.into())?;
+    require_vertical_part(&state, &form)?;
     // Of a step that someone has looked at since, no slip is suspected any more.
-    let looked_at = standing.looked_at;
-    let steps = standing.steps[looked_at..].to_vec();
-    let planned = standing.plan.is_some();
+    let looked_at = state.inspected_steps;
+    let steps = state.steps[looked_at..].to_vec();
+    let planned = state.plan.is_some();
     let judge = move || second.judge(&plan_request, &steps, looked_at, planned);
     let (mut judged, basis) = run_planner(&app, judge).await?;
     judged.anew = basis
         .map(|basis| as_first_reading(basis, form))
         .transpose()?;
-    if let Some(mut change) = update.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&stored).await? {
         change
             .append(OrderEvent::SecondReading(Box::new(judged)))
             .await?;
@@ -207,13 +116,13 @@ async fn read_field_again(
     shown(&app, writer.tenant, id).await
 }
 
-fn require_steps_done(standing: &OrderState) -> Result<()> {
-    if let Some(step) = standing.next_step() {
+fn require_steps_done(state: &OrderState) -> Result<()> {
+    if let Some(step) = state.next_step() {
         let number = step.number;
         return Err(Error::WrongState(format!("step {number} is not done")));
     }
-    let is_moved = standing.state == State::Measured && standing.was_moved();
-    if standing.state == State::Adjusting || is_moved {
+    let is_moved = state.state == State::Measured && state.has_moved_correctors();
+    if state.state == State::Adjusting || is_moved {
         return Ok(());
     }
     Err(Error::WrongState(
@@ -222,9 +131,10 @@ fn require_steps_done(standing: &OrderState) -> Result<()> {
 }
 
 /// What a part of the field disproved is not confirmed without that part.
-fn require_vertical_part(standing: &OrderState, form: &ReadingForm) -> Result<()> {
-    let disproof = standing.disproof();
-    let was_whole = disproof.is_some_and(|again| again.said.parts.len() == PARTS_WITH_VERTICAL);
+fn require_vertical_part(state: &OrderState, form: &ReadingForm) -> Result<()> {
+    let contradiction = state.contradicting_reading();
+    let was_whole =
+        contradiction.is_some_and(|again| again.said.parts.len() == PARTS_WITH_VERTICAL);
     if form.down.is_some() || !was_whole {
         return Ok(());
     }

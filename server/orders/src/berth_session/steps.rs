@@ -1,15 +1,19 @@
 //! Steps at the binnacle: what the compass read after each, and what follows.
 
-use crate::berth_session::plan::{ChosenPlan, refusals, run_planner};
+use crate::berth_session::plan::{refusals, run_planner};
 use crate::berth_session::planning_inputs::PlanRequest;
+use crate::work_orders::events::{CorrectorMove, OrderEvent, RecordedStep, RevisedStrength};
 use crate::work_orders::order_state::{InferredStrength, OrderState};
+use crate::work_orders::payload::chosen_plan::ChosenPlan;
+use crate::work_orders::payload::step_result::{StepResult, StepVerdict};
 use crate::work_orders::refusal::Refusal;
+use crate::work_orders::store::StoredOrder;
 use binnacle_adjustment::adjust::{
     AdjustError, Outcome, Step, StepCheck, check_step, check_step_with_setting, check_total_turn,
 };
-use binnacle_adjustment::binnacle::{Binnacle, Setting};
+use binnacle_adjustment::binnacle::Setting;
 use binnacle_platform::app::App;
-use binnacle_platform::error::Result;
+use binnacle_platform::error::{Error, Result};
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -25,60 +29,6 @@ pub(crate) struct StepReading {
     /// What it reads now.
     #[schema(minimum = 0, maximum = 360)]
     pub after_deg: f64,
-}
-
-/// What became of a step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StepResult {
-    /// The step's number in its plan.
-    pub number: u32,
-    /// What the compass read before.
-    pub before_deg: f64,
-    /// What it read after.
-    pub after_deg: f64,
-    /// By how much it should have turned.
-    pub expected_change_deg: f64,
-    /// How far off that may be.
-    pub tolerance_deg: f64,
-    /// In a word.
-    pub verdict: StepVerdict,
-    /// In words.
-    pub words: String,
-}
-
-/// What became of a step, in a word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-#[schema(as = StepVerdict)]
-pub enum StepVerdict {
-    /// It did what was expected.
-    Confirmed,
-    /// On this heading the compass does not show it, and showed nothing.
-    NotSeen,
-    /// The magnets are in with the wrong end; there is a new plan.
-    WrongEnd,
-    /// The corrector is of another strength than was taken; there is a new plan.
-    OtherStrength,
-    /// Nothing explains it: read again.
-    Unexplained,
-}
-
-/// A step as the log has it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct RecordedStep {
-    /// What became of it.
-    #[serde(flatten)]
-    pub said: StepResult,
-    /// The step.
-    pub step: Step,
-    /// How the correctors stand now; none when that is not known to be otherwise.
-    pub setting: Option<Setting>,
-    /// The binnacle, where a corrector was found to be of another strength.
-    pub binnacle: Option<Binnacle>,
-    /// The plan from there.
-    pub replanned: Option<Box<ChosenPlan>>,
-    /// Why there is none from there.
-    pub refusals: Vec<Refusal>,
 }
 
 /// How the correctors stand, as someone found or set them.
@@ -99,41 +49,24 @@ pub(crate) struct CorrectorReport {
     pub note: Option<String>,
 }
 
-/// The same as the log has it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct CorrectorMove {
-    /// How they stood before.
-    pub before: Setting,
-    /// How they stand now.
-    pub after: Setting,
-    /// What the compass reads then, degrees.
-    pub compass_deg: Option<f64>,
-    /// Why.
-    pub note: Option<String>,
-    /// Whether a second reading that did not fit before fits them as they stand now.
-    #[serde(default)]
-    pub explains_reading: bool,
-    /// What is known instead of a strength that was learnt from how they did not stand.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub learnt_anew: Option<Box<RevisedStrength>>,
-    /// When.
-    pub at: Time,
-}
+/// What is done without a connection is sent so much later at most, seconds.
+const MAX_SEND_DELAY_S: f64 = 12.0 * 3600.0;
 
-/// What is known instead of a strength that was learnt before.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct RevisedStrength {
-    /// The step from which it was learnt, its corrector where it stands.
-    pub step: Step,
-    /// The binnacle as it is now believed to be.
-    pub binnacle: Binnacle,
-}
-
-impl StepResult {
-    /// Whether the next step may follow.
-    pub fn is_confirmed(&self) -> bool {
-        matches!(self.verdict, StepVerdict::Confirmed | StepVerdict::NotSeen)
+/// Refuses a moment long before correctors were moved for the last time.
+pub(crate) fn require_after_last_step(stored: &StoredOrder, at: Time) -> Result<()> {
+    let moved = stored.log.iter().rev().find(|entry| {
+        matches!(
+            entry.content,
+            OrderEvent::Step(_) | OrderEvent::CorrectorSettings(_)
+        )
+    });
+    if moved.is_some_and(|moved| moved.at.0.seconds_since(at.0) > MAX_SEND_DELAY_S) {
+        return Err(Error::Invalid {
+            field: "at",
+            detail: "lies long before the last step".to_owned(),
+        });
     }
+    Ok(())
 }
 
 /// Judges a step by the compass before and after it; takes a while where there has to
@@ -261,10 +194,10 @@ fn strength_text(share: f64, other_hole: Option<u16>) -> String {
 /// What is known instead of a strength that this word disputes.
 pub(crate) async fn revise_strength(
     app: &App,
-    standing: &OrderState,
+    state: &OrderState,
     moved: &CorrectorMove,
 ) -> Result<Option<Box<RevisedStrength>>> {
-    let Some((plan_request, strength)) = disputed(standing, moved)? else {
+    let Some((plan_request, strength)) = disputed(state, moved)? else {
         return Ok(None);
     };
     let (after, compass_deg) = (moved.after.clone(), moved.compass_deg);
@@ -278,17 +211,17 @@ pub(crate) async fn revise_strength(
 
 /// The strength that this word disputes, with what was known before it was learnt.
 fn disputed(
-    standing: &OrderState,
+    state: &OrderState,
     moved: &CorrectorMove,
 ) -> Result<Option<(Box<PlanRequest>, Box<InferredStrength>)>> {
-    let mut standing = standing.clone();
-    if standing.setting() != Some(&moved.after) {
-        standing.restore_first_reading();
+    let mut state = state.clone();
+    if state.setting() != Some(&moved.after) {
+        state.restore_first_reading();
     }
-    let Some(strength) = standing.disputed_by(moved).cloned() else {
+    let Some(strength) = moved.disputed_strength(&state).cloned() else {
         return Ok(None);
     };
-    let mut plan_request = standing.plan_request()?;
+    let mut plan_request = state.plan_request()?;
     plan_request.binnacle = strength.binnacle.clone();
     Ok(Some((Box::new(plan_request), Box::new(strength))))
 }

@@ -1,8 +1,8 @@
 //! Adjustments that were completed in a time, for reports.
 
-use crate::work_orders::offer_state::Offer;
-use crate::work_orders::order::State;
-use crate::work_orders::queries::whole;
+use crate::work_orders::offers::Offer;
+use crate::work_orders::state::State;
+use crate::work_orders::store;
 use binnacle_platform::db::{Db, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
@@ -76,11 +76,11 @@ pub async fn completed_orders(
     )?;
     let mut done = Vec::with_capacity(found.len());
     for (order,) in found {
-        let whole = whole(db, Tenant::Operator(operator), order).await?;
-        let standing = whole.standing();
-        let agreed_eur = standing.offers.holder().and_then(Offer::fee);
-        let verified = standing.verified.is_some_and(|said| said.has_passed());
-        let summary = whole.summary;
+        let stored = store::find(db, Tenant::Operator(operator), order).await?;
+        let state = stored.state();
+        let agreed_eur = state.offers.holder().and_then(Offer::fee);
+        let verified = state.verification.is_some_and(|said| said.has_passed());
+        let summary = stored.summary;
         let disproved = match summary.state {
             State::Failed => true,
             State::Closed => !verified,

@@ -1,19 +1,22 @@
 //! Photographs, completion, signatures, and the archive of evidence.
 
-use crate::berth_session::photos::{Caption, MAX_BYTES, MOST, Photo};
+use crate::berth_session::photos::{Caption, MAX_BYTES, MOST};
 use crate::berth_session::plan::{
     foretold, require_current_reading, require_total_turn, require_within_limits,
 };
-use crate::completion::complete::{self, RecordedSignature, SignOff, SubmittedSignature};
+use crate::completion::complete;
 use crate::completion::record::VesselAndCompass;
+use crate::completion::sign_off::SignOff;
 use crate::evidence::{Evidence, File, Line, archive, predicted_csv, record_pdf, record_svg};
 use crate::firms::keys;
-use crate::work_orders::firm_view;
-use crate::work_orders::log_entry::OrderEvent;
-use crate::work_orders::order::{Order, State};
-use crate::work_orders::order_update;
-use crate::work_orders::shown;
-use crate::work_orders::store::{self, StoredOrder};
+use crate::work_orders::events::OrderEvent;
+use crate::work_orders::log::firm_view;
+use crate::work_orders::order::Order;
+use crate::work_orders::payload::photograph::Photo;
+use crate::work_orders::payload::signed_record::{KnownKey, RecordedSignature, SubmittedSignature};
+use crate::work_orders::state::State;
+use crate::work_orders::store::StoredOrder;
+use crate::work_orders::{order_update, shown, store};
 use axum::body::{Body, Bytes};
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{DefaultBodyLimit, FromRef, State as Shared};
@@ -83,22 +86,22 @@ async fn add_photo(
     let bytes = body.map_err(|_| Error::TooLarge(MAX_BYTES))?;
     let taken = Photo::new(PhotoId::new(), &bytes, &caption)?;
     let update = order_update(&app, request, writer, id, key, "photo", &taken.sha256)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
-    whole.require_state(
+    stored.require_state(
         &WITH_PHOTOS,
         "nothing is added before a firm has it, or any more",
     )?;
-    if photos(&whole).count() >= MOST {
+    if photos(&stored).count() >= MOST {
         return Err(Error::WrongState(format!("there are {MOST} photographs")));
     }
-    if let Some(mut change) = update.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&stored).await? {
         let (sha256, kind) = (taken.sha256.as_str(), taken.media_type.as_str());
         store::insert_photo(
             &mut change.tx,
-            &whole.summary,
+            &stored.summary,
             taken.photo,
             kind,
             sha256,
@@ -111,8 +114,8 @@ async fn add_photo(
     shown(&app, writer.tenant, id).await
 }
 
-fn photos(whole: &StoredOrder) -> impl Iterator<Item = (i64, &Photo)> {
-    whole.log.iter().filter_map(|entry| match &entry.content {
+fn photos(stored: &StoredOrder) -> impl Iterator<Item = (i64, &Photo)> {
+    stored.log.iter().filter_map(|entry| match &entry.content {
         OrderEvent::Photo(photo) => Some((entry.seq, photo)),
         _ => None,
     })
@@ -159,29 +162,29 @@ async fn complete_work_order(
     Valid(word): Valid<SignOff>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "completion", &word)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
-    whole.require_state(&[State::Adjusting], "there is no plan that was followed")?;
-    let standing = whole.standing();
-    let plan_request = standing.plan_request()?;
-    require_current_reading(&app, &whole.summary, &plan_request).await?;
-    require_within_limits(&standing)?;
-    let (word, at) = word.checked(&whole, app.clock.now().into())?;
-    complete::require_planned_setting(&standing)?;
-    require_total_turn(&app, &standing, plan_request).await?;
-    let learnt = foretold(&app, &standing).await?;
-    let aboard = aboard(&app, &whole).await?;
-    if let Some(mut change) = update.begin(&whole).await? {
+    stored.require_state(&[State::Adjusting], "there is no plan that was followed")?;
+    let state = stored.state();
+    let plan_request = state.plan_request()?;
+    require_current_reading(&app, &stored.summary, &plan_request).await?;
+    require_within_limits(&state)?;
+    let (word, at) = word.checked(&stored, app.clock.now().into())?;
+    complete::require_planned_setting(&state)?;
+    require_total_turn(&app, &state, plan_request).await?;
+    let learnt = foretold(&app, &state).await?;
+    let aboard = aboard(&app, &stored).await?;
+    if let Some(mut change) = update.begin(&stored).await? {
         Box::pin(complete::complete(&mut change, &aboard, learnt, word, at)).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
 }
 
-async fn aboard(app: &App, whole: &StoredOrder) -> Result<VesselAndCompass> {
-    let summary = &whole.summary;
+async fn aboard(app: &App, stored: &StoredOrder) -> Result<VesselAndCompass> {
+    let summary = &stored.summary;
     let vessel = vessels::find_row(&app.db, summary.operator_id, summary.vessel_id).await?;
     let vessel = vessel.ok_or(Error::NotFound("vessel"))?;
     Ok(VesselAndCompass {
@@ -213,16 +216,22 @@ async fn sign_record(
     Valid(signed): Valid<SubmittedSignature>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "signature", &signed)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
-    let completed = whole.standing().completed;
+    let completed = stored.state().completion;
     let completed = completed.ok_or_else(no_record)?;
     signed.checked(&completed.record_sha256)?;
-    if let Some(mut change) = update.begin(&whole).await? {
-        let holder = change.whole.summary.firm_id;
+    if let Some(mut change) = update.begin(&stored).await? {
+        let holder = change.stored.summary.firm_id;
         let key = keys::find_active(&mut change.tx, holder, &signed.public_key).await?;
+        let key = key.map(|key| KnownKey {
+            id: key.id,
+            name: key.name,
+            firm_id: key.firm_id,
+            firm_name: key.firm_name,
+        });
         let signed = RecordedSignature { signed, key };
         change.append(OrderEvent::Signature(signed)).await?;
         change.commit().await?;
@@ -337,15 +346,15 @@ async fn find_evidence(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Response> {
-    let whole = store::whole(&app.db, reader.tenant, id).await?;
-    let vessel = whole.summary.vessel_id;
+    let stored = store::find(&app.db, reader.tenant, id).await?;
+    let vessel = stored.summary.vessel_id;
     let record = store::record(&app.db, vessel, id).await?;
     let record = record.ok_or_else(no_record)?;
     let mut files = vec![File {
         name: "predicted.csv".to_owned(),
         bytes: predicted_csv(&record)?.into_bytes(),
     }];
-    for (seq, photo) in photos(&whole) {
+    for (seq, photo) in photos(&stored) {
         let found = store::photo(&app.db, vessel, id, photo.photo).await?;
         let (_, bytes) = found.ok_or_else(|| anyhow::anyhow!("a photograph is gone"))?;
         let name = photo.file(seq);
@@ -357,7 +366,7 @@ async fn find_evidence(
     });
     let lines = store::lines(&app.db, vessel, id, None, i64::MAX).await?;
     // As many as were looked at: one that came meanwhile is in the next archive.
-    let lines = lines.into_iter().zip(&whole.log);
+    let lines = lines.into_iter().zip(&stored.log);
     let lines = lines.map(|((_, line, sha256), entry)| {
         let text = firm_view::line(reader.tenant, entry, line, &sha256)?;
         Ok(Line { text, sha256 })

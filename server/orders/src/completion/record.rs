@@ -3,8 +3,10 @@
 //! What always holds: it is made once, when the order is completed, and kept as that
 //! text; a signature is over its hash. It says of itself that it is no certificate.
 
-use crate::completion::complete::SignOff;
-use crate::work_orders::log_entry::{OrderEvent, canonical};
+use crate::completion::sign_off::SignOff;
+use crate::work_orders::events::OrderEvent;
+use crate::work_orders::log::canonical_json::canonical;
+use crate::work_orders::log::entry::Entry;
 use crate::work_orders::order::NOT_A_CERTIFICATE;
 use crate::work_orders::store::StoredOrder;
 use binnacle_adjustment::adjust::{HeelingPlan, UpdatedPrediction};
@@ -26,22 +28,22 @@ pub(crate) struct VesselAndCompass {
 /// The record of an order that is about to be completed.
 pub(crate) fn text(
     aboard: &VesselAndCompass,
-    whole: &StoredOrder,
+    stored: &StoredOrder,
     learnt: &UpdatedPrediction,
     word: &SignOff,
     account: &str,
     after: &Binnacle,
 ) -> Result<String> {
-    let (summary, standing) = (&whole.summary, whole.standing());
-    let read = standing.first.as_deref().or(standing.read.as_ref());
+    let (summary, state) = (&stored.summary, stored.state());
+    let read = state.first_reading.as_deref().or(state.reading.as_ref());
     let basis = read.and_then(|read| read.basis.as_ref());
-    let plan = standing.plan.as_ref();
-    let before = standing.before.as_ref();
-    let again: Vec<_> = whole.log.iter().filter_map(second_reading).collect();
-    let hidden = standing.hidden_steps();
-    let found: Vec<_> = whole.log.iter().filter_map(settings).collect();
-    let steps: Vec<_> = whole.log.iter().filter_map(step).collect();
-    let photos: Vec<_> = whole.log.iter().filter_map(photo).collect();
+    let plan = state.plan.as_ref();
+    let before = state.before_adjustment.as_ref();
+    let again: Vec<_> = stored.log.iter().filter_map(second_reading).collect();
+    let hidden = state.unconfirmed_steps();
+    let found: Vec<_> = stored.log.iter().filter_map(settings).collect();
+    let steps: Vec<_> = stored.log.iter().filter_map(step).collect();
+    let photos: Vec<_> = stored.log.iter().filter_map(photo).collect();
     canonical(&json!({
         "version": 1,
         "what": "record of a magnetic compass adjusted at the berth",
@@ -72,7 +74,7 @@ pub(crate) fn text(
             "variation_deg": basis.variation_deg, "h_nt": basis.h_nt, "z_nt": basis.z_nt,
             "model": basis.field_model,
         })),
-        "limits": standing.limits,
+        "limits": state.limits,
         "waters": basis.map(|basis| &basis.waters),
         "reading": read.map(|read| &read.given),
         "berth_check": read.map(|read| &read.checked),
@@ -108,14 +110,14 @@ const NOT_SHOWN: &str = "the compass does not show these steps on the berth's he
     second reading of the magnetometer confirms them: a slip in one of them can only be found \
     by headings at sea";
 
-fn second_reading(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
+fn second_reading(entry: &Entry) -> Option<serde_json::Value> {
     let OrderEvent::SecondReading(read) = &entry.content else {
         return None;
     };
     Some(json!({ "at": at(entry.at), "given": read.given, "said": read.said }))
 }
 
-fn step(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
+fn step(entry: &Entry) -> Option<serde_json::Value> {
     let OrderEvent::Step(done) = &entry.content else {
         return None;
     };
@@ -125,7 +127,7 @@ fn step(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Valu
     }))
 }
 
-fn settings(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
+fn settings(entry: &Entry) -> Option<serde_json::Value> {
     let OrderEvent::CorrectorSettings(moved) = &entry.content else {
         return None;
     };
@@ -134,7 +136,7 @@ fn settings(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::
     }))
 }
 
-fn photo(entry: &crate::work_orders::log_entry::Entry) -> Option<serde_json::Value> {
+fn photo(entry: &Entry) -> Option<serde_json::Value> {
     let OrderEvent::Photo(photo) = &entry.content else {
         return None;
     };

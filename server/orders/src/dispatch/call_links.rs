@@ -2,7 +2,8 @@
 //!
 //! Port calls are written elsewhere: they are only read here.
 
-use crate::dispatch::port_call_changes::Alongside;
+use crate::work_orders::order_update::Change;
+use crate::work_orders::payload::port_call::Alongside;
 use anyhow::Context;
 use binnacle_platform::db::{Tx, execute, row};
 use binnacle_platform::error::Result;
@@ -94,4 +95,13 @@ pub(crate) async fn linked_port(
         order
     )?;
     Ok(found.map(|(port,)| port))
+}
+
+/// Notes at which call an order is to be done whose time is another now.
+pub(crate) async fn link_call_at(change: &mut Change<'_>, at: Time) -> Result<()> {
+    let (vessel, id) = (change.stored.summary.vessel_id, change.stored.summary.id);
+    if let Some(call) = call_at(&mut change.tx, vessel, at).await? {
+        link(&mut change.tx, vessel, id, call.id).await?;
+    }
+    Ok(())
 }

@@ -3,10 +3,10 @@
 //! What always holds: a message is an entry of the order's log; no other firm reads it.
 
 use crate::dispatch::offer_requests::{message, require_own_firm};
-use crate::work_orders::log_entry::OrderEvent;
-use crate::work_orders::offer_state::{Exchange, Offer, OfferState, Offers};
-use crate::work_orders::order_update;
-use crate::work_orders::store;
+use crate::work_orders::events::{MessageSent, OrderEvent};
+use crate::work_orders::offers::{Offer, OfferState, Offers};
+use crate::work_orders::payload::exchange::Exchange;
+use crate::work_orders::{order_update, store};
 use axum::extract::{FromRef, State as Shared};
 use axum::http::StatusCode;
 use binnacle_platform::access::{PartyReader, PartyWriter};
@@ -89,11 +89,11 @@ async fn list_messages(
     page: Page,
 ) -> Result<Json<MessageList>> {
     let after = page.after_number()?.unwrap_or(0);
-    let whole = store::whole(&app.db, reader.tenant, id).await?;
+    let stored = store::find(&app.db, reader.tenant, id).await?;
     let mine = |firm: FirmId| reader.tenant.firm().is_none_or(|mine| mine == firm);
-    let sent = whole.log.into_iter().filter_map(|entry| {
+    let sent = stored.log.into_iter().filter_map(|entry| {
         let said = match entry.content {
-            OrderEvent::Message(said) => said,
+            OrderEvent::Message(message) => message.0,
             OrderEvent::CallMoved(moved) => moved.said,
             _ => return None,
         };
@@ -139,12 +139,14 @@ async fn send_message(
         return Err(Error::WrongState("the order is over".to_owned()));
     }
     if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
-        let offers = change.whole.standing().offers;
+        let offers = change.stored.state().offers;
         let said = Exchange {
             text: Some(text),
             ..Exchange::with(partner(&offers, writer.tenant, new.firm_id)?.firm())
         };
-        change.append(OrderEvent::Message(said)).await?;
+        change
+            .append(OrderEvent::Message(MessageSent(said)))
+            .await?;
         change.commit().await?;
     }
     Ok(StatusCode::NO_CONTENT)

@@ -15,5 +15,4 @@ pub(crate) mod reschedule;
 pub use call_links::link_once;
 pub use new_port_calls::attach_new_calls;
 pub use offer_expiry::{lapse, watch};
-pub use offer_requests::NewOffer;
-pub use port_call_changes::{Alongside, CallFit, CallUpdate, announce_call_updates};
+pub use port_call_changes::{CallUpdate, announce_call_updates};

@@ -4,9 +4,10 @@
 //! What always holds: an order comes to a call of its own port only, and only where its time
 //! lies in it; who was told that its call is gone is told that there is one again.
 
-use crate::dispatch::call_links;
-use crate::dispatch::port_call_changes::{self, Alongside, CallChange, CallFit, CallUpdate};
+use crate::dispatch::port_call_changes::CallUpdate;
+use crate::dispatch::{call_links, port_call_changes};
 use crate::firms::port_meant;
+use crate::work_orders::payload::port_call::{Alongside, CallChange, CallFit};
 use crate::work_orders::store;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
@@ -65,9 +66,9 @@ async fn waits(
     vessel: VesselId,
     order: OrderId,
 ) -> Result<Option<(String, Option<CallChange>)>> {
-    let whole = store::lock(tx, vessel, order).await?;
-    let standing = whole.standing();
-    let meant = || port_meant(&whole.summary.port).map(|port| port.code.to_string());
-    let port = standing.port.or_else(meant);
-    Ok(port.map(|port| (port, standing.call)))
+    let stored = store::lock(tx, vessel, order).await?;
+    let state = stored.state();
+    let meant = || port_meant(&stored.summary.port).map(|port| port.code.to_string());
+    let port = state.port.or_else(meant);
+    Ok(port.map(|port| (port, state.call_change)))
 }

@@ -1,13 +1,14 @@
 //! Offering an order to firms, and what these answer.
 
+use crate::dispatch::offer_requests;
 use crate::dispatch::offer_requests::{
-    self, Boarding, FirmAnswer, NewOffer, OfferAnswer, Proposal, answer_as_firm, answer_as_operator,
+    FirmAnswer, OfferAnswer, Proposal, answer_as_firm, answer_as_operator,
 };
-use crate::work_orders::log_entry::OrderEvent;
-use crate::work_orders::order::{Order, State};
-use crate::work_orders::order_update;
-use crate::work_orders::shown;
-use crate::work_orders::store;
+use crate::work_orders::events::{Boarding, OrderEvent};
+use crate::work_orders::new_order::NewOffer;
+use crate::work_orders::order::Order;
+use crate::work_orders::state::State;
+use crate::work_orders::{order_update, shown, store};
 use axum::extract::{FromRef, State as Shared};
 use axum::http::StatusCode;
 use binnacle_platform::access::{PartyWriter, Writer};
@@ -53,16 +54,16 @@ async fn offer_work_order(
 ) -> Result<Json<Order>> {
     let operator = writer.operator;
     let update = order_update(&app, request, writer, id, key, "offer", &new)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, operator, id).await;
     }
     let allowed = [State::Planned, State::Declined];
-    whole.require_state(
+    stored.require_state(
         &allowed,
         "it is offered before a firm has it, and not twice at a time",
     )?;
-    if let Some(mut change) = update.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&stored).await? {
         let offered = new.checked(&mut change.tx, operator).await?;
         offer_requests::offer(&mut change, offered).await?;
         change.commit().await?;
@@ -173,7 +174,7 @@ async fn propose_terms(
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     let now = app.clock.now().into();
     if let Some(mut change) = update.begin_on(vessel).await? {
-        let proposal = proposal.checked(change.whole.summary.planned_at, now)?;
+        let proposal = proposal.checked(change.stored.summary.planned_at, now)?;
         answer_as_firm(&mut change, firm, FirmAnswer::Propose(proposal)).await?;
         change.commit().await?;
     }
@@ -198,14 +199,14 @@ async fn go_on_board(
     ValidOrNone(boarded): ValidOrNone<Boarding>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "on board", &boarded)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
     let allowed = [State::Planned, State::Accepted];
-    whole.require_state(&allowed, "the adjuster goes on board once a firm has it")?;
+    stored.require_state(&allowed, "the adjuster goes on board once a firm has it")?;
     let boarded = boarded.checked(app.clock.now().into())?;
-    if let Some(mut change) = update.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&stored).await? {
         change.append(OrderEvent::OnBoard(boarded)).await?;
         change.commit().await?;
     }

@@ -1,9 +1,10 @@
 //! The clock on answers: an offer that nobody answers lapses, and the next firm is asked.
 
 use crate::dispatch::offer_sequence::send_next_offers;
-use crate::work_orders::log_entry::OrderEvent;
-use crate::work_orders::offer_state::{Exchange, OfferState};
+use crate::work_orders::events::{Lapsed, OrderEvent, RetimeLapsed};
+use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_update::Change;
+use crate::work_orders::payload::exchange::Exchange;
 use crate::work_orders::store;
 use binnacle_platform::app::App;
 use binnacle_platform::error::Result;
@@ -51,7 +52,7 @@ pub async fn lapse(app: &App) -> Result<usize> {
 
 async fn lapse_of(app: &App, vessel: VesselId, order: OrderId) -> Result<bool> {
     let mut change = Change::by_server(app, vessel, order).await?;
-    let offers = change.whole.standing().offers;
+    let offers = change.stored.state().offers;
     let overdue: Vec<_> = offers
         .all
         .into_iter()
@@ -65,9 +66,9 @@ async fn lapse_of(app: &App, vessel: VesselId, order: OrderId) -> Result<bool> {
         let between = Exchange::with(offer.firm());
         // Who has the order has it, whether or not another time is agreed on.
         let lapsed = if offer.state == OfferState::Accepted {
-            OrderEvent::RetimeLapsed(between)
+            OrderEvent::RetimeLapsed(RetimeLapsed(between))
         } else {
-            OrderEvent::Lapsed(between)
+            OrderEvent::Lapsed(Lapsed(between))
         };
         info!(%order, firm = %offer.firm_id, "an offer has lapsed");
         change.append(lapsed).await?;

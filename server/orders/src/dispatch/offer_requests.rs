@@ -1,17 +1,21 @@
 //! What is asked and answered between an operator and firms, as requests have it.
 
+use crate::dispatch::call_links::link_call_at;
 use crate::dispatch::offer_sequence::{
     answer_by, require_future_job, send_next_offers, send_offers, share_deadline,
 };
 use crate::dispatch::port_call_check;
-use crate::dispatch::reschedule::link_call_at;
-use crate::firms::{self, Requester, Visit};
-use crate::work_orders::log_entry::OrderEvent;
-use crate::work_orders::offer_state::{
-    Exchange, NamedFirm, OfferRound, OfferState, OfferedFirm, Terms,
+use crate::firms;
+use crate::firms::{Requester, Visit};
+use crate::work_orders::events::{
+    Accepted, Boarding, Declined, OfferRound, OfferedFirm, OrderEvent, ProposalAccepted,
+    ProposalDeclined, Proposed,
 };
-use crate::work_orders::order::{State, require_near_date};
+use crate::work_orders::new_order::{NewOffer, require_near_date};
+use crate::work_orders::offers::OfferState;
 use crate::work_orders::order_update::Change;
+use crate::work_orders::payload::exchange::{Exchange, NamedFirm, Terms};
+use crate::work_orders::state::State;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::http::{is_control, optional_text, text};
@@ -19,7 +23,6 @@ use binnacle_platform::ids::{FirmId, OperatorId};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
 /// So many firms at most.
@@ -28,36 +31,6 @@ pub(crate) const MAX_ANSWER_HOURS: u32 = 720;
 const MAX_FEE_EUR: f64 = 1e6;
 /// Longest text of a message, in characters.
 pub(crate) const MAX_MESSAGE: usize = 2000;
-
-/// An order to be offered to firms.
-#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-#[schema(as = NewOffer, example = json!({
-    "firms": ["0199aa00-0000-7000-8000-000000000003"], "answer_within_hours": 48
-}))]
-pub struct NewOffer {
-    /// The firms, in the order in which they are asked: 1 to 20 that you work with.
-    pub firms: Vec<FirmId>,
-    /// So long each has for an answer, 1 to 720 hours; then the next is asked.
-    #[serde(default = "default_answer_hours")]
-    #[schema(minimum = 1, maximum = 720)]
-    pub answer_within_hours: u32,
-    /// Ask all of them at once: the first to accept has it.
-    #[serde(default)]
-    pub at_once: bool,
-    /// What is said to them.
-    #[serde(default)]
-    #[schema(max_length = 200)]
-    pub text: Option<String>,
-    /// The fees that a plan has for some of them; for others, what their terms say for a
-    /// compass alone.
-    #[serde(skip)]
-    pub fees_eur: BTreeMap<FirmId, f64>,
-}
-
-pub(crate) fn default_answer_hours() -> u32 {
-    48
-}
 
 /// A yes or a no.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, ToSchema)]
@@ -115,20 +88,6 @@ pub(crate) struct ProposedTerms {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(minimum = 0, maximum = 1_000_000)]
     pub fee_eur: Option<f64>,
-}
-
-/// When the adjuster went on board.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-#[schema(as = OnBoard, example = json!({ "text": "Gangway on the starboard side." }))]
-pub struct Boarding {
-    /// When; now where it is not said.
-    #[serde(default)]
-    pub at: Option<Time>,
-    /// In words.
-    #[serde(default)]
-    #[schema(max_length = 200)]
-    pub text: Option<String>,
 }
 
 impl NewOffer {
@@ -309,7 +268,7 @@ pub(crate) fn message(said: &str) -> Result<String> {
 /// [`Error::WrongState`] when its time is over, or one of the firms has no team left that day
 /// or does not work then.
 pub(crate) async fn offer(change: &mut Change<'_>, offered: OfferRound) -> Result<()> {
-    let at = change.whole.summary.planned_at;
+    let at = change.stored.summary.planned_at;
     require_future_job(change, at)?;
     // Everybody locks them in one order.
     let mut firms: Vec<&NamedFirm> = offered.firms.iter().map(|one| &one.firm).collect();
@@ -329,7 +288,7 @@ pub(crate) async fn require_capacity(
     at: Time,
     told: Requester,
 ) -> Result<()> {
-    let summary = &change.whole.summary;
+    let summary = &change.stored.summary;
     let visit = Visit {
         operator: summary.operator_id,
         vessel: summary.vessel_id,
@@ -356,16 +315,16 @@ pub(crate) async fn answer_as_firm(
     firm: FirmId,
     says: FirmAnswer,
 ) -> Result<()> {
-    let offers = change.whole.standing().offers;
+    let offers = change.stored.state().offers;
     let offer = offers.of(firm).ok_or(Error::NotFound("work order"))?;
     let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
     let gives_back = matches!(says, FirmAnswer::Decline(_))
         && offer.state == OfferState::Accepted
-        && change.whole.summary.state == State::Accepted;
+        && change.stored.summary.state == State::Accepted;
     // A firm may think better of its own proposal.
     let takes_back = matches!(says, FirmAnswer::Decline(_) | FirmAnswer::Propose(_))
         && offer.state == OfferState::Proposed;
-    if change.whole.summary.state == State::Cancelled {
+    if change.stored.summary.state == State::Cancelled {
         return wrong("the order is cancelled");
     }
     if offer.state != OfferState::Open && !gives_back && !takes_back {
@@ -377,25 +336,25 @@ pub(crate) async fn answer_as_firm(
     let asked = offer.firm();
     match says {
         FirmAnswer::Accept(answer) => {
-            let at = change.whole.summary.planned_at;
+            let at = change.stored.summary.planned_at;
             require_future_job(change, at)?;
             require_capacity(change, &asked, at, Requester::Firm).await?;
             let taken = Exchange {
                 fee_eur: offer.fee_eur,
                 ..answer.between(asked)
             };
-            change.append(OrderEvent::Accepted(taken)).await
+            change.append(OrderEvent::Accepted(Accepted(taken))).await
         }
         FirmAnswer::Decline(answer) => {
             change
-                .append(OrderEvent::Declined(answer.between(asked)))
+                .append(OrderEvent::Declined(Declined(answer.between(asked))))
                 .await?;
             send_next_offers(change).await
         }
         FirmAnswer::Propose(proposal) => {
             let at = proposal.terms.planned_at;
             require_capacity(change, &asked, at, Requester::Firm).await?;
-            if at != change.whole.summary.planned_at {
+            if at != change.stored.summary.planned_at {
                 port_call_check::require_vessel_in_port(change, at, "planned_at").await?;
             }
             let until = answer_by(change, offers.answer_within_hours, at);
@@ -407,7 +366,9 @@ pub(crate) async fn answer_as_firm(
                 text: proposal.text,
                 ..Exchange::with(asked)
             };
-            change.append(OrderEvent::Proposed(proposed)).await
+            change
+                .append(OrderEvent::Proposed(Proposed(proposed)))
+                .await
         }
     }
 }
@@ -421,7 +382,7 @@ pub(crate) async fn answer_as_operator(
     answer: OfferAnswer,
     yes: bool,
 ) -> Result<()> {
-    let offers = change.whole.standing().offers;
+    let offers = change.stored.state().offers;
     let mut proposed = offers.all.iter().filter(|offer| {
         let meant = answer.firm_id.is_none_or(|firm| firm == offer.firm_id);
         meant && offer.state == OfferState::Proposed
@@ -452,13 +413,17 @@ pub(crate) async fn answer_as_operator(
             let at = terms.planned_at;
             require_future_job(change, at)?;
             require_capacity(change, &firm, at, Requester::Operator).await?;
-            if at != change.whole.summary.planned_at {
+            if at != change.stored.summary.planned_at {
                 port_call_check::require_vessel_in_port(change, at, "planned_at").await?;
                 link_call_at(change, at).await?;
             }
         }
-        return change.append(OrderEvent::ProposalAccepted(between)).await;
+        return change
+            .append(OrderEvent::ProposalAccepted(ProposalAccepted(between)))
+            .await;
     }
-    change.append(OrderEvent::ProposalDeclined(between)).await?;
+    change
+        .append(OrderEvent::ProposalDeclined(ProposalDeclined(between)))
+        .await?;
     send_next_offers(change).await
 }

@@ -1,10 +1,11 @@
 //! Whose turn it is to be asked for an order, and until when they may answer.
 
 use crate::firms;
-use crate::work_orders::log_entry::OrderEvent;
-use crate::work_orders::offer_state::{Exchange, Offer, OfferState, Offers};
-use crate::work_orders::order::State;
+use crate::work_orders::events::{Lapsed, OfferSent, OrderEvent};
+use crate::work_orders::offers::{Offer, OfferState, Offers};
 use crate::work_orders::order_update::Change;
+use crate::work_orders::payload::exchange::Exchange;
+use crate::work_orders::state::State;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::FirmId;
 use binnacle_platform::time::Time;
@@ -52,7 +53,7 @@ pub(crate) async fn share_deadline(
     offers: &Offers,
     asked: usize,
 ) -> Result<Option<Time>> {
-    let at = change.whole.summary.planned_at;
+    let at = change.stored.summary.planned_at;
     let left_s = at.0.seconds_since(change.now.0);
     let (mut turns, mut share_s) = (1.0, f64::INFINITY);
     let waiting = offers.all.iter();
@@ -70,21 +71,21 @@ pub(crate) async fn share_deadline(
 
 /// How long before a job a firm wants to be asked by its terms, seconds.
 async fn lead_time_s(change: &mut Change<'_>, firm: FirmId) -> Result<f64> {
-    let operator = change.whole.summary.operator_id;
+    let operator = change.stored.summary.operator_id;
     let terms = firms::terms_for(&mut change.tx, operator, firm).await?;
     Ok(terms.map_or(0.0, |terms| terms.lead_time_h * HOUR_S))
 }
 
 /// Whether there is more than so much time until the job.
 fn is_in_time(change: &Change<'_>, lead_s: f64) -> bool {
-    let at = change.whole.summary.planned_at;
+    let at = change.stored.summary.planned_at;
     at.0.seconds_since(change.now.0) > lead_s
 }
 
 /// Asks whom it is the turn of, where nobody else is waited for. Whom it is too late to ask is
 /// passed over.
 pub(crate) async fn send_next_offers(change: &mut Change<'_>) -> Result<()> {
-    let offers = change.whole.standing().offers;
+    let offers = change.stored.state().offers;
     if offers.state() == State::Declined {
         let waiting = offers.all.into_iter();
         for offer in waiting.filter(|offer| offer.state == OfferState::Waiting) {
@@ -102,7 +103,7 @@ pub(crate) async fn send_next_offers(change: &mut Change<'_>) -> Result<()> {
                 text: Some(text),
                 ..Exchange::with(offer.firm())
             };
-            change.append(OrderEvent::Lapsed(passed)).await?;
+            change.append(OrderEvent::Lapsed(Lapsed(passed))).await?;
         }
     }
     send_offers(change).await
@@ -110,12 +111,12 @@ pub(crate) async fn send_next_offers(change: &mut Change<'_>) -> Result<()> {
 
 /// Asks those whose turn it is, if it is anyone's, and says until when they may answer.
 pub(crate) async fn send_offers(change: &mut Change<'_>) -> Result<()> {
-    let offers = change.whole.standing().offers;
+    let offers = change.stored.state().offers;
     let next: Vec<Offer> = offers.next().cloned().collect();
     if next.is_empty() {
         return Ok(());
     }
-    let at = change.whole.summary.planned_at;
+    let at = change.stored.summary.planned_at;
     let until = answer_by(change, offers.answer_within_hours, at);
     let share = share_deadline(change, &offers, next.len()).await?;
     let answer_by = share.map_or(until, |share| share.min(until));
@@ -126,7 +127,9 @@ pub(crate) async fn send_offers(change: &mut Change<'_>) -> Result<()> {
             text: next.text.clone(),
             ..Exchange::with(next.firm())
         };
-        change.append(OrderEvent::OfferSent(asked)).await?;
+        change
+            .append(OrderEvent::OfferSent(OfferSent(asked)))
+            .await?;
     }
     Ok(())
 }

@@ -3,9 +3,9 @@
 //! What always holds: an order whose words mean a port is for a day on which the vessel is
 //! known to be there, or no coming call there is known, nor where else she is then.
 
-use crate::dispatch::port_call_changes::{Alongside, CallFit};
 use crate::firms::port_meant;
 use crate::work_orders::order_update::Change;
+use crate::work_orders::payload::port_call::{Alongside, CallFit};
 use binnacle_platform::db::{Tx, rows};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::VesselId;
@@ -58,7 +58,7 @@ pub(crate) async fn require_vessel_in_port(
     at: Time,
     field: &'static str,
 ) -> Result<()> {
-    let (vessel, port) = (change.whole.summary.vessel_id, &change.whole.summary.port);
+    let (vessel, port) = (change.stored.summary.vessel_id, &change.stored.summary.port);
     let Some(meant) = port_meant(port) else {
         return Ok(());
     };
@@ -86,7 +86,7 @@ async fn require_port_call(
     at: Time,
     field: &'static str,
 ) -> Result<()> {
-    let vessel = change.whole.summary.vessel_id;
+    let vessel = change.stored.summary.vessel_id;
     let calls = coming(&mut change.tx, vessel, meant.code, change.now).await?;
     let port = meant.code.to_string();
     let is_that_day =

@@ -4,21 +4,21 @@
 //! a call of the vessel's at the order's port, for as long as a job takes, and on a day on
 //! which the firm has a team left by its terms: when it is asked, and when it says yes.
 
-use crate::dispatch::call_links;
 use crate::dispatch::offer_requests::{
-    MAX_ANSWER_HOURS, OfferAnswer, checked_terms, default_answer_hours, require_capacity,
+    MAX_ANSWER_HOURS, OfferAnswer, checked_terms, require_capacity,
 };
 use crate::dispatch::offer_sequence::answer_by;
-use crate::dispatch::port_call_changes::CallFit;
-use crate::dispatch::port_call_check;
+use crate::dispatch::{call_links, port_call_check};
 use crate::firms::{Requester, port_meant};
-use crate::work_orders::log_entry::OrderEvent;
-use crate::work_orders::offer_state::{Exchange, NamedFirm, Offer, Terms};
-use crate::work_orders::order::{Order, State};
-use crate::work_orders::order_update;
+use crate::work_orders::events::{OrderEvent, RetimeAccepted, RetimeDeclined, RetimeProposed};
+use crate::work_orders::new_order::default_answer_hours;
+use crate::work_orders::offers::Offer;
+use crate::work_orders::order::Order;
 use crate::work_orders::order_update::Change;
-use crate::work_orders::shown;
-use crate::work_orders::store;
+use crate::work_orders::payload::exchange::{Exchange, NamedFirm, Terms};
+use crate::work_orders::payload::port_call::CallFit;
+use crate::work_orders::state::State;
+use crate::work_orders::{order_update, shown, store};
 use axum::extract::{FromRef, State as Shared};
 use binnacle_platform::access::{PartyWriter, Writer};
 use binnacle_platform::app::App;
@@ -28,7 +28,6 @@ use binnacle_platform::http::{Id, Json, Valid, ValidOrNone, optional_text};
 use binnacle_platform::idempotency::Key;
 use binnacle_platform::ids::OrderId;
 use binnacle_platform::tenants::Tenant;
-use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -85,7 +84,7 @@ async fn propose_retime(
     Valid(retime): Valid<RetimeRequest>,
 ) -> Result<Json<Order>> {
     let update = order_update(&app, request, writer, id, key, "retime", &retime)?;
-    let (whole, done) = update.look().await?;
+    let (stored, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.operator, id).await;
     }
@@ -98,8 +97,8 @@ async fn propose_retime(
     }
     let terms = checked_terms(retime.terms, app.clock.now().into())?;
     let text = optional_text("text", retime.text.as_deref())?;
-    whole.require_state(&[State::Accepted], "a firm that has it is asked")?;
-    if let Some(mut change) = update.begin(&whole).await? {
+    stored.require_state(&[State::Accepted], "a firm that has it is asked")?;
+    if let Some(mut change) = update.begin(&stored).await? {
         let holder = holder(&change)?;
         require_possible_time(&mut change, &holder.firm(), &terms, Requester::Operator).await?;
         let between = Exchange {
@@ -108,7 +107,9 @@ async fn propose_retime(
             text,
             ..Exchange::with(holder.firm())
         };
-        change.append(OrderEvent::RetimeProposed(between)).await?;
+        change
+            .append(OrderEvent::RetimeProposed(RetimeProposed(between)))
+            .await?;
         change.commit().await?;
     }
     shown(&app, writer.operator, id).await
@@ -162,13 +163,15 @@ async fn accept_retime(
             ..terms
         };
         require_possible_time(&mut change, &offer.firm(), &terms, Requester::Firm).await?;
-        link_call_at(&mut change, terms.planned_at).await?;
+        call_links::link_call_at(&mut change, terms.planned_at).await?;
         let agreed = Exchange {
             terms: Some(terms),
             text: answer.text,
             ..Exchange::with(offer.firm())
         };
-        change.append(OrderEvent::RetimeAccepted(agreed)).await?;
+        change
+            .append(OrderEvent::RetimeAccepted(RetimeAccepted(agreed)))
+            .await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
@@ -222,7 +225,9 @@ async fn decline_retime(
             text: answer.text,
             ..Exchange::with(offer.firm())
         };
-        change.append(OrderEvent::RetimeDeclined(between)).await?;
+        change
+            .append(OrderEvent::RetimeDeclined(RetimeDeclined(between)))
+            .await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
@@ -231,9 +236,9 @@ async fn decline_retime(
 /// The firm that has an order whose work has not begun.
 fn holder(change: &Change<'_>) -> Result<Offer> {
     change
-        .whole
+        .stored
         .require_state(&[State::Accepted], "a firm that has it is asked")?;
-    let offers = change.whole.standing().offers;
+    let offers = change.stored.state().offers;
     let holder = offers.holder().cloned();
     holder.ok_or_else(|| Error::WrongState("no firm has the order".to_owned()))
 }
@@ -252,30 +257,21 @@ fn asked_terms(change: &Change<'_>, offer: &Offer) -> Result<Terms> {
 
 /// The port that an order is for, where its call is known.
 async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
-    if let Some(port) = change.whole.standing().port {
+    if let Some(port) = change.stored.state().port {
         return Ok(Some(port));
     }
     let (vessel, planned_at) = (
-        change.whole.summary.vessel_id,
-        change.whole.summary.planned_at,
+        change.stored.summary.vessel_id,
+        change.stored.summary.planned_at,
     );
-    let id = change.whole.summary.id;
+    let id = change.stored.summary.id;
     if let Some(port) = call_links::linked_port(&mut change.tx, vessel, id).await? {
         return Ok(Some(port));
     }
     let call = call_links::call_at(&mut change.tx, vessel, planned_at).await?;
-    let meant = port_meant(&change.whole.summary.port).map(|port| port.code.to_string());
+    let meant = port_meant(&change.stored.summary.port).map(|port| port.code.to_string());
     let is_hers = |port: &String| meant.as_ref().is_none_or(|meant| meant == port);
     Ok(call.map(|call| call.port).filter(is_hers))
-}
-
-/// Notes at which call an order is to be done whose time is another now.
-pub(crate) async fn link_call_at(change: &mut Change<'_>, at: Time) -> Result<()> {
-    let (vessel, id) = (change.whole.summary.vessel_id, change.whole.summary.id);
-    if let Some(call) = call_links::call_at(&mut change.tx, vessel, at).await? {
-        call_links::link(&mut change.tx, vessel, id, call.id).await?;
-    }
-    Ok(())
 }
 
 /// Refuses a time at which the ship is not there, or the firm has no team.
@@ -293,7 +289,7 @@ async fn require_possible_time(
         port_call_check::require_vessel_in_port(change, terms.planned_at, "planned_at").await?;
         return require_capacity(change, firm, terms.planned_at, told).await;
     };
-    let (at, vessel) = (terms.planned_at, change.whole.summary.vessel_id);
+    let (at, vessel) = (terms.planned_at, change.stored.summary.vessel_id);
     let call = call_links::call_at(&mut change.tx, vessel, at).await?;
     let fit = match &call {
         Some(call) => call.alongside()?.fit(&port, at),

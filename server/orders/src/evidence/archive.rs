@@ -1,6 +1,6 @@
 //! Writing the archive.
 
-use crate::work_orders::log_entry::sha256_hex;
+use crate::work_orders::log::canonical_json::sha256_hex;
 use anyhow::Context;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

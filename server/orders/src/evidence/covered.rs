@@ -4,8 +4,8 @@
 //! What always holds: a file that is not covered is said to be so, or is a problem.
 
 use super::archive::LogHead;
+use super::findings::Findings;
 use super::sheets::{predicted_csv, record_pdf};
-use super::verify::Findings;
 use serde_json::Value;
 use std::collections::BTreeMap;
 

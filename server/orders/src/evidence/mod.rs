@@ -7,12 +7,14 @@
 
 mod archive;
 mod covered;
+mod findings;
 mod sheets;
 mod verify;
 
 pub use archive::{Evidence, File, Line, archive};
+pub use findings::Findings;
 pub use sheets::{predicted_csv, record_pdf, record_svg};
-pub use verify::{Findings, verify};
+pub use verify::verify;
 
 /// What says how to check it, in every archive.
 const README: &str = include_str!("README.txt");

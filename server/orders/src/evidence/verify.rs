@@ -2,9 +2,10 @@
 
 use super::archive::{File, LogHead, Manifest, write};
 use super::covered::{self, covered};
-use crate::berth_session::photos::Photo;
-use crate::completion::complete::{Completion, RecordedSignature};
-use crate::work_orders::log_entry::sha256_hex;
+use super::findings::Findings;
+use crate::work_orders::log::canonical_json::sha256_hex;
+use crate::work_orders::payload::photograph::Photo;
+use crate::work_orders::payload::signed_record::{Completion, RecordedSignature};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -26,21 +27,6 @@ const OF_THE_FORM: [&str; 6] = [
 
 /// Before what anyone could have written who made the archive.
 const UNSIGNED: &str = "the log says, and no signature covers it:";
-
-/// What was found.
-#[derive(Clone, Debug, Default)]
-pub struct Findings {
-    /// What is wrong, a sentence each; empty when all is well.
-    pub problems: Vec<String>,
-    /// What it is and says, a sentence each.
-    pub facts: Vec<String>,
-}
-
-impl Findings {
-    fn wrong(&mut self, problem: impl Into<String>) {
-        self.problems.push(problem.into());
-    }
-}
 
 /// Checks an archive.
 pub fn verify(bytes: &[u8]) -> Findings {

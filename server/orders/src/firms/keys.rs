@@ -3,7 +3,6 @@
 //! What always holds: who registers a key has shown that they hold its private half; a
 //! key is one firm's, and once revoked it vouches for nothing signed afterwards.
 
-use crate::completion::complete::KnownKey;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_platform::access::{Caller, PartyWriter};
@@ -245,12 +244,24 @@ async fn revoke_key(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// The key as the log names it, if the order's firm has registered it and not revoked it.
-pub async fn find_active(
+/// Active key of a firm.
+pub(crate) struct ActiveKey {
+    /// The key's id.
+    pub id: KeyId,
+    /// The firm's name for it.
+    pub name: String,
+    /// The firm.
+    pub firm_id: FirmId,
+    /// The firm's name.
+    pub firm_name: String,
+}
+
+/// Finds the key of an order's firm, if it is registered and not revoked.
+pub(crate) async fn find_active(
     tx: &mut Tx,
     firm: Option<FirmId>,
     public_key: &str,
-) -> Result<Option<KnownKey>> {
+) -> Result<Option<ActiveKey>> {
     let found = row!(
         in tx,
         (KeyId, String, FirmId, String),
@@ -261,7 +272,7 @@ pub async fn find_active(
         firm,
         public_key.to_ascii_lowercase()
     )?;
-    Ok(found.map(|(id, name, firm_id, firm_name)| KnownKey {
+    Ok(found.map(|(id, name, firm_id, firm_name)| ActiveKey {
         id,
         name,
         firm_id,

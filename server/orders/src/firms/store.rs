@@ -1,11 +1,24 @@
 //! Firms in the database, and which operators they work for.
 
-use super::Firm;
 use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
 use binnacle_platform::ids::{FirmId, OperatorId};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
+use serde::Serialize;
+use utoipa::ToSchema;
 use uuid::Uuid;
+
+/// A company that adjusts compasses.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+pub(super) struct Firm {
+    /// Its id.
+    pub(super) id: FirmId,
+    /// Its name.
+    #[schema(example = "Nervión Compass")]
+    pub(super) name: String,
+    /// When it was entered here.
+    pub(super) created_at: Time,
+}
 
 /// Creates a firm.
 pub async fn create(tx: &mut Tx, name: &str, now: Time) -> Result<FirmId> {

@@ -6,10 +6,12 @@
 //! order stands failed; what has passed stays so, and a later change of the ship ends the
 //! epoch instead.
 
-use crate::work_orders::log_entry::{Author, OrderEvent};
-use crate::work_orders::order::State;
-use crate::work_orders::publish::{self, Before};
-use crate::work_orders::store;
+use crate::work_orders::events::OrderEvent;
+use crate::work_orders::log::entry::Author;
+use crate::work_orders::payload::sea_verification::SeaVerification;
+use crate::work_orders::publish::OrderBefore;
+use crate::work_orders::state::State;
+use crate::work_orders::{publish, store};
 use binnacle_adjustment::adjust::{SettledHeading, Verification, verify};
 use binnacle_compass::result::{SampleDiagnostic, SampleReason};
 use binnacle_compass::ship::EarthField;
@@ -19,28 +21,11 @@ use binnacle_platform::error::Result;
 use binnacle_platform::events::Event;
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
-use serde::{Deserialize, Serialize};
 use tracing::warn;
-use utoipa::ToSchema;
 use uuid::Uuid;
 
 /// Of one heading at sea: reference, card and sea together, degrees.
 const HEADING_SD_DEG: f64 = 0.7;
-
-/// What the headings at sea say.
-#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
-#[schema(as = OrderVerification)]
-pub struct SeaVerification {
-    /// The verdict with its figures: `passed`, `more_needed` or `alarm`.
-    #[schema(value_type = crate::work_orders::schema::SeaVerdictSchema)]
-    pub verification: Verification,
-    /// The same in words.
-    pub words: String,
-    /// How many samples it rests on.
-    pub samples: usize,
-    /// The time of the last of them.
-    pub until: Time,
-}
 
 fn agree(headings: usize) -> String {
     if headings == 1 {
@@ -85,11 +70,6 @@ impl SeaVerification {
         }
     }
 
-    /// Whether headings at sea bear out what was foretold.
-    pub fn has_passed(&self) -> bool {
-        matches!(self.verification, Verification::Passed { .. })
-    }
-
     /// Whether it says something that this does not.
     fn differs_from(&self, last: Option<&SeaVerification>) -> bool {
         let headings = |verified: &SeaVerification| match verified.verification {
@@ -116,10 +96,10 @@ pub async fn after_analysis(
     let Some((order, State::Adjusted, _)) = last else {
         return Ok(Vec::new());
     };
-    let mut whole = store::lock(tx, vessel, order).await?;
-    let standing = whole.standing();
-    let before = Before::of(&whole);
-    let Some(completed) = standing.completed else {
+    let mut stored = store::lock(tx, vessel, order).await?;
+    let state = stored.state();
+    let before = OrderBefore::of(&stored);
+    let Some(completed) = state.completion else {
         return Ok(Vec::new());
     };
     let counts = |found: &&SampleDiagnostic| {
@@ -139,17 +119,17 @@ pub async fn after_analysis(
         }
     };
     let verified = SeaVerification::new(verification, settled.len(), Time(last.sample.time));
-    if !verified.differs_from(standing.verified.as_ref()) {
+    if !verified.differs_from(state.verification.as_ref()) {
         return Ok(Vec::new());
     }
     if matches!(verified.verification, Verification::Passed { .. }) {
         let text = serde_json::to_string(&verified)?;
-        store::verified(tx, &whole.summary, now, &text).await?;
+        store::verified(tx, &stored.summary, now, &text).await?;
     }
     let author = Author::server();
     let content = OrderEvent::Verification(Box::new(verified));
-    store::append(tx, &mut whole, Uuid::now_v7(), &author, now, content).await?;
-    publish::tell(tx, &whole, &before, now).await
+    store::append(tx, &mut stored, Uuid::now_v7(), &author, now, content).await?;
+    publish::publish_changes(tx, &stored, &before, now).await
 }
 
 fn settled(found: &SampleDiagnostic) -> Option<SettledHeading> {
@@ -174,8 +154,8 @@ pub async fn unconfirmed_adjustment(
     let Some((order, State::Failed, adjusted_at)) = last else {
         return Ok(None);
     };
-    let whole = store::lock(tx, vessel, order).await?;
-    let verified = whole.standing().verified;
+    let stored = store::lock(tx, vessel, order).await?;
+    let verified = stored.state().verification;
     Ok(verified.map(|verified| UnconfirmedAdjustment {
         order,
         adjusted_at,

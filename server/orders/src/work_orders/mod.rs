@@ -10,24 +10,29 @@
 //! - What is foretold says so until headings at sea agree. Nothing here issues a
 //!   certificate.
 
-pub(crate) mod firm_view;
-mod idempotency_keys;
-pub mod log_entry;
+pub(crate) mod events;
+pub(crate) mod log;
+pub(crate) mod new_order;
 mod notification_text;
-pub(crate) mod offer_state;
+pub(crate) mod offers;
 pub(crate) mod order;
 pub(crate) mod order_state;
 pub(crate) mod order_update;
+pub(crate) mod payload;
 pub(crate) mod publish;
-pub(crate) mod queries;
 pub(crate) mod refusal;
 pub(crate) mod request_schema;
 pub(crate) mod schema;
+pub(crate) mod state;
 pub(crate) mod store;
 mod subscriber;
+pub(crate) mod summary;
 
-pub use order::{NewOrder, State};
+pub use log::canonical_json::sha256_hex;
+pub use new_order::{NewOffer, NewOrder};
+pub use payload::port_call::{Alongside, CallFit};
 pub use refusal::{Cure, NotAdjustableFields, Refusal};
+pub use state::State;
 pub use store::lock_compass;
 pub use subscriber::{refuse_amended_binnacle, refuse_leave_of_service};
 
@@ -42,7 +47,6 @@ use binnacle_platform::tenants::Tenant;
 use order::Order;
 use order_update::OrderUpdate;
 use serde::Serialize;
-use store::StoredOrder;
 
 /// A request to change an order, told from others by what it asks.
 pub(crate) fn order_update<'a>(
@@ -71,7 +75,7 @@ pub(crate) async fn shown(
     id: OrderId,
 ) -> Result<Json<Order>> {
     let tenant = tenant.into();
-    let whole: StoredOrder = store::whole(&app.db, tenant, id).await?;
-    let standing = whole.standing();
-    Ok(Json(Order::new(whole.summary, standing, tenant)))
+    let stored = store::find(&app.db, tenant, id).await?;
+    let state = stored.state();
+    Ok(Json(Order::new(stored.summary, state, tenant)))
 }

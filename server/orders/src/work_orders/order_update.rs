@@ -4,11 +4,11 @@
 //! ends; the entry, what follows from it and the live event are that one transaction;
 //! and the same request under the same key writes one entry.
 
-use crate::work_orders::idempotency_keys;
-use crate::work_orders::log_entry::{Author, OrderEvent};
-use crate::work_orders::order::State;
-use crate::work_orders::publish::{self, Before};
-use crate::work_orders::store::{self, StoredOrder};
+use crate::work_orders::events::OrderEvent;
+use crate::work_orders::log::entry::Author;
+use crate::work_orders::publish::OrderBefore;
+use crate::work_orders::store::StoredOrder;
+use crate::work_orders::{publish, store};
 use binnacle_platform::access::PartyWriter;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -36,13 +36,13 @@ pub(crate) struct OrderUpdate<'a> {
 pub(crate) struct Change<'a> {
     app: &'a App,
     pub(crate) tx: Tx,
-    pub(crate) whole: StoredOrder,
+    pub(crate) stored: StoredOrder,
     pub(crate) author: Author,
     pub(crate) now: Time,
     /// The id of the entry to be written.
     pub(crate) id: Uuid,
     /// The order before.
-    before: Before,
+    before: OrderBefore,
     told: Vec<Event>,
 }
 
@@ -50,11 +50,10 @@ impl<'a> OrderUpdate<'a> {
     /// The order as it is, and whether this request has been done already.
     pub(crate) async fn look(&self) -> Result<(StoredOrder, Option<Uuid>)> {
         let tenant = self.writer.tenant;
-        let whole = store::whole(&self.app.db, tenant, self.order).await?;
+        let stored = store::find(&self.app.db, tenant, self.order).await?;
         let db = &self.app.db;
-        let done =
-            idempotency_keys::find(&self.key, db, tenant, &whole.summary, &self.hash).await?;
-        Ok((whole, done))
+        let done = store::find_written(&self.key, db, tenant, &stored.summary, &self.hash).await?;
+        Ok((stored, done))
     }
 
     /// Begins to change it, unless it has gone on since it was looked at; none when this
@@ -62,7 +61,7 @@ impl<'a> OrderUpdate<'a> {
     pub(crate) async fn begin(self, seen: &StoredOrder) -> Result<Option<Change<'a>>> {
         let begun = self.begin_on(seen.summary.vessel_id).await?;
         if let Some(change) = &begun
-            && change.whole.summary.last_seq != seen.summary.last_seq
+            && change.stored.summary.last_seq != seen.summary.last_seq
         {
             return Err(Error::WrongState(
                 "the order has gone on meanwhile: look at it again".to_owned(),
@@ -76,12 +75,11 @@ impl<'a> OrderUpdate<'a> {
     pub(crate) async fn begin_on(self, vessel: VesselId) -> Result<Option<Change<'a>>> {
         let now = self.app.clock.now().into();
         let mut tx = self.request.begin().await?;
-        let whole = store::lock(&mut tx, vessel, self.order).await?;
+        let stored = store::lock(&mut tx, vessel, self.order).await?;
         let wanted = Uuid::now_v7();
         let tenant = self.writer.tenant;
-        let (key, order) = (&self.key, &whole.summary);
-        let written =
-            idempotency_keys::once(key, &mut tx, tenant, order, &self.hash, wanted).await?;
+        let (key, order) = (&self.key, &stored.summary);
+        let written = store::write_once(key, &mut tx, tenant, order, &self.hash, wanted).await?;
         if written != wanted {
             return Ok(None);
         }
@@ -90,7 +88,7 @@ impl<'a> OrderUpdate<'a> {
             name: session::name_of(&mut tx, self.writer.user).await?,
             firm_id: tenant.firm(),
         };
-        Ok(Some(Change::new(self.app, tx, whole, author, now, wanted)))
+        Ok(Some(Change::new(self.app, tx, stored, author, now, wanted)))
     }
 }
 
@@ -98,7 +96,7 @@ impl<'a> Change<'a> {
     pub(crate) fn new(
         app: &'a App,
         tx: Tx,
-        whole: StoredOrder,
+        stored: StoredOrder,
         author: Author,
         now: Time,
         id: Uuid,
@@ -106,8 +104,8 @@ impl<'a> Change<'a> {
         Change {
             app,
             tx,
-            before: Before::of(&whole),
-            whole,
+            before: OrderBefore::of(&stored),
+            stored,
             author,
             now,
             id,
@@ -123,22 +121,22 @@ impl<'a> Change<'a> {
     ) -> Result<Change<'a>> {
         let now = app.clock.now().into();
         let mut tx = app.db.begin().await?;
-        let whole = store::lock(&mut tx, vessel, order).await?;
+        let stored = store::lock(&mut tx, vessel, order).await?;
         let author = Author::server();
-        Ok(Change::new(app, tx, whole, author, now, Uuid::now_v7()))
+        Ok(Change::new(app, tx, stored, author, now, Uuid::now_v7()))
     }
 
     /// Writes the next entry.
     pub(crate) async fn append(&mut self, content: OrderEvent) -> Result<()> {
         // The first entry is the one that the request's key stands for.
         let id = std::mem::replace(&mut self.id, Uuid::now_v7());
-        let (tx, whole) = (&mut self.tx, &mut self.whole);
-        store::append(tx, whole, id, &self.author, self.now, content).await
+        let (tx, stored) = (&mut self.tx, &mut self.stored);
+        store::append(tx, stored, id, &self.author, self.now, content).await
     }
 
     /// Tells dashboards of something else that the change brings.
     pub(crate) async fn tell(&mut self, kind: Kind) -> Result<()> {
-        let vessel = self.whole.summary.vessel_id;
+        let vessel = self.stored.summary.vessel_id;
         let event = events::insert(&mut self.tx, vessel, kind, self.now).await?;
         self.told.push(event);
         Ok(())
@@ -159,21 +157,9 @@ impl<'a> Change<'a> {
     /// Ends it in a transaction that goes on; the events are to be published, and the work
     /// that follows to be woken, once that is committed.
     pub(crate) async fn finish(mut self) -> Result<(Tx, Vec<Event>)> {
-        let news = publish::tell(&mut self.tx, &self.whole, &self.before, self.now);
+        let news = publish::publish_changes(&mut self.tx, &self.stored, &self.before, self.now);
         let news = news.await?;
         self.told.extend(news);
         Ok((self.tx, self.told))
-    }
-}
-
-impl StoredOrder {
-    /// Refuses what cannot be done to an order in its state.
-    pub(crate) fn require_state(&self, allowed: &[State], what: &str) -> Result<()> {
-        if allowed.contains(&self.summary.state) {
-            return Ok(());
-        }
-        let state = serde_json::to_value(self.summary.state)?;
-        let state = state.as_str().unwrap_or_default().to_owned();
-        Err(Error::WrongState(format!("the order is {state}: {what}")))
     }
 }

@@ -1,6 +1,5 @@
 //! How the OpenAPI document describes plans; they themselves are the science crate's.
 
-use crate::berth_session::steps::StepVerdict;
 use binnacle_fleet::binnacles::{BarSchema, BucketSchema, PairSchema, SettingSchema, TraySchema};
 use serde::Serialize;
 use serde_json::Value;
@@ -286,25 +285,6 @@ pub(crate) struct NeededSchema {
     count: usize,
     /// Compass headings that would do, degrees, the best first.
     compass_deg: Vec<f64>,
-}
-
-/// What became of a step.
-#[derive(ToSchema)]
-#[schema(as = StepSaid)]
-#[allow(dead_code, reason = "describes StepSaid")]
-pub(crate) struct VerdictSchema {
-    /// The step's number in its plan.
-    number: u32,
-    before_deg: f64,
-    after_deg: f64,
-    /// By how much the compass should have turned.
-    expected_change_deg: f64,
-    /// How far off that may be.
-    tolerance_deg: f64,
-    /// In a word.
-    verdict: StepVerdict,
-    /// In words.
-    words: String,
 }
 
 /// An entry of an order's log: a line of canonical JSON with its hash.

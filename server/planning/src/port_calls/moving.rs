@@ -3,7 +3,8 @@
 use super::call::Content;
 use super::file::Taken;
 use super::store::Row;
-use binnacle_orders::dispatch::{Alongside, CallUpdate};
+use binnacle_orders::dispatch::CallUpdate;
+use binnacle_orders::work_orders::Alongside;
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::CallId;
 use std::collections::BTreeMap;

@@ -4,7 +4,7 @@ use super::Job;
 use crate::on_both;
 use crate::support::{Answer, Shore};
 use binnacle_orders::evidence;
-use binnacle_orders::work_orders::log_entry::sha256_hex;
+use binnacle_orders::work_orders::sha256_hex;
 use reqwest::Method;
 use ring::signature::{Ed25519KeyPair, KeyPair};
 use serde_json::{Value, json};

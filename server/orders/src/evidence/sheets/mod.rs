@@ -4,15 +4,16 @@
 //! which order it is, and the SHA-256 of the record that it is drawn from.
 
 mod tables;
+mod values;
 
-use crate::work_orders::log_entry::sha256_hex;
+use crate::work_orders::log::canonical_json::sha256_hex;
 use anyhow::Context;
 use binnacle_compass::time::Timestamp;
 use binnacle_drawing::paper::{LEFT, Paper, RIGHT};
 use binnacle_drawing::words::{east_west, heading_to_a_tenth, latitude, longitude};
 use binnacle_drawing::{About, Sheet, Style, pdf, svg};
-use binnacle_platform::time::Time;
 use serde_json::Value;
+use values::{minute, number, word};
 
 /// The record as PDF.
 ///
@@ -84,24 +85,6 @@ pub fn predicted_csv(text: &str) -> anyhow::Result<String> {
     }
     lines.push(String::new());
     Ok(lines.join("\n"))
-}
-
-fn word(value: &Value) -> String {
-    match value {
-        Value::String(text) => text.clone(),
-        Value::Null => String::new(),
-        other => other.to_string(),
-    }
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_default()
-}
-
-/// A time for people; as it stands where it is none.
-fn minute(value: &Value) -> String {
-    let text = word(value);
-    Timestamp::parse(&text).map_or(text, |time| Time(time).to_the_minute())
 }
 
 fn joined(parts: &[String]) -> String {

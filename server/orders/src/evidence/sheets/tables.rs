@@ -1,7 +1,7 @@
 //! What of the record stands beside each other: correctors before and after, steps,
 //! deviations foretold, the model's parameters.
 
-use super::{minute, number, word};
+use super::values::{minute, number, word};
 use binnacle_adjustment::binnacle::{Binnacle, Setting, Shape};
 use binnacle_drawing::paper::{LEFT, Paper, SIZE, VALUE};
 use binnacle_drawing::words::{east_west, heading, heading_to_a_tenth, signed};

@@ -6,9 +6,8 @@
 
 use crate::port_calls::Row as Call;
 use crate::schedule::plan::{LeftOut, NO_TERMS};
-use binnacle_orders::dispatch::{Alongside, CallFit};
 use binnacle_orders::firms::port_meant;
-use binnacle_orders::work_orders::State;
+use binnacle_orders::work_orders::{Alongside, CallFit, State};
 use binnacle_platform::db::{Db, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CallId, CompassId, FirmId, OperatorId, OrderId, VesselId};

@@ -3,7 +3,7 @@
 //! What always holds: a key and what was written under it are stored in one transaction,
 //! and are kept as long as the order. A key is the operator's or the firm's own.
 
-use crate::work_orders::order::Summary;
+use crate::work_orders::summary::Summary;
 use binnacle_platform::db::{Db, Tx, execute, row};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::idempotency::Key;

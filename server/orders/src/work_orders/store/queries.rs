@@ -3,11 +3,12 @@
 //! What always holds: an order is found only by its operator, or by a firm that is asked,
 //! has proposed terms, or has it.
 
-use crate::work_orders::order::{Filter, Summary};
-use crate::work_orders::store::{StoredOrder, read};
+use crate::work_orders::state::State;
+use crate::work_orders::store::stored_order::StoredOrder;
+use crate::work_orders::summary::{Filter, Summary};
 use binnacle_platform::db::{self, Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::ids::{FirmId, OrderId, VesselId};
+use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, PhotoId, VesselId};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 use futures_util::future::BoxFuture;
@@ -162,12 +163,11 @@ pub(crate) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<S
         vessel,
         id
     )?;
-    let log = read(lines)?;
-    Ok(StoredOrder { summary, log })
+    StoredOrder::read(summary, lines)
 }
 
 /// An order that the tenant sees, with its log.
-pub(crate) async fn whole(db: &Db, tenant: Tenant, id: OrderId) -> Result<StoredOrder> {
+pub(crate) async fn find(db: &Db, tenant: Tenant, id: OrderId) -> Result<StoredOrder> {
     let summary = summary(db, tenant, id).await?;
     let lines = rows!(
         db,
@@ -178,8 +178,7 @@ pub(crate) async fn whole(db: &Db, tenant: Tenant, id: OrderId) -> Result<Stored
         summary.vessel_id,
         id
     )?;
-    let log = read(lines)?;
-    Ok(StoredOrder { summary, log })
+    StoredOrder::read(summary, lines)
 }
 
 /// Lines of an order's log as they were hashed, with their hashes, from after a number.
@@ -201,5 +200,87 @@ pub(crate) async fn lines(
         id,
         after.unwrap_or(0),
         limit
+    )?)
+}
+
+/// The compass's last order that was completed; one that was closed after headings at sea
+/// had spoken against it counts as failed still.
+pub(crate) async fn last_completed(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<(OrderId, State, Time)>> {
+    Ok(row!(
+        in tx,
+        (OrderId, State, Time),
+        "SELECT id,
+                CASE WHEN state = 'closed' AND verified_at IS NULL THEN 'failed' ELSE state END,
+                completed_at
+         FROM work_orders
+         WHERE vessel_id = $1 AND compass_id = $2 AND completed_at IS NOT NULL
+         ORDER BY completed_at DESC, id DESC
+         LIMIT 1",
+        vessel,
+        compass
+    )?)
+}
+
+/// The names of a vessel of the operator's and of one of her compasses.
+///
+/// # Errors
+/// [`Error::NotFound`] when there is no such vessel or compass.
+pub(crate) async fn names(
+    tx: &mut Tx,
+    operator: OperatorId,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<(String, String)> {
+    let found = row!(
+        in &mut *tx,
+        (String,),
+        "SELECT name FROM vessels WHERE operator_id = $1 AND id = $2 ORDER BY id",
+        operator,
+        vessel
+    )?;
+    let (vessel_name,) = found.ok_or(Error::NotFound("vessel"))?;
+    let found = row!(
+        in tx,
+        (String,),
+        "SELECT name FROM compasses WHERE vessel_id = $1 AND id = $2 ORDER BY id",
+        vessel,
+        compass
+    )?;
+    let (compass_name,) = found.ok_or(Error::NotFound("compass"))?;
+    Ok((vessel_name, compass_name))
+}
+
+/// The record as it was signed; none before the order is completed.
+pub(crate) async fn record(db: &Db, vessel: VesselId, id: OrderId) -> Result<Option<String>> {
+    let found = row!(
+        db,
+        (Option<String>,),
+        "SELECT record FROM work_orders WHERE vessel_id = $1 AND id = $2 ORDER BY id",
+        vessel,
+        id
+    )?;
+    Ok(found.and_then(|(record,)| record))
+}
+
+/// A photograph's media type and bytes.
+pub(crate) async fn photo(
+    db: &Db,
+    vessel: VesselId,
+    order: OrderId,
+    id: PhotoId,
+) -> Result<Option<(String, Vec<u8>)>> {
+    Ok(row!(
+        db,
+        (String, Vec<u8>),
+        "SELECT media_type, bytes FROM work_order_photos
+         WHERE vessel_id = $1 AND order_id = $2 AND id = $3
+         ORDER BY id",
+        vessel,
+        order,
+        id
     )?)
 }

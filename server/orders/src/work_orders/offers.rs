@@ -4,91 +4,12 @@
 //! What always holds: at most one firm has accepted. Whoever is asked has a deadline, and
 //! so has the operator whom a firm asks for other terms; nothing said after it counts.
 
-use crate::work_orders::log_entry::OrderEvent;
-use crate::work_orders::order::State;
+use crate::work_orders::payload::exchange::{Exchange, NamedFirm, Terms};
+use crate::work_orders::state::State;
 use binnacle_platform::ids::FirmId;
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
-
-/// The firms that an order is offered to, in the order in which they are asked.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct OfferRound {
-    /// The firms.
-    pub firms: Vec<OfferedFirm>,
-    /// So long they have for an answer.
-    pub answer_within_hours: u32,
-    /// Whether all are asked at once.
-    pub at_once: bool,
-    /// What is said to them.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub text: Option<String>,
-}
-
-/// A firm that is to be asked, and for how much.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct OfferedFirm {
-    /// The firm.
-    #[serde(flatten)]
-    pub firm: NamedFirm,
-    /// The fee that it is offered, euros; none where nobody has said on what terms it works.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fee_eur: Option<f64>,
-}
-
-/// A firm, by its name then.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct NamedFirm {
-    /// Its id.
-    pub firm_id: FirmId,
-    /// Its name.
-    pub firm_name: String,
-}
-
-/// What is said between the operator and one firm: nobody else's business.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Exchange {
-    /// The firm, whoever of the two speaks.
-    #[serde(flatten)]
-    pub firm: NamedFirm,
-    /// Until when an answer is waited for.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub answer_by: Option<Time>,
-    /// The fee that is offered, or at which it is taken as it was offered, euros.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fee_eur: Option<f64>,
-    /// What is proposed, or agreed on.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub terms: Option<Terms>,
-    /// Who will come.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub adjuster_name: Option<String>,
-    /// The number of their licence.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub adjuster_licence: Option<String>,
-    /// In words.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub text: Option<String>,
-}
-
-/// Other terms than were offered.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-#[schema(as = WorkOrderTerms, example = json!({
-    "planned_at": "2026-11-22T13:00:00Z", "berth": "A7", "fee_eur": 900.0
-}))]
-pub struct Terms {
-    /// When it is to be done.
-    pub planned_at: Time,
-    /// The berth, if another.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(max_length = 200)]
-    pub berth: Option<String>,
-    /// The fee, euros.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(minimum = 0, maximum = 1_000_000)]
-    pub fee_eur: Option<f64>,
-}
 
 /// How an offer to a firm stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
@@ -149,68 +70,13 @@ pub(crate) struct Offers {
 }
 
 impl Offers {
-    /// Goes on by an entry.
-    pub(crate) fn take(&mut self, content: &OrderEvent) {
-        match content {
-            OrderEvent::OfferRound(offered) => self.begin(offered),
-            OrderEvent::OfferSent(said) => self.set(said, OfferState::Open),
-            OrderEvent::Accepted(said) | OrderEvent::ProposalAccepted(said) => {
-                self.set(said, OfferState::Accepted);
-                self.withdraw_unless(|state| state == OfferState::Waiting);
-            }
-            OrderEvent::Declined(said) | OrderEvent::ProposalDeclined(said) => {
-                self.set(said, OfferState::Declined);
-            }
-            OrderEvent::Proposed(said) => self.set(said, OfferState::Proposed),
-            OrderEvent::Lapsed(said) => self.set(said, OfferState::Lapsed),
-            OrderEvent::RetimeProposed(said) => self.propose_retime_to(said),
-            OrderEvent::RetimeAccepted(said) => self.set(said, OfferState::Accepted),
-            OrderEvent::RetimeDeclined(said) | OrderEvent::RetimeLapsed(said) => {
-                // What was agreed stands.
-                let agreed = Exchange {
-                    terms: None,
-                    ..said.clone()
-                };
-                self.set(&agreed, OfferState::Accepted);
-            }
-            OrderEvent::OnBoard(_) => self.drop_retime(),
-            OrderEvent::Cancelled(_) => {
-                self.drop_retime();
-                self.withdraw_unless(|_| false);
-            }
-            _ => {}
-        }
-    }
-
-    fn begin(&mut self, offered: &OfferRound) {
-        self.answer_within_hours = offered.answer_within_hours;
-        self.at_once = offered.at_once;
-        // Firms of an earlier round stay known: they see that it is over.
-        let asked = |offer: &Offer| {
-            let mut firms = offered.firms.iter();
-            firms.any(|one| one.firm.firm_id == offer.firm_id)
-        };
-        self.all.retain(|offer| !asked(offer));
-        let waiting = offered.firms.iter().map(|one| Offer {
-            firm_id: one.firm.firm_id,
-            firm_name: one.firm.firm_name.clone(),
-            state: OfferState::Waiting,
-            answer_by: None,
-            fee_eur: one.fee_eur,
-            terms: None,
-            new_terms: None,
-            text: offered.text.clone(),
-        });
-        self.all.extend(waiting);
-    }
-
     fn to(&mut self, firm: FirmId) -> Option<&mut Offer> {
         let mut offers = self.all.iter_mut();
         offers.find(|offer| offer.firm_id == firm)
     }
 
     /// Asks the firm that has the order for another time.
-    fn propose_retime_to(&mut self, said: &Exchange) {
+    pub(crate) fn propose_retime(&mut self, said: &Exchange) {
         if let Some(offer) = self.to(said.firm.firm_id) {
             offer.answer_by = said.answer_by;
             offer.new_terms.clone_from(&said.terms);
@@ -219,7 +85,7 @@ impl Offers {
     }
 
     /// Another time is not waited for any more.
-    fn drop_retime(&mut self) {
+    pub(crate) fn drop_retime(&mut self) {
         for offer in self
             .all
             .iter_mut()
@@ -229,7 +95,8 @@ impl Offers {
         }
     }
 
-    fn set(&mut self, said: &Exchange, state: OfferState) {
+    /// Records an answer to the offer to a firm.
+    pub(crate) fn set(&mut self, said: &Exchange, state: OfferState) {
         let Some(offer) = self.to(said.firm.firm_id) else {
             return;
         };
@@ -240,8 +107,17 @@ impl Offers {
         offer.text = said.text.clone().or(offer.text.take());
     }
 
+    /// Ends a proposal of another time: the agreed terms stand.
+    pub(crate) fn keep_agreed_terms(&mut self, said: &Exchange) {
+        let agreed = Exchange {
+            terms: None,
+            ..said.clone()
+        };
+        self.set(&agreed, OfferState::Accepted);
+    }
+
     /// Takes back what nobody has accepted.
-    fn withdraw_unless(&mut self, stays: impl Fn(OfferState) -> bool) {
+    pub(crate) fn withdraw_unless(&mut self, stays: impl Fn(OfferState) -> bool) {
         for offer in &mut self.all {
             let open = matches!(
                 offer.state,
@@ -294,6 +170,11 @@ impl Offers {
 }
 
 impl OfferState {
+    /// Returns whether the firm has not been sent the offer yet.
+    pub(crate) fn is_waiting(self) -> bool {
+        self == OfferState::Waiting
+    }
+
     /// Whether a firm whose offer stands so sees the order.
     pub(crate) fn is_seen(self) -> bool {
         matches!(
@@ -330,20 +211,5 @@ impl Offer {
     pub(crate) fn fee(&self) -> Option<f64> {
         let said = self.terms.as_ref().and_then(|terms| terms.fee_eur);
         said.or(self.fee_eur)
-    }
-}
-
-impl Exchange {
-    /// Nothing said yet.
-    pub(crate) fn with(firm: NamedFirm) -> Exchange {
-        Exchange {
-            firm,
-            answer_by: None,
-            fee_eur: None,
-            terms: None,
-            adjuster_name: None,
-            adjuster_licence: None,
-            text: None,
-        }
     }
 }

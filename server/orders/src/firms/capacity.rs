@@ -7,7 +7,8 @@
 //! for a time at which it does not work by the operator's own terms. A firm whose terms nobody
 //! has said can be asked anything.
 
-use super::{Terms, store};
+use super::store;
+use super::terms::Terms;
 use binnacle_fleet::particulars;
 use binnacle_platform::db::{Db, Tx, execute, rows};
 use binnacle_platform::error::{Error, Result};

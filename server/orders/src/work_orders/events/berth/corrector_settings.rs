@@ -1,0 +1,106 @@
+//! Settings of the correctors, as someone found or set them.
+
+use crate::work_orders::events::event::Event;
+use crate::work_orders::order_state::{InferredStrength, OrderState};
+use crate::work_orders::payload::step_result::{StepResult, StepVerdict};
+use crate::work_orders::state::State;
+use binnacle_adjustment::adjust::Step;
+use binnacle_adjustment::binnacle::{Binnacle, Setting};
+use binnacle_platform::time::Time;
+use serde::{Deserialize, Serialize};
+
+/// The same as the log has it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct CorrectorMove {
+    /// How they stood before.
+    pub before: Setting,
+    /// How they stand now.
+    pub after: Setting,
+    /// What the compass reads then, degrees.
+    pub compass_deg: Option<f64>,
+    /// Why.
+    pub note: Option<String>,
+    /// Whether a second reading that did not fit before fits them as they stand now.
+    #[serde(default)]
+    pub explains_reading: bool,
+    /// What is known instead of a strength that was learnt from how they did not stand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub learnt_anew: Option<Box<RevisedStrength>>,
+    /// When.
+    pub at: Time,
+}
+
+/// What is known instead of a strength that was learnt before.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct RevisedStrength {
+    /// The step from which it was learnt, its corrector where it stands.
+    pub step: Step,
+    /// The binnacle as it is now believed to be.
+    pub binnacle: Binnacle,
+}
+
+impl Event for CorrectorMove {
+    fn apply(&self, state: &mut OrderState) {
+        let stands = state.setting() == Some(&self.after);
+        // What it read before they were moved says nothing of how it reads now.
+        let still = state.compass_deg.filter(|_| stands);
+        if !stands {
+            // What was learnt of them held for how they were taken to stand.
+            let reading = state.second_reading.take();
+            let reading = reading.filter(|_| !self.explains_reading);
+            state.restore_first_reading();
+            state.second_reading = reading.filter(|reading| reading.is_contradiction());
+        }
+        if let Some(revised) = &self.learnt_anew
+            && let Some(index) = self.disputed_index(state)
+        {
+            state.inferred_strengths.truncate(index + 1);
+            state.inferred_strengths[index].step = revised.step.clone();
+            state.binnacle = Some(revised.binnacle.clone());
+            // What was said of it, and planned by it, holds no longer.
+            (state.last_step, state.plan) = (None, None);
+        }
+        state.compass_deg = self.compass_deg.or(still);
+        // Someone has looked at every one of them.
+        state.inspected_steps = state.steps.len();
+        state.inspected_since_reading = state.second_reading.is_some();
+        state.moved_to = Some(self.after.clone());
+        match &state.plan {
+            Some(plan) if plan.plan.setting == self.after => {
+                state.steps_done = plan.plan.steps.len();
+            }
+            // Another way than the plan's: there has to be another plan.
+            _ => {
+                state.plan = None;
+                state.state = State::Measured;
+            }
+        }
+    }
+}
+
+impl CorrectorMove {
+    /// Strength that this report disputes: its corrector stands elsewhere than assumed, or
+    /// the compass was read once more after its step.
+    pub(crate) fn disputed_strength<'a>(
+        &self,
+        state: &'a OrderState,
+    ) -> Option<&'a InferredStrength> {
+        let index = self.disputed_index(state)?;
+        state.inferred_strengths.get(index)
+    }
+
+    fn disputed_index(&self, state: &OrderState) -> Option<usize> {
+        let assumed = state.setting()?;
+        let mut strengths = state.inferred_strengths.iter();
+        let elsewhere =
+            strengths.position(|strength| strength.step.is_contradicted(assumed, &self.after));
+        let is_last = |said: &StepResult| said.verdict == StepVerdict::OtherStrength;
+        let is_read_again = *assumed == self.after
+            && self.compass_deg.is_some()
+            && state.last_step.as_ref().is_some_and(is_last);
+        elsewhere.or_else(|| {
+            let last = state.inferred_strengths.len().checked_sub(1);
+            last.filter(|_| is_read_again)
+        })
+    }
+}

@@ -1,0 +1,68 @@
+//! Step at the binnacle, with the compass's reading after it.
+
+use crate::work_orders::events::event::Event;
+use crate::work_orders::order_state::{InferredStrength, OrderState};
+use crate::work_orders::payload::chosen_plan::ChosenPlan;
+use crate::work_orders::payload::step_result::{StepResult, StepVerdict};
+use crate::work_orders::refusal::Refusal;
+use crate::work_orders::state::State;
+use binnacle_adjustment::adjust::{CompletedStep, Step};
+use binnacle_adjustment::binnacle::{Binnacle, Setting};
+use binnacle_compass::angle::wrap_180;
+use serde::{Deserialize, Serialize};
+
+/// A step as the log has it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct RecordedStep {
+    /// What became of it.
+    #[serde(flatten)]
+    pub said: StepResult,
+    /// The step.
+    pub step: Step,
+    /// How the correctors stand now; none when that is not known to be otherwise.
+    pub setting: Option<Setting>,
+    /// The binnacle, where a corrector was found to be of another strength.
+    pub binnacle: Option<Binnacle>,
+    /// The plan from there.
+    pub replanned: Option<Box<ChosenPlan>>,
+    /// Why there is none from there.
+    pub refusals: Vec<Refusal>,
+}
+
+impl Event for RecordedStep {
+    fn apply(&self, state: &mut OrderState) {
+        state.before_second_reading = None;
+        state.drop_confirmation();
+        // What nothing explains is read again, from where it was.
+        if self.said.verdict != StepVerdict::Unexplained {
+            state.compass_deg = Some(self.said.after_deg);
+        }
+        state.last_step = Some(self.said.clone());
+        if let Some(binnacle) = &self.binnacle {
+            let before = state.binnacle.replace(binnacle.clone());
+            let inferred = before.map(|binnacle| InferredStrength {
+                step: self.step.clone(),
+                before_deg: self.said.before_deg,
+                binnacle,
+            });
+            state.inferred_strengths.extend(inferred);
+        }
+        if let Some(setting) = &self.setting {
+            state.moved_to = Some(setting.clone());
+        }
+        if self.said.is_confirmed() {
+            state.steps_done += 1;
+            let turned_deg = wrap_180(self.said.after_deg - self.said.before_deg);
+            state.steps.push(CompletedStep {
+                step: self.step.clone(),
+                turned_deg: Some(turned_deg),
+            });
+        } else if self.setting.is_some() {
+            state.plan = None;
+            state.state = State::Measured;
+        }
+        if let Some(plan) = &self.replanned {
+            state.follow_plan(plan.as_ref().clone());
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! Log of an order: hash-chained entries in canonical JSON.
+
+pub(crate) mod canonical_json;
+pub(crate) mod entry;
+pub(crate) mod firm_view;

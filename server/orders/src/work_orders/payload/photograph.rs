@@ -1,0 +1,30 @@
+//! Photograph of an order.
+
+use binnacle_platform::ids::PhotoId;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// A photograph as the log has it.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[schema(as = OrderPhoto)]
+pub(crate) struct Photo {
+    /// Its id.
+    pub photo: PhotoId,
+    /// SHA-256, hexadecimal.
+    pub sha256: String,
+    /// `image/jpeg`, `image/png` or `image/webp`.
+    pub media_type: String,
+    /// How large it is.
+    pub bytes: usize,
+    /// What it shows.
+    #[schema(required)]
+    pub caption: Option<String>,
+}
+
+impl Photo {
+    /// Its name in the archive, after the number of its entry.
+    pub(crate) fn file(&self, seq: i64) -> String {
+        let ending = self.media_type.rsplit('/').next().unwrap_or("bin");
+        format!("photos/{seq:04}.{ending}")
+    }
+}
