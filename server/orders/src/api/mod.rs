@@ -5,6 +5,7 @@ mod create;
 
 pub use create::{give_way, write};
 
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
 use crate::berth_session::{berth_api, firm_vessel_view, second_reading_api};
 use crate::completion::completion_api;
 use crate::dispatch::{messages, offer_api, reschedule};
@@ -31,6 +32,7 @@ use uuid::Uuid;
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
+    CorrectorPlanSlots: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new()
@@ -43,6 +45,7 @@ where
 fn router_of_one<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
+    CorrectorPlanSlots: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     completion_api::router()

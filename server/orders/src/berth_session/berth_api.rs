@@ -2,8 +2,9 @@
 
 use crate::berth_session::berth_reading::{check, check_reading_ranges};
 use crate::berth_session::plan::{
-    PlanChoice, offer, refuse_magnetic_cargo, require_current_reading, run_planner,
+    PlanChoice, offer_plans, refuse_magnetic_cargo, require_current_reading,
 };
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
 use crate::berth_session::position_check;
 use crate::berth_session::second_reading::explains_second_reading;
 use crate::berth_session::steps::{CorrectorReport, StepReading, judge, revise_strength};
@@ -58,6 +59,7 @@ impl DomainEvent for BerthHeadingRead {}
 pub(crate) fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
+    CorrectorPlanSlots: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new()
@@ -171,6 +173,7 @@ fn refuse_moved_correctors(stored: &StoredOrder) -> Result<()> {
               (status = 422, description = "There is no plan, and what would cure that", body = Problem)))]
 async fn find_plan(
     Shared(app): Shared<App>,
+    Shared(slots): Shared<CorrectorPlanSlots>,
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Json<Outcome>> {
@@ -178,7 +181,9 @@ async fn find_plan(
     stored.require_state(&AT_BERTH, "there is nothing to plan")?;
     let plan_request = stored.state().plan_request()?;
     require_current_reading(&app, &stored.summary, &plan_request).await?;
-    Ok(Json(offer(&app, &stored.summary, plan_request).await?))
+    Ok(Json(
+        offer_plans(&app, &slots, &stored.summary, plan_request).await?,
+    ))
 }
 
 /// Choose a plan
@@ -190,6 +195,7 @@ async fn find_plan(
               (status = 422, description = "There is no plan, and what would cure that", body = Problem)))]
 async fn choose_plan(
     Shared(app): Shared<App>,
+    Shared(slots): Shared<CorrectorPlanSlots>,
     request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
@@ -204,7 +210,7 @@ async fn choose_plan(
     stored.require_state(&AT_BERTH, "there is nothing to plan")?;
     let plan_request = stored.state().plan_request()?;
     require_current_reading(&app, &stored.summary, &plan_request).await?;
-    let outcome = offer(&app, &stored.summary, plan_request).await?;
+    let outcome = offer_plans(&app, &slots, &stored.summary, plan_request).await?;
     let offered = outcome.plans.len();
     let planned = ChosenPlan::of(outcome, choice.plan.unwrap_or(1));
     let planned = planned.ok_or_else(|| Error::Invalid {
@@ -229,6 +235,7 @@ async fn choose_plan(
               (status = 422, body = Problem)))]
 async fn read_step(
     Shared(app): Shared<App>,
+    Shared(slots): Shared<CorrectorPlanSlots>,
     request: RequestContext,
     writer: PartyWriter,
     Id((id, number)): Id<(OrderId, u32)>,
@@ -267,10 +274,9 @@ async fn read_step(
     require_still_compass(before_deg, state.compass_deg)?;
     let plan_request = state.plan_request()?;
     refuse_magnetic_cargo(&app, &stored.summary, &plan_request).await?;
-    let judged = run_planner(&app, move || {
-        judge(&plan_request, step, before_deg, after_deg)
-    })
-    .await?;
+    let judged = slots
+        .run(move || judge(&plan_request, step, before_deg, after_deg))
+        .await?;
     if let Some(mut change) = update.begin(&stored).await? {
         change.append(OrderEvent::Step(Box::new(judged))).await?;
         change.commit().await?;
@@ -311,6 +317,7 @@ fn require_still_compass(before_deg: f64, last_deg: Option<f64>) -> Result<()> {
               (status = 422, body = Problem)))]
 async fn set_correctors(
     Shared(app): Shared<App>,
+    Shared(slots): Shared<CorrectorPlanSlots>,
     request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
@@ -325,8 +332,8 @@ async fn set_correctors(
     let what = "correctors are set between the reading and the completion";
     stored.require_state(&[State::Measured, State::Adjusting], what)?;
     let mut moved = moved(&stored, stand, app.clock.now().into())?;
-    moved.learnt_anew = revise_strength(&app, &stored.state(), &moved).await?;
-    moved.explains_reading = explains_second_reading(&app, &stored.state(), &moved).await?;
+    moved.learnt_anew = revise_strength(&slots, &stored.state(), &moved).await?;
+    moved.explains_reading = explains_second_reading(&slots, &stored.state(), &moved).await?;
     if let Some(mut change) = update.begin(&stored).await? {
         let content = OrderEvent::CorrectorSettings(Box::new(moved));
         change.append(content).await?;

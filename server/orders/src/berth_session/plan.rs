@@ -1,11 +1,12 @@
 //! The plan: what the planner offers, and what was chosen of it.
 
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
 use crate::berth_session::planning_inputs::PlanRequest;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::refusal::{Cure, Refusal, not_adjustable};
 use crate::work_orders::summary::Summary;
 use binnacle_adjustment::adjust::{
-    AdjustError, Outcome, UpdatedPrediction, check_total_turn, plan, predict_by_compass,
+    Outcome, UpdatedPrediction, check_total_turn, plan, predict_by_compass,
 };
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_fleet::alerts::{self, Effect};
@@ -155,7 +156,7 @@ pub(crate) fn require_within_limits(state: &OrderState) -> Result<()> {
 /// # Errors
 /// [`Error::WrongState`].
 pub(crate) async fn require_total_turn(
-    app: &App,
+    slots: &CorrectorPlanSlots,
     state: &OrderState,
     plan_request: PlanRequest,
 ) -> Result<()> {
@@ -167,7 +168,7 @@ pub(crate) async fn require_total_turn(
     if state.confirmed_prediction().is_some() || looked {
         return Ok(());
     }
-    let in_all = run_planner(app, move || {
+    let in_all = slots.run(move || {
         let adjustment = plan_request.adjustment();
         check_total_turn(&adjustment, first_deg, adjustment.standing(), now_deg)
     });
@@ -186,17 +187,19 @@ pub(crate) async fn require_total_turn(
 ///
 /// # Errors
 /// `not-adjustable` where what is left open is beyond the order's limits.
-pub(crate) async fn foretold(app: &App, state: &OrderState) -> Result<UpdatedPrediction> {
+pub(crate) async fn predict(
+    slots: &CorrectorPlanSlots,
+    state: &OrderState,
+) -> Result<UpdatedPrediction> {
     if let Some(learnt) = state.confirmed_prediction() {
         return Ok(learnt.clone());
     }
     let plan_request = state.plan_request()?;
     let (limits, waters) = (state.limits, plan_request.basis.waters.clone());
     let steps = state.steps.clone();
-    let learnt = run_planner(app, move || {
-        predict_by_compass(&plan_request.adjustment(), &steps)
-    })
-    .await?;
+    let learnt = slots
+        .run(move || predict_by_compass(&plan_request.adjustment(), &steps))
+        .await?;
     let Some(beyond) = learnt.limit_violation(&limits, &waters) else {
         return Ok(learnt);
     };
@@ -213,15 +216,16 @@ pub(crate) async fn foretold(app: &App, state: &OrderState) -> Result<UpdatedPre
 ///
 /// # Errors
 /// `not-adjustable` with what would cure it.
-pub(crate) async fn offer(
+pub(crate) async fn offer_plans(
     app: &App,
+    slots: &CorrectorPlanSlots,
     summary: &Summary,
     plan_request: PlanRequest,
 ) -> Result<Outcome> {
     let (vessel, compass) = (summary.vessel_id, summary.compass_id);
     let alerts = alerts::list_in_force(&app.db, vessel, compass).await?;
     let unproved = plan_request.basis.model.headings_until;
-    let mut outcome = run_planner(app, move || plan(&plan_request.adjustment())).await?;
+    let mut outcome = slots.run(move || plan(&plan_request.adjustment())).await?;
     if let Some(until) = unproved {
         outcome.notes.insert(
             0,
@@ -241,23 +245,6 @@ pub(crate) async fn offer(
         return Err(not_adjustable(refusals(&outcome)));
     }
     Ok(outcome)
-}
-
-/// Runs the planner on a blocking thread, a few at a time.
-pub(crate) async fn run_planner<T: Send + 'static>(
-    app: &App,
-    what: impl FnOnce() -> std::result::Result<T, AdjustError> + Send + 'static,
-) -> Result<T> {
-    let turn = app.planning.clone().acquire_owned().await;
-    let turn = turn.map_err(|error| anyhow::anyhow!(error))?;
-    let done = tokio::task::spawn_blocking(move || {
-        let _turn = turn;
-        what()
-    });
-    done.await?.map_err(|error| Error::Invalid {
-        field: "plan",
-        detail: error.to_string(),
-    })
 }
 
 /// Why an outcome has no plans.

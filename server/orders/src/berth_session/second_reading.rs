@@ -4,7 +4,7 @@
 //! the first reading and the model that was held against that.
 
 use crate::berth_session::berth_reading::check;
-use crate::berth_session::plan::run_planner;
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
 use crate::berth_session::planning_inputs::PlanRequest;
 use crate::work_orders::events::CorrectorMove;
 use crate::work_orders::order_state::OrderState;
@@ -20,7 +20,6 @@ use binnacle_adjustment::adjust::{
 };
 use binnacle_adjustment::berth::BerthReading;
 use binnacle_adjustment::binnacle::Binnacle;
-use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
 
 const FITS_UNPLANNED: &str =
@@ -165,7 +164,7 @@ impl SecondReading {
 
 /// Whether the reading that did not fit fits the correctors as they are said to stand now.
 pub(crate) async fn explains_second_reading(
-    app: &App,
+    slots: &CorrectorPlanSlots,
     state: &OrderState,
     moved: &CorrectorMove,
 ) -> Result<bool> {
@@ -180,7 +179,7 @@ pub(crate) async fn explains_second_reading(
         plan_request.binnacle = anew.binnacle.clone();
     }
     let second = SecondReading::new(contradiction.given.clone(), &plan_request)?;
-    let again = run_planner(app, move || second.read(&plan_request, &[])).await?;
+    let again = slots.run(move || second.read(&plan_request, &[])).await?;
     Ok(matches!(
         again.verdict,
         Verdict::AsPlanned { .. } | Verdict::Replan { .. }

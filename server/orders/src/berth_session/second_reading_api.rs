@@ -3,11 +3,12 @@
 //!
 //! What always holds: it is optional, and what it says is kept. One that confirms the plan
 //! gives the order its model and its residuals; one that does not holds back completion
-//! until the field was read as foretold, a plan was made from this very reading, or someone
+//! until the field was read as predict, a plan was made from this very reading, or someone
 //! has found the correctors to stand otherwise.
 
 use crate::berth_session::berth_reading::check_reading_ranges;
-use crate::berth_session::plan::{require_current_reading, run_planner};
+use crate::berth_session::plan::require_current_reading;
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
 use crate::berth_session::second_reading::{SecondReading, as_first_reading};
 use crate::berth_session::steps::require_after_last_step;
 use crate::work_orders::events::OrderEvent;
@@ -60,6 +61,7 @@ struct AgainSchema {
 pub(crate) fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
+    CorrectorPlanSlots: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new().routes(routes!(read_field_again))
@@ -77,6 +79,7 @@ where
               (status = 422, body = Problem)))]
 async fn read_field_again(
     Shared(app): Shared<App>,
+    Shared(slots): Shared<CorrectorPlanSlots>,
     request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
@@ -103,7 +106,7 @@ async fn read_field_again(
     let steps = state.steps[looked_at..].to_vec();
     let planned = state.plan.is_some();
     let judge = move || second.judge(&plan_request, &steps, looked_at, planned);
-    let (mut judged, basis) = run_planner(&app, judge).await?;
+    let (mut judged, basis) = slots.run(judge).await?;
     judged.anew = basis
         .map(|basis| as_first_reading(basis, form))
         .transpose()?;

@@ -1,6 +1,7 @@
 //! Steps at the binnacle: what the compass read after each, and what follows.
 
-use crate::berth_session::plan::{refusals, run_planner};
+use crate::berth_session::plan::refusals;
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
 use crate::berth_session::planning_inputs::PlanRequest;
 use crate::work_orders::events::{CorrectorMove, OrderEvent, RecordedStep, RevisedStrength};
 use crate::work_orders::order_state::{InferredStrength, OrderState};
@@ -12,7 +13,6 @@ use binnacle_adjustment::adjust::{
     AdjustError, Outcome, Step, StepCheck, check_step, check_step_with_setting, check_total_turn,
 };
 use binnacle_adjustment::binnacle::Setting;
-use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
@@ -193,7 +193,7 @@ fn strength_text(share: f64, other_hole: Option<u16>) -> String {
 
 /// What is known instead of a strength that this word disputes.
 pub(crate) async fn revise_strength(
-    app: &App,
+    slots: &CorrectorPlanSlots,
     state: &OrderState,
     moved: &CorrectorMove,
 ) -> Result<Option<Box<RevisedStrength>>> {
@@ -201,7 +201,7 @@ pub(crate) async fn revise_strength(
         return Ok(None);
     };
     let (after, compass_deg) = (moved.after.clone(), moved.compass_deg);
-    let learnt = run_planner(app, move || {
+    let learnt = slots.run(move || {
         let (adjustment, step) = (plan_request.adjustment(), &strength.step);
         check_step_with_setting(&adjustment, step, strength.before_deg, &after, compass_deg)
     });

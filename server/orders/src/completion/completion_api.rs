@@ -2,8 +2,9 @@
 
 use crate::berth_session::photos::{Caption, MAX_BYTES, MOST};
 use crate::berth_session::plan::{
-    foretold, require_current_reading, require_total_turn, require_within_limits,
+    predict, require_current_reading, require_total_turn, require_within_limits,
 };
+use crate::berth_session::plan_slots::CorrectorPlanSlots;
 use crate::completion::complete;
 use crate::completion::record::VesselAndCompass;
 use crate::completion::sign_off::SignOff;
@@ -49,6 +50,7 @@ const WITH_PHOTOS: [State; 8] = [
 pub(crate) fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
+    CorrectorPlanSlots: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new()
@@ -145,7 +147,7 @@ async fn find_photo(
 /// Complete an adjustment
 ///
 /// By the adjuster's name, licence and typed signature. From that moment on the vessel's
-/// logbook has the adjustment, the ship gets the model that is foretold, and the card is
+/// logbook has the adjustment, the ship gets the model that is predict, and the card is
 /// a prediction until headings at sea agree.
 #[utoipa::path(post, path = "/work-orders/{id}/complete", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = SignOff,
@@ -155,6 +157,7 @@ async fn find_photo(
               (status = 422, body = Problem)))]
 async fn complete_work_order(
     Shared(app): Shared<App>,
+    Shared(slots): Shared<CorrectorPlanSlots>,
     request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
@@ -173,8 +176,8 @@ async fn complete_work_order(
     require_within_limits(&state)?;
     let (word, at) = word.checked(&stored, app.clock.now().into())?;
     complete::require_planned_setting(&state)?;
-    require_total_turn(&app, &state, plan_request).await?;
-    let learnt = foretold(&app, &state).await?;
+    require_total_turn(&slots, &state, plan_request).await?;
+    let learnt = predict(&slots, &state).await?;
     let aboard = aboard(&app, &stored).await?;
     if let Some(mut change) = update.begin(&stored).await? {
         Box::pin(complete::complete(&mut change, &aboard, learnt, word, at)).await?;
