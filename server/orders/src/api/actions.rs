@@ -17,17 +17,17 @@ use binnacle_platform::ids::OrderId;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// Something to be said of an order.
+/// Request for a remark, or for a cancellation with its reason.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = OrderRemark, example = json!({ "text": "Crane alongside until noon." }))]
 pub(super) struct RemarkForm {
-    /// In words.
+    /// Text of the remark.
     #[schema(min_length = 1, max_length = 200)]
     text: String,
 }
 
-/// Say something of a work order
+/// Remark on a work order
 #[utoipa::path(post, path = "/work-orders/{id}/remarks", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = RemarkForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -55,8 +55,8 @@ pub(super) async fn remark(
 
 /// Cancel a work order
 ///
-/// For the operator; a firm declines. Correctors that were moved stay as they stand: the binnacle's next revision says so,
-/// and the logbook has the moment.
+/// For the operator; a firm declines instead. Correctors that were moved keep their settings: the
+/// next revision of the binnacle and an entry in the logbook record them.
 #[utoipa::path(post, path = "/work-orders/{id}/cancel", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = RemarkForm,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -89,7 +89,7 @@ pub(super) async fn cancel_work_order(
     shown(&app, writer.operator, id).await
 }
 
-/// Notes correctors that were moved though the adjustment came to nothing.
+/// Records correctors that were moved although the order is cancelled.
 async fn record_moved_correctors(change: &mut Change<'_>) -> Result<()> {
     let state = change.stored.state();
     if !state.has_moved_correctors() {
@@ -106,25 +106,25 @@ async fn record_moved_correctors(change: &mut Change<'_>) -> Result<()> {
     write_logbook(change, binnacle_platform::ids::EntryId::new(), now, &port).await
 }
 
-/// How an order is closed.
+/// Request to close an order.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = OrderClosing, example = json!({ "text": "Papers are filed." }))]
 pub(super) struct Closing {
-    /// Why, in words.
+    /// Reason.
     #[schema(min_length = 1, max_length = 200)]
     text: String,
-    /// Close it though no headings at sea have spoken, as of a ship that sends no more. What
-    /// was foretold stays foretold.
+    /// Closes the order although no headings at sea verified it, for a vessel that sends no more
+    /// data. Predictions stay predictions.
     #[serde(default)]
     without_verification: bool,
 }
 
 /// Close a work order
 ///
-/// When headings at sea have spoken. One that no headings will be sent for is closed
-/// `without_verification`: it is `closed_unverified` then, its card stays predicted, and nothing
-/// says that it was verified.
+/// After verification by headings at sea. An order without such headings is closed with
+/// `without_verification`: its state becomes `closed_unverified`, and its card stays a
+/// prediction.
 #[utoipa::path(post, path = "/work-orders/{id}/close", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = Closing,
     responses((status = 200, body = Order), (status = 401, body = Problem),

@@ -1,4 +1,4 @@
-//! New work orders, and the withdrawal of one that every firm declined.
+//! Creation of work orders, and cancellation of an order that every firm declined.
 
 use crate::dispatch::{offer_requests, port_call_check};
 use crate::work_orders::events::{Cancelled, Opened, OrderEvent};
@@ -25,7 +25,7 @@ use uuid::Uuid;
 
 /// Order a compass to be adjusted
 ///
-/// A compass has one order under way at a time. With an `offer` it is offered to firms at
+/// A compass has at most one order under way. An order with an `offer` is offered to firms at
 /// once.
 #[utoipa::path(post, path = "/work-orders", tag = "adjusting", params(Key),
     request_body = NewOrder,
@@ -58,11 +58,11 @@ pub(super) async fn create_work_order(
     ))
 }
 
-/// Writes a new order, and offers it where that is asked for.
+/// Creates an order, and offers it to firms if requested.
 ///
 /// # Errors
-/// [`Error::WrongState`] when another order of the compass is under way or the vessel out of
-/// service, and what is wrong with the offer.
+/// [`Error::WrongState`] when another order of the compass is under way or the vessel is out of
+/// service, and any error of the offer.
 async fn open<'a>(
     app: &'a App,
     request: &RequestContext,
@@ -106,12 +106,12 @@ async fn open<'a>(
     Ok(change)
 }
 
-/// Writes an order under an id and offers it, as the schedule has it, in a transaction that
-/// goes on: what there is to be told when it is committed comes back with it.
+/// Creates an order under an id and offers it, as the schedule requests, in an open transaction.
+/// Returns the live events, to be published after the commit.
 ///
 /// # Errors
-/// [`Error::WrongState`] when another order of the compass is under way, and what is wrong
-/// with the order or its offer.
+/// [`Error::WrongState`] when another order of the compass is under way, and any error of the
+/// order or its offer.
 pub async fn write(
     app: &App,
     request: &RequestContext,
@@ -126,11 +126,11 @@ pub async fn write(
     change.finish().await
 }
 
-/// Cancels an order that every firm declined, for another in its place, in a transaction that
-/// goes on; one that is under way no more is in nobody's way.
+/// Cancels an order that every firm declined, to make way for another, in an open transaction. An
+/// order that is no longer under way stays as it is.
 ///
 /// # Errors
-/// [`Error::WrongState`] when firms are asked for it still, or one has it.
+/// [`Error::WrongState`] when an offer is open or a firm has the order.
 pub async fn give_way(
     app: &App,
     mut tx: Tx,
@@ -159,7 +159,7 @@ pub async fn give_way(
     change.finish().await
 }
 
-/// An operator's person, as entries name them.
+/// Author of entries for a user of the operator.
 async fn author(tx: &mut Tx, writer: Writer) -> Result<Author> {
     Ok(Author {
         id: Some(writer.user.0),

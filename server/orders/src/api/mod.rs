@@ -28,7 +28,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-/// The routes of this part.
+/// Routes of work orders.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -40,8 +40,8 @@ where
         .merge(router_of_one())
 }
 
-/// The routes of one order. In the audit log each request has its order, and what firms read
-/// is logged.
+/// Routes of a single order. The audit log names the order of each request, and records what
+/// firms read.
 fn router_of_one<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -63,7 +63,7 @@ where
         .route_layer(from_fn(log_order))
 }
 
-/// Tells the audit log which order a request is about.
+/// Names the order of a request in the audit log.
 async fn log_order(
     context: RequestContext,
     path: RawPathParams,
@@ -98,8 +98,7 @@ async fn list_work_orders(
 
 /// See a work order
 ///
-/// With all that the next thing to do depends on: the page at the binnacle asks for
-/// nothing else.
+/// Contains everything that the next action depends on.
 #[utoipa::path(get, path = "/work-orders/{id}", tag = "adjusting", params(("id" = OrderId, Path)),
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
@@ -113,7 +112,7 @@ async fn find_work_order(
 
 /// Read a work order's log
 ///
-/// What is between the operator and another firm is withheld from a firm; its hash stays.
+/// Exchanges with other firms are withheld from a firm; their hashes stay.
 #[utoipa::path(get, path = "/work-orders/{id}/entries", tag = "adjusting",
     params(("id" = OrderId, Path), Page),
     responses((status = 200, body = LineList), (status = 401, body = Problem),

@@ -1,4 +1,4 @@
-//! What is done at the berth: the reading, the plan, its steps.
+//! Handlers of the berth session: reading, plan, steps and corrector settings.
 
 use crate::berth_session::berth_reading::{check, check_reading_ranges};
 use crate::berth_session::plan::{
@@ -35,7 +35,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-/// In which states something is done at the berth; an order that no firm has is read as
+/// States in which a berth session may take place. An order without a firm may be measured as
 /// soon as it is planned.
 const AT_BERTH: [State; 4] = [
     State::Planned,
@@ -44,11 +44,11 @@ const AT_BERTH: [State; 4] = [
     State::Adjusting,
 ];
 
-/// The heading at the berth was read, and the reading is credible.
+/// Credible reading of the heading at the berth.
 pub struct BerthHeadingRead {
     /// The vessel.
     pub vessel: VesselId,
-    /// When.
+    /// Time of the reading.
     pub at: Time,
     /// True heading, degrees.
     pub heading_deg: f64,
@@ -69,10 +69,10 @@ where
         .routes(routes!(set_correctors))
 }
 
-/// Send what was read at the berth
+/// Send the reading at the berth
 ///
-/// The unit is named, never guessed. What cannot be true is kept in the log and refused,
-/// with the mistakes that would explain it.
+/// The unit is named, never guessed. An implausible reading is kept in the log and refused, with
+/// the mistakes that would explain it.
 #[utoipa::path(post, path = "/work-orders/{id}/berth-reading", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = BerthReadingSchema,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -134,7 +134,7 @@ async fn read_berth(
     }
 }
 
-/// A reading that was sent again is refused again.
+/// Refuses a reading again that is sent a second time.
 fn repeat_refusal(stored: &StoredOrder, entry: Uuid) -> Result<()> {
     let mut found = stored.log.iter().filter(|known| known.id == entry);
     let refusal = found.find_map(|known| match &known.content {
@@ -144,7 +144,7 @@ fn repeat_refusal(stored: &StoredOrder, entry: Uuid) -> Result<()> {
     refusal.map_or(Ok(()), |refusal| Err(not_adjustable(vec![refusal])))
 }
 
-/// The model knows the correctors as they stood: what was moved since spoils a reading.
+/// Refuses a reading after correctors were moved: the model describes their earlier settings.
 fn refuse_moved_correctors(stored: &StoredOrder) -> Result<()> {
     stored.require_state(
         &AT_BERTH,
@@ -162,9 +162,9 @@ fn refuse_moved_correctors(stored: &StoredOrder) -> Result<()> {
     Ok(())
 }
 
-/// See what the planner offers
+/// See the available plans
 ///
-/// From the last reading, and from how the correctors stand now. Nothing is kept.
+/// Based on the last reading and the present settings of the correctors. Nothing is stored.
 #[utoipa::path(get, path = "/work-orders/{id}/plan", tag = "adjusting",
     params(("id" = OrderId, Path)),
     responses((status = 200, body = OfferSchema), (status = 401, body = Problem),
@@ -224,9 +224,9 @@ async fn choose_plan(
     shown(&app, writer.tenant, id).await
 }
 
-/// Send what the compass reads after a step
+/// Send the compass reading after a step
 ///
-/// The step is confirmed, or there is a new plan from what was read.
+/// The step is confirmed, or a new plan follows from the reading.
 #[utoipa::path(post, path = "/work-orders/{id}/steps/{n}", tag = "adjusting",
     params(("id" = OrderId, Path), ("n" = u32, Path), Key), request_body = StepReading,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -284,10 +284,11 @@ async fn read_step(
     shown(&app, writer.tenant, id).await
 }
 
-/// At a berth a compass that nothing was done to turns by no more, degrees.
+/// Largest turn of a compass at the berth without an action, degrees.
 const STILL_TOLERANCE_DEG: f64 = 3.0;
 
-/// What a step turns the compass by is foretold for the heading on which the berth was read.
+/// Refuses a first reading that differs from the last one: predicted turns hold for the heading
+/// of the berth reading alone.
 fn require_still_compass(before_deg: f64, last_deg: Option<f64>) -> Result<()> {
     let Some(last_deg) = last_deg else {
         return Ok(());
@@ -306,9 +307,9 @@ fn require_still_compass(before_deg: f64, last_deg: Option<f64>) -> Result<()> {
     })
 }
 
-/// Say how the correctors stand
+/// Report the settings of the correctors
 ///
-/// When they stand otherwise than the plan has it, there has to be another plan.
+/// Settings other than the plan's require a new plan.
 #[utoipa::path(post, path = "/work-orders/{id}/corrector-settings", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = CorrectorReport,
     responses((status = 200, body = Order), (status = 401, body = Problem),

@@ -1,8 +1,8 @@
-//! What was read at the berth, and what it is held against.
+//! Check of the reading at the berth.
 //!
-//! What always holds: a reading that is refused is kept with the reason; and one that is
-//! taken keeps with it everything that a plan from it depends on, so that the same plan
-//! can be made again from the log alone. Its words are those of `plan` (docs/plan.md).
+//! What always holds: a refused reading is kept with the reason. An accepted reading is kept with
+//! everything that a plan from it depends on, so that the plan can be repeated from the log
+//! alone. The field names are those of `plan` (docs/plan.md).
 
 use crate::work_orders::payload::basis::Basis;
 use crate::work_orders::payload::recorded_reading::BerthCheck;
@@ -12,10 +12,10 @@ use binnacle_adjustment::berth::{BerthEstimate, BerthReading};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::time::Time;
 
-/// A clock on board may be so much before the server's, seconds.
+/// Largest lead of a clock on board over the server's, seconds.
 const MAX_CLOCK_LEAD_S: f64 = 300.0;
 
-/// Refuses what cannot be a number of its kind, or a time.
+/// Refuses values outside their ranges, and a time in the future.
 pub(crate) fn check_reading_ranges(given: &ReadingForm, now: Time) -> Result<()> {
     given.check_ranges().map_err(|error| Error::Invalid {
         field: error.field,
@@ -30,7 +30,7 @@ pub(crate) fn check_reading_ranges(given: &ReadingForm, now: Time) -> Result<()>
     Ok(())
 }
 
-/// What a reading told, or why it is not taken.
+/// Checks a reading against its basis; returns the check, or the refusal.
 pub(crate) fn check(
     given: &ReadingForm,
     basis: &Basis,

@@ -1,8 +1,7 @@
-//! Photographs: what was seen, kept as it came.
+//! Photographs, kept as they were uploaded.
 //!
-//! What always holds: the kind of a file is told by its first octets, whatever it is
-//! called, and it has that kind's header with a size that a picture can have; it is given
-//! out as that kind and never as a page.
+//! What always holds: the type of a file follows from its first bytes, whatever its name. It has
+//! a header of that type with a plausible size. It is served as that type and never as a page.
 
 use crate::work_orders::log::canonical_json::sha256_hex;
 use crate::work_orders::payload::photograph::Photo;
@@ -12,27 +11,28 @@ use binnacle_platform::ids::PhotoId;
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-/// A photograph is not larger.
+/// Largest photograph, bytes.
 pub const MAX_BYTES: usize = 10 * 1024 * 1024;
-/// No camera's picture has more to a side, and none that shows a tray has less.
+/// Range of a picture's sides, pixels: from the smallest that shows a tray to the largest of a
+/// camera.
 const SIDE: std::ops::RangeInclusive<u32> = 16..=32_768;
-/// So many belong to an order at most.
+/// Most photographs of an order.
 pub const MOST: usize = 40;
 
-/// What a photograph shows.
+/// Caption of a photograph.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct Caption {
-    /// In a few words.
+    /// Short description.
     #[param(max_length = 200)]
     caption: Option<String>,
 }
 
 impl Photo {
-    /// A photograph of this id.
+    /// Validates the bytes of a photograph.
     ///
     /// # Errors
-    /// When it is too large, or of no kind that is taken.
+    /// When it is too large, or of an unsupported type.
     pub(crate) fn new(id: PhotoId, bytes: &[u8], caption: &Caption) -> Result<Photo> {
         if bytes.len() > MAX_BYTES {
             return Err(Error::TooLarge(MAX_BYTES));
@@ -56,7 +56,7 @@ impl Photo {
     }
 }
 
-/// The kind of a file by its first octets.
+/// Type of a file by its first bytes.
 fn media_type(bytes: &[u8]) -> Option<&'static str> {
     let webp = bytes.len() > 12 && bytes.starts_with(b"RIFF") && &bytes[8..12] == b"WEBP";
     match bytes {
@@ -67,8 +67,7 @@ fn media_type(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Width and height by the header; none of a file that ends before it, or has no picture
-/// behind it.
+/// Width and height by the header; `None` for a truncated file or one without picture data.
 fn size(media_type: &str, bytes: &[u8]) -> Option<[u32; 2]> {
     match media_type {
         "image/png" => png(bytes),
@@ -81,7 +80,7 @@ fn octets<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at.checked_add(N)?)?.try_into().ok()
 }
 
-/// `IHDR` comes first, and there is data (PNG, 5.6 and 11.2.1).
+/// Size of a PNG: `IHDR` comes first, and there is data (PNG, 5.6 and 11.2.1).
 fn png(bytes: &[u8]) -> Option<[u32; 2]> {
     let has_data = bytes.windows(4).any(|kind| kind == b"IDAT");
     if octets::<4>(bytes, 12)? != *b"IHDR" || !has_data {
@@ -93,7 +92,7 @@ fn png(bytes: &[u8]) -> Option<[u32; 2]> {
     ])
 }
 
-/// From segment to segment to the frame's header, with a scan behind it (ITU-T T.81, B.2).
+/// Size of a JPEG: segments up to the frame header, followed by a scan (ITU-T T.81, B.2).
 fn jpeg(bytes: &[u8]) -> Option<[u32; 2]> {
     let mut at = 2;
     let mut found = None;
@@ -120,7 +119,7 @@ fn jpeg(bytes: &[u8]) -> Option<[u32; 2]> {
     }
 }
 
-/// Lossy, lossless or extended (RFC 9649, 2.4 to 2.7).
+/// Size of a WebP: lossy, lossless or extended (RFC 9649, 2.4 to 2.7).
 fn webp(bytes: &[u8]) -> Option<[u32; 2]> {
     let less_one = |three: [u8; 3]| 1 + u32::from_le_bytes([three[0], three[1], three[2], 0]);
     match &octets::<4>(bytes, 12)? {

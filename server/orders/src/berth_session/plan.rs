@@ -1,4 +1,4 @@
-//! The plan: what the planner offers, and what was chosen of it.
+//! Corrector plans: conditions for planning, the plans offered, and the prediction.
 
 use crate::berth_session::plan_slots::CorrectorPlanSlots;
 use crate::berth_session::planning_inputs::PlanRequest;
@@ -19,18 +19,18 @@ use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// Which plan.
+/// Choice of a plan.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = PlanChoice, example = json!({ "plan": 1 }))]
 pub(crate) struct PlanChoice {
-    /// Which of those that are offered, from 1: the recommended one where it is not said.
+    /// Number of the plan among those offered, from 1; the recommended one by default.
     #[schema(minimum = 1)]
     pub plan: Option<usize>,
 }
 
 impl OrderState {
-    /// What the planner is asked now.
+    /// Input of the planner for the present state.
     ///
     /// # Errors
     /// [`Error::WrongState`] before there is a reading.
@@ -54,11 +54,11 @@ impl OrderState {
     }
 }
 
-/// What is read at a berth holds no longer: by then she may lie elsewhere.
+/// Validity of a reading at a berth, seconds: later the vessel may lie elsewhere.
 pub(crate) const READING_VALIDITY_S: f64 = 48.0 * 3600.0;
 
-/// Refuses a reading that is too old, or older than a change of the ship's magnetism, of
-/// what is known of her binnacle or of cargo.
+/// Refuses a reading that is too old, or older than a change of the ship's magnetism, of the
+/// binnacle or of the cargo.
 ///
 /// # Errors
 /// [`Error::WrongState`].
@@ -95,9 +95,8 @@ pub(crate) async fn require_current_reading(
     Ok(())
 }
 
-/// Refuses what was read before magnetic cargo came on board, by the logbook as it is now,
-/// and what cargo that it has no longer would refuse. Cargo that it had and has is the
-/// planner's to refuse.
+/// Refuses a reading taken before magnetic cargo was loaded, or with cargo that the logbook no
+/// longer has. The planner refuses cargo that was on board then and now.
 ///
 /// # Errors
 /// [`Error::WrongState`].
@@ -134,10 +133,10 @@ pub(crate) async fn refuse_magnetic_cargo(
     )))
 }
 
-/// Refuses what is foretold beyond the order's limits, however it came to be followed.
+/// Refuses a plan that predicts values beyond the order's limits.
 ///
 /// # Errors
-/// `not-adjustable` with what would cure it.
+/// `not-adjustable`, with the cures.
 pub(crate) fn require_within_limits(state: &OrderState) -> Result<()> {
     let basis = state.reading.as_ref().and_then(|read| read.basis.as_ref());
     let followed = state.plan.as_ref().zip(basis);
@@ -149,9 +148,9 @@ pub(crate) fn require_within_limits(state: &OrderState) -> Result<()> {
     }
 }
 
-/// Refuses to complete what in all turned the compass otherwise than planned, where
-/// neither the magnetometer nor anyone's eyes have said since that the correctors stand so:
-/// small errors of steps, each within its own tolerance, add up.
+/// Refuses to complete an adjustment whose total turn of the compass differs from the plan,
+/// unless a second reading or an inspection confirmed the settings: small errors of steps, each
+/// within its tolerance, add up.
 ///
 /// # Errors
 /// [`Error::WrongState`].
@@ -182,11 +181,11 @@ pub(crate) async fn require_total_turn(
     )))
 }
 
-/// What is foretold of the correctors as they stand: by the magnetometer after the steps,
-/// or by what the compass showed at them, which leaves more open.
+/// Predicts the deviations for the present settings: by the second reading, or with more
+/// uncertainty by the compass at each step.
 ///
 /// # Errors
-/// `not-adjustable` where what is left open is beyond the order's limits.
+/// `not-adjustable` when the uncertainty is beyond the order's limits.
 pub(crate) async fn predict(
     slots: &CorrectorPlanSlots,
     state: &OrderState,
@@ -212,10 +211,10 @@ pub(crate) async fn predict(
     Err(not_adjustable(vec![refusal]))
 }
 
-/// What the planner offers, or why it offers nothing.
+/// Returns the planner's plans with its notes.
 ///
 /// # Errors
-/// `not-adjustable` with what would cure it.
+/// `not-adjustable`, with the cures.
 pub(crate) async fn offer_plans(
     app: &App,
     slots: &CorrectorPlanSlots,
@@ -247,7 +246,7 @@ pub(crate) async fn offer_plans(
     Ok(outcome)
 }
 
-/// Why an outcome has no plans.
+/// Reasons for an outcome without plans.
 pub(crate) fn refusals(outcome: &Outcome) -> Vec<Refusal> {
     outcome.refusals.iter().map(Refusal::from).collect()
 }

@@ -1,5 +1,4 @@
-//! What a reading is held against and a plan rests on: model, field, binnacle and
-//! waters, as they were when the magnetometer was read.
+//! Inputs of a plan: model, field, binnacle and waters at the time of the reading.
 
 use crate::berth_session::previous_lambda;
 use crate::work_orders::payload::basis::{Basis, ModelUsed};
@@ -26,26 +25,26 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// A plan's argument with all that it borrows.
+/// Input of the planner, with everything that it borrows.
 pub(crate) struct PlanRequest {
-    /// What it rests on.
+    /// Basis of the plan.
     pub basis: Basis,
-    /// The reading as the science takes it.
+    /// Reading, as the planner takes it.
     pub reading: BerthReading,
-    /// The reading as it was given.
+    /// Reading, as it was sent.
     pub given: ReadingForm,
-    /// The binnacle, its correctors as strong as they were found to be.
+    /// Binnacle, with the strengths found so far.
     pub binnacle: Binnacle,
-    /// How they stand now, where they were moved since.
+    /// Present setting of the correctors, if they were moved since the reading.
     pub moved_to: Option<Setting>,
-    /// What the compass was last read to be with them so, degrees.
+    /// Last reading of the compass with that setting, degrees.
     pub compass_deg: Option<f64>,
-    /// What a plan must keep to, by the order.
+    /// Limits of the order.
     pub limits: Limits,
 }
 
 impl Basis {
-    /// What there is to hold a reading against.
+    /// Loads the basis for a reading.
     pub(crate) async fn load(
         app: &App,
         vessel: VesselId,
@@ -106,7 +105,7 @@ impl From<StoredModel> for ModelUsed {
 }
 
 impl PlanRequest {
-    /// What the planner is asked.
+    /// Borrows the planner's input.
     pub(crate) fn adjustment(&self) -> Adjustment<'_> {
         let model = &self.basis.model;
         let until = model.headings_until.unwrap_or(model.data_until);
@@ -133,8 +132,8 @@ impl PlanRequest {
     }
 }
 
-/// Until when there are headings behind a model that an order foretold, where none at sea
-/// has confirmed it: what is foretold is no fresher than what it was foretold from.
+/// Time of the last heading behind a model that an order predicted, unless headings at sea
+/// confirmed it. A prediction is no fresher than its own data.
 async fn headings_until(app: &App, vessel: VesselId, model: &StoredModel) -> Result<Option<Time>> {
     let Some(order) = model.foretold_by else {
         return Ok(None);
@@ -159,12 +158,12 @@ async fn headings_until(app: &App, vessel: VesselId, model: &StoredModel) -> Res
     Ok(until.map(Time::deserialize).transpose()?)
 }
 
-/// Cells of the horizontal and the vertical field, nT: within one a compass feels the same.
+/// Cells of the horizontal and the vertical field, nT: within one a compass behaves alike.
 const CELL_NT: (f64, f64) = (3_000.0, 6_000.0);
-/// So many waters at most, those where she was most.
+/// Most waters of a plan; those with the most samples are kept.
 const MAX_WATERS: usize = 5;
 
-/// Where the vessel was, as a compass feels it; the berth where nothing is known.
+/// Magnetic waters in which the vessel sailed; the berth where nothing is known.
 async fn waters(
     app: &App,
     vessel: VesselId,
@@ -204,7 +203,7 @@ async fn waters(
     Ok(waters)
 }
 
-/// The means of a cell's samples, each counted by its windows.
+/// Weighted mean of a cell's samples.
 fn water(samples: &[SampleDiagnostic]) -> Option<Water> {
     let weight = |found: &SampleDiagnostic| f64::from(found.sample.windows.max(1));
     let whole: f64 = samples.iter().map(weight).sum();
@@ -223,7 +222,7 @@ fn water(samples: &[SampleDiagnostic]) -> Option<Water> {
     })
 }
 
-/// Waters of one name have the field that tells them apart in it.
+/// Appends the field to the names of waters that share one.
 fn tell_apart(waters: &mut [Water]) {
     let names: Vec<String> = waters.iter().map(|water| water.name.clone()).collect();
     for water in waters {

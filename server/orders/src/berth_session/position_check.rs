@@ -1,7 +1,7 @@
-//! Whether she can lie where a reading at the berth says, and when it says.
+//! Plausibility of the place and the time of a reading at the berth.
 //!
-//! What always holds: a reading is doubted by what the server knows without it, the port of
-//! the order and the vessel's own track; where it knows neither there is no doubt.
+//! What always holds: a reading is refused by independent knowledge alone, the port of the order
+//! and the vessel's own track. Without either it is accepted.
 
 use crate::berth_session::plan::READING_VALIDITY_S;
 use crate::firms::port_meant;
@@ -15,18 +15,18 @@ use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
 
-/// The farthest berth of a port from where the list of ports has it, nautical miles.
+/// Largest distance of a berth from the listed position of its port, nautical miles.
 const MAX_BERTH_DISTANCE_NM: f64 = 60.0;
-/// No ship of ours makes more, knots.
+/// Highest speed of a vessel, knots.
 const MAX_SPEED_KN: f64 = 30.0;
-/// What a track and a berth on the chart differ by, nautical miles.
+/// Tolerance between a track and a berth on the chart, nautical miles.
 const TRACK_TOLERANCE_NM: f64 = 5.0;
-/// So far from a reading the track is looked at, seconds.
+/// Period of the track around a reading, seconds.
 const TRACK_WINDOW_S: f64 = 48.0 * 3600.0;
 /// Mean radius of the earth, nautical miles.
 const EARTH_NM: f64 = 3440.07;
 
-/// Refuses a reading that no plan could be made from any more.
+/// Refuses a reading that is too old for a plan.
 ///
 /// # Errors
 /// Names the field.
@@ -45,7 +45,7 @@ pub(crate) fn check_reading_age(given: &ReadingForm, now: Time) -> Result<()> {
     Ok(())
 }
 
-/// Why she cannot have lain there then; none where nothing speaks against it.
+/// Refuses a reading at a place where the vessel cannot have been at that time.
 pub(crate) async fn check_position(
     app: &App,
     (vessel, compass): (VesselId, CompassId),
@@ -85,7 +85,7 @@ fn refusal(words: String) -> Refusal {
     }
 }
 
-/// By the list of ports; words that mean none of it tell nothing.
+/// Compares the position with the listed port. Unknown ports are not checked.
 fn not_in_port(berth: Position, port: &str) -> Option<String> {
     let known = port_meant(port)?;
     let (apart_nm, name) = (distance_nm(berth, known.position), known.name);
@@ -97,7 +97,7 @@ fn not_in_port(berth: Position, port: &str) -> Option<String> {
     })
 }
 
-/// By her own track: where she was at the nearest time.
+/// Compares the position with the nearest one on the vessel's track.
 fn too_far(berth: Position, (apart_s, seen): (f64, Position)) -> Option<String> {
     let apart_nm = distance_nm(berth, seen);
     let hours = apart_s / 3600.0;
@@ -109,7 +109,7 @@ fn too_far(berth: Position, (apart_s, seen): (f64, Position)) -> Option<String> 
     })
 }
 
-/// Along a great circle.
+/// Great-circle distance, nautical miles.
 fn distance_nm(one: Position, other: Position) -> f64 {
     let [lat, other_lat] = [one, other].map(|place| place.lat_deg().to_radians());
     let [lon, other_lon] = [one, other].map(|place| place.lon_deg().to_radians());

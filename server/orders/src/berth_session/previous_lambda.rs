@@ -1,8 +1,8 @@
-//! What the compass's last adjustment told of λ, which one heading cannot tell from a change
+//! Estimate of λ from the compass's last adjustment. One heading cannot separate λ from a change
 //! of the ship's magnetism along the needle.
 //!
-//! What always holds: it is calculated anew from the record that was signed; and where the
-//! logbook has work on the hull or at the compass since, it is nothing to go by.
+//! What always holds: it is calculated from the signed record. It is not used after work on the
+//! hull or at the compass.
 
 use crate::work_orders::payload::basis::PreviousBerth;
 use binnacle_adjustment::adjust::{
@@ -20,7 +20,7 @@ use binnacle_platform::error::Result;
 use binnacle_platform::ids::{CompassId, VesselId};
 use serde::Deserialize;
 
-/// What of a record λ follows from.
+/// Fields of a record from which λ follows.
 #[derive(Deserialize)]
 struct RecordedAdjustment {
     reading: ReadingForm,
@@ -42,8 +42,8 @@ struct Before {
     binnacle: Binnacle,
 }
 
-/// What the compass's last adjustment that was completed told; none where there was none,
-/// or iron near the compass may be another since.
+/// Returns λ of the compass's last completed adjustment; `None` without one, or after a change of
+/// iron near the compass.
 ///
 /// # Errors
 /// When the database fails.
@@ -78,7 +78,7 @@ pub(crate) async fn of_compass(
     Ok(if is_other_iron { None } else { recorded.told() })
 }
 
-/// Whether λ may be another after it.
+/// Returns whether such work may change λ.
 fn changes_iron(kind: LogbookKind) -> bool {
     matches!(
         kind,

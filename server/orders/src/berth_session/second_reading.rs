@@ -1,7 +1,7 @@
-//! What a second reading of the field tells, and what to plan from where it calls for that.
+//! Judgement of a second reading, and the reading to replan from.
 //!
-//! What always holds: it is judged against the correctors as they are said to stand, by
-//! the first reading and the model that was held against that.
+//! What always holds: it is compared with the reported settings of the correctors, by the first
+//! reading and its model.
 
 use crate::berth_session::berth_reading::check;
 use crate::berth_session::plan_slots::CorrectorPlanSlots;
@@ -28,7 +28,7 @@ const BEYOND_LIMITS: &str = "the correctors seem to stand as planned, but more i
     allow: read once more, away from steel and cranes; if it is so again, plan anew from this \
     reading";
 
-/// A second reading as it was given, as one of its own, and as the science takes it.
+/// Second reading as it was sent, as a form of its own, and as the planner takes it.
 pub(crate) struct SecondReading {
     given: SecondReadingForm,
     pub(crate) form: ReadingForm,
@@ -72,8 +72,8 @@ impl SecondReading {
         )
     }
 
-    /// What it told, and what to plan from where it calls for a plan from itself: also
-    /// where it fits, and there is no plan that was followed.
+    /// Judges the reading; returns also the basis for a new plan, if one is needed. A reading
+    /// that fits needs one where no plan was followed.
     pub(crate) fn judge(
         self,
         plan_request: &PlanRequest,
@@ -162,7 +162,7 @@ impl SecondReading {
     }
 }
 
-/// Whether the reading that did not fit fits the correctors as they are said to stand now.
+/// Returns whether reported settings explain a second reading that did not fit.
 pub(crate) async fn explains_second_reading(
     slots: &CorrectorPlanSlots,
     state: &OrderState,
@@ -186,7 +186,7 @@ pub(crate) async fn explains_second_reading(
     ))
 }
 
-/// The second reading as one to plan from, held against what is known now.
+/// Turns a second reading into one to plan from, checked against the present knowledge.
 pub(crate) fn as_first_reading(basis: Basis, given: ReadingForm) -> Result<Box<RecordedReading>> {
     let (checked, refusal) = match check(&given, &basis)? {
         Ok(checked) => (Some(checked), None),
@@ -211,7 +211,7 @@ fn unexplained(looked_at: usize) -> String {
     )
 }
 
-/// What is confirmed, and what is not.
+/// Words for a reading that confirms the steps.
 fn as_planned(steps: &[CompletedStep], parts: usize) -> String {
     let heels = |done: &CompletedStep| done.step.corrector == Corrector::Heeling;
     let mut words = "the correctors do what was planned".to_owned();

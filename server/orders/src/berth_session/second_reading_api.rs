@@ -1,10 +1,9 @@
-//! The magnetometer read once more, after the steps: whether the correctors do what was
-//! planned, also where the compass could not show it on the berth's heading.
+//! Second reading of the magnetometer, after the steps: it confirms the correctors even if the
+//! compass cannot show them on the berth's heading.
 //!
-//! What always holds: it is optional, and what it says is kept. One that confirms the plan
-//! gives the order its model and its residuals; one that does not holds back completion
-//! until the field was read as predict, a plan was made from this very reading, or someone
-//! has found the correctors to stand otherwise.
+//! What always holds: the reading is optional, and its result is kept. One that confirms the plan
+//! updates the model and the residuals. One that does not blocks completion until the field is
+//! read as predicted, a plan is made from this reading, or other settings are reported.
 
 use crate::berth_session::berth_reading::check_reading_ranges;
 use crate::berth_session::plan::require_current_reading;
@@ -67,10 +66,10 @@ where
     OpenApiRouter::new().routes(routes!(read_field_again))
 }
 
-/// Send what the magnetometer reads after the steps
+/// Send the magnetometer reading after the steps
 ///
-/// With it a slip that the berth's heading hides is found: the field shows what the compass
-/// on one heading cannot. Optional; without it such a slip can only be found at sea.
+/// It finds slips that the compass cannot show on the berth's heading. It is optional: without it
+/// such a slip can only be found at sea.
 #[utoipa::path(post, path = "/work-orders/{id}/second-reading", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = AgainSchema,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -133,7 +132,7 @@ fn require_steps_done(state: &OrderState) -> Result<()> {
     ))
 }
 
-/// What a part of the field disproved is not confirmed without that part.
+/// Refuses a reading without the part of the field that contradicted the steps.
 fn require_vertical_part(state: &OrderState, form: &ReadingForm) -> Result<()> {
     let contradiction = state.contradicting_reading();
     let was_whole =

@@ -1,4 +1,4 @@
-//! Steps at the binnacle: what the compass read after each, and what follows.
+//! Steps at the binnacle: the compass reading after each, and the consequence.
 
 use crate::berth_session::plan::refusals;
 use crate::berth_session::plan_slots::CorrectorPlanSlots;
@@ -18,41 +18,41 @@ use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// What the compass read after a step.
+/// Compass reading after a step.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = StepReading, example = json!({ "after_deg": 308.5 }))]
 pub(crate) struct StepReading {
-    /// What it read before; the last reading where it is not said.
+    /// Reading before the step; the last known reading by default.
     #[schema(minimum = 0, maximum = 360)]
     pub before_deg: Option<f64>,
-    /// What it reads now.
+    /// Reading after the step.
     #[schema(minimum = 0, maximum = 360)]
     pub after_deg: f64,
 }
 
-/// How the correctors stand, as someone found or set them.
+/// Settings of the correctors, as someone found or made them.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = CorrectorSettings)]
 pub(crate) struct CorrectorReport {
-    /// How each stands.
+    /// Setting of each corrector.
     #[schema(value_type = binnacle_fleet::binnacles::SettingSchema)]
     pub setting: Setting,
-    /// What the compass reads then, degrees.
+    /// Compass reading with these settings, degrees.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 360)]
     pub compass_deg: Option<f64>,
-    /// Why they do not stand as planned.
+    /// Reason for settings other than planned.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub note: Option<String>,
 }
 
-/// What is done without a connection is sent so much later at most, seconds.
+/// Longest delay of a request that was made offline, seconds.
 const MAX_SEND_DELAY_S: f64 = 12.0 * 3600.0;
 
-/// Refuses a moment long before correctors were moved for the last time.
+/// Refuses a time long before the last move of a corrector.
 pub(crate) fn require_after_last_step(stored: &StoredOrder, at: Time) -> Result<()> {
     let moved = stored.log.iter().rev().find(|entry| {
         matches!(
@@ -69,11 +69,10 @@ pub(crate) fn require_after_last_step(stored: &StoredOrder, at: Time) -> Result<
     Ok(())
 }
 
-/// Judges a step by the compass before and after it; takes a while where there has to
-/// be a new plan.
+/// Judges a step by the compass before and after it. Takes seconds if a new plan is needed.
 ///
 /// # Errors
-/// When the readings are no headings.
+/// When the readings are not headings.
 pub(crate) fn judge(
     plan_request: &PlanRequest,
     step: Step,
@@ -191,7 +190,7 @@ fn strength_text(share: f64, other_hole: Option<u16>) -> String {
     }
 }
 
-/// What is known instead of a strength that this word disputes.
+/// Recalculates a strength that this report disputes.
 pub(crate) async fn revise_strength(
     slots: &CorrectorPlanSlots,
     state: &OrderState,
@@ -209,7 +208,7 @@ pub(crate) async fn revise_strength(
     Ok(Some(Box::new(RevisedStrength { step, binnacle })))
 }
 
-/// The strength that this word disputes, with what was known before it was learnt.
+/// Strength that this report disputes, with the binnacle as known before it.
 fn disputed(
     state: &OrderState,
     moved: &CorrectorMove,
@@ -226,7 +225,7 @@ fn disputed(
     Ok(Some((Box::new(plan_request), Box::new(strength))))
 }
 
-/// With what the steps so far come to together, where that is not what was expected.
+/// Adds a warning where the total turn of all steps differs from the plan.
 fn in_all(
     plan_request: &PlanRequest,
     said: StepResult,

@@ -1,9 +1,7 @@
-//! The end of an adjustment: the adjuster's word, the record that it stands in, and
-//! what follows ashore and on board.
+//! Completion of an adjustment: its record and the consequences for server and vessel.
 //!
-//! What always holds: completion is one transaction. The record, the binnacle as it
-//! stands now, the logbook's entry at the moment of the adjustment and the model that
-//! is foretold from then on all come about, or none of them.
+//! What always holds: completion is one transaction. It writes the record, the revision of the
+//! binnacle, the entry in the logbook and the predicted model, or none of them.
 
 use crate::completion::record;
 use crate::completion::record::VesselAndCompass;
@@ -24,10 +22,10 @@ use binnacle_platform::events::Kind;
 use binnacle_platform::ids::{BinnacleId, EntryId, ModelId};
 use binnacle_platform::time::Time;
 
-/// The name under which foretold models are stored.
+/// Estimator name of predicted models.
 pub const PREDICTED_BY_PLAN: &str = "adjustment-plan-1";
 
-/// The plan's setting, if it stands so.
+/// Returns the plan's setting, if the correctors have it.
 pub(crate) fn require_planned_setting(state: &OrderState) -> Result<&Setting> {
     let wrong = |detail: String| Err(Error::WrongState(detail));
     let Some(plan) = &state.plan else {
@@ -133,7 +131,7 @@ pub(crate) async fn complete(
     change.tell(Kind::Logbook).await
 }
 
-/// Writes how the binnacle's correctors stand now.
+/// Writes the present settings as a revision of the binnacle.
 pub(crate) async fn write_binnacle(
     change: &mut Change<'_>,
     binnacle: &binnacle_adjustment::binnacle::Binnacle,
@@ -158,7 +156,7 @@ pub(crate) async fn write_binnacle(
     .await
 }
 
-/// Writes the adjustment into the vessel's logbook, and has her analysed anew.
+/// Writes the adjustment into the vessel's logbook, and requests a new analysis.
 pub(crate) async fn write_logbook(
     change: &mut Change<'_>,
     id: EntryId,

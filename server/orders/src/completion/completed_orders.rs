@@ -1,4 +1,4 @@
-//! Adjustments that were completed in a time, for reports.
+//! Adjustments completed within a period, for reports.
 
 use crate::work_orders::offers::Offer;
 use crate::work_orders::state::State;
@@ -9,14 +9,14 @@ use binnacle_platform::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
 use binnacle_platform::tenants::Tenant;
 use binnacle_platform::time::Time;
 
-/// An adjustment that was completed.
+/// Completed adjustment.
 #[derive(Clone, Debug)]
 pub struct CompletedOrder {
     /// The order.
     pub order_id: OrderId,
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// Its name.
     pub vessel_name: String,
     /// The compass.
     pub compass_id: CompassId,
@@ -24,35 +24,35 @@ pub struct CompletedOrder {
     pub compass_name: String,
     /// The port.
     pub port: String,
-    /// When it was completed.
+    /// Time of completion.
     pub completed_at: Time,
     /// The firm's name.
     pub firm: Option<String>,
-    /// The firm, if it was offered to one.
+    /// The firm, if the order was offered to one.
     pub firm_id: Option<FirmId>,
-    /// How it stands.
+    /// Present state.
     pub state: State,
-    /// Whether headings at sea have spoken against it, whatever it stands as now.
+    /// Whether headings at sea contradicted it, whatever the present state.
     pub disproved: bool,
-    /// The fee that was agreed on, as it was offered or proposed, euros.
+    /// Agreed fee, as offered or proposed, euros.
     pub agreed_eur: Option<f64>,
 }
 
-/// Which adjustments that were completed.
+/// Period of completed adjustments.
 #[derive(Clone, Copy, Debug)]
 pub struct CompletionPeriod {
-    /// From this time on.
+    /// Begin.
     pub from: Time,
-    /// Until this.
+    /// End.
     pub until: Time,
-    /// Those of before too that reached the server after this: the last report that there
-    /// was did not know of them.
+    /// Time of the last report: earlier completions that reached the server after it are
+    /// included.
     pub late_since: Option<Time>,
-    /// As was known at this time.
+    /// Time of the knowledge: later arrivals are left out.
     pub known_at: Time,
 }
 
-/// An operator's orders that were completed within a time, in order.
+/// Lists an operator's orders completed within a period, in order.
 pub async fn completed_orders(
     db: &Db,
     operator: OperatorId,

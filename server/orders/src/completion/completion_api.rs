@@ -1,4 +1,4 @@
-//! Photographs, completion, signatures, and the archive of evidence.
+//! Handlers of photographs, completion, signatures and evidence.
 
 use crate::berth_session::photos::{Caption, MAX_BYTES, MOST};
 use crate::berth_session::plan::{
@@ -35,7 +35,7 @@ use binnacle_platform::ids::{OrderId, PhotoId};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// In which states photographs are added.
+/// States in which photographs may be added.
 const WITH_PHOTOS: [State; 8] = [
     State::Planned,
     State::Accepted,
@@ -68,7 +68,7 @@ where
 
 /// Add a photograph
 ///
-/// The body is the file as it is: JPEG, PNG or WebP, 10 MiB at most.
+/// The body is the file itself: JPEG, PNG or WebP, 10 MiB at most.
 #[utoipa::path(post, path = "/work-orders/{id}/photos", tag = "adjusting",
     params(("id" = OrderId, Path), Caption, Key),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
@@ -146,9 +146,9 @@ async fn find_photo(
 
 /// Complete an adjustment
 ///
-/// By the adjuster's name, licence and typed signature. From that moment on the vessel's
-/// logbook has the adjustment, the ship gets the model that is predict, and the card is
-/// a prediction until headings at sea agree.
+/// By the adjuster's name, licence and typed signature. From that moment on the logbook contains
+/// the adjustment, and the vessel receives the predicted model. The card is a prediction until
+/// headings at sea agree.
 #[utoipa::path(post, path = "/work-orders/{id}/complete", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = SignOff,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -201,9 +201,8 @@ async fn aboard(app: &App, stored: &StoredOrder) -> Result<VesselAndCompass> {
 
 /// Sign the record with a firm's key
 ///
-/// An Ed25519 signature over the 32 octets of `record_sha256`. The order says whose key it
-/// is when the order's firm has registered it (`/firms/{id}/keys`), and otherwise that the
-/// key is unknown.
+/// An Ed25519 signature over the 32 bytes of `record_sha256`. The order names the owner of a key
+/// that the order's firm has registered (`/firms/{id}/keys`). Other keys are shown as unknown.
 #[utoipa::path(post, path = "/work-orders/{id}/signatures", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = SubmittedSignature,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -248,7 +247,7 @@ fn no_record() -> Error {
 
 /// See the adjustment record
 ///
-/// The very octets that a firm's key signs the hash of.
+/// The exact bytes whose hash a firm's key signs.
 #[utoipa::path(get, path = "/work-orders/{id}/record.json", tag = "adjusting",
     params(("id" = OrderId, Path)),
     responses((status = 200, content_type = "application/json", body = String),
@@ -267,8 +266,7 @@ async fn find_record(
 
 /// Print the adjustment record
 ///
-/// The sheets that the evidence holds, drawn from `record.json`. A prediction, not a
-/// certificate.
+/// The sheets of the evidence, drawn from `record.json`. A prediction, not a certificate.
 #[utoipa::path(get, path = "/work-orders/{id}/record.pdf", tag = "adjusting",
     params(("id" = OrderId, Path)),
     responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
@@ -300,9 +298,9 @@ async fn draw_record(
     Ok(record_file(id, "svg", "image/svg+xml", text))
 }
 
-/// The residuals that an adjustment record foretells, as CSV
+/// Get the predicted residuals of an adjustment record as CSV
 ///
-/// A line for each place and compass heading, with the 95 % band.
+/// One line for each place and compass heading, with the 95 % band.
 #[utoipa::path(get, path = "/work-orders/{id}/record.csv", tag = "adjusting",
     params(("id" = OrderId, Path)),
     responses((status = 200, content_type = "text/csv", body = String),
@@ -337,8 +335,8 @@ fn record_file(id: OrderId, extension: &str, kind: &str, body: impl Into<Body>) 
 
 /// Get the evidence of an adjustment
 ///
-/// One archive that `binnacle-server verify-evidence` checks, and that says how to check
-/// it by hand. A prediction, not a certificate.
+/// One archive that `binnacle-server verify-evidence` checks, with instructions for a check by
+/// hand. A prediction, not a certificate.
 #[utoipa::path(get, path = "/work-orders/{id}/evidence.zip", tag = "adjusting",
     params(("id" = OrderId, Path)),
     responses((status = 200, content_type = "application/zip", body = Vec<u8>),

@@ -1,7 +1,7 @@
-//! The adjustment record: everything that an inspector may ask for, as canonical JSON.
+//! Adjustment record: everything that an inspector may need, as canonical JSON.
 //!
-//! What always holds: it is made once, when the order is completed, and kept as that
-//! text; a signature is over its hash. It says of itself that it is no certificate.
+//! What always holds: it is made once, at completion, and kept as that text; signatures cover its
+//! hash. It states that it is not a certificate.
 
 use crate::completion::sign_off::SignOff;
 use crate::work_orders::events::OrderEvent;
@@ -16,7 +16,7 @@ use binnacle_platform::error::Result;
 use binnacle_platform::time::Time;
 use serde_json::json;
 
-/// Whose compass it is.
+/// Vessel and compass of a record.
 pub(crate) struct VesselAndCompass {
     pub(crate) vessel_name: String,
     pub(crate) imo_number: Option<String>,
@@ -25,7 +25,7 @@ pub(crate) struct VesselAndCompass {
     pub(crate) compass: Compass,
 }
 
-/// The record of an order that is about to be completed.
+/// Makes the record of an order that is being completed.
 pub(crate) fn text(
     aboard: &VesselAndCompass,
     stored: &StoredOrder,
@@ -105,7 +105,7 @@ pub(crate) fn text(
     }))
 }
 
-/// Of steps that neither compass nor magnetometer has shown.
+/// Note on steps that neither compass nor magnetometer confirms.
 const NOT_SHOWN: &str = "the compass does not show these steps on the berth's heading, and no \
     second reading of the magnetometer confirms them: a slip in one of them can only be found \
     by headings at sea";

@@ -8,7 +8,7 @@ use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// The adjuster's word that it is done.
+/// Sign-off of an adjustment.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = Completion, example = json!({
@@ -16,26 +16,26 @@ use utoipa::ToSchema;
     "firm": "Nervión Compass", "signature": "M. Etxeberria"
 }))]
 pub(crate) struct SignOff {
-    /// The moment of the adjustment; now where it is not said.
+    /// Time of the adjustment; now by default.
     #[serde(default)]
     pub at: Option<Time>,
     /// The adjuster.
     #[schema(min_length = 1, max_length = 200)]
     pub adjuster_name: String,
-    /// The number of their licence.
+    /// Licence number.
     #[schema(min_length = 1, max_length = 200)]
     pub adjuster_licence: String,
-    /// Their firm.
+    /// Firm of the adjuster.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub firm: Option<String>,
-    /// Their name once more, typed as a signature.
+    /// The adjuster's name once more, typed as a signature.
     #[schema(min_length = 1, max_length = 200)]
     pub signature: String,
 }
 
 impl SignOff {
-    /// The word, its words trimmed, at a moment that can be.
+    /// Validates the sign-off; returns it with the time of the adjustment.
     pub(crate) fn checked(self, stored: &StoredOrder, now: Time) -> Result<(SignOff, Time)> {
         let state = stored.state();
         let at = self.at.unwrap_or(now);

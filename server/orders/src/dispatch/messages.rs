@@ -31,44 +31,44 @@ where
     OpenApiRouter::new().routes(routes!(list_messages, send_message))
 }
 
-/// A message to be sent.
+/// Message to send.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NewOrderMessage, example = json!({ "text": "Is the gangway to port?" }))]
 struct NewMessage {
-    /// The firm that an operator writes to; may be left out where there is one.
+    /// Firm that the operator writes to; optional if there is one only.
     #[serde(default)]
     firm_id: Option<FirmId>,
-    /// In words, 2,000 characters at most.
+    /// Text, 2,000 characters at most.
     #[schema(min_length = 1, max_length = 2000)]
     text: String,
 }
 
-/// A message.
+/// Message about an order.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = OrderMessage)]
 struct Message {
-    /// Its number in the order's log.
+    /// Number in the order's log.
     seq: i64,
-    /// When it was sent.
+    /// Time of sending.
     at: Time,
-    /// Who sent it.
+    /// Name of the sender.
     by: String,
-    /// Whether someone of the firm's sent it, rather than of the operator's.
+    /// Whether the firm sent it, rather than the operator.
     from_firm: bool,
     /// The firm.
     firm_id: FirmId,
     /// Its name.
     firm_name: String,
-    /// In words.
+    /// Text.
     text: String,
 }
 
-/// A page of messages.
+/// Page of messages.
 #[derive(Serialize, ToSchema)]
 #[schema(as = OrderMessageList)]
 struct MessageList {
-    /// The oldest first.
+    /// Messages, the oldest first.
     items: Vec<Message>,
     /// `after` of the next page.
     #[schema(required)]
@@ -77,7 +77,7 @@ struct MessageList {
 
 /// List the messages about a work order
 ///
-/// A firm reads its own only. That the port call has moved is among them, from `Binnacle`.
+/// A firm reads its own only. Changes of the port call are among them, from `Binnacle`.
 #[utoipa::path(get, path = "/work-orders/{id}/messages", tag = "adjusting",
     params(("id" = OrderId, Path), Page),
     responses((status = 200, body = MessageList), (status = 401, body = Problem),
@@ -116,7 +116,7 @@ async fn list_messages(
 
 /// Send a message about a work order
 ///
-/// To the operator, or to a firm that is asked or has the order.
+/// To the operator, or to a firm that has been offered the order or has it.
 #[utoipa::path(post, path = "/work-orders/{id}/messages", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = NewMessage,
     responses((status = 204), (status = 401, body = Problem),
@@ -152,7 +152,7 @@ async fn send_message(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// The firm that a message is from or to.
+/// Firm that a message is from or to.
 fn partner(offers: &Offers, tenant: Tenant, named: Option<FirmId>) -> Result<&Offer> {
     let wanted = tenant.firm().or(named);
     let seen =

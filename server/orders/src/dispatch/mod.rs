@@ -1,4 +1,4 @@
-//! Dispatch of a work order to firms: offers, their answers and deadlines, other times, and
+//! Dispatch of a work order to firms: offers with answers and deadlines, rescheduling, and
 //! changes of the port call.
 
 pub(crate) mod call_links;

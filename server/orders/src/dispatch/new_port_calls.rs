@@ -1,8 +1,7 @@
-//! A port call that is entered where an order waits for one: its own was withdrawn, or none
-//! was known.
+//! New port calls for orders without one, whose own was withdrawn or never known.
 //!
-//! What always holds: an order comes to a call of its own port only, and only where its time
-//! lies in it; who was told that its call is gone is told that there is one again.
+//! What always holds: an order is linked to a call of its own port only, and only if its time
+//! lies in it. Parties that were notified of the lost call are notified of the new one.
 
 use crate::dispatch::port_call_changes::CallUpdate;
 use crate::dispatch::{call_links, port_call_changes};
@@ -15,8 +14,8 @@ use binnacle_platform::events::Event;
 use binnacle_platform::ids::{CallId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 
-/// Brings orders without a call to new calls of a vessel, whose row is held; the live events,
-/// to be published after the commit.
+/// Links orders without a call to new calls of a vessel, whose row is locked. Returns the live
+/// events, to be published after the commit.
 ///
 /// # Errors
 /// When the database cannot be written.
@@ -59,8 +58,7 @@ pub async fn attach_new_calls(
     Ok(told)
 }
 
-/// The port that an order is for, where its words mean one, and what became of the call that
-/// it had.
+/// Port of an order, if its words name one, and the change of its earlier call.
 async fn waits(
     tx: &mut Tx,
     vessel: VesselId,

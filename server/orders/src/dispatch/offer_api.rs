@@ -1,4 +1,4 @@
-//! Offering an order to firms, and what these answer.
+//! Handlers of offers to firms, and of their answers.
 
 use crate::dispatch::offer_requests;
 use crate::dispatch::offer_requests::{
@@ -37,7 +37,8 @@ where
 
 /// Offer a work order to firms
 ///
-/// One after the other, or to all at once. Where nobody answers in time the next is asked.
+/// One after the other, or to all at once. An offer without an answer lapses, and the next firm
+/// follows.
 #[utoipa::path(post, path = "/work-orders/{id}/offer", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = NewOffer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -71,8 +72,8 @@ async fn offer_work_order(
     shown(&app, operator, id).await
 }
 
-/// The vessel of an order that is to be answered: a firm that was asked once is told why
-/// it cannot answer any more.
+/// Vessel of an order to answer. A firm whose offer has ended finds it too, to be told the reason
+/// by the error.
 async fn vessel_of(app: &App, tenant: Tenant, id: OrderId) -> Result<VesselId> {
     match tenant {
         Tenant::Firm(firm) => store::vessel_of_asked(&app.db, firm, id).await,
@@ -82,8 +83,8 @@ async fn vessel_of(app: &App, tenant: Tenant, id: OrderId) -> Result<VesselId> {
 
 /// Accept an offer, or a proposal
 ///
-/// A firm takes the order as it is offered; an operator agrees to what a firm has
-/// proposed. Of those who accept at once one has it.
+/// A firm accepts the order as it was offered; an operator accepts a firm's proposal. Of several
+/// firms that accept at once, one gets the order.
 #[utoipa::path(post, path = "/work-orders/{id}/accept", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -115,8 +116,8 @@ async fn accept_work_order(
 
 /// Decline an offer, or a proposal
 ///
-/// A firm will not have the order, or gives it back before it is on board; an operator
-/// does not agree to what a firm has proposed. The next firm is asked.
+/// A firm declines the order, or gives it back before the adjuster is on board; an operator
+/// declines a firm's proposal. The next firm receives an offer.
 #[utoipa::path(post, path = "/work-orders/{id}/decline", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 204), (status = 401, body = Problem),
@@ -149,8 +150,8 @@ async fn decline_work_order(
 
 /// Propose other terms
 ///
-/// For a firm that is asked: another fee, time or berth, one of them or all. What it leaves
-/// out is as it was offered. The operator accepts or declines, with a deadline of its own.
+/// For a firm with an open offer: another fee, time or berth, or several of them. Omitted terms
+/// stay as offered. The operator accepts or declines by a deadline of its own.
 #[utoipa::path(post, path = "/work-orders/{id}/propose", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = Proposal,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -181,9 +182,9 @@ async fn propose_terms(
     shown(&app, writer.tenant, id).await
 }
 
-/// Say that the adjuster is on board
+/// Report the adjuster on board
 ///
-/// The next thing is to read the berth.
+/// The berth reading follows.
 #[utoipa::path(post, path = "/work-orders/{id}/on-board", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = Boarding,
     responses((status = 200, body = Order), (status = 401, body = Problem),

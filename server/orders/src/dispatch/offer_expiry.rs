@@ -1,4 +1,4 @@
-//! The clock on answers: an offer that nobody answers lapses, and the next firm is asked.
+//! Expiry of offers: an offer without an answer lapses, and the next firm receives one.
 
 use crate::dispatch::offer_sequence::send_next_offers;
 use crate::work_orders::events::{Lapsed, OrderEvent, RetimeLapsed};
@@ -12,12 +12,12 @@ use binnacle_platform::ids::{OrderId, VesselId};
 use std::time::Duration;
 use tracing::{error, info};
 
-/// How often to look for answers that are overdue.
+/// Interval between checks for overdue answers.
 const POLL_INTERVAL: Duration = Duration::from_secs(20);
-/// So many orders at a time.
+/// Orders per batch.
 const BATCH_SIZE: i64 = 100;
 
-/// Looks for answers that are overdue until the server stops.
+/// Checks for overdue answers until the server stops.
 pub async fn watch(app: App) {
     while !app.stopping.is_cancelled() {
         if let Err(error) = lapse(&app).await {
@@ -30,8 +30,8 @@ pub async fn watch(app: App) {
     }
 }
 
-/// Has offers and proposals lapse whose answers are overdue; how many orders went on. One
-/// that cannot go on holds up no other.
+/// Lapses overdue offers and proposals; returns the number of orders that changed. A failure of
+/// one order delays no other.
 pub async fn lapse(app: &App) -> Result<usize> {
     let mut went_on = 0;
     loop {

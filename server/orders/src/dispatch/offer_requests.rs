@@ -1,4 +1,4 @@
-//! What is asked and answered between an operator and firms, as requests have it.
+//! Requests and answers between an operator and firms.
 
 use crate::dispatch::call_links::link_call_at;
 use crate::dispatch::offer_sequence::{
@@ -25,38 +25,38 @@ use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// So many firms at most.
+/// Most firms of an offer.
 const MAX_FIRMS: usize = 20;
 pub(crate) const MAX_ANSWER_HOURS: u32 = 720;
 const MAX_FEE_EUR: f64 = 1e6;
 /// Longest text of a message, in characters.
 pub(crate) const MAX_MESSAGE: usize = 2000;
 
-/// A yes or a no.
+/// Acceptance or refusal.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = OfferAnswer, example = json!({
     "adjuster_name": "M. Etxeberria", "adjuster_licence": "ES-CA-114", "text": "See you there."
 }))]
 pub(crate) struct OfferAnswer {
-    /// Whose proposal an operator answers; may be left out where there is one.
+    /// Firm whose proposal the operator answers; optional if there is one only.
     #[serde(default)]
     pub firm_id: Option<FirmId>,
-    /// Who will come, where a firm accepts.
+    /// Name of the adjuster, where a firm accepts.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub adjuster_name: Option<String>,
-    /// The number of their licence.
+    /// Licence number.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub adjuster_licence: Option<String>,
-    /// In words.
+    /// Text.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub text: Option<String>,
 }
 
-/// Other terms than were offered.
+/// Proposal of other terms than offered.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = OfferProposal, example = json!({
@@ -64,34 +64,34 @@ pub(crate) struct OfferAnswer {
     "text": "Our team is at Santander until noon."
 }))]
 pub(crate) struct Proposal {
-    /// The terms: what is left out is as it was offered.
+    /// Terms: omitted ones stay as offered.
     pub terms: ProposedTerms,
-    /// In words.
+    /// Text.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub text: Option<String>,
 }
 
-/// What a firm would have otherwise: at least one of these.
+/// Terms that a firm proposes: at least one of these.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = ProposedTerms, example = json!({ "fee_eur": 900.0 }))]
 pub(crate) struct ProposedTerms {
-    /// When it is to be done, if at another time.
+    /// Time of the job, if another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub planned_at: Option<Time>,
-    /// The berth, if another.
+    /// Berth, if another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(max_length = 200)]
     pub berth: Option<String>,
-    /// The fee, euros, if another.
+    /// Fee, euros, if another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(minimum = 0, maximum = 1_000_000)]
     pub fee_eur: Option<f64>,
 }
 
 impl NewOffer {
-    /// The offer, if the operator works with all of the firms.
+    /// Validates the offer: the operator works with all of the firms.
     pub(crate) async fn checked(self, tx: &mut Tx, operator: OperatorId) -> Result<OfferRound> {
         let invalid = |field, detail: String| Err(Error::Invalid { field, detail });
         if self.firms.is_empty() || self.firms.len() > MAX_FIRMS {
@@ -128,7 +128,7 @@ impl NewOffer {
     }
 }
 
-/// Refuses a firm that speaks for another.
+/// Refuses a firm that answers for another.
 pub(crate) fn require_own_firm(tenant: Tenant, named: Option<FirmId>) -> Result<()> {
     match (tenant.firm(), named) {
         (Some(own), Some(firm)) if own != firm => Err(Error::Invalid {
@@ -140,10 +140,10 @@ pub(crate) fn require_own_firm(tenant: Tenant, named: Option<FirmId>) -> Result<
 }
 
 impl OfferAnswer {
-    /// The same, its words trimmed.
+    /// Validates the answer.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a firm answers for another.
+    /// [`Error::Invalid`] when a firm answers for another.
     pub(crate) fn checked(self, tenant: Tenant) -> Result<OfferAnswer> {
         require_own_firm(tenant, self.firm_id)?;
         let optional = |field, value: Option<String>| optional_text(field, value.as_deref());
@@ -155,7 +155,7 @@ impl OfferAnswer {
         })
     }
 
-    /// What it says of a firm.
+    /// Exchange with a firm that contains the answer.
     pub(crate) fn between(self, firm: NamedFirm) -> Exchange {
         Exchange {
             adjuster_name: self.adjuster_name,
@@ -166,7 +166,7 @@ impl OfferAnswer {
     }
 }
 
-/// Terms at a time to come.
+/// Validates terms with a time in the future.
 pub(crate) fn checked_terms(terms: Terms, now: Time) -> Result<Terms> {
     if terms.planned_at <= now {
         return Err(Error::Invalid {
@@ -178,7 +178,7 @@ pub(crate) fn checked_terms(terms: Terms, now: Time) -> Result<Terms> {
     checked_words(terms)
 }
 
-/// Terms, their berth trimmed, for a fee that can be, in whole cents.
+/// Validates berth and fee; rounds the fee to cents.
 fn checked_words(mut terms: Terms) -> Result<Terms> {
     if let Some(fee) = terms.fee_eur
         && !(0.0..=MAX_FEE_EUR).contains(&fee)
@@ -194,10 +194,10 @@ fn checked_words(mut terms: Terms) -> Result<Terms> {
 }
 
 impl Proposal {
-    /// What a firm proposes for an order that is planned for some time, and its words.
+    /// Validates a firm's proposal for an order that is planned for this time.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where it proposes nothing, or what cannot be.
+    /// [`Error::Invalid`] when it proposes nothing, or invalid terms.
     pub(crate) fn checked(self, planned_at: Time, now: Time) -> Result<CheckedProposal> {
         let new = self.terms;
         let terms = Terms {
@@ -223,14 +223,14 @@ impl Proposal {
     }
 }
 
-/// What a firm proposes, whole.
+/// Proposal of a firm, with all terms.
 pub(crate) struct CheckedProposal {
     terms: Terms,
     text: Option<String>,
 }
 
 impl Boarding {
-    /// The same at a moment that can be.
+    /// Validates the time of boarding.
     pub(crate) fn checked(self, now: Time) -> Result<Boarding> {
         let at = self.at.unwrap_or(now);
         if at > now {
@@ -246,7 +246,7 @@ impl Boarding {
     }
 }
 
-/// What is said in a message: lines of text.
+/// Validates the text of a message, which may have several lines.
 pub(crate) fn message(said: &str) -> Result<String> {
     let said = said.trim();
     if said.chars().any(|c| is_control(c) && c != '\n') || said.chars().count() > MAX_MESSAGE {
@@ -262,11 +262,11 @@ pub(crate) fn message(said: &str) -> Result<String> {
     Ok(said.to_owned())
 }
 
-/// Offers an order, and asks whom it is the turn of.
+/// Offers an order, and sends the first offers.
 ///
 /// # Errors
-/// [`Error::WrongState`] when its time is over, or one of the firms has no team left that day
-/// or does not work then.
+/// [`Error::WrongState`] when its time is past, or a firm has no team left or does not work on
+/// that day.
 pub(crate) async fn offer(change: &mut Change<'_>, offered: OfferRound) -> Result<()> {
     let at = change.stored.summary.planned_at;
     require_future_job(change, at)?;
@@ -299,17 +299,17 @@ pub(crate) async fn require_capacity(
     firms::require_capacity(&mut change.tx, name, &visit, told).await
 }
 
-/// A firm's yes or no, or its other terms.
+/// Answer of a firm to an offer.
 pub(crate) enum FirmAnswer {
     Accept(OfferAnswer),
     Decline(OfferAnswer),
     Propose(CheckedProposal),
 }
 
-/// Takes a firm's answer.
+/// Applies a firm's answer.
 ///
 /// # Errors
-/// [`Error::WrongState`] when it is not asked, or not any more.
+/// [`Error::WrongState`] when the firm has no open offer.
 pub(crate) async fn answer_as_firm(
     change: &mut Change<'_>,
     firm: FirmId,
@@ -373,10 +373,10 @@ pub(crate) async fn answer_as_firm(
     }
 }
 
-/// Takes an operator's yes or no to what a firm has proposed.
+/// Applies an operator's answer to a proposal.
 ///
 /// # Errors
-/// [`Error::WrongState`] when nothing is proposed, or it has lapsed.
+/// [`Error::WrongState`] when there is no proposal, or it has lapsed.
 pub(crate) async fn answer_as_operator(
     change: &mut Change<'_>,
     answer: OfferAnswer,

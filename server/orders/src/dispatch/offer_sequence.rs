@@ -1,4 +1,4 @@
-//! Whose turn it is to be asked for an order, and until when they may answer.
+//! Sequence of offers to firms, and their deadlines.
 
 use crate::firms;
 use crate::work_orders::events::{Lapsed, OfferSent, OrderEvent};
@@ -12,12 +12,12 @@ use binnacle_platform::time::Time;
 
 const HOUR_S: f64 = 3600.0;
 
-/// When an answer to what is asked now is due.
+/// Deadline for an answer to an offer that is sent now.
 fn due(change: &Change<'_>, hours: u32) -> Time {
     Time(change.now.0.plus_seconds(f64::from(hours) * HOUR_S))
 }
 
-/// Refuses a job whose time is over.
+/// Refuses a job whose time is past.
 pub(crate) fn require_future_job(change: &Change<'_>, at: Time) -> Result<()> {
     if latest(at) > change.now {
         return Ok(());
@@ -28,13 +28,12 @@ pub(crate) fn require_future_job(change: &Change<'_>, at: Time) -> Result<()> {
     )))
 }
 
-/// Until when someone on the quay may say yes to a job that should have begun.
+/// Latest acceptance of a job that should have begun, for an adjuster already on the quay.
 fn latest(at: Time) -> Time {
     Time(at.0.plus_seconds(HOUR_S))
 }
 
-/// Until when to answer: no later than the job is to begin, if that is still ahead or was
-/// just now.
+/// Deadline for an answer: the begin of the job at the latest, if that is ahead or just past.
 pub(crate) fn answer_by(change: &Change<'_>, within_hours: u32, at: Time) -> Time {
     let due = due(change, within_hours);
     let ends = if at > change.now { at } else { latest(at) };
@@ -45,9 +44,8 @@ pub(crate) fn answer_by(change: &Change<'_>, within_hours: u32, at: Time) -> Tim
     }
 }
 
-/// Until when an answer leaves those whose turn comes after so many others time for theirs:
-/// the time until the job, or until they are to be asked by their terms, is shared out among
-/// all who come before and themselves. None where nobody comes after.
+/// Deadline that leaves time for the firms after the next `asked` ones: the time until the job,
+/// less their notice, is shared among all. `None` if nobody follows.
 pub(crate) async fn share_deadline(
     change: &mut Change<'_>,
     offers: &Offers,
@@ -69,21 +67,21 @@ pub(crate) async fn share_deadline(
     Ok(share_s.is_finite().then(|| ends(share_s)))
 }
 
-/// How long before a job a firm wants to be asked by its terms, seconds.
+/// Notice that a firm requires by its terms, seconds.
 async fn lead_time_s(change: &mut Change<'_>, firm: FirmId) -> Result<f64> {
     let operator = change.stored.summary.operator_id;
     let terms = firms::terms_for(&mut change.tx, operator, firm).await?;
     Ok(terms.map_or(0.0, |terms| terms.lead_time_h * HOUR_S))
 }
 
-/// Whether there is more than so much time until the job.
+/// Returns whether the job is further ahead than this.
 fn is_in_time(change: &Change<'_>, lead_s: f64) -> bool {
     let at = change.stored.summary.planned_at;
     at.0.seconds_since(change.now.0) > lead_s
 }
 
-/// Asks whom it is the turn of, where nobody else is waited for. Whom it is too late to ask is
-/// passed over.
+/// Sends the next offers, if no other offer is open. Firms whose notice is too short are passed
+/// over.
 pub(crate) async fn send_next_offers(change: &mut Change<'_>) -> Result<()> {
     let offers = change.stored.state().offers;
     if offers.state() == State::Declined {
@@ -109,7 +107,7 @@ pub(crate) async fn send_next_offers(change: &mut Change<'_>) -> Result<()> {
     send_offers(change).await
 }
 
-/// Asks those whose turn it is, if it is anyone's, and says until when they may answer.
+/// Sends the next offers, if any, with their deadlines.
 pub(crate) async fn send_offers(change: &mut Change<'_>) -> Result<()> {
     let offers = change.stored.state().offers;
     let next: Vec<Offer> = offers.next().cloned().collect();

@@ -1,8 +1,7 @@
-//! A port call that moves, or is withdrawn, while an order is to be done at it.
+//! Changes of a port call while an order is planned at it.
 //!
-//! What always holds: whoever is asked for the order or has it, and its operator, are told
-//! in the transaction that moves the call; the time that was agreed stands until both
-//! agree on another.
+//! What always holds: the operator and every firm with an open offer or the order are notified in
+//! the transaction of the change. The agreed time stands until both agree on another.
 
 use crate::dispatch::call_links;
 use crate::work_orders::events::{CallMoved, OrderEvent};
@@ -18,30 +17,30 @@ use binnacle_platform::ids::{CallId, OrderId, VesselId};
 use binnacle_platform::time::Time;
 use uuid::Uuid;
 
-/// A call about to be written otherwise.
+/// Change of a call that is about to be stored.
 pub struct CallUpdate {
-    /// The call as it is known.
+    /// The call before.
     pub call_id: CallId,
-    /// The call that is there afterwards; another one where a file names it anew.
+    /// The call afterwards; another one if a file renames it.
     pub then_id: CallId,
-    /// As it was.
+    /// Stay before.
     pub was: Alongside,
-    /// As it will be; none where it is withdrawn.
+    /// Stay afterwards; `None` if withdrawn.
     pub is: Option<Alongside>,
 }
 
-/// An order that may be done at a call.
+/// Order that may be planned at a call.
 #[derive(sqlx::FromRow)]
 pub(crate) struct AffectedOrder {
     pub(crate) id: OrderId,
     pub(crate) planned_at: Time,
     call_id: Option<CallId>,
-    /// Whether it is at no call that stands.
+    /// Whether it is linked to no valid call.
     pub(crate) is_adrift: bool,
 }
 
-/// Tells of calls of one vessel that are about to move or to be withdrawn, whose row is
-/// held; the live events, to be published after the commit.
+/// Announces changes of calls of one vessel, whose row is locked. Returns the live events, to be
+/// published after the commit.
 ///
 /// # Errors
 /// When the database cannot be written.
@@ -69,7 +68,7 @@ pub async fn announce_call_updates(
     Ok(told)
 }
 
-/// The orders of a vessel that may be done at a call, none of which changes until the
+/// Lists the orders of a vessel that may be planned at a call, and locks them until the
 /// transaction ends.
 pub(crate) async fn under_way(tx: &mut Tx, vessel: VesselId) -> Result<Vec<AffectedOrder>> {
     // Who agrees to another time meanwhile waits, or is waited for.

@@ -1,7 +1,7 @@
-//! Where a ship is when an order has her adjusted.
+//! Check of an order's time against the vessel's port calls.
 //!
-//! What always holds: an order whose words mean a port is for a day on which the vessel is
-//! known to be there, or no coming call there is known, nor where else she is then.
+//! What always holds: an order that names a port is planned for a day on which the vessel is
+//! known to be there, unless neither a coming call there nor another port at that time is known.
 
 use crate::firms::port_meant;
 use crate::work_orders::order_update::Change;
@@ -12,7 +12,7 @@ use binnacle_platform::ids::VesselId;
 use binnacle_platform::time::Time;
 use binnacle_schedule::ports::{Port, PortCode};
 
-/// The ports of a vessel's calls at some time.
+/// Ports of a vessel's calls at a time.
 async fn ports_of(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Vec<(String,)>> {
     Ok(rows!(
         in tx,
@@ -25,7 +25,7 @@ async fn ports_of(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Vec<(String
     )?)
 }
 
-/// A vessel's calls at a port that are not over.
+/// Calls of a vessel at a port that are not past.
 async fn coming(
     tx: &mut Tx,
     vessel: VesselId,
@@ -48,11 +48,11 @@ async fn coming(
         .collect())
 }
 
-/// Refuses a time at which the vessel is known to be at another port than an order's, and a
-/// day without a call at its port where calls there are known.
+/// Refuses a time at which the vessel is at another port than the order's, and a day without a
+/// call at its port if calls there are known.
 ///
 /// # Errors
-/// [`Error::Invalid`], of a field.
+/// [`Error::Invalid`], for a field.
 pub(crate) async fn require_vessel_in_port(
     change: &mut Change<'_>,
     at: Time,

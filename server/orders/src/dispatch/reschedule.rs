@@ -1,8 +1,9 @@
-//! Another time for an order that a firm has: the operator asks, the firm says yes or no.
+//! Rescheduling of an order that a firm has: the operator proposes a time, the firm accepts or
+//! declines.
 //!
-//! What always holds: what was agreed stands until the firm says yes. The new time lies in
-//! a call of the vessel's at the order's port, for as long as a job takes, and on a day on
-//! which the firm has a team left by its terms: when it is asked, and when it says yes.
+//! What always holds: the agreed time stands until the firm accepts. The new time lies in a call
+//! of the vessel at the order's port, long enough for a job, and on a day on which the firm has a
+//! team left. Both are checked at the proposal and at the acceptance.
 
 use crate::dispatch::offer_requests::{
     MAX_ANSWER_HOURS, OfferAnswer, checked_terms, require_capacity,
@@ -44,7 +45,7 @@ where
         .routes(routes!(decline_retime))
 }
 
-/// Another time for an order that a firm has.
+/// Proposal of another time.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NewRetime, example = json!({
@@ -52,22 +53,22 @@ where
     "text": "She is two days late."
 }))]
 struct RetimeRequest {
-    /// The time, and the berth if another.
+    /// Time, and berth if another.
     terms: Terms,
-    /// So long the firm has for an answer, 1 to 720 hours; what was agreed stands after it.
+    /// Time for an answer, 1 to 720 hours; the agreed time stands after it.
     #[serde(default = "default_answer_hours")]
     #[schema(minimum = 1, maximum = 720)]
     answer_within_hours: u32,
-    /// In words.
+    /// Text.
     #[serde(default)]
     #[schema(max_length = 200)]
     text: Option<String>,
 }
 
-/// Ask the firm that has an order for another time
+/// Propose another time to the firm that has an order
 ///
-/// For the operator, before the adjuster is on board. What was agreed stands until the firm
-/// accepts; asked again, the firm answers what was asked last.
+/// For the operator, before the adjuster is on board. The agreed time stands until the firm
+/// accepts. A repeated proposal replaces the last one.
 #[utoipa::path(post, path = "/work-orders/{id}/retime", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = RetimeRequest,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -115,7 +116,7 @@ async fn propose_retime(
     shown(&app, writer.operator, id).await
 }
 
-/// Agree to another time
+/// Accept another time
 ///
 /// For the firm that has the order.
 #[utoipa::path(post, path = "/work-orders/{id}/retime/accept", tag = "adjusting",
@@ -177,9 +178,9 @@ async fn accept_retime(
     shown(&app, writer.tenant, id).await
 }
 
-/// Do not agree to another time
+/// Decline another time
 ///
-/// What was agreed stands. The operator takes its question back in the same way.
+/// The agreed time stands. The operator withdraws its proposal in the same way.
 #[utoipa::path(post, path = "/work-orders/{id}/retime/decline", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -233,7 +234,7 @@ async fn decline_retime(
     shown(&app, writer.tenant, id).await
 }
 
-/// The firm that has an order whose work has not begun.
+/// Firm that has an order, before the work begins.
 fn holder(change: &Change<'_>) -> Result<Offer> {
     change
         .stored
@@ -243,7 +244,7 @@ fn holder(change: &Change<'_>) -> Result<Offer> {
     holder.ok_or_else(|| Error::WrongState("no firm has the order".to_owned()))
 }
 
-/// What the firm is asked.
+/// Terms that the firm has been proposed.
 fn asked_terms(change: &Change<'_>, offer: &Offer) -> Result<Terms> {
     let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
     let Some(terms) = offer.new_terms.clone() else {
@@ -255,7 +256,7 @@ fn asked_terms(change: &Change<'_>, offer: &Offer) -> Result<Terms> {
     Ok(terms)
 }
 
-/// The port that an order is for, where its call is known.
+/// Port of an order, if its call is known.
 async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
     if let Some(port) = change.stored.state().port {
         return Ok(Some(port));
@@ -274,10 +275,10 @@ async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
     Ok(call.map(|call| call.port).filter(is_hers))
 }
 
-/// Refuses a time at which the ship is not there, or the firm has no team.
+/// Refuses a time at which the vessel is not there, or the firm has no team.
 ///
 /// # Errors
-/// [`Error::WrongState`], which says what is in the way.
+/// [`Error::WrongState`], with the reason.
 async fn require_possible_time(
     change: &mut Change<'_>,
     firm: &NamedFirm,

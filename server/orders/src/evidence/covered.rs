@@ -1,7 +1,7 @@
-//! What a signature over the record's SHA-256 ties down: the record, what is made from it
-//! and nothing else, and the log as far as the record names it.
+//! Coverage of a signature over the record's SHA-256: the record, what is made from it, and the
+//! log up to the entry it names.
 //!
-//! What always holds: a file that is not covered is said to be so, or is a problem.
+//! What always holds: a file without coverage is reported as such, or as a problem.
 
 use super::archive::LogHead;
 use super::findings::Findings;
@@ -9,14 +9,14 @@ use super::sheets::{predicted_csv, record_pdf};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// How far the log went when the record was made, by the record.
+/// Length of the log at completion, by the record.
 pub(super) fn head(files: &BTreeMap<String, Vec<u8>>) -> Option<LogHead> {
     let record: Value = serde_json::from_slice(files.get("record.json")?).ok()?;
     serde_json::from_value(record["log"].clone()).ok()
 }
 
-/// Holds what is made from the record against what the record makes, and says what the
-/// record covers of an archive whose log has so many entries and signatures.
+/// Compares derived files with the record, and reports the record's coverage of an archive with
+/// this number of entries and signatures.
 pub(super) fn covered(
     files: &BTreeMap<String, Vec<u8>>,
     entries: i64,

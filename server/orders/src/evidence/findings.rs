@@ -1,11 +1,11 @@
 //! Findings of a check of the evidence.
 
-/// What was found.
+/// Result of a check.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
-    /// What is wrong, a sentence each; empty when all is well.
+    /// Problems, a sentence each; empty when all is well.
     pub problems: Vec<String>,
-    /// What it is and says, a sentence each.
+    /// Facts, a sentence each.
     pub facts: Vec<String>,
 }
 

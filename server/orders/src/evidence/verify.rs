@@ -1,4 +1,4 @@
-//! Checking an archive with nothing but what is in it.
+//! Check of an archive by its own content.
 
 use super::archive::{File, LogHead, Manifest, write};
 use super::covered::{self, covered};
@@ -12,10 +12,10 @@ use std::collections::BTreeMap;
 use std::io::{Cursor, Read};
 use zip::ZipArchive;
 
-/// More than this is no evidence of one adjustment.
+/// Largest evidence of one adjustment, bytes.
 const MAX_ARCHIVE_BYTES: u64 = 1 << 30;
 
-/// The files of every archive; photographs are those of the log.
+/// Files of every archive; the log names the photographs.
 const OF_THE_FORM: [&str; 6] = [
     "README.txt",
     "entries.ndjson",
@@ -25,7 +25,7 @@ const OF_THE_FORM: [&str; 6] = [
     "record.pdf",
 ];
 
-/// Before what anyone could have written who made the archive.
+/// Prefix of facts that anyone could have written who made the archive.
 const UNSIGNED: &str = "the log says, and no signature covers it:";
 
 /// Checks an archive.
@@ -89,8 +89,8 @@ fn unpack(bytes: &[u8], found: &mut Findings) -> Result<BTreeMap<String, Vec<u8>
     Ok(files)
 }
 
-/// Finds whatever is in the archive beside its files: before, between or behind them, or in
-/// what is said of them twice. These files alone make these octets alone.
+/// Reports content beside the archive's files: before, between or behind them, or in duplicate
+/// headers. These files alone make these bytes alone.
 fn nothing_else(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     if !found.problems.is_empty() {
         return;
@@ -259,7 +259,7 @@ fn record(completed: Option<&Completion>, files: &BTreeMap<String, Vec<u8>>, fou
     }
 }
 
-/// The name of its file.
+/// Checks a photograph; returns its file name.
 fn photo(
     entry: &Value,
     number: i64,
@@ -279,7 +279,7 @@ fn photo(
     Some(name)
 }
 
-/// How many signatures hold: one or none.
+/// Returns the number of valid signatures in an entry: one or none.
 fn signature(
     entry: &Value,
     completed: Option<&Completion>,

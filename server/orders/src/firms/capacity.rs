@@ -1,11 +1,9 @@
-//! Which ships a firm is to see on a day, by orders of all operators, and whether its teams
-//! suffice for one more.
+//! Capacity of a firm: the vessels it visits on a day, by orders of all operators, and its teams.
 //!
-//! What always holds: whoever books a firm holds its lock until the transaction ends, so that
-//! of two who want its last team one has it. A team is in one port a day. An operator learns
-//! of others' orders only that no team is left; the firm sees its own. An operator asks no firm
-//! for a time at which it does not work by the operator's own terms. A firm whose terms nobody
-//! has said can be asked anything.
+//! What always holds: a booking holds the firm's lock until the transaction ends, so that the
+//! last team is booked once. A team is in one port a day. An operator learns of others' orders
+//! only that no team is left; the firm sees its own. An operator offers no job at a time at which
+//! the firm does not work by the operator's terms. A firm without terms accepts any time.
 
 use super::store;
 use super::terms::Terms;
@@ -20,48 +18,48 @@ use binnacle_schedule::zone::Zone;
 use chrono::NaiveDate;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A port's day is within so many hours of any of its instants, in whatever zone.
+/// Largest distance of a port's day from any of its instants, hours, in whatever zone.
 const MAX_DAY_OFFSET_H: f64 = 40.0;
 
-/// An order that a firm is asked for, or has.
+/// Order that a firm has been offered, or has.
 #[derive(Clone, Debug, sqlx::FromRow)]
 pub struct Booking {
-    /// Whose vessel it is.
+    /// Operator of the vessel.
     pub operator_id: OperatorId,
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// Its name.
     pub vessel_name: String,
     /// The order.
     pub order_id: OrderId,
     port: String,
     planned_at: Time,
-    /// Whether the firm has it; it is only asked otherwise.
+    /// Whether the firm has it; it is only offered otherwise.
     pub is_taken: bool,
 }
 
-/// A visit that a firm is to make.
+/// Visit of a firm to a vessel.
 pub struct Visit<'a> {
-    /// By whose order.
+    /// Operator of the order.
     pub operator: OperatorId,
-    /// To which vessel.
+    /// Vessel to visit.
     pub vessel: VesselId,
-    /// Where, as the order has it.
+    /// Port, as the order names it.
     pub port: &'a str,
-    /// When.
+    /// Time of the visit.
     pub at: Time,
 }
 
-/// Who is told that there is no room.
+/// Party that books a visit.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Requester {
-    /// The operator who asks, for whom what it has asked the firm already counts.
+    /// The operator, for whom its own open offers count too.
     Operator,
-    /// The firm that says yes.
+    /// The firm, which accepts.
     Firm,
 }
 
-/// The port that an order's words mean: its code, alone or behind its name, or its name.
+/// Port that an order names: by its code, alone or behind its name, or by its name.
 pub fn port_meant(words: &str) -> Option<&'static Port> {
     let code = words
         .rsplit_once('(')
@@ -80,24 +78,24 @@ pub fn port_meant(words: &str) -> Option<&'static Port> {
         })
 }
 
-/// One port is one place, however it is written.
+/// Key of a port, however its name is written.
 fn place(words: &str) -> String {
     port_meant(words).map_or_else(|| words.trim().to_lowercase(), |port| port.code.to_string())
 }
 
-/// The day of an instant in a port's time.
+/// Day of an instant in a port's time.
 fn day(words: &str, at: Time) -> NaiveDate {
     Instant(at.0).date(port_meant(words).map_or_else(Zone::utc, |port| port.zone))
 }
 
 impl Booking {
-    /// The day, in the port's time.
+    /// Day in the port's time.
     pub fn day(&self) -> NaiveDate {
         day(&self.port, self.planned_at)
     }
 }
 
-/// How many teams it takes to be at all these ships on one day.
+/// Number of teams for these vessels on one day.
 fn teams(at: impl IntoIterator<Item = (String, VesselId)>, jobs_a_team: u32) -> u32 {
     let mut there: BTreeMap<String, BTreeSet<VesselId>> = BTreeMap::new();
     for (place, vessel) in at {
@@ -109,7 +107,7 @@ fn teams(at: impl IntoIterator<Item = (String, VesselId)>, jobs_a_team: u32) -> 
         .fold(0, u32::saturating_add)
 }
 
-/// Teams that orders take which a plan does not hold itself, day by day.
+/// Teams booked by orders outside a plan, day by day.
 pub fn teams_taken<'a>(
     bookings: impl IntoIterator<Item = &'a Booking>,
     jobs_a_team: u32,
@@ -144,7 +142,7 @@ macro_rules! bookings_sql {
     };
 }
 
-/// What a firm is asked for and has, from some time on.
+/// Lists a firm's offers and orders from a time on.
 pub async fn bookings(db: &Db, firm: FirmId, from: Time) -> Result<Vec<Booking>> {
     Ok(rows!(
         db,
@@ -155,7 +153,7 @@ pub async fn bookings(db: &Db, firm: FirmId, from: Time) -> Result<Vec<Booking>>
     )?)
 }
 
-/// Refuses a visit at a time at which a firm is closed, or to a ship that it may not adjust.
+/// Refuses a visit while a firm is closed, or to a vessel that it may not adjust.
 async fn require_suitable_firm(
     tx: &mut Tx,
     firm_name: &str,
@@ -178,10 +176,10 @@ async fn require_suitable_firm(
     }
 }
 
-/// Refuses a visit for which a firm has no team left, or by its terms does not work.
+/// Refuses a visit for which a firm has no team left, or which its terms exclude.
 ///
 /// # Errors
-/// [`Error::WrongState`], in words for whom it is told.
+/// [`Error::WrongState`], in words for the requester.
 pub async fn require_capacity(
     tx: &mut Tx,
     (firm, firm_name): (FirmId, &str),

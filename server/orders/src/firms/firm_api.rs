@@ -1,4 +1,4 @@
-//! Handlers of firms: entering them, and engaging them for operators.
+//! Handlers of firms: creation, and engagement by operators.
 
 use super::store::{self, Firm};
 use axum::extract::{FromRef, State};
@@ -28,10 +28,10 @@ where
         .routes(routes!(engage_firm, dismiss_firm))
 }
 
-/// A page of firms.
+/// Page of firms.
 #[derive(Serialize, ToSchema)]
 struct FirmList {
-    /// In the order in which they were entered.
+    /// Firms in the order of their creation.
     items: Vec<Firm>,
     /// `after` of the next page.
     #[schema(required)]
@@ -40,7 +40,7 @@ struct FirmList {
 
 /// List the firms
 ///
-/// Those that your operator works with; an adjuster's own; all for a platform admin.
+/// Those that work for your operator; an adjuster's own; all for a platform admin.
 #[utoipa::path(get, path = "/firms", tag = "adjusting", params(Page),
     responses((status = 200, body = FirmList), (status = 401, body = Problem)))]
 async fn list_firms(State(app): State<App>, caller: Caller, page: Page) -> Result<Json<FirmList>> {
@@ -54,10 +54,9 @@ async fn list_firms(State(app): State<App>, caller: Caller, page: Page) -> Resul
     }))
 }
 
-/// Enter a firm
+/// Create a firm
 ///
-/// For platform admins. Its first people are made by `binnacle-server admin create
-/// adjuster`.
+/// For platform admins. Its first users are created by `binnacle-server admin create adjuster`.
 #[utoipa::path(post, path = "/firms", tag = "platform", params(Key), request_body = NewCompany,
     responses((status = 201, body = Firm), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem)))]
@@ -102,9 +101,9 @@ async fn found(app: &App, who: Option<Tenant>, id: FirmId) -> Result<Json<Firm>>
     Ok(Json(firm.ok_or(Error::NotFound("firm"))?))
 }
 
-/// Have an operator work with a firm
+/// Engage a firm for an operator
 ///
-/// For platform admins. From then on the operator may offer the firm its orders.
+/// For platform admins. From then on the operator may offer its orders to the firm.
 #[utoipa::path(put, path = "/operators/{id}/firms/{firm}", tag = "platform",
     params(("id" = OperatorId, Path), ("firm" = FirmId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
@@ -128,10 +127,10 @@ async fn engage_firm(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// Have an operator work with a firm no more
+/// End a firm's engagement by an operator
 ///
-/// For platform admins. Not while the firm is asked for an order of the operator's or has
-/// one that is not done: it is cancelled or given back before.
+/// For platform admins. Not while the firm has an open offer or an unfinished order of the
+/// operator: those are cancelled or given back first.
 #[utoipa::path(delete, path = "/operators/{id}/firms/{firm}", tag = "platform",
     params(("id" = OperatorId, Path), ("firm" = FirmId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),

@@ -1,7 +1,7 @@
-//! Public keys that a firm signs records with.
+//! Public keys with which a firm signs records.
 //!
-//! What always holds: who registers a key has shown that they hold its private half; a
-//! key is one firm's, and once revoked it vouches for nothing signed afterwards.
+//! What always holds: whoever registers a key has proved possession of its private half. A key
+//! belongs to one firm. A revoked key vouches for nothing signed afterwards.
 
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
@@ -37,35 +37,35 @@ where
 struct FirmKey {
     /// Its id.
     id: KeyId,
-    /// What the firm calls it.
+    /// The firm's name for it.
     #[schema(example = "Office, 2026")]
     name: String,
     /// Ed25519 (RFC 8032), 64 hexadecimal digits.
     public_key: String,
-    /// When it was registered.
+    /// Time of registration.
     created_at: Time,
-    /// Who registered it.
+    /// Author of the registration.
     created_by: String,
-    /// Since when it vouches for nothing any more.
+    /// Time of the revocation.
     #[schema(required)]
     revoked_at: Option<Time>,
 }
 
-/// A page of keys.
+/// Page of keys.
 #[derive(Serialize, ToSchema)]
 struct FirmKeyList {
-    /// In the order in which they were registered.
+    /// Keys in the order of their registration.
     items: Vec<FirmKey>,
     /// `after` of the next page.
     #[schema(required)]
     next: Option<String>,
 }
 
-/// A key to be registered.
+/// Key to register.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 struct NewFirmKey {
-    /// What the firm calls it.
+    /// The firm's name for it.
     #[schema(min_length = 1, max_length = 200, example = "Office, 2026")]
     name: String,
     /// Ed25519 (RFC 8032), 64 hexadecimal digits.
@@ -93,7 +93,7 @@ impl NewFirmKey {
 
 /// List a firm's keys
 ///
-/// Also those that were revoked.
+/// Including revoked ones.
 #[utoipa::path(get, path = "/firms/{id}/keys", tag = "adjusting",
     params(("id" = FirmId, Path), Page),
     responses((status = 200, body = FirmKeyList), (status = 401, body = Problem),
@@ -129,7 +129,7 @@ async fn rows(db: &Db, firm: FirmId, page: &Page) -> Result<Vec<FirmKey>> {
     )?)
 }
 
-/// Whoever may change the firm's keys: its own adjusters. To others it is not there.
+/// Refuses anyone but the firm's own adjusters. For others the firm does not exist.
 fn require_own_keys(writer: PartyWriter, firm: FirmId) -> Result<()> {
     if writer.tenant == Tenant::Firm(firm) {
         return Ok(());
@@ -137,9 +137,9 @@ fn require_own_keys(writer: PartyWriter, firm: FirmId) -> Result<()> {
     Err(Error::NotFound("firm"))
 }
 
-/// Register a key of your firm's
+/// Register a key of your firm
 ///
-/// With a signature by it, so that nobody registers another's.
+/// With a signature by it, so that nobody registers another's key.
 #[utoipa::path(post, path = "/firms/{id}/keys", tag = "adjusting",
     params(("id" = FirmId, Path), RequestKey), request_body = NewFirmKey,
     responses((status = 201, body = FirmKey), (status = 401, body = Problem),
@@ -213,9 +213,9 @@ async fn find(tx: &mut Tx, firm: FirmId, id: KeyId) -> Result<FirmKey> {
     found.ok_or(Error::NotFound("key"))
 }
 
-/// Revoke a key of your firm's
+/// Revoke a key of your firm
 ///
-/// What it signed before stays signed; it vouches for nothing from now on.
+/// Earlier signatures stay valid; from now on it vouches for nothing.
 #[utoipa::path(delete, path = "/firms/{id}/keys/{key}", tag = "adjusting",
     params(("id" = FirmId, Path), ("key" = KeyId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),

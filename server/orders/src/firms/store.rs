@@ -1,4 +1,4 @@
-//! Firms in the database, and which operators they work for.
+//! Firms and their engagements in the database.
 
 use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
 use binnacle_platform::ids::{FirmId, OperatorId};
@@ -8,7 +8,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-/// A company that adjusts compasses.
+/// Company that adjusts compasses.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 pub(super) struct Firm {
     /// Its id.
@@ -16,7 +16,7 @@ pub(super) struct Firm {
     /// Its name.
     #[schema(example = "Nervión Compass")]
     pub(super) name: String,
-    /// When it was entered here.
+    /// Time of its creation here.
     pub(super) created_at: Time,
 }
 
@@ -38,7 +38,7 @@ pub(super) async fn insert(tx: &mut Tx, id: FirmId, name: &str, now: Time) -> Re
     Ok(())
 }
 
-/// Whether there is such a firm.
+/// Returns whether a firm exists.
 pub async fn exists(tx: &mut Tx, id: FirmId) -> Result<bool> {
     let found = row!(
         in tx,
@@ -49,7 +49,7 @@ pub async fn exists(tx: &mut Tx, id: FirmId) -> Result<bool> {
     Ok(found.is_some())
 }
 
-/// The name of a firm that an operator works with; none of any other.
+/// Finds the name of a firm that works for an operator.
 pub async fn name_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<String>> {
     let found = row!(
         in tx,
@@ -64,7 +64,7 @@ pub async fn name_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result
     Ok(found.map(|(name,)| name))
 }
 
-/// Has an operator work with a firm; once is enough.
+/// Engages a firm for an operator; repetition has no effect.
 pub async fn engage(tx: &mut Tx, operator: OperatorId, firm: FirmId, now: Time) -> Result<()> {
     execute!(
         tx,
@@ -77,7 +77,7 @@ pub async fn engage(tx: &mut Tx, operator: OperatorId, firm: FirmId, now: Time) 
     Ok(())
 }
 
-/// Has an operator work with a firm no more; whether it did.
+/// Ends a firm's engagement; returns whether there was one.
 pub(super) async fn dismiss(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<bool> {
     let ended = execute!(
         tx,
@@ -88,8 +88,8 @@ pub(super) async fn dismiss(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> 
     Ok(ended > 0)
 }
 
-/// How many of an operator's orders that are not done a firm is asked for or has. Whoever
-/// books the firm meanwhile waits.
+/// Counts an operator's unfinished orders that a firm has been offered or has. Other bookings of
+/// the firm wait for the transaction.
 pub(super) async fn orders_between(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<i64> {
     execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
     let found = row!(
@@ -107,7 +107,7 @@ pub(super) async fn orders_between(tx: &mut Tx, operator: OperatorId, firm: Firm
     Ok(found.map_or(0, |(orders,)| orders))
 }
 
-/// Keeps the terms on which a firm works for an operator.
+/// Stores a firm's terms for an operator.
 pub(super) async fn put_terms(
     tx: &mut Tx,
     operator: OperatorId,
@@ -132,7 +132,7 @@ pub(super) async fn put_terms(
     Ok(())
 }
 
-/// Forgets them; whether there were any.
+/// Removes a firm's terms for an operator; returns whether there were any.
 pub(super) async fn remove_terms(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<bool> {
     let removed = execute!(
         tx,
@@ -143,7 +143,7 @@ pub(super) async fn remove_terms(tx: &mut Tx, operator: OperatorId, firm: FirmId
     Ok(removed > 0)
 }
 
-/// The firms that an operator works with: id, name, and terms where they are said.
+/// Lists the firms that work for an operator: id, name, and terms if any.
 pub(super) async fn with_terms(
     db: &Db,
     operator: OperatorId,
@@ -159,7 +159,7 @@ pub(super) async fn with_terms(
     )
 }
 
-/// The terms on which a firm works, for whomever it does.
+/// Lists a firm's terms, for all its operators.
 pub(super) async fn terms_of(tx: &mut Tx, firm: FirmId) -> Result<Vec<(OperatorId, String)>> {
     rows!(
         in tx,
@@ -172,7 +172,7 @@ pub(super) async fn terms_of(tx: &mut Tx, firm: FirmId) -> Result<Vec<(OperatorI
     )
 }
 
-/// The firms that someone sees: all, those an operator works with, or a firm itself.
+/// Lists the firms that a tenant sees: all, those of an operator, or a firm itself.
 pub(super) async fn list(
     db: &Db,
     who: Option<Tenant>,
@@ -197,7 +197,7 @@ pub(super) async fn list(
     )
 }
 
-/// A firm, if someone sees it.
+/// Finds a firm that a tenant sees.
 pub(super) async fn find(db: &Db, who: Option<Tenant>, id: FirmId) -> Result<Option<Firm>> {
     row!(
         db,

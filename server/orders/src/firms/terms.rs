@@ -1,8 +1,7 @@
-//! On what terms a firm works for an operator: where, when, for whom, for how much.
+//! Terms of a firm for an operator: places, times, vessels and fees.
 //!
-//! What always holds: terms are the operator's own record of the firm, and no other
-//! operator sees them. A firm without days or ports can be written, and is said to be of
-//! no use until it has some.
+//! What always holds: terms are the operator's own record of the firm, hidden from other
+//! operators. Terms without days or ports are stored, and reported as unusable.
 
 use super::store;
 use axum::extract::{FromRef, State};
@@ -27,14 +26,14 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// No list in terms is longer.
+/// Longest list in terms.
 const MOST: usize = 1000;
 
-/// An operator has other terms with a firm.
+/// Change of a firm's terms for an operator.
 pub struct TermsChanged {
-    /// Whose terms.
+    /// Operator of the terms.
     pub operator: OperatorId,
-    /// When.
+    /// Time of the change.
     pub at: Time,
 }
 
@@ -50,7 +49,7 @@ where
         .routes(routes!(set_terms, end_terms))
 }
 
-/// On what terms a firm works.
+/// Terms of a firm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = FirmTerms, example = json!({
@@ -61,48 +60,48 @@ where
     "flags": ["PA", "MH", "NL"]
 }))]
 pub struct Terms {
-    /// The ports it serves, UN/LOCODE, with what a team's day there costs in travel.
+    /// Ports served, UN/LOCODE, with the travel cost of a team's day there.
     #[serde(default)]
     #[schema(value_type = Vec<ServedPortSchema>)]
     pub ports: Vec<ServedPort>,
-    /// The fee for a job, euros.
+    /// Fee for a job, euros.
     #[schema(value_type = f64, minimum = 0, maximum = 1_000_000)]
     pub fee_eur: Eur,
-    /// For each compass after the first on the same job, euros.
+    /// Fee for each further compass on the same job, euros.
     #[serde(default)]
     #[schema(value_type = f64, minimum = 0, maximum = 1_000_000)]
     pub extra_compass_eur: Eur,
-    /// Teams that it has for you on a working day; 1 if not said.
+    /// Teams for you on a working day; 1 by default.
     #[serde(default = "one")]
     #[schema(maximum = 1000)]
     pub teams: u32,
-    /// Jobs that a team does on one day in one port; 1 if not said.
+    /// Jobs of a team on one day in one port; 1 by default.
     #[serde(default = "one")]
     #[schema(minimum = 1, maximum = 20)]
     pub jobs_a_team_day: u32,
-    /// Days of the week on which it works, as `Mon`; Monday to Friday if not said.
+    /// Working days of the week, as `Mon`; Monday to Friday by default.
     #[serde(default = "working_week")]
     #[schema(value_type = Vec<String>)]
     pub working_days: Vec<Weekday>,
-    /// Days on which it does not work.
+    /// Days without work.
     #[serde(default)]
     pub closed: Vec<NaiveDate>,
-    /// The hour at which its day begins, in the port's time; 8 if not said.
+    /// Hour at which its day begins, in the port's time; 8 by default.
     #[serde(default = "eight")]
     #[schema(minimum = 0, maximum = 24)]
     pub first_hour: f64,
-    /// The hour at which its day ends; 18 if not said.
+    /// Hour at which its day ends; 18 by default.
     #[serde(default = "eighteen")]
     #[schema(minimum = 0, maximum = 24)]
     pub last_hour: f64,
-    /// Hours from being asked to the beginning of the job.
+    /// Notice before a job, hours.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 8760)]
     pub lead_time_h: f64,
-    /// Licences that it holds.
+    /// Licences held.
     #[serde(default)]
     pub licences: Vec<String>,
-    /// Flags that accept its adjusters, ISO 3166; all, where it is empty.
+    /// Flags that accept its adjusters, ISO 3166; all, if empty.
     #[serde(default)]
     #[schema(value_type = Vec<String>)]
     pub flags: Vec<Flag>,
@@ -138,7 +137,7 @@ fn eighteen() -> f64 {
     18.0
 }
 
-/// A firm that an operator works with, and on what terms.
+/// Firm that works for an operator, with its terms.
 #[derive(Serialize, ToSchema)]
 #[schema(as = FirmWithTerms)]
 struct FirmWithTerms {
@@ -146,23 +145,23 @@ struct FirmWithTerms {
     firm_id: FirmId,
     /// Its name.
     firm_name: String,
-    /// Its terms; none where nobody has said them.
+    /// Its terms; `null` before any were set.
     #[schema(required)]
     terms: Option<Terms>,
-    /// Why the schedule leaves the firm out; empty when it does not.
+    /// Reasons for which the schedule leaves the firm out; empty when it does not.
     #[schema(example = json!(["working_days: a firm that works on no day of the week serves nobody"]))]
     problems: Vec<String>,
 }
 
-/// All firms that an operator works with.
+/// All firms that work for an operator.
 #[derive(Serialize, ToSchema)]
 #[schema(as = FirmTermsList)]
 struct TermsList {
-    /// In the order in which they were entered.
+    /// Firms in the order of their creation.
     items: Vec<FirmWithTerms>,
 }
 
-/// List on what terms firms work for you
+/// List the terms of firms for you
 #[utoipa::path(get, path = "/firm-terms", tag = "adjusting",
     responses((status = 200, body = TermsList), (status = 401, body = Problem)))]
 async fn list_terms(State(app): State<App>, reader: Reader) -> Result<Json<TermsList>> {
@@ -171,7 +170,7 @@ async fn list_terms(State(app): State<App>, reader: Reader) -> Result<Json<Terms
     Ok(Json(TermsList { items }))
 }
 
-/// The firms that an operator works with, with their terms where they are said.
+/// Lists the firms that work for an operator, with their terms if any.
 pub async fn of_operator(
     db: &Db,
     operator: OperatorId,
@@ -184,7 +183,7 @@ pub async fn of_operator(
     found.into_iter().map(read).collect()
 }
 
-/// The terms on which a firm works for an operator; none where nobody has said them.
+/// Returns the terms of a firm for an operator, if any.
 pub async fn terms_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<Terms>> {
     let said = store::terms_of(tx, firm).await?;
     let said = said.into_iter().find(|(whose, _)| *whose == operator);
@@ -192,10 +191,10 @@ pub async fn terms_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Resul
     Ok(terms.transpose()?)
 }
 
-/// Say on what terms a firm works for you
+/// Set the terms of a firm for you
 ///
-/// The schedule plans with firms that have terms. Terms without days or ports are kept,
-/// and said to be a problem.
+/// The schedule plans with firms that have terms. Terms without days or ports are stored, and
+/// reported as a problem.
 #[utoipa::path(put, path = "/firms/{id}/terms", tag = "adjusting",
     params(("id" = FirmId, Path)), request_body = Terms,
     responses((status = 200, body = FirmWithTerms), (status = 401, body = Problem),
@@ -227,9 +226,9 @@ async fn set_terms(
     Ok(Json(FirmWithTerms::new((firm, name, Some(terms)))))
 }
 
-/// Plan with a firm no more
+/// Remove the terms of a firm for you
 ///
-/// Its terms are removed; orders that it has stay with it.
+/// The schedule no longer plans with the firm. It keeps its orders.
 #[utoipa::path(delete, path = "/firms/{id}/terms", tag = "adjusting",
     params(("id" = FirmId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
@@ -292,7 +291,7 @@ impl Terms {
         }
     }
 
-    /// Why the firm does not work then, at a port; in UTC where that is not known.
+    /// Reason for which the firm is closed at a time, at a port; in UTC for an unknown port.
     pub(super) fn closed_at(&self, at: Time, port: Option<&Port>) -> Option<String> {
         let (at, zone) = (Instant(at.0), port.map_or_else(Zone::utc, |port| port.zone));
         let day = at.date(zone);
@@ -305,8 +304,7 @@ impl Terms {
             .then(|| format!("works from {opens} to {closes} on {day}"))
     }
 
-    /// Why the firm may not adjust a vessel of a flag, where that is known, whose operator
-    /// asks for a licence.
+    /// Reason for which the firm may not adjust a vessel with this flag and required licence.
     pub(super) fn not_accepted(&self, flag: Option<Flag>, licence: Option<&str>) -> Option<String> {
         if let Some(flag) = flag
             && !self.firm("", None).is_accepted_by(Some(flag))
@@ -319,7 +317,7 @@ impl Terms {
         ))
     }
 
-    /// Why the schedule leaves the firm out.
+    /// Reasons for which the schedule leaves the firm out.
     pub fn problems(&self) -> Vec<String> {
         let error = input::check_firm(&self.firm("", None)).err();
         let wrong = error.map(|error| format!("{}: {}", error.field, error.detail));
@@ -327,7 +325,7 @@ impl Terms {
         wrong.into_iter().chain(none).collect()
     }
 
-    /// As the schedule has it.
+    /// Firm as the schedule's input.
     pub fn firm(&self, id: &str, name: Option<&str>) -> input::Firm {
         input::Firm {
             id: id.to_owned(),

@@ -1,10 +1,8 @@
-//! The proof at sea: settled headings since an adjustment, held against what was
-//! foretold.
+//! Verification at sea: settled headings since an adjustment, compared with its prediction.
 //!
-//! What always holds: a verdict is an entry of the order's log, in the transaction that
-//! stores the analysis whose samples it rests on; an alarm is an alert as long as the
-//! order stands failed; what has passed stays so, and a later change of the ship ends the
-//! epoch instead.
+//! What always holds: a verdict is an entry of the order's log, written in the transaction of its
+//! analysis. An alarm is an alert as long as the order has failed. A passed verification is
+//! final: a later change of the ship ends the epoch instead.
 
 use crate::work_orders::events::OrderEvent;
 use crate::work_orders::log::entry::Author;
@@ -24,7 +22,7 @@ use binnacle_platform::time::Time;
 use tracing::warn;
 use uuid::Uuid;
 
-/// Of one heading at sea: reference, card and sea together, degrees.
+/// Standard deviation of one heading at sea, degrees: reference, card and sea together.
 const HEADING_SD_DEG: f64 = 0.7;
 
 fn agree(headings: usize) -> String {
@@ -70,7 +68,7 @@ impl SeaVerification {
         }
     }
 
-    /// Whether it says something that this does not.
+    /// Returns whether the verdict differs from the last one.
     fn differs_from(&self, last: Option<&SeaVerification>) -> bool {
         let headings = |verified: &SeaVerification| match verified.verification {
             Verification::MoreNeeded { headings, .. } => Some(headings),
@@ -84,7 +82,7 @@ impl SeaVerification {
     }
 }
 
-/// Holds a compass's samples against what its last adjustment foretold.
+/// Compares a compass's samples with the prediction of its last adjustment.
 pub async fn after_analysis(
     tx: &mut Tx,
     vessel: VesselId,

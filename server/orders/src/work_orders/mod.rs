@@ -1,13 +1,12 @@
-//! Work orders: one compass of one vessel, adjusted at the berth without a swing; offered to
-//! firms, and carried to its end by the one that takes it.
+//! Work orders: the adjustment of one compass of one vessel at the berth, without a swing.
 //!
 //! What always holds:
 //!
-//! - An order is its log: entries that are never changed or removed, each naming the
-//!   hash of the one before. How it stands follows from them, in the same transaction.
-//! - The same request again under its key writes nothing more, and is answered by the
-//!   order as it is: a page at the binnacle sends again after a bad connection.
-//! - What is foretold says so until headings at sea agree. Nothing here issues a
+//! - An order is its log: entries that are never changed or removed, each with the hash of
+//!   the one before. The state follows from them, in the same transaction.
+//! - A repeated request under its key writes nothing more, and is answered by the present
+//!   order: the page at the binnacle retries after a bad connection.
+//! - A prediction is called one until headings at sea agree. Nothing here issues a
 //!   certificate.
 
 pub(crate) mod events;
@@ -48,7 +47,7 @@ use order::Order;
 use order_update::OrderUpdate;
 use serde::Serialize;
 
-/// A request to change an order, told from others by what it asks.
+/// Prepares a change of an order; `what` distinguishes it from other requests.
 pub(crate) fn order_update<'a>(
     app: &'a App,
     request: RequestContext,
@@ -68,7 +67,7 @@ pub(crate) fn order_update<'a>(
     })
 }
 
-/// The order as it is.
+/// Returns the order as it is.
 pub(crate) async fn shown(
     app: &App,
     tenant: impl Into<Tenant>,

@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
-/// No order is for later.
+/// Latest time of an order, days ahead.
 const MAX_DAYS_AHEAD: f64 = 730.0;
 
-/// An order to be written.
+/// Request for a new order.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NewWorkOrder, example = json!({
@@ -25,7 +25,7 @@ const MAX_DAYS_AHEAD: f64 = 730.0;
 pub struct NewOrder {
     /// The vessel.
     pub vessel_id: VesselId,
-    /// One of her compasses.
+    /// One of its compasses.
     pub compass_id: CompassId,
     /// The port.
     #[schema(min_length = 1, max_length = 200)]
@@ -34,51 +34,50 @@ pub struct NewOrder {
     #[serde(default)]
     #[schema(max_length = 200)]
     pub berth: Option<String>,
-    /// When it is to be done.
+    /// Time of the job.
     pub planned_at: Time,
-    /// Who is to do it.
+    /// Adjuster.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub adjuster_name: Option<String>,
-    /// The number of their licence.
+    /// Licence number.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub adjuster_licence: Option<String>,
-    /// Their firm.
+    /// Firm of the adjuster.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub firm: Option<String>,
-    /// The firms that it is offered to; the order is `planned` without, `offered` with.
+    /// Offer to firms; the order is `planned` without, `offered` with.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub offer: Option<NewOffer>,
-    /// What a plan must keep to, where it is not the usual.
+    /// Limits on plans, if not the usual ones.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<LimitsSchema>)]
     pub limits: Option<Limits>,
 }
 
-/// An order to be offered to firms.
+/// Request to offer an order to firms.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NewOffer, example = json!({
     "firms": ["0199aa00-0000-7000-8000-000000000003"], "answer_within_hours": 48
 }))]
 pub struct NewOffer {
-    /// The firms, in the order in which they are asked: 1 to 20 that you work with.
+    /// Firms in the order of the offers: 1 to 20 that work for you.
     pub firms: Vec<FirmId>,
-    /// So long each has for an answer, 1 to 720 hours; then the next is asked.
+    /// Time for an answer, 1 to 720 hours; then the next firm follows.
     #[serde(default = "default_answer_hours")]
     #[schema(minimum = 1, maximum = 720)]
     pub answer_within_hours: u32,
-    /// Ask all of them at once: the first to accept has it.
+    /// Offer to all of them at once: the first to accept gets the order.
     #[serde(default)]
     pub at_once: bool,
-    /// What is said to them.
+    /// Text for the firms.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub text: Option<String>,
-    /// The fees that a plan has for some of them; for others, what their terms say for a
-    /// compass alone.
+    /// Fees from a plan; other firms are offered the fee of their terms for a single compass.
     #[serde(skip)]
     pub fees_eur: BTreeMap<FirmId, f64>,
 }
@@ -87,7 +86,7 @@ pub(crate) fn default_answer_hours() -> u32 {
     48
 }
 
-/// Refuses a time that nobody plans for.
+/// Refuses a time too far ahead.
 pub(crate) fn require_near_date(planned_at: Time, now: Time) -> Result<()> {
     if planned_at.0.seconds_since(now.0) <= MAX_DAYS_AHEAD * 86_400.0 {
         return Ok(());
@@ -99,7 +98,7 @@ pub(crate) fn require_near_date(planned_at: Time, now: Time) -> Result<()> {
 }
 
 impl NewOrder {
-    /// The order, its words trimmed.
+    /// Validates the request.
     pub fn checked(self, now: Time) -> Result<NewOrder> {
         let past = |grace_h: f64| now.0.seconds_since(self.planned_at.0) > grace_h * 3600.0;
         // Who is on the quay already may write the order afterwards; who is asked for one needs

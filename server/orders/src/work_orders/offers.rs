@@ -1,8 +1,7 @@
-//! Offers of an order to firms, and what these answered: how they stand follows from the
-//! log's entries.
+//! Offers of an order to firms, as they follow from the log's entries.
 //!
-//! What always holds: at most one firm has accepted. Whoever is asked has a deadline, and
-//! so has the operator whom a firm asks for other terms; nothing said after it counts.
+//! What always holds: at most one firm has accepted. Each open offer or proposal has a deadline;
+//! later answers do not count.
 
 use crate::work_orders::payload::exchange::{Exchange, NamedFirm, Terms};
 use crate::work_orders::state::State;
@@ -11,52 +10,51 @@ use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// How an offer to a firm stands.
+/// State of an offer to a firm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 pub(crate) enum OfferState {
-    /// Its turn has not come.
+    /// Not sent yet.
     Waiting,
-    /// The firm is asked.
+    /// Sent, without an answer.
     Open,
-    /// The firm has proposed other terms, and the operator is asked.
+    /// Answered by a proposal, which awaits the operator's answer.
     Proposed,
-    /// The firm has the order.
+    /// Accepted: the firm has the order.
     Accepted,
-    /// The firm said no, or the operator did to its terms.
+    /// Declined by the firm, or its terms by the operator.
     Declined,
-    /// There was no answer in time, or no time left to ask.
+    /// Without an answer in time, or too late to be sent.
     Lapsed,
-    /// The order is another's, or is cancelled.
+    /// Withdrawn: another firm has the order, or it is cancelled.
     Withdrawn,
 }
 
-/// An offer to a firm.
+/// Offer to a firm.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[schema(as = WorkOrderOffer)]
 pub(crate) struct Offer {
     /// The firm.
     pub firm_id: FirmId,
-    /// Its name when it was offered.
+    /// Its name at the time of the offer.
     pub firm_name: String,
-    /// How it stands.
+    /// Present state.
     pub state: OfferState,
-    /// Until when an answer is waited for.
+    /// Deadline for an answer.
     #[schema(required)]
     pub answer_by: Option<Time>,
-    /// The fee that it was offered, euros, without travel; none where nobody has said on
-    /// what terms the firm works.
+    /// Offered fee, euros, without travel; `null` if the firm has no terms.
     #[schema(required)]
     pub fee_eur: Option<f64>,
-    /// What the firm proposes, or what was agreed on.
+    /// Proposed or agreed terms.
     #[schema(required)]
     pub terms: Option<Terms>,
-    /// Another time that the operator asks of the firm that has the order: what was agreed
-    /// stands until it says yes.
+    /// Another time that the operator proposes to the firm that has the order: the agreed time
+    /// stands until the firm accepts.
     #[schema(required)]
     pub new_terms: Option<Terms>,
-    /// What was said last, in words.
+    /// Last text.
     #[schema(required)]
     pub text: Option<String>,
 }
@@ -75,7 +73,7 @@ impl Offers {
         offers.find(|offer| offer.firm_id == firm)
     }
 
-    /// Asks the firm that has the order for another time.
+    /// Records a proposal of another time to the firm that has the order.
     pub(crate) fn propose_retime(&mut self, said: &Exchange) {
         if let Some(offer) = self.to(said.firm.firm_id) {
             offer.answer_by = said.answer_by;
@@ -84,7 +82,7 @@ impl Offers {
         }
     }
 
-    /// Another time is not waited for any more.
+    /// Drops a proposal of another time.
     pub(crate) fn drop_retime(&mut self) {
         for offer in self
             .all
@@ -116,7 +114,7 @@ impl Offers {
         self.set(&agreed, OfferState::Accepted);
     }
 
-    /// Takes back what nobody has accepted.
+    /// Withdraws offers that nobody has accepted, unless `stays`.
     pub(crate) fn withdraw_unless(&mut self, stays: impl Fn(OfferState) -> bool) {
         for offer in &mut self.all {
             let open = matches!(
@@ -130,7 +128,7 @@ impl Offers {
         }
     }
 
-    /// How far an order has come that these are the offers of.
+    /// State of an order with these offers.
     pub(crate) fn state(&self) -> State {
         let any = |state| self.all.iter().any(|offer| offer.state == state);
         if any(OfferState::Accepted) {
@@ -144,18 +142,18 @@ impl Offers {
         }
     }
 
-    /// The offer to a firm.
+    /// Returns the offer to a firm.
     pub(crate) fn of(&self, firm: FirmId) -> Option<&Offer> {
         self.all.iter().find(|offer| offer.firm_id == firm)
     }
 
-    /// The firm that has accepted.
+    /// Returns the accepted offer.
     pub(crate) fn holder(&self) -> Option<&Offer> {
         let mut offers = self.all.iter();
         offers.find(|offer| offer.state == OfferState::Accepted)
     }
 
-    /// Those whose turn has not come, if nobody else is waited for.
+    /// Returns the offers to send next; none while another is open.
     pub(crate) fn next(&self) -> impl Iterator<Item = &Offer> {
         let idle = self.state() == State::Declined;
         let most = if self.at_once { usize::MAX } else { 1 };
@@ -163,7 +161,7 @@ impl Offers {
         self.all.iter().filter(waiting).take(most)
     }
 
-    /// The first deadline of those that run.
+    /// Returns the first running deadline.
     pub(crate) fn answer_by(&self) -> Option<Time> {
         self.all.iter().filter_map(|offer| offer.answer_by).min()
     }
@@ -175,7 +173,7 @@ impl OfferState {
         self == OfferState::Waiting
     }
 
-    /// Whether a firm whose offer stands so sees the order.
+    /// Returns whether the firm of such an offer sees the order.
     pub(crate) fn is_seen(self) -> bool {
         matches!(
             self,
@@ -183,7 +181,7 @@ impl OfferState {
         )
     }
 
-    /// Why a firm can answer no more.
+    /// Reason for which a firm can no longer answer.
     pub(crate) fn reason_closed(self) -> &'static str {
         match self {
             OfferState::Waiting => "it is not offered to your firm yet",
@@ -198,7 +196,7 @@ impl OfferState {
 }
 
 impl Offer {
-    /// The firm as entries name it.
+    /// Firm, as entries name it.
     pub(crate) fn firm(&self) -> NamedFirm {
         NamedFirm {
             firm_id: self.firm_id,
@@ -206,8 +204,7 @@ impl Offer {
         }
     }
 
-    /// The fee by the terms that it stands at: what was offered holds where nothing else
-    /// is said.
+    /// Fee by the present terms; the offered fee if they name none.
     pub(crate) fn fee(&self) -> Option<f64> {
         let said = self.terms.as_ref().and_then(|terms| terms.fee_eur);
         said.or(self.fee_eur)

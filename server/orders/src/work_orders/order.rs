@@ -1,4 +1,4 @@
-//! An order to adjust a compass, as it is asked for and shown.
+//! View of an order, with everything that the next action depends on.
 
 use crate::work_orders::offers::Offer;
 use crate::work_orders::order_state::OrderState;
@@ -22,73 +22,72 @@ use binnacle_platform::tenants::Tenant;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// What everything that comes from an order says of itself until the sea has spoken.
+/// Status of every prediction until headings at sea confirm it.
 pub(crate) const NOT_A_CERTIFICATE: &str = "predicted, not a certificate";
 
-/// An order, and all that the next thing to do depends on.
+/// Order with everything that the next action depends on.
 #[derive(Serialize, ToSchema)]
 #[schema(as = WorkOrder)]
 pub(crate) struct Order {
-    /// In a line.
+    /// Summary.
     #[serde(flatten)]
     pub summary: Summary,
-    /// The fee that was agreed on with the firm that has it, euros, without travel; none
-    /// while no firm has it, or where none was said.
+    /// Fee agreed with the firm that has the order, euros, without travel; `null` without a firm,
+    /// or without a fee.
     #[schema(required)]
     pub fee_eur: Option<f64>,
-    /// What became of its port call since its time was agreed; none where it has not moved.
+    /// Change of the port call since the time was agreed; `null` if it has not moved.
     #[schema(required)]
     pub call_change: Option<CallChange>,
-    /// What its figures are: predictions, until headings at sea agree.
+    /// Status of the figures: predictions, until headings at sea agree.
     #[schema(example = "predicted, not a certificate")]
     pub standing: &'static str,
-    /// What a plan must keep to.
+    /// Limits on plans.
     #[schema(value_type = LimitsSchema)]
     pub limits: Limits,
-    /// What the magnetometer read; the last reading that was taken.
+    /// Last accepted reading of the magnetometer.
     #[schema(required, value_type = Option<BerthReadingSchema>)]
     pub reading: Option<ReadingForm>,
-    /// What that told.
+    /// Check of that reading.
     #[schema(required)]
     pub berth_check: Option<BerthCheck>,
-    /// The plan that is followed.
+    /// Plan being followed.
     #[schema(required, value_type = Option<ChosenPlanSchema>)]
     pub plan: Option<ChosenPlan>,
-    /// How many of its steps are done.
+    /// Number of its steps done.
     pub steps_done: usize,
-    /// The step to do now; none when all are done, or there is no plan.
+    /// Next step; `null` when all are done, or there is no plan.
     #[schema(required, value_type = Option<StepSchema>)]
     pub next_step: Option<Step>,
-    /// What became of the last step.
+    /// Result of the last step.
     #[schema(required, value_type = Option<VerdictSchema>)]
     pub last_step: Option<StepResult>,
-    /// What the magnetometer said after the steps, the correctors standing as they stand.
+    /// Second reading of the present settings.
     #[schema(required)]
     pub second_reading: Option<SecondReadingResult>,
-    /// Whether someone has said since that reading how the correctors stand.
+    /// Whether the settings were reported since that reading.
     pub looked_since: bool,
-    /// How the correctors stand now; none before the first reading.
+    /// Present setting of the correctors; `null` before the first reading.
     #[schema(required, value_type = Option<SettingSchema>)]
     pub setting: Option<Setting>,
-    /// What the compass read last at the berth, degrees.
+    /// Last reading of the compass at the berth, degrees.
     #[schema(required)]
     pub compass_deg: Option<f64>,
-    /// How it was completed.
+    /// Completion of the adjustment.
     #[schema(required)]
     pub completion: Option<Completion>,
-    /// What the headings at sea say.
+    /// Verdict of headings at sea.
     #[schema(required)]
     pub verification: Option<SeaVerification>,
     /// Photographs, in order.
     pub photos: Vec<Photo>,
-    /// Signatures over the record by firms' keys, and whose they are.
+    /// Signatures over the record by firms' keys, with their owners.
     pub signatures: Vec<KeySignature>,
-    /// What became of its offers, in the order in which firms are asked; a firm sees its
-    /// own only.
+    /// Offers, in the order in which they are sent; a firm sees its own only.
     pub offers: Vec<Offer>,
 }
 
-/// A signature over the record.
+/// Signature over the record.
 #[derive(Serialize, ToSchema)]
 #[schema(as = WorkOrderSignature)]
 pub(crate) struct KeySignature {
@@ -96,7 +95,7 @@ pub(crate) struct KeySignature {
     pub public_key: String,
     /// The signature, hexadecimal.
     pub signature: String,
-    /// Whose key it is; none for a key that the order's firm has not registered.
+    /// Owner of the key; `null` for a key that the order's firm has not registered.
     #[schema(required)]
     pub key: Option<KnownKey>,
 }
@@ -112,7 +111,7 @@ impl From<RecordedSignature> for KeySignature {
 }
 
 impl Order {
-    /// The order with what follows from its log.
+    /// Combines the summary with the state by the log.
     pub(crate) fn new(summary: Summary, state: OrderState, tenant: Tenant) -> Order {
         let setting = state.setting().cloned();
         // Held against what the compass reads now, as the next step will be.

@@ -1,8 +1,8 @@
-//! A change of an order on its way into the database.
+//! Change of an order, on its way into the database.
 //!
-//! What always holds: whoever changes an order holds its lock until the transaction
-//! ends; the entry, what follows from it and the live event are that one transaction;
-//! and the same request under the same key writes one entry.
+//! What always holds: a change holds the order's lock until the transaction ends. The entry, its
+//! consequences and the live events are that one transaction. The same request under the same key
+//! writes one entry.
 
 use crate::work_orders::events::OrderEvent;
 use crate::work_orders::log::entry::Author;
@@ -21,33 +21,33 @@ use binnacle_platform::session;
 use binnacle_platform::time::Time;
 use uuid::Uuid;
 
-/// A request to change an order.
+/// Request to change an order.
 pub(crate) struct OrderUpdate<'a> {
     pub(crate) app: &'a App,
     pub(crate) request: RequestContext,
     pub(crate) writer: PartyWriter,
     pub(crate) order: OrderId,
     pub(crate) key: Key,
-    /// What tells it from another.
+    /// Hash that distinguishes the request from others.
     pub(crate) hash: Vec<u8>,
 }
 
-/// A change that has begun.
+/// Change in an open transaction.
 pub(crate) struct Change<'a> {
     app: &'a App,
     pub(crate) tx: Tx,
     pub(crate) stored: StoredOrder,
     pub(crate) author: Author,
     pub(crate) now: Time,
-    /// The id of the entry to be written.
+    /// Id of the next entry.
     pub(crate) id: Uuid,
-    /// The order before.
+    /// The order before the change.
     before: OrderBefore,
     told: Vec<Event>,
 }
 
 impl<'a> OrderUpdate<'a> {
-    /// The order as it is, and whether this request has been done already.
+    /// Loads the order, and the entry of this request if it was processed before.
     pub(crate) async fn look(&self) -> Result<(StoredOrder, Option<Uuid>)> {
         let tenant = self.writer.tenant;
         let stored = store::find(&self.app.db, tenant, self.order).await?;
@@ -56,8 +56,8 @@ impl<'a> OrderUpdate<'a> {
         Ok((stored, done))
     }
 
-    /// Begins to change it, unless it has gone on since it was looked at; none when this
-    /// request has been done meanwhile.
+    /// Begins the change, unless the order has changed since `seen`. `None` if this request was
+    /// processed meanwhile.
     pub(crate) async fn begin(self, seen: &StoredOrder) -> Result<Option<Change<'a>>> {
         let begun = self.begin_on(seen.summary.vessel_id).await?;
         if let Some(change) = &begun
@@ -70,8 +70,8 @@ impl<'a> OrderUpdate<'a> {
         Ok(begun)
     }
 
-    /// Begins to change an order of a vessel's as it is now, without having looked before:
-    /// whoever does has to look at what is in the change.
+    /// Begins the change of an order of this vessel in its present state, which the caller must
+    /// check. `None` if this request was processed before.
     pub(crate) async fn begin_on(self, vessel: VesselId) -> Result<Option<Change<'a>>> {
         let now = self.app.clock.now().into();
         let mut tx = self.request.begin().await?;
@@ -113,7 +113,7 @@ impl<'a> Change<'a> {
         }
     }
 
-    /// A change that nobody asked for.
+    /// Begins a change by the server itself.
     pub(crate) async fn by_server(
         app: &'a App,
         vessel: VesselId,
@@ -134,7 +134,7 @@ impl<'a> Change<'a> {
         store::append(tx, stored, id, &self.author, self.now, content).await
     }
 
-    /// Tells dashboards of something else that the change brings.
+    /// Adds a live event for something else that the change brings.
     pub(crate) async fn tell(&mut self, kind: Kind) -> Result<()> {
         let vessel = self.stored.summary.vessel_id;
         let event = events::insert(&mut self.tx, vessel, kind, self.now).await?;
@@ -142,7 +142,7 @@ impl<'a> Change<'a> {
         Ok(())
     }
 
-    /// Makes it durable, and tells both sides.
+    /// Commits the change, and publishes its events.
     pub(crate) async fn commit(self) -> Result<()> {
         let app = self.app;
         let (tx, told) = self.finish().await?;
@@ -154,8 +154,8 @@ impl<'a> Change<'a> {
         Ok(())
     }
 
-    /// Ends it in a transaction that goes on; the events are to be published, and the work
-    /// that follows to be woken, once that is committed.
+    /// Ends the change in a transaction that goes on. After its commit the caller publishes the
+    /// events and wakes the worker.
     pub(crate) async fn finish(mut self) -> Result<(Tx, Vec<Event>)> {
         let news = publish::publish_changes(&mut self.tx, &self.stored, &self.before, self.now);
         let news = news.await?;

@@ -1,4 +1,4 @@
-//! Why there is no plan, or a reading is not taken, and what would cure it.
+//! Refusals of a reading or a plan, with their cures.
 
 use axum::http::StatusCode;
 use binnacle_adjustment::adjust::{Cure as Cured, Refused};
@@ -7,29 +7,29 @@ use serde::{Deserialize, Serialize};
 use serde_json::Map;
 use utoipa::ToSchema;
 
-/// Why there is no plan, or a reading is not taken.
+/// Refusal of a reading or a plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = AdjustmentRefusal)]
 pub struct Refusal {
-    /// In a word.
+    /// Kind of the refusal.
     #[schema(example = "inconsistent_berth")]
     pub refusal: String,
-    /// What is wrong.
+    /// Reason in words.
     pub words: String,
-    /// Mistakes each of which alone would explain it.
+    /// Mistakes, each of which alone would explain it.
     pub could_be: Vec<String>,
-    /// What would cure it, the easiest first.
+    /// Cures, the easiest first.
     pub cures: Vec<Cure>,
 }
 
-/// What would cure a refusal.
+/// Cure of a refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = AdjustmentCure)]
 pub enum Cure {
     /// Read again: heading, axes, unit, away from steel.
     ReadAgain,
-    /// A few settled headings at sea, so that the model is of today.
+    /// A few settled headings at sea, for an up-to-date model.
     HeadingsAtSea,
     /// Headings in waters with another dip.
     OtherWaters,
@@ -41,14 +41,14 @@ pub enum Cure {
     AnotherBerth,
     /// Magnets, spheres or pieces of bar that are not on board.
     OtherCorrectors,
-    /// Look after the lubber line and how the reference stands.
+    /// Check of the lubber line and of the reference's alignment.
     Alignment,
-    /// Swing the ship.
+    /// Swing of the ship.
     Swing,
 }
 
 impl Refusal {
-    /// Returns what is wrong, and the mistakes that would explain it, as one sentence.
+    /// Returns the reason and the possible mistakes as one sentence.
     fn with_explanations(&self) -> String {
         match self.could_be.join(", or ").as_str() {
             "" => self.words.clone(),
@@ -56,7 +56,7 @@ impl Refusal {
         }
     }
 
-    /// The same, a doubt of the place before all else that could explain it.
+    /// Puts an implausible position before all other explanations.
     pub(crate) fn with_cause(mut self, doubt: Option<Refusal>) -> Refusal {
         if let Some(doubt) = doubt {
             self.could_be.insert(0, doubt.words);
@@ -98,13 +98,13 @@ impl From<Cured> for Cure {
 /// Fields of the problem `not-adjustable`.
 #[derive(Serialize, ToSchema)]
 pub struct NotAdjustableFields {
-    /// What is wrong at the berth and what would cure it; only in `not-adjustable`.
+    /// Refusals with their cures; only in `not-adjustable`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false)]
     refusals: Option<Vec<Refusal>>,
 }
 
-/// Returns the problem `not-adjustable`: there is no plan, or a reading is not taken.
+/// Returns the problem `not-adjustable`: a plan or a reading is refused.
 pub(crate) fn not_adjustable(refusals: Vec<Refusal>) -> Error {
     let detail = refusals.iter().map(Refusal::with_explanations);
     let problem = DomainProblem {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// How far an order has come.
+/// State of an order.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type,
 )]
@@ -11,16 +11,16 @@ use utoipa::ToSchema;
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = WorkOrderState)]
 pub enum State {
-    /// It was written, and offered to no firm.
+    /// Written, and offered to no firm.
     #[default]
     Planned,
-    /// A firm is asked.
+    /// An offer to a firm is open.
     Offered,
-    /// A firm would have it on other terms: the operator is asked.
+    /// A firm has proposed other terms, which await the operator's answer.
     Proposed,
-    /// No firm that was asked has taken it.
+    /// No firm accepted its offer.
     Declined,
-    /// A firm has it.
+    /// A firm has the order.
     Accepted,
     /// The adjuster is on board.
     OnBoard,
@@ -28,22 +28,23 @@ pub enum State {
     Measured,
     /// A plan was chosen, and its steps are being done.
     Adjusting,
-    /// Done; what the compass will show is foretold.
+    /// Completed; the deviations are predictions.
     Adjusted,
-    /// Headings at sea agree with what was foretold.
+    /// Headings at sea agree with the prediction.
     Verified,
-    /// A heading at sea does not agree with it.
+    /// A heading at sea contradicts the prediction.
     Failed,
-    /// Done with.
+    /// Closed.
     Closed,
-    /// Done with, though no headings at sea have spoken for or against it.
+    /// Closed without verification by headings at sea.
     ClosedUnverified,
-    /// Not to be done, or no further.
+    /// Cancelled, before or during the work.
     Cancelled,
 }
 
 impl State {
-    /// Whether the ship's model and binnacle are a firm's business.
+    /// Returns whether the adjustment is still to be completed: a firm may read the model and
+    /// binnacle.
     pub fn is_under_way(self) -> bool {
         matches!(
             self,
@@ -58,7 +59,7 @@ impl State {
         )
     }
 
-    /// Whether nothing is to be done any more.
+    /// Returns whether nothing remains to be done.
     pub fn is_over(self) -> bool {
         matches!(
             self,

@@ -1,4 +1,4 @@
-//! Handlers of events that orders under way do not allow.
+//! Subscribers that refuse events which orders under way do not allow.
 
 use crate::work_orders::store;
 use binnacle_fleet::binnacles::BinnacleAmended;
@@ -29,7 +29,7 @@ pub fn refuse_leave_of_service<'a>(
     })
 }
 
-/// Refuses to write a binnacle whose correctors are being moved.
+/// Refuses a revision of a binnacle whose correctors are being moved.
 pub fn refuse_amended_binnacle<'a>(
     tx: &'a mut Tx,
     amended: &'a BinnacleAmended,

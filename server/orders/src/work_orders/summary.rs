@@ -9,90 +9,90 @@ use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 
-/// An order in a line.
+/// Summary of an order.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 #[schema(as = WorkOrderSummary)]
 pub(crate) struct Summary {
     /// The order's id.
     pub id: OrderId,
-    /// Whose vessel it is.
+    /// Operator of the vessel.
     pub operator_id: OperatorId,
-    /// Their name.
+    /// The operator's name.
     pub operator_name: String,
     /// The vessel.
     pub vessel_id: VesselId,
-    /// Her name.
+    /// The vessel's name.
     pub vessel_name: String,
     /// The compass.
     pub compass_id: CompassId,
-    /// Its name.
+    /// The compass's name.
     pub compass_name: String,
-    /// How far it has come.
+    /// Present state.
     pub state: State,
     /// The port.
     pub port: String,
     /// The berth.
     #[schema(required)]
     pub berth: Option<String>,
-    /// When it is to be done.
+    /// Time of the job.
     pub planned_at: Time,
-    /// Who is to do it, or did.
+    /// Name of the adjuster.
     #[schema(required)]
     pub adjuster_name: Option<String>,
-    /// The number of their licence.
+    /// Licence number.
     #[schema(required)]
     pub adjuster_licence: Option<String>,
-    /// Their firm.
+    /// Firm of the adjuster.
     #[schema(required)]
     pub firm: Option<String>,
-    /// The firm that has accepted the order.
+    /// Firm that has accepted the order.
     #[schema(required)]
     pub firm_id: Option<FirmId>,
-    /// Until when an answer is waited for: the firm's to an offer or to another time, or the
-    /// operator's to a proposal.
+    /// Deadline for an answer: the firm's to an offer or another time, or the operator's to a
+    /// proposal.
     #[schema(required)]
     pub answer_by: Option<Time>,
-    /// How its time lies in its port call, where that has moved since the time was agreed.
+    /// Fit of its time to the port call, if that has moved since the time was agreed.
     #[schema(required)]
     pub call_fit: Option<CallFit>,
-    /// When it was written.
+    /// Time of creation.
     pub created_at: Time,
-    /// Who wrote it.
+    /// Author.
     pub created_by: String,
-    /// When it was completed.
+    /// Time of completion.
     #[schema(required)]
     pub completed_at: Option<Time>,
-    /// Whether the compass's binnacle is entered.
+    /// Whether the compass has a binnacle.
     pub has_binnacle: bool,
-    /// Entries in its log.
+    /// Number of entries in its log.
     pub last_seq: i64,
-    /// SHA-256 of the last of them.
+    /// SHA-256 of the last entry.
     pub last_sha256: String,
 }
 
-/// A page of orders.
+/// Page of orders.
 #[derive(Serialize, ToSchema)]
 #[schema(as = WorkOrderList)]
 pub(crate) struct OrderList {
-    /// The newest first.
+    /// Orders, the newest first.
     pub items: Vec<Summary>,
     /// `after` of the next page.
     #[schema(required)]
     pub next: Option<String>,
 }
 
-/// Which orders.
+/// Filter of a list of orders.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(crate) struct Filter {
-    /// Of this vessel only.
+    /// This vessel only.
     pub vessel: Option<VesselId>,
-    /// In this state only.
+    /// This state only.
     pub state: Option<State>,
 }
 
 impl Summary {
-    /// The order as a firm sees it that this offer is to.
+    /// Summary for the firm of an offer.
     pub(crate) fn seen_with(&self, offer: &Offer) -> Summary {
         let state = match offer.state {
             OfferState::Open => State::Offered,

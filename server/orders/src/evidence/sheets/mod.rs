@@ -1,7 +1,7 @@
-//! The record for people, on paper: drawn from the record's own text and nothing else.
+//! Printed record, drawn from the record's own text alone.
 //!
-//! What always holds: it says on each sheet that it is a prediction and no certificate, of
-//! which order it is, and the SHA-256 of the record that it is drawn from.
+//! What always holds: each sheet states that it is a prediction and not a certificate, the order,
+//! and the SHA-256 of its record.
 
 mod tables;
 mod values;
@@ -15,19 +15,19 @@ use binnacle_drawing::{About, Sheet, Style, pdf, svg};
 use serde_json::Value;
 use values::{minute, number, word};
 
-/// The record as PDF.
+/// Draws the record as PDF.
 ///
 /// # Errors
-/// When the text is no record of ours.
+/// When the text is not an adjustment record.
 pub fn record_pdf(text: &str) -> anyhow::Result<Vec<u8>> {
     let (sheets, about) = drawn(text)?;
     pdf(&sheets, &about)
 }
 
-/// The record as a picture, its sheets one below the other.
+/// Draws the record as a picture, its sheets one below the other.
 ///
 /// # Errors
-/// When the text is no record of ours.
+/// When the text is not an adjustment record.
 pub fn record_svg(text: &str) -> anyhow::Result<String> {
     let (sheets, about) = drawn(text)?;
     Ok(svg(&sheets, &about.title))
@@ -63,10 +63,10 @@ fn drawn(text: &str) -> anyhow::Result<(Vec<Sheet>, About)> {
     Ok((paper.finish(&foot), about))
 }
 
-/// The residuals that the record foretells, a row to a place and heading.
+/// Lists the predicted residuals of a record, one row for each place and heading.
 ///
 /// # Errors
-/// When the text is no record of ours.
+/// When the text is not an adjustment record.
 pub fn predicted_csv(text: &str) -> anyhow::Result<String> {
     let record: Value = serde_json::from_str(text)?;
     let tables = record["predicted_after"].as_array();
@@ -278,8 +278,7 @@ fn plan(paper: &mut Paper, record: &Value) {
     }
 }
 
-/// How many steps there were, those before a new plan with the rest, and how many of them
-/// moved something.
+/// Numbers of steps, including those before a new plan, and of steps that moved correctors.
 fn steps_done(record: &Value) -> String {
     let steps = record["steps_as_read"].as_array().into_iter().flatten();
     let (moved, read): (Vec<&Value>, Vec<&Value>) = steps.partition(|step| step["moved"] == true);

@@ -1,5 +1,5 @@
-//! What of the record stands beside each other: correctors before and after, steps,
-//! deviations foretold, the model's parameters.
+//! Tables of the printed record: correctors before and after, steps, predicted deviations, and
+//! the model's parameters.
 
 use super::values::{minute, number, word};
 use binnacle_adjustment::binnacle::{Binnacle, Setting, Shape};
@@ -9,12 +9,12 @@ use binnacle_drawing::{Style, cut};
 use binnacle_fleet::binnacles::in_words;
 use serde_json::Value;
 
-/// Where a figure of a table ends, from one to the next.
+/// Width of a column of figures.
 const COLUMN: f32 = 84.0;
-/// So many places stand beside each other.
+/// Most places in one table.
 const PLACES: usize = 5;
 
-/// How each stood, and stands.
+/// Corrector settings before and after.
 pub(super) fn correctors(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
     let setting = |name: &str| serde_json::from_value::<Setting>(record[name].clone());
     let (before, after) = (setting("setting_before")?, setting("setting_after")?);
@@ -37,7 +37,7 @@ pub(super) fn correctors(paper: &mut Paper, record: &Value) -> anyhow::Result<()
     Ok(())
 }
 
-/// Of the quadrantal correctors that stand in one of these settings.
+/// Shape of the quadrantal correctors in one of these settings.
 fn shape_of(binnacle: &Binnacle, settings: [&Setting; 2]) -> Option<Shape> {
     let of = |setting: &Setting| -> Option<Shape> {
         let pair = setting.quadrantal.as_ref()?;
@@ -47,7 +47,7 @@ fn shape_of(binnacle: &Binnacle, settings: [&Setting; 2]) -> Option<Shape> {
     settings.into_iter().find_map(of)
 }
 
-/// What somebody said of how the correctors stand, beside the steps.
+/// Reported corrector settings, beside the steps.
 pub(super) fn settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
     let binnacle: Binnacle = serde_json::from_value(record["binnacle_after"].clone())?;
     let said = record["settings_as_said"].as_array().into_iter().flatten();
@@ -80,7 +80,7 @@ pub(super) fn settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result
     Ok(())
 }
 
-/// What was done, and what the compass showed of it.
+/// Steps, with the compass readings.
 pub(super) fn steps(paper: &mut Paper, record: &Value) {
     let steps = record["steps_as_read"].as_array();
     paper.title("Steps, as the compass showed them");
@@ -109,7 +109,7 @@ pub(super) fn steps(paper: &mut Paper, record: &Value) {
     }
 }
 
-/// What the magnetometer told after the steps, and which of them nothing has shown.
+/// Second readings, and the steps that nothing confirmed.
 pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
     let readings = record["second_readings"].as_array();
     let readings = readings.into_iter().flatten();
@@ -176,7 +176,7 @@ pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
     paper.fact("which means", &word(&hidden["words"]));
 }
 
-/// Deviation by heading, before at the berth and afterwards at each place.
+/// Deviation by heading, before the adjustment at the berth and after it at each place.
 pub(super) fn predicted(paper: &mut Paper, record: &Value) {
     let of = |name: &str| record[name].as_array().into_iter().flatten();
     let before = of("predicted_before")
@@ -215,7 +215,7 @@ pub(super) fn predicted(paper: &mut Paper, record: &Value) {
     }
 }
 
-/// Parameters over λ with their standard errors, as they were and as they are foretold.
+/// Parameters over λ with their standard errors, before and as predicted.
 pub(super) fn parameters(paper: &mut Paper, record: &Value) {
     const NAMES: [(&str, &str, f64, &str); 8] = [
         ("bx_nt", "bx/λ", 1e-3, "µT"),

@@ -9,7 +9,7 @@ use binnacle_platform::ids::FirmId;
 use binnacle_platform::notices;
 use binnacle_platform::outbox;
 
-/// An event of a work order.
+/// Event of a work order.
 pub(crate) trait Event {
     /// Changes the state of the order.
     fn apply(&self, state: &mut OrderState);
@@ -92,7 +92,7 @@ impl Audience {
 /// Circumstances that decide the words of a notification.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Circumstances {
-    /// Whether someone of a firm's wrote the entry.
+    /// Whether a member of a firm wrote the entry.
     pub by_firm: bool,
     /// State of the offer to the firm before the event.
     pub offer_before: Option<OfferState>,

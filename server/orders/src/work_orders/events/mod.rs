@@ -1,6 +1,6 @@
 //! Events of a work order: one file for each, with its state change, words and audience.
 //!
-//! What always holds: the stored names of events never change, for the log is kept as text.
+//! What always holds: the stored names of events never change, because the log is kept as text.
 
 mod berth;
 mod cancelled;
@@ -34,7 +34,7 @@ use crate::work_orders::payload::sea_verification::SeaVerification;
 use crate::work_orders::payload::signed_record::{Completion, RecordedSignature};
 use serde::{Deserialize, Serialize};
 
-/// An event of a work order.
+/// Event of a work order.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(tag = "kind", content = "content", rename_all = "snake_case")]
 pub(crate) enum OrderEvent {
@@ -99,7 +99,7 @@ pub(crate) enum OrderEvent {
 }
 
 impl OrderEvent {
-    /// The event, as its own file defines it.
+    /// Returns the event as its own file defines it.
     pub(crate) fn event(&self) -> &dyn Event {
         match self {
             OrderEvent::Opened(event) => event.as_ref(),

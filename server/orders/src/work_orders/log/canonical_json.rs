@@ -5,7 +5,7 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
-/// A value as canonical JSON: keys in order, no blanks.
+/// Writes a value as canonical JSON: keys in order, no blanks.
 ///
 /// # Errors
 /// When it cannot be written as JSON.
@@ -14,7 +14,7 @@ pub(crate) fn canonical(value: &impl Serialize) -> Result<String> {
     Ok(serde_json::to_string(&serde_json::to_value(value)?)?)
 }
 
-/// SHA-256 as hexadecimal.
+/// Returns the SHA-256 as hexadecimal.
 pub fn sha256_hex(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(64);
     for byte in Sha256::digest(bytes) {

@@ -1,8 +1,8 @@
-//! The log of an order: what happened, each entry chained to the one before.
+//! Entries of an order's log, each chained to the one before.
 //!
-//! What always holds: an entry is one line of JSON with its keys in order and no blanks,
-//! and is kept as that text; its hash is the SHA-256 of the text, and the next entry
-//! names it. So a log can be checked with nothing but SHA-256.
+//! What always holds: an entry is one line of canonical JSON and is kept as that text. Its hash
+//! is the SHA-256 of the text, and the next entry names it. A log can therefore be checked with
+//! nothing but SHA-256.
 
 use crate::work_orders::events::OrderEvent;
 use binnacle_platform::ids::{FirmId, OrderId};
@@ -10,36 +10,36 @@ use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-/// An entry of an order's log.
+/// Entry of an order's log.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Entry {
-    /// Of this form: 1.
+    /// Version of this format: 1.
     pub version: u32,
     /// The order.
     pub order: OrderId,
-    /// Counts from 1.
+    /// Number of the entry, from 1.
     pub seq: i64,
     /// The entry's id.
     pub id: Uuid,
-    /// SHA-256 of the line before; none for the first.
+    /// SHA-256 of the line before; `None` for the first.
     pub previous_sha256: Option<String>,
-    /// When it was written.
+    /// Time of writing.
     pub at: Time,
-    /// Who wrote it.
+    /// Author.
     pub author: Author,
-    /// What happened.
+    /// The event.
     #[serde(flatten)]
     pub content: OrderEvent,
 }
 
-/// Who wrote an entry.
+/// Author of an entry.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Author {
-    /// Their id; none for the server itself.
+    /// Id of the user; `None` for the server itself.
     pub id: Option<Uuid>,
     /// Their name.
     pub name: String,
-    /// The firm that they are of; none for the operator's people.
+    /// Firm of the user; `None` for users of the operator.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub firm_id: Option<FirmId>,
 }

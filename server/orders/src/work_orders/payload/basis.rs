@@ -10,74 +10,73 @@ use binnacle_platform::ids::ModelId;
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 
-/// What a plan rests on.
+/// Basis of a plan.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Basis {
     /// The ship's model.
     pub model: ModelUsed,
-    /// The earth's field at the berth: variation, degrees, east positive.
+    /// Variation at the berth, degrees, east positive.
     pub variation_deg: f64,
-    /// Its horizontal part, nT.
+    /// Horizontal field there, nT.
     pub h_nt: f64,
-    /// Its vertical part, nT, down positive.
+    /// Vertical field there, nT, down positive.
     pub z_nt: f64,
-    /// Which model of the earth's field says so.
+    /// Model of the earth's field.
     pub field_model: String,
-    /// The binnacle's revision.
+    /// Revision of the binnacle.
     pub binnacle_revision: i64,
-    /// The binnacle, with its correctors as they stood.
+    /// Binnacle, with the settings at the time of the reading.
     pub binnacle: Binnacle,
-    /// Where the vessel trades, from her own track.
+    /// Waters in which the vessel sails, by its own track.
     pub waters: Vec<Water>,
     /// Whether magnetic cargo is on board, by the logbook or the reading.
     pub cargo_on_board: bool,
-    /// What the compass's last adjustment told of λ.
+    /// Estimate of λ by the compass's last adjustment.
     #[serde(default)]
     pub earlier: Option<PreviousBerth>,
-    /// Whether the model has learnt from a reading at this berth.
+    /// Whether the model includes a reading at this berth.
     #[serde(default)]
     pub is_updated_here: bool,
 }
 
-/// The model that a plan rests on.
+/// Model that a plan rests on.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct ModelUsed {
     /// Its id.
     pub id: ModelId,
-    /// Counts the compass's models from 1.
+    /// Version, from 1 for each compass.
     pub version: i64,
-    /// SHA-256 of everything that it was made from.
+    /// SHA-256 of its input.
     pub input_hash: String,
-    /// The estimator that made it.
+    /// Estimator.
     pub estimator: String,
-    /// The time of its last sample.
+    /// Time of its last sample.
     pub data_until: Time,
-    /// The time of the last heading behind it, where an adjustment foretold it and no
-    /// heading at sea has confirmed that.
+    /// Time of the last heading behind a predicted model that no heading at sea has confirmed.
     #[serde(default)]
     pub headings_until: Option<Time>,
     /// The model with its covariance.
     pub model: Model,
 }
 
-/// λ at an earlier berth.
+/// Estimate of λ at an earlier berth.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct PreviousBerth {
-    /// As it was told.
+    /// The estimate.
     pub lambda: EarlierLambda,
-    /// How the correctors stood then.
+    /// Setting of the correctors at that time.
     pub stood: Setting,
 }
 
 impl PreviousBerth {
-    /// With the correctors as this binnacle has them.
+    /// Adapts the estimate to the settings of this binnacle.
     pub(crate) fn set_as(&self, binnacle: &Binnacle) -> Option<EarlierLambda> {
         self.lambda.adapted_to(binnacle, &self.stood)
     }
 }
 
 impl Basis {
-    /// The earth's field at the berth.
+    /// Earth's field at the berth.
     pub(crate) fn earth(&self) -> EarthField {
         EarthField {
             h_nt: self.h_nt,

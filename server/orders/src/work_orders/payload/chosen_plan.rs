@@ -3,34 +3,34 @@
 use binnacle_adjustment::adjust::{Optimality, Outcome, Plan};
 use serde::{Deserialize, Serialize};
 
-/// A plan that was chosen.
+/// Plan that was chosen.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct ChosenPlan {
-    /// Which of those that were offered, from 1.
+    /// Number among the plans offered, from 1.
     pub chosen: usize,
-    /// All that were offered, in short.
+    /// All plans offered, in short.
     pub offered: Vec<PlanSummary>,
-    /// What the adjuster should know of it.
+    /// Notes for the adjuster.
     pub notes: Vec<String>,
-    /// How well the search knows that nothing is better.
+    /// Proven optimality of the search.
     pub optimality: Option<Optimality>,
     /// The plan.
     pub plan: Plan,
 }
 
-/// A plan in short.
+/// Summary of a plan.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct PlanSummary {
-    /// Movements of hand that it takes.
+    /// Number of corrector moves.
     pub moves: u32,
-    /// Worst foretold residual, weighted over the waters, degrees.
+    /// Worst predicted residual, weighted over the waters, degrees.
     pub worst_residual_deg: f64,
-    /// The widest 95 % band, degrees.
+    /// Widest 95 % band, degrees.
     pub widest_band_deg: f64,
 }
 
 impl ChosenPlan {
-    /// What was chosen of an outcome, from 1; none when there are not so many.
+    /// Chooses a plan of an outcome, from 1; `None` if there are fewer.
     pub(crate) fn of(outcome: Outcome, chosen: usize) -> Option<ChosenPlan> {
         let in_short = |plan: &Plan| PlanSummary {
             moves: plan.moves,

@@ -1,11 +1,11 @@
-//! Exchange between the operator and one firm: confidential from other firms.
+//! Exchange between the operator and one firm, confidential from other firms.
 
 use binnacle_platform::ids::FirmId;
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// A firm, by its name then.
+/// Firm, with its name at that time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct NamedFirm {
     /// Its id.
@@ -14,53 +14,53 @@ pub(crate) struct NamedFirm {
     pub firm_name: String,
 }
 
-/// What is said between the operator and one firm: nobody else's business.
+/// Exchange between the operator and one firm.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Exchange {
-    /// The firm, whoever of the two speaks.
+    /// The firm, whether sender or addressee.
     #[serde(flatten)]
     pub firm: NamedFirm,
-    /// Until when an answer is waited for.
+    /// Deadline for an answer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub answer_by: Option<Time>,
-    /// The fee that is offered, or at which it is taken as it was offered, euros.
+    /// Fee offered, or accepted as offered, euros.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fee_eur: Option<f64>,
-    /// What is proposed, or agreed on.
+    /// Proposed or agreed terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub terms: Option<Terms>,
-    /// Who will come.
+    /// Name of the adjuster.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adjuster_name: Option<String>,
-    /// The number of their licence.
+    /// Licence number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adjuster_licence: Option<String>,
-    /// In words.
+    /// Text.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
 }
 
-/// Other terms than were offered.
+/// Terms other than offered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = WorkOrderTerms, example = json!({
     "planned_at": "2026-11-22T13:00:00Z", "berth": "A7", "fee_eur": 900.0
 }))]
 pub(crate) struct Terms {
-    /// When it is to be done.
+    /// Time of the job.
     pub planned_at: Time,
-    /// The berth, if another.
+    /// Berth, if another.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(max_length = 200)]
     pub berth: Option<String>,
-    /// The fee, euros.
+    /// Fee, euros.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(minimum = 0, maximum = 1_000_000)]
     pub fee_eur: Option<f64>,
 }
 
 impl Exchange {
-    /// Nothing said yet.
+    /// Exchange with a firm, without content.
     pub(crate) fn with(firm: NamedFirm) -> Exchange {
         Exchange {
             firm,
@@ -72,7 +72,7 @@ impl Exchange {
             text: None,
         }
     }
-    /// Fee, terms and text in one line; `None` where there are none.
+    /// Returns fee, terms and text in one line; `None` without any.
     pub(crate) fn quote(&self) -> Option<String> {
         let terms = self.terms.as_ref().map(|terms| {
             let berth = terms.berth.as_deref();

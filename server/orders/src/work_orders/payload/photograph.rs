@@ -4,7 +4,7 @@ use binnacle_platform::ids::PhotoId;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// A photograph as the log has it.
+/// Photograph of an order.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = OrderPhoto)]
 pub(crate) struct Photo {
@@ -14,15 +14,15 @@ pub(crate) struct Photo {
     pub sha256: String,
     /// `image/jpeg`, `image/png` or `image/webp`.
     pub media_type: String,
-    /// How large it is.
+    /// Size, bytes.
     pub bytes: usize,
-    /// What it shows.
+    /// Caption.
     #[schema(required)]
     pub caption: Option<String>,
 }
 
 impl Photo {
-    /// Its name in the archive, after the number of its entry.
+    /// File name in the archive, by the number of the entry.
     pub(crate) fn file(&self, seq: i64) -> String {
         let ending = self.media_type.rsplit('/').next().unwrap_or("bin");
         format!("photos/{seq:04}.{ending}")

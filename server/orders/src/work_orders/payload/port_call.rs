@@ -10,31 +10,31 @@ use chrono::{Days, SecondsFormat};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// How an order's time lies in its port call.
+/// Fit of an order's time to its port call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = WorkOrderCallFit)]
 pub enum CallFit {
-    /// She is alongside then, for three hours at least.
+    /// The vessel is alongside at that time, for at least three hours.
     Fits,
-    /// She is alongside for three hours on that day, but not from that hour.
+    /// The vessel is alongside for three hours on that day, but not from that hour.
     OtherHour,
-    /// She is not alongside on that day: agree on another.
+    /// The vessel is not alongside on that day: agree on another.
     NeedsNewDay,
     /// The call is withdrawn, or is at another port.
     NoCall,
 }
 
-/// Where and when a vessel is alongside.
+/// Stay of a vessel alongside.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = WorkOrderAlongside)]
 pub struct Alongside {
     /// UN/LOCODE of the port.
     pub port: String,
-    /// When she is expected alongside.
+    /// Expected time of arrival alongside.
     pub eta: Time,
-    /// When she is expected to leave.
+    /// Expected time of departure.
     pub etd: Time,
     /// The ETA in the port's time.
     #[schema(example = "2026-12-08T07:00:00+01:00")]
@@ -44,25 +44,25 @@ pub struct Alongside {
     pub etd_local: String,
 }
 
-/// What became of a port call.
+/// Change of a port call.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = WorkOrderCallChange)]
 pub(crate) struct CallChange {
     /// The call.
     pub call_id: CallId,
-    /// As it was.
+    /// Stay before.
     pub was: Alongside,
-    /// As it is; none where it is withdrawn.
+    /// Stay afterwards; `null` if withdrawn.
     #[schema(required)]
     pub is: Option<Alongside>,
-    /// How the agreed time lies in it now.
+    /// Fit of the agreed time.
     pub fit: CallFit,
-    /// Who moved it.
+    /// Author of the change.
     pub by: String,
 }
 
 impl Alongside {
-    /// At a port, from and to.
+    /// Stay at a port between two times.
     pub fn new(port: PortCode, eta: Time, etd: Time) -> Alongside {
         let zone = ports::zone(port);
         Alongside {
@@ -74,7 +74,7 @@ impl Alongside {
         }
     }
 
-    /// How a time lies in it, of an order that is for a port.
+    /// Judges the fit of a time, for an order at a port.
     pub fn fit(&self, port: &str, planned_at: Time) -> CallFit {
         if self.port != port {
             return CallFit::NoCall;
@@ -102,7 +102,7 @@ impl Alongside {
     }
 }
 
-/// A port's legal time.
+/// Legal time zone of a port.
 pub(crate) fn zone_of(port: &str) -> Zone {
     PortCode::parse(port).map_or_else(|_| Zone::utc(), ports::zone)
 }
@@ -112,7 +112,7 @@ fn local(at: Time, zone: Zone) -> String {
     there.to_rfc3339_opts(SecondsFormat::Secs, false)
 }
 
-/// In UTC and in the port's time.
+/// Writes a time in UTC and in the port's time.
 pub(crate) fn in_both_zones(at: Time, zone: Zone) -> String {
     let there = Instant(at.0).in_zone(zone).format("%Y-%m-%d %H:%M");
     let offset = Instant(at.0).in_zone(zone).format("%:z");

@@ -6,35 +6,35 @@ use binnacle_adjustment::adjust::ReadingForm;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// A reading as the log has it.
+/// Reading at the berth, with its basis and its check.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct RecordedReading {
-    /// What was read.
+    /// Values as sent.
     pub given: ReadingForm,
-    /// What it was held against; none when that could not be found.
+    /// Basis that it was compared with; `None` if that could not be loaded.
     pub basis: Option<Basis>,
-    /// What it told; none when it was refused.
+    /// Check; `None` when the reading was refused.
     pub checked: Option<BerthCheck>,
-    /// Why it was refused; none when it was taken.
+    /// Refusal; `None` when the reading was accepted.
     pub refusal: Option<Refusal>,
 }
 
-/// What a reading told.
+/// Check of a reading at the berth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = BerthCheck)]
 pub(crate) struct BerthCheck {
-    /// λ, the mean share of the earth's horizontal field that reaches the compass; every
-    /// heading tells it equally well.
+    /// λ, the mean share of the earth's horizontal field that reaches the compass. Its estimate
+    /// is equally good on every heading.
     pub lambda: f64,
-    /// Its standard error.
+    /// Standard error of λ.
     #[schema(required)]
     pub lambda_sd: Option<f64>,
-    /// Between the field read and the field expected, degrees.
+    /// Angle between the field read and the field expected, degrees.
     pub consistency_deg: f64,
-    /// The standard error of that, degrees.
+    /// Standard error of that angle, degrees.
     #[schema(required)]
     pub consistency_sd_deg: Option<f64>,
-    /// What to make of it: `consistent`, or `loose` where wide errors explain it.
+    /// Verdict: `consistent`, or `loose` where large errors explain the angle.
     pub verdict: String,
     /// Magnetic heading at the berth, degrees.
     pub magnetic_deg: f64,

@@ -7,77 +7,77 @@ use binnacle_adjustment::binnacle::Setting;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// Parts of a reading that has the vertical one.
+/// Number of parts in a reading with a vertical part.
 pub(crate) const PARTS_WITH_VERTICAL: usize = 3;
 
-/// A second reading as the log has it.
+/// Second reading, with its result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct RecordedSecondReading {
-    /// What was read.
+    /// Values as sent.
     pub given: SecondReadingForm,
-    /// What it told.
+    /// Result.
     #[serde(flatten)]
     pub said: SecondReadingResult,
-    /// What is foretold now, where it told that.
+    /// Updated prediction, if the reading allows one.
     pub learnt: Option<UpdatedPrediction>,
-    /// The reading to plan from anew, where what is left is beyond the limits.
+    /// Reading to replan from, if the residuals are beyond the limits.
     pub anew: Option<Box<RecordedReading>>,
 }
 
 impl RecordedSecondReading {
-    /// Whether it does not confirm how the correctors stand.
+    /// Returns whether the reading contradicts the settings of the correctors.
     pub(crate) fn is_contradiction(&self) -> bool {
         self.said.verdict != SecondReadingVerdict::AsPlanned
     }
 }
 
-/// What a second reading told.
+/// Result of a second reading.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = SecondReadingSaid)]
 pub(crate) struct SecondReadingResult {
-    /// In a word.
+    /// Verdict.
     pub verdict: SecondReadingVerdict,
-    /// In words.
+    /// Verdict in words.
     pub words: String,
-    /// Forward, to starboard and, where it was read both times, down.
+    /// Parts forward, to starboard and, if read both times, down.
     #[schema(value_type = Vec<PartSchema>)]
     pub parts: Vec<FieldComponent>,
-    /// The step that is suspected, of all that were done since the first reading, from 1.
+    /// Number of the suspected step, of all steps since the first reading, from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step: Option<u32>,
-    /// How the correctors would stand with that slip.
+    /// Setting of the correctors with that slip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<binnacle_fleet::binnacles::SettingSchema>)]
     pub setting: Option<Setting>,
-    /// The worst residual foretold now, degrees.
+    /// Worst residual predicted now, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worst_residual_deg: Option<f64>,
-    /// The widest 95 % band now, degrees.
+    /// Widest 95 % band now, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub widest_band_deg: Option<f64>,
-    /// What is beyond the limits.
+    /// Values beyond the limits.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub refusals: Vec<Refusal>,
-    /// Mistakes each of which alone would explain it.
+    /// Mistakes, each of which alone would explain the reading.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(required = false)]
     pub could_be: Vec<String>,
 }
 
-/// What a second reading came to, in a word.
+/// Verdict of a second reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = SecondReadingVerdict)]
 pub(crate) enum SecondReadingVerdict {
     /// The correctors do what was planned.
     AsPlanned,
-    /// They seem to, but what is left is beyond the limits, or no plan led here: read once
-    /// more, or plan anew from this reading.
+    /// They seem to, but the residuals are beyond the limits, or no plan was followed: read
+    /// again, or replan from this reading.
     Replan,
-    /// A step is suspected: look at it, and say how the correctors stand.
+    /// A step is suspected: inspect it, and report the settings.
     Slip,
-    /// Nothing explains it: read again.
+    /// Nothing explains the reading: read again.
     Unexplained,
 }
 

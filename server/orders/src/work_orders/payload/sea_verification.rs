@@ -5,23 +5,23 @@ use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// What the headings at sea say.
+/// Verification of an adjustment by headings at sea.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = OrderVerification)]
 pub(crate) struct SeaVerification {
     /// The verdict with its figures: `passed`, `more_needed` or `alarm`.
     #[schema(value_type = crate::work_orders::schema::SeaVerdictSchema)]
     pub verification: Verification,
-    /// The same in words.
+    /// The verdict in words.
     pub words: String,
-    /// How many samples it rests on.
+    /// Number of samples.
     pub samples: usize,
-    /// The time of the last of them.
+    /// Time of the last sample.
     pub until: Time,
 }
 
 impl SeaVerification {
-    /// Whether headings at sea bear out what was foretold.
+    /// Returns whether headings at sea confirmed the prediction.
     pub(crate) fn has_passed(&self) -> bool {
         matches!(self.verification, Verification::Passed { .. })
     }

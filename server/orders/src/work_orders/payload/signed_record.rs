@@ -8,34 +8,34 @@ use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// A completion as the log has it.
+/// Completion of an adjustment.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[schema(as = CompletionMade)]
 pub(crate) struct Completion {
-    /// The moment of the adjustment.
+    /// Time of the adjustment.
     pub at: Time,
     /// The adjuster.
     pub adjuster_name: String,
-    /// The number of their licence.
+    /// Licence number.
     pub adjuster_licence: String,
-    /// Their firm.
+    /// Firm of the adjuster.
     #[schema(required)]
     pub firm: Option<String>,
-    /// Their name, typed as a signature.
+    /// The adjuster's name, typed as a signature.
     pub signature: String,
-    /// SHA-256 of the record, hexadecimal: what a firm's key signs.
+    /// SHA-256 of the record, hexadecimal, which a firm's key signs.
     pub record_sha256: String,
-    /// The logbook's entry of the adjustment.
+    /// Entry of the adjustment in the logbook.
     pub logbook_entry: EntryId,
-    /// The model that holds from then on, foretold.
+    /// Predicted model that holds from then on.
     pub model_id: ModelId,
-    /// The same, whole.
+    /// Content of that model.
     #[serde(rename = "model")]
     #[schema(value_type = binnacle_fleet::models::ModelSchema)]
     pub model_after: Model,
 }
 
-/// A signature by a firm's key.
+/// Signature by a firm's key.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = RecordSignature)]
@@ -43,40 +43,40 @@ pub(crate) struct SubmittedSignature {
     /// The Ed25519 public key (RFC 8032), 64 hexadecimal digits.
     #[schema(min_length = 64, max_length = 64)]
     pub public_key: String,
-    /// Its signature over the 32 octets of the record's SHA-256, 128 hexadecimal digits.
+    /// Its signature over the 32 bytes of the record's SHA-256, 128 hexadecimal digits.
     #[schema(min_length = 128, max_length = 128)]
     pub signature: String,
 }
 
-/// A signature with what is known of its key.
+/// Signature, with the owner of its key.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct RecordedSignature {
     /// The signature.
     #[serde(flatten)]
     pub signed: SubmittedSignature,
-    /// Whose key it is; none for a key that the order's firm has not registered.
+    /// Owner of the key; `None` for a key that the order's firm has not registered.
     #[serde(default)]
     pub key: Option<KnownKey>,
 }
 
-/// A key that a firm had registered when it signed.
+/// Key that a firm had registered at the time of the signature.
 #[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
 pub(crate) struct KnownKey {
     /// The key's id.
     pub id: KeyId,
-    /// What the firm calls it.
+    /// The firm's name for it.
     pub name: String,
     /// The firm.
     pub firm_id: FirmId,
-    /// The firm's name then.
+    /// The firm's name at that time.
     pub firm_name: String,
 }
 
 impl SubmittedSignature {
-    /// Whether the key signed this record.
+    /// Verifies the signature over this record.
     ///
     /// # Errors
-    /// Names what is no key or no signature, or does not fit.
+    /// Names the invalid key or signature.
     pub(crate) fn checked(&self, record_sha256: &str) -> Result<()> {
         let key = ed25519::key(&self.public_key)?;
         let record = ed25519::from_hex(record_sha256).unwrap_or_default();

@@ -3,44 +3,44 @@
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// What became of a step.
+/// Result of a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StepResult {
-    /// The step's number in its plan.
+    /// Number of the step in its plan.
     pub number: u32,
-    /// What the compass read before.
+    /// Compass reading before.
     pub before_deg: f64,
-    /// What it read after.
+    /// Compass reading after.
     pub after_deg: f64,
-    /// By how much it should have turned.
+    /// Expected turn, degrees.
     pub expected_change_deg: f64,
-    /// How far off that may be.
+    /// Tolerance of that turn, degrees.
     pub tolerance_deg: f64,
-    /// In a word.
+    /// Verdict.
     pub verdict: StepVerdict,
-    /// In words.
+    /// Verdict in words.
     pub words: String,
 }
 
-/// What became of a step, in a word.
+/// Verdict of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = StepVerdict)]
 pub(crate) enum StepVerdict {
-    /// It did what was expected.
+    /// The compass turned as expected.
     Confirmed,
-    /// On this heading the compass does not show it, and showed nothing.
+    /// On this heading the compass does not show the step, and showed nothing.
     NotSeen,
     /// The magnets are in with the wrong end; there is a new plan.
     WrongEnd,
-    /// The corrector is of another strength than was taken; there is a new plan.
+    /// The corrector has another strength than assumed; there is a new plan.
     OtherStrength,
-    /// Nothing explains it: read again.
+    /// Nothing explains the reading: read again.
     Unexplained,
 }
 
 impl StepResult {
-    /// Whether the next step may follow.
+    /// Returns whether the next step may follow.
     pub(crate) fn is_confirmed(&self) -> bool {
         matches!(self.verdict, StepVerdict::Confirmed | StepVerdict::NotSeen)
     }

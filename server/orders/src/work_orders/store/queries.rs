@@ -1,7 +1,7 @@
-//! Orders and their logs as they are found in the database.
+//! Queries of orders and their logs.
 //!
-//! What always holds: an order is found only by its operator, or by a firm that is asked,
-//! has proposed terms, or has it.
+//! What always holds: an order is found only by its operator, or by a firm that has an open offer
+//! or proposal, or has the order.
 
 use crate::work_orders::state::State;
 use crate::work_orders::store::stored_order::StoredOrder;
@@ -14,7 +14,7 @@ use binnacle_platform::time::Time;
 use futures_util::future::BoxFuture;
 use uuid::Uuid;
 
-/// Orders as a firm (`$1`) or, where that is none, an operator sees them.
+/// Summaries of orders as a firm (`$1`) or, if that is null, an operator sees them.
 macro_rules! summary_sql {
     ($rest:literal) => {
         concat!(
@@ -41,7 +41,7 @@ macro_rules! summary_sql {
     };
 }
 
-/// The newest first, from before an id.
+/// Lists orders before an id, the newest first.
 pub(crate) async fn list(
     db: &Db,
     tenant: Tenant,
@@ -71,7 +71,7 @@ pub(crate) async fn list(
     )?)
 }
 
-/// An order that the tenant sees, in a line.
+/// Finds the summary of an order that the tenant sees.
 ///
 /// # Errors
 /// [`Error::NotFound`] when there is none.
@@ -91,7 +91,7 @@ pub(crate) async fn summary(db: &Db, tenant: Tenant, id: OrderId) -> Result<Summ
     .ok_or(Error::NotFound("work order"))
 }
 
-/// Finds the vessel of an order, whoever asks.
+/// Finds the vessel of an order, for any tenant.
 pub(crate) fn vessel_of(
     tx: &mut Tx,
     order: OrderId,
@@ -107,7 +107,7 @@ pub(crate) fn vessel_of(
     })
 }
 
-/// The vessel of an order that a firm was once asked to do, whether or not it still sees it.
+/// Finds the vessel of an order that a firm was once offered, whether or not it still sees it.
 pub(crate) async fn vessel_of_asked(db: &Db, firm: FirmId, id: OrderId) -> Result<VesselId> {
     let found = row!(
         db,
@@ -122,7 +122,7 @@ pub(crate) async fn vessel_of_asked(db: &Db, firm: FirmId, id: OrderId) -> Resul
     Ok(vessel)
 }
 
-/// Orders of which an answer is overdue, the longest first.
+/// Lists orders with an overdue answer, the longest overdue first.
 pub(crate) async fn overdue(db: &Db, now: Time, limit: i64) -> Result<Vec<(VesselId, OrderId)>> {
     Ok(rows!(
         db,
@@ -136,8 +136,7 @@ pub(crate) async fn overdue(db: &Db, now: Time, limit: i64) -> Result<Vec<(Vesse
     )?)
 }
 
-/// The order as its operator sees it, within a transaction, of a vessel that is known:
-/// others who would change it wait.
+/// Locks an order of a vessel, and loads it as its operator sees it.
 pub(crate) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<StoredOrder> {
     execute!(
         &mut *tx,
@@ -166,7 +165,7 @@ pub(crate) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<S
     StoredOrder::read(summary, lines)
 }
 
-/// An order that the tenant sees, with its log.
+/// Finds an order that the tenant sees, with its log.
 pub(crate) async fn find(db: &Db, tenant: Tenant, id: OrderId) -> Result<StoredOrder> {
     let summary = summary(db, tenant, id).await?;
     let lines = rows!(
@@ -181,7 +180,7 @@ pub(crate) async fn find(db: &Db, tenant: Tenant, id: OrderId) -> Result<StoredO
     StoredOrder::read(summary, lines)
 }
 
-/// Lines of an order's log as they were hashed, with their hashes, from after a number.
+/// Lists the original lines of an order's log after a number, with their hashes.
 pub(crate) async fn lines(
     db: &Db,
     vessel: VesselId,
@@ -203,8 +202,8 @@ pub(crate) async fn lines(
     )?)
 }
 
-/// The compass's last order that was completed; one that was closed after headings at sea
-/// had spoken against it counts as failed still.
+/// Finds the compass's last completed order. One that was closed after headings at sea had
+/// contradicted it still counts as failed.
 pub(crate) async fn last_completed(
     tx: &mut Tx,
     vessel: VesselId,
@@ -225,7 +224,7 @@ pub(crate) async fn last_completed(
     )?)
 }
 
-/// The names of a vessel of the operator's and of one of her compasses.
+/// Finds the names of an operator's vessel and of one of its compasses.
 ///
 /// # Errors
 /// [`Error::NotFound`] when there is no such vessel or compass.
@@ -254,7 +253,7 @@ pub(crate) async fn names(
     Ok((vessel_name, compass_name))
 }
 
-/// The record as it was signed; none before the order is completed.
+/// Finds the signed record; `None` before the order is completed.
 pub(crate) async fn record(db: &Db, vessel: VesselId, id: OrderId) -> Result<Option<String>> {
     let found = row!(
         db,
@@ -266,7 +265,7 @@ pub(crate) async fn record(db: &Db, vessel: VesselId, id: OrderId) -> Result<Opt
     Ok(found.and_then(|(record,)| record))
 }
 
-/// A photograph's media type and bytes.
+/// Finds a photograph's media type and bytes.
 pub(crate) async fn photo(
     db: &Db,
     vessel: VesselId,

@@ -1,4 +1,4 @@
-//! Orders and their logs on their way into the database.
+//! Writing of orders and their logs.
 
 use crate::work_orders::events::{Event, OrderEvent};
 use crate::work_orders::log::canonical_json::{canonical, sha256_hex};
@@ -14,7 +14,7 @@ use binnacle_platform::ids::{CompassId, OrderId, PhotoId, VesselId};
 use binnacle_platform::time::Time;
 use uuid::Uuid;
 
-/// Has whoever orders the same meanwhile wait.
+/// Locks a compass against other orders until the transaction ends.
 ///
 /// # Errors
 /// When the database fails.
@@ -28,7 +28,7 @@ pub async fn lock_compass(tx: &mut Tx, vessel: VesselId, compass: CompassId) -> 
     Ok(())
 }
 
-/// Whether a compass has an order that is not done yet.
+/// Returns whether a compass has an unfinished order.
 pub(crate) async fn is_under_way(
     tx: &mut Tx,
     vessel: VesselId,
@@ -48,7 +48,7 @@ pub(crate) async fn is_under_way(
     Ok(found.is_some_and(|(orders,)| orders > 0))
 }
 
-/// Whether a compass's correctors are being moved.
+/// Returns whether a compass's correctors are being moved.
 pub(crate) async fn is_adjusting(
     tx: &mut Tx,
     vessel: VesselId,
@@ -95,7 +95,7 @@ pub(crate) async fn insert(
     Ok(())
 }
 
-/// Writes the next entry of an order's log, and what follows from it.
+/// Writes the next entry of an order's log, and its consequences.
 pub(crate) async fn append(
     tx: &mut Tx,
     stored: &mut StoredOrder,
@@ -183,7 +183,7 @@ async fn write_offers(tx: &mut Tx, stored: &StoredOrder, offers: &Offers) -> Res
     Ok(())
 }
 
-/// Notes that an order was completed, with the record that was signed.
+/// Stores the completion of an order, with its signed record.
 pub(crate) async fn complete(
     tx: &mut Tx,
     summary: &Summary,
@@ -208,7 +208,7 @@ pub(crate) async fn complete(
     Ok(())
 }
 
-/// Notes that headings at sea verified an adjustment, and what they said.
+/// Stores the verification of an adjustment by headings at sea.
 pub(crate) async fn verified(
     tx: &mut Tx,
     summary: &Summary,

@@ -9,33 +9,33 @@ use binnacle_adjustment::binnacle::{Binnacle, Setting};
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 
-/// The same as the log has it.
+/// Report of the correctors' settings.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct CorrectorMove {
-    /// How they stood before.
+    /// Setting before.
     pub before: Setting,
-    /// How they stand now.
+    /// Setting after.
     pub after: Setting,
-    /// What the compass reads then, degrees.
+    /// Compass reading with the new setting, degrees.
     pub compass_deg: Option<f64>,
-    /// Why.
+    /// Reason.
     pub note: Option<String>,
-    /// Whether a second reading that did not fit before fits them as they stand now.
+    /// Whether the new setting explains a second reading that did not fit the old one.
     #[serde(default)]
     pub explains_reading: bool,
-    /// What is known instead of a strength that was learnt from how they did not stand.
+    /// Correction of a strength that was inferred from an assumed setting.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub learnt_anew: Option<Box<RevisedStrength>>,
-    /// When.
+    /// Time of the report.
     pub at: Time,
 }
 
-/// What is known instead of a strength that was learnt before.
+/// Correction of a strength that was inferred before.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct RevisedStrength {
-    /// The step from which it was learnt, its corrector where it stands.
+    /// Step that it was inferred from, with the actual position of its corrector.
     pub step: Step,
-    /// The binnacle as it is now believed to be.
+    /// Binnacle with the corrected strength.
     pub binnacle: Binnacle,
 }
 

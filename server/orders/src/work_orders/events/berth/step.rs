@@ -11,21 +11,21 @@ use binnacle_adjustment::binnacle::{Binnacle, Setting};
 use binnacle_compass::angle::wrap_180;
 use serde::{Deserialize, Serialize};
 
-/// A step as the log has it.
+/// Step with its result and its consequences.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct RecordedStep {
-    /// What became of it.
+    /// Result.
     #[serde(flatten)]
     pub said: StepResult,
     /// The step.
     pub step: Step,
-    /// How the correctors stand now; none when that is not known to be otherwise.
+    /// Setting of the correctors afterwards; `None` if nothing changed.
     pub setting: Option<Setting>,
-    /// The binnacle, where a corrector was found to be of another strength.
+    /// Binnacle, if a corrector was found to have another strength.
     pub binnacle: Option<Binnacle>,
-    /// The plan from there.
+    /// New plan from there.
     pub replanned: Option<Box<ChosenPlan>>,
-    /// Why there is none from there.
+    /// Reasons for which there is no new plan.
     pub refusals: Vec<Refusal>,
 }
 

@@ -7,27 +7,27 @@ use crate::work_orders::payload::exchange::NamedFirm;
 use binnacle_platform::outbox;
 use serde::{Deserialize, Serialize};
 
-/// The firms that an order is offered to, in the order in which they are asked.
+/// Firms that an order is offered to, in the order of the offers.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct OfferRound {
     /// The firms.
     pub firms: Vec<OfferedFirm>,
-    /// So long they have for an answer.
+    /// Hours for an answer.
     pub answer_within_hours: u32,
-    /// Whether all are asked at once.
+    /// Whether all receive the offer at once.
     pub at_once: bool,
-    /// What is said to them.
+    /// Text for the firms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
 }
 
-/// A firm that is to be asked, and for how much.
+/// Firm that is offered the order, with its fee.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct OfferedFirm {
     /// The firm.
     #[serde(flatten)]
     pub firm: NamedFirm,
-    /// The fee that it is offered, euros; none where nobody has said on what terms it works.
+    /// Offered fee, euros; `None` if the firm has no terms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fee_eur: Option<f64>,
 }

@@ -8,15 +8,15 @@ use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// When the adjuster went on board.
+/// Arrival of the adjuster on board.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = OnBoard, example = json!({ "text": "Gangway on the starboard side." }))]
 pub(crate) struct Boarding {
-    /// When; now where it is not said.
+    /// Time of arrival; now by default.
     #[serde(default)]
     pub at: Option<Time>,
-    /// In words.
+    /// Text.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub text: Option<String>,
