@@ -5,7 +5,7 @@ use crate::work_orders::events::{Cancelled, Closed, OrderEvent, Remark};
 use crate::work_orders::order::Order;
 use crate::work_orders::order_update::Change;
 use crate::work_orders::state::State;
-use crate::work_orders::{order_update, shown};
+use crate::work_orders::{load_order, prepare_update};
 use axum::extract::State as Shared;
 use binnacle_platform::access::{PartyWriter, Writer};
 use binnacle_platform::app::App;
@@ -42,15 +42,15 @@ pub(super) async fn remark(
     Valid(remark): Valid<RemarkForm>,
 ) -> Result<Json<Order>> {
     let text = checked_text(&remark)?;
-    let update = order_update(&app, request, writer, id, key, "remark", &remark)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "remark", &remark)?;
+    let (stored, done) = update.load().await?;
     if done.is_none()
         && let Some(mut change) = update.begin(&stored).await?
     {
         change.append(OrderEvent::Remark(Remark { text })).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 /// Cancel a work order
@@ -71,10 +71,10 @@ pub(super) async fn cancel_work_order(
     Valid(remark): Valid<RemarkForm>,
 ) -> Result<Json<Order>> {
     let reason = checked_text(&remark)?;
-    let update = order_update(&app, request, writer, id, key, "cancellation", &remark)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "cancellation", &remark)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.operator, id).await;
+        return load_order(&app, writer.operator, id).await;
     }
     if !stored.summary.state.is_under_way() {
         stored.require_state(&[], "it cannot be cancelled any more")?;
@@ -86,7 +86,7 @@ pub(super) async fn cancel_work_order(
             .await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    load_order(&app, writer.operator, id).await
 }
 
 /// Records correctors that were moved although the order is cancelled.
@@ -141,10 +141,10 @@ pub(super) async fn close_work_order(
     Valid(closing): Valid<Closing>,
 ) -> Result<Json<Order>> {
     let text = text("text", &closing.text)?;
-    let update = order_update(&app, request, writer, id, key, "closing", &closing)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "closing", &closing)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.operator, id).await;
+        return load_order(&app, writer.operator, id).await;
     }
     let unverified = closing.without_verification && stored.summary.state == State::Adjusted;
     if !unverified {
@@ -163,7 +163,7 @@ pub(super) async fn close_work_order(
         change.append(OrderEvent::Closed(Closed { text })).await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    load_order(&app, writer.operator, id).await
 }
 
 fn checked_text(remark: &RemarkForm) -> Result<String> {

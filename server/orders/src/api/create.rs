@@ -7,7 +7,7 @@ use crate::work_orders::new_order::NewOrder;
 use crate::work_orders::order::Order;
 use crate::work_orders::order_update::Change;
 use crate::work_orders::state::State;
-use crate::work_orders::{shown, store};
+use crate::work_orders::{load_order, store};
 use axum::extract::State as Shared;
 use axum::http::StatusCode;
 use binnacle_fleet::vessels;
@@ -54,7 +54,7 @@ pub(super) async fn create_work_order(
     }
     Ok((
         StatusCode::CREATED,
-        shown(&app, operator, OrderId(made)).await?,
+        load_order(&app, operator, OrderId(made)).await?,
     ))
 }
 
@@ -131,7 +131,7 @@ pub async fn write(
 ///
 /// # Errors
 /// [`Error::WrongState`] when an offer is open or a firm has the order.
-pub async fn give_way(
+pub async fn cancel_declined(
     app: &App,
     mut tx: Tx,
     writer: Writer,

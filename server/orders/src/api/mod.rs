@@ -3,7 +3,7 @@
 mod actions;
 mod create;
 
-pub use create::{give_way, write};
+pub use create::{cancel_declined, write};
 
 use crate::berth_session::plan_slots::CorrectorPlanSlots;
 use crate::berth_session::{berth_api, firm_vessel_view, second_reading_api};
@@ -14,7 +14,7 @@ use crate::work_orders::log::firm_view;
 use crate::work_orders::order::Order;
 use crate::work_orders::schema::{LineList, LineSchema};
 use crate::work_orders::summary::{Filter, OrderList};
-use crate::work_orders::{shown, store};
+use crate::work_orders::{load_order, store};
 use axum::extract::{FromRef, RawPathParams, Request, State as Shared};
 use axum::middleware::{Next, from_fn};
 use axum::response::Response;
@@ -107,7 +107,7 @@ async fn find_work_order(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Json<Order>> {
-    shown(&app, reader.tenant, id).await
+    load_order(&app, reader.tenant, id).await
 }
 
 /// Read a work order's log

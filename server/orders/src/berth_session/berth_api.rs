@@ -18,7 +18,7 @@ use crate::work_orders::request_schema::BerthReadingSchema;
 use crate::work_orders::schema::OfferSchema;
 use crate::work_orders::state::State;
 use crate::work_orders::store::StoredOrder;
-use crate::work_orders::{order_update, shown, store};
+use crate::work_orders::{load_order, prepare_update, store};
 use axum::extract::{FromRef, State as Shared};
 use binnacle_adjustment::adjust::{Outcome, ReadingForm};
 use binnacle_compass::angle::wrap_180;
@@ -37,7 +37,7 @@ use uuid::Uuid;
 
 /// States in which a berth session may take place. An order without a firm may be measured as
 /// soon as it is planned.
-const AT_BERTH: [State; 4] = [
+const BERTH_STATES: [State; 4] = [
     State::Planned,
     State::OnBoard,
     State::Measured,
@@ -88,24 +88,25 @@ async fn read_berth(
     key: Key,
     Valid(given): Valid<ReadingForm>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "berth reading", &given)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "berth reading", &given)?;
+    let (stored, done) = update.load().await?;
     if let Some(entry) = done {
         repeat_refusal(&stored, entry)?;
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
     refuse_moved_correctors(&stored)?;
     check_reading_ranges(&given, app.clock.now().into())?;
     position_check::check_reading_age(&given, app.clock.now().into())?;
     let (vessel, compass) = (stored.summary.vessel_id, stored.summary.compass_id);
     let basis = Basis::load(&app, vessel, compass, &given).await?;
-    let doubt =
-        position_check::check_position(&app, (vessel, compass), &stored.summary.port, &given)
-            .await?;
-    let (checked, refusal) = match (check(&given, &basis)?, doubt) {
+    let implausible_position =
+        position_check::check_position(&app, &stored.summary, &given).await?;
+    let (checked, refusal) = match (check(&given, &basis)?, implausible_position) {
         (Ok(checked), None) => (Some(checked), None),
-        (Ok(_), Some(doubt)) => (None, Some(doubt)),
-        (Err(refusal), doubt) => (None, Some(refusal.with_cause(doubt))),
+        (Ok(_), Some(implausible_position)) => (None, Some(implausible_position)),
+        (Err(refusal), implausible_position) => {
+            (None, Some(refusal.with_cause(implausible_position)))
+        }
     };
     let read = RecordedReading {
         given,
@@ -130,7 +131,7 @@ async fn read_berth(
     }
     match refusal {
         Some(refusal) => Err(not_adjustable(vec![refusal])),
-        None => shown(&app, writer.tenant, id).await,
+        None => load_order(&app, writer.tenant, id).await,
     }
 }
 
@@ -147,7 +148,7 @@ fn repeat_refusal(stored: &StoredOrder, entry: Uuid) -> Result<()> {
 /// Refuses a reading after correctors were moved: the model describes their earlier settings.
 fn refuse_moved_correctors(stored: &StoredOrder) -> Result<()> {
     stored.require_state(
-        &AT_BERTH,
+        &BERTH_STATES,
         "the berth is read between going on board and completion",
     )?;
     if stored.state().has_moved_correctors() {
@@ -155,7 +156,7 @@ fn refuse_moved_correctors(stored: &StoredOrder) -> Result<()> {
             "correctors were moved since the reading, and the model does not know them so: what \
              the magnetometer reads after the steps is a second reading. To begin again, put \
              them back as they stood, say so under corrector-settings, and read again; or cancel \
-             the order, which notes how they stand, and let headings at sea make a model"
+             the order, which notes how they report, and let headings at sea make a model"
                 .to_owned(),
         ));
     }
@@ -178,7 +179,7 @@ async fn find_plan(
     Id(id): Id<OrderId>,
 ) -> Result<Json<Outcome>> {
     let stored = store::find(&app.db, reader.tenant, id).await?;
-    stored.require_state(&AT_BERTH, "there is nothing to plan")?;
+    stored.require_state(&BERTH_STATES, "there is nothing to plan")?;
     let plan_request = stored.state().plan_request()?;
     require_current_reading(&app, &stored.summary, &plan_request).await?;
     Ok(Json(
@@ -202,17 +203,17 @@ async fn choose_plan(
     key: Key,
     ValidOrNone(choice): ValidOrNone<PlanChoice>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "plan", &choice)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "plan", &choice)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
-    stored.require_state(&AT_BERTH, "there is nothing to plan")?;
+    stored.require_state(&BERTH_STATES, "there is nothing to plan")?;
     let plan_request = stored.state().plan_request()?;
     require_current_reading(&app, &stored.summary, &plan_request).await?;
     let outcome = offer_plans(&app, &slots, &stored.summary, plan_request).await?;
     let offered = outcome.plans.len();
-    let planned = ChosenPlan::of(outcome, choice.plan.unwrap_or(1));
+    let planned = ChosenPlan::from_outcome(outcome, choice.plan.unwrap_or(1));
     let planned = planned.ok_or_else(|| Error::Invalid {
         field: "plan",
         detail: format!("there are plans 1 to {offered}"),
@@ -221,7 +222,7 @@ async fn choose_plan(
         change.append(OrderEvent::Plan(Box::new(planned))).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 /// Send the compass reading after a step
@@ -242,7 +243,7 @@ async fn read_step(
     key: Key,
     Valid(read): Valid<StepReading>,
 ) -> Result<Json<Order>> {
-    let update = order_update(
+    let update = prepare_update(
         &app,
         request,
         writer,
@@ -251,9 +252,9 @@ async fn read_step(
         &format!("step {number}"),
         &read,
     )?;
-    let (stored, done) = update.look().await?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
     let state = stored.state();
     let wrong = |detail: String| Error::WrongState(detail);
@@ -281,7 +282,7 @@ async fn read_step(
         change.append(OrderEvent::Step(Box::new(judged))).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 /// Largest turn of a compass at the berth without an action, degrees.
@@ -323,47 +324,55 @@ async fn set_correctors(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(stand): Valid<CorrectorReport>,
+    Valid(report): Valid<CorrectorReport>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "corrector settings", &stand)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(
+        &app,
+        request,
+        writer,
+        id,
+        key,
+        "corrector settings",
+        &report,
+    )?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
     let what = "correctors are set between the reading and the completion";
     stored.require_state(&[State::Measured, State::Adjusting], what)?;
-    let mut moved = moved(&stored, stand, app.clock.now().into())?;
-    moved.learnt_anew = revise_strength(&slots, &stored.state(), &moved).await?;
+    let mut moved = corrector_move(&stored, report, app.clock.now().into())?;
+    moved.revised_strength = revise_strength(&slots, &stored.state(), &moved).await?;
     moved.explains_reading = explains_second_reading(&slots, &stored.state(), &moved).await?;
     if let Some(mut change) = update.begin(&stored).await? {
         let content = OrderEvent::CorrectorSettings(Box::new(moved));
         change.append(content).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
-fn moved(
+fn corrector_move(
     stored: &StoredOrder,
-    stand: CorrectorReport,
+    report: CorrectorReport,
     now: binnacle_platform::time::Time,
 ) -> Result<CorrectorMove> {
     let state = stored.state();
     let wrong = || Error::WrongState("the berth has not been read yet".to_owned());
     let binnacle = state.binnacle.as_ref().ok_or_else(wrong)?;
     binnacle
-        .with_setting(stand.setting.clone())
+        .with_setting(report.setting.clone())
         .map_err(binnacle_fleet::binnacles::invalid_binnacle)?;
-    let compass_deg = stand.compass_deg;
+    let compass_deg = report.compass_deg;
     Ok(CorrectorMove {
         before: state.setting().ok_or_else(wrong)?.clone(),
-        after: stand.setting,
+        after: report.setting,
         compass_deg: compass_deg
             .map(|deg| degrees("compass_deg", deg, 0.0, 360.0))
             .transpose()?,
-        note: optional_text("note", stand.note.as_deref())?,
+        note: optional_text("note", report.note.as_deref())?,
         explains_reading: false,
-        learnt_anew: None,
+        revised_strength: None,
         at: now,
     })
 }

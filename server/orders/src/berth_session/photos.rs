@@ -15,9 +15,9 @@ use utoipa::IntoParams;
 pub const MAX_BYTES: usize = 10 * 1024 * 1024;
 /// Range of a picture's sides, pixels: from the smallest that shows a tray to the largest of a
 /// camera.
-const SIDE: std::ops::RangeInclusive<u32> = 16..=32_768;
+const SIDE_RANGE_PX: std::ops::RangeInclusive<u32> = 16..=32_768;
 /// Most photographs of an order.
-pub const MOST: usize = 40;
+pub const MAX_PHOTOS: usize = 40;
 
 /// Caption of a photograph.
 #[derive(Debug, Deserialize, IntoParams)]
@@ -41,7 +41,7 @@ impl Photo {
             Error::UnsupportedMediaType("a photograph is JPEG, PNG or WebP".to_owned())
         })?;
         let sides = size(media_type, bytes).unwrap_or([0, 0]);
-        if !sides.iter().all(|side| SIDE.contains(side)) {
+        if !sides.iter().all(|side| SIDE_RANGE_PX.contains(side)) {
             return Err(Error::UnsupportedMediaType(format!(
                 "the file begins as {media_type} and is no picture: it is cut off, or damaged"
             )));
@@ -76,19 +76,19 @@ fn size(media_type: &str, bytes: &[u8]) -> Option<[u32; 2]> {
     }
 }
 
-fn octets<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
+fn array_at<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at.checked_add(N)?)?.try_into().ok()
 }
 
 /// Size of a PNG: `IHDR` comes first, and there is data (PNG, 5.6 and 11.2.1).
 fn png(bytes: &[u8]) -> Option<[u32; 2]> {
     let has_data = bytes.windows(4).any(|kind| kind == b"IDAT");
-    if octets::<4>(bytes, 12)? != *b"IHDR" || !has_data {
+    if array_at::<4>(bytes, 12)? != *b"IHDR" || !has_data {
         return None;
     }
     Some([
-        u32::from_be_bytes(octets(bytes, 16)?),
-        u32::from_be_bytes(octets(bytes, 20)?),
+        u32::from_be_bytes(array_at(bytes, 16)?),
+        u32::from_be_bytes(array_at(bytes, 20)?),
     ])
 }
 
@@ -97,10 +97,10 @@ fn jpeg(bytes: &[u8]) -> Option<[u32; 2]> {
     let mut at = 2;
     let mut found = None;
     loop {
-        let [mark, kind, high, low] = octets::<4>(bytes, at)?;
+        let [mark, kind, high, low] = array_at::<4>(bytes, at)?;
         let length = usize::from(u16::from_be_bytes([high, low]));
         match (mark, kind) {
-            // Fill octets before a marker.
+            // Fill bytes before a marker.
             (0xFF, 0xFF) => {
                 at += 1;
                 continue;
@@ -108,7 +108,7 @@ fn jpeg(bytes: &[u8]) -> Option<[u32; 2]> {
             (0xFF, 0xDA) => return found,
             // Start of frame; C4, C8 and CC are tables.
             (0xFF, 0xC0..=0xCF) if !matches!(kind, 0xC4 | 0xC8 | 0xCC) => {
-                let [h1, h0, w1, w0] = octets::<4>(bytes, at + 5)?;
+                let [h1, h0, w1, w0] = array_at::<4>(bytes, at + 5)?;
                 let sides = [[w1, w0], [h1, h0]];
                 found = Some(sides.map(|side| u32::from(u16::from_be_bytes(side))));
             }
@@ -122,16 +122,19 @@ fn jpeg(bytes: &[u8]) -> Option<[u32; 2]> {
 /// Size of a WebP: lossy, lossless or extended (RFC 9649, 2.4 to 2.7).
 fn webp(bytes: &[u8]) -> Option<[u32; 2]> {
     let less_one = |three: [u8; 3]| 1 + u32::from_le_bytes([three[0], three[1], three[2], 0]);
-    match &octets::<4>(bytes, 12)? {
+    match &array_at::<4>(bytes, 12)? {
         b"VP8 " => {
-            let side = |at| Some(u32::from(u16::from_le_bytes(octets(bytes, at)?) & 0x3FFF));
+            let side = |at| Some(u32::from(u16::from_le_bytes(array_at(bytes, at)?) & 0x3FFF));
             Some([side(26)?, side(28)?])
         }
         b"VP8L" => {
-            let packed = u32::from_le_bytes(octets(bytes, 21)?);
+            let packed = u32::from_le_bytes(array_at(bytes, 21)?);
             Some([1 + (packed & 0x3FFF), 1 + ((packed >> 14) & 0x3FFF)])
         }
-        b"VP8X" => Some([less_one(octets(bytes, 24)?), less_one(octets(bytes, 27)?)]),
+        b"VP8X" => Some([
+            less_one(array_at(bytes, 24)?),
+            less_one(array_at(bytes, 27)?),
+        ]),
         _ => None,
     }
 }
@@ -150,7 +153,7 @@ mod tests {
         assert_eq!(size("image/jpeg", &jpeg[..20]), None);
         assert_eq!(size("image/jpeg", &[0xFF, 0xD8, 0xFF, 0xE0]), None);
         let mut png = b"\x89PNG\r\n\x1a\n".to_vec();
-        assert_eq!(size("image/png", &png), None, "its first octets alone");
+        assert_eq!(size("image/png", &png), None, "its first bytes alone");
         png.extend(b"\0\0\0\rIHDR\0\0\x03\x20\0\0\x02\x58\x08\x02\0\0\0crc.");
         assert_eq!(size("image/png", &png), None, "without data");
         png.extend(b"\0\0\0\x01IDATx");

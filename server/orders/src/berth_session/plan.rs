@@ -235,11 +235,12 @@ pub(crate) async fn offer_plans(
             ),
         );
     }
-    let told = alerts
+    let notes = alerts
         .iter()
         .filter(|alert| alert.cause.effect_on_plan() == Effect::Note);
-    let told = told.map(|alert| format!("an alert about this compass is open: {}", alert.summary));
-    outcome.notes.splice(0..0, told);
+    let notes =
+        notes.map(|alert| format!("an alert about this compass is open: {}", alert.summary));
+    outcome.notes.splice(0..0, notes);
     if outcome.plans.is_empty() {
         return Err(not_adjustable(refusals(&outcome)));
     }

@@ -80,7 +80,8 @@ impl Basis {
             binnacle: binnacle.binnacle.0,
             waters: waters(app, vessel, compass, earth.for_ship()).await?,
             cargo_on_board: cargo || given.cargo_on_board,
-            earlier: previous_lambda::of_compass(app, vessel, compass, given.at, &logbook).await?,
+            earlier: previous_lambda::find_for_compass(app, vessel, compass, given.at, &logbook)
+                .await?,
             is_updated_here: false,
             model: ModelUsed {
                 headings_until: headings_until(app, vessel, &model).await?,
@@ -187,7 +188,7 @@ async fn waters(
     let mut waters: Vec<Water> = read.await??;
     waters.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     waters.truncate(MAX_WATERS);
-    tell_apart(&mut waters);
+    disambiguate_names(&mut waters);
     if waters.is_empty() {
         waters.push(Water {
             name: "the berth's waters".to_owned(),
@@ -223,7 +224,7 @@ fn water(samples: &[SampleDiagnostic]) -> Option<Water> {
 }
 
 /// Appends the field to the names of waters that share one.
-fn tell_apart(waters: &mut [Water]) {
+fn disambiguate_names(waters: &mut [Water]) {
     let names: Vec<String> = waters.iter().map(|water| water.name.clone()).collect();
     for water in waters {
         if names.iter().filter(|name| **name == water.name).count() > 1 {
@@ -250,7 +251,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn waters_of_one_name_are_told_apart_by_their_field() {
+    fn waters_of_one_name_are_distinguished_by_their_field() {
         let water = |name: &str, z_nt: f64| Water {
             name: name.to_owned(),
             h_nt: 29_400.0,
@@ -263,7 +264,7 @@ mod tests {
             water(there, 0.0),
             water(here, -8_000.0),
         ];
-        tell_apart(&mut waters);
+        disambiguate_names(&mut waters);
         let names = waters.map(|water| water.name);
         assert_eq!(names[0], format!("{here} (H 29, Z 31 µT)"));
         assert_eq!(names[1], there);

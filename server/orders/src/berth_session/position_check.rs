@@ -4,15 +4,15 @@
 //! and the vessel's own track. Without either it is accepted.
 
 use crate::berth_session::plan::READING_VALIDITY_S;
-use crate::firms::port_meant;
+use crate::firms::named_port;
 use crate::work_orders::refusal::{Cure, Refusal};
+use crate::work_orders::summary::Summary;
 use binnacle_adjustment::adjust::ReadingForm;
 use binnacle_compass::position::Position;
 use binnacle_compass::result::SampleDiagnostic;
 use binnacle_fleet::analysis;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
-use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
 
 /// Largest distance of a berth from the listed position of its port, nautical miles.
@@ -48,18 +48,24 @@ pub(crate) fn check_reading_age(given: &ReadingForm, now: Time) -> Result<()> {
 /// Refuses a reading at a place where the vessel cannot have been at that time.
 pub(crate) async fn check_position(
     app: &App,
-    (vessel, compass): (VesselId, CompassId),
-    port: &str,
+    summary: &Summary,
     given: &ReadingForm,
 ) -> Result<Option<Refusal>> {
     let Ok(berth) = Position::new(given.lat, given.lon) else {
         return Ok(None);
     };
-    if let Some(words) = not_in_port(berth, port) {
+    if let Some(words) = not_in_port(berth, &summary.port) {
         return Ok(Some(refusal(words)));
     }
     let around = [-TRACK_WINDOW_S, TRACK_WINDOW_S].map(|s| Some(Time(given.at.plus_seconds(s))));
-    let chunks = analysis::chunks(&app.db, vessel, compass, around[0], around[1]).await?;
+    let chunks = analysis::chunks(
+        &app.db,
+        summary.vessel_id,
+        summary.compass_id,
+        around[0],
+        around[1],
+    )
+    .await?;
     let mut nearest: Option<(f64, Position)> = None;
     for chunk in &chunks {
         for found in serde_json::from_str::<Vec<SampleDiagnostic>>(chunk)? {
@@ -69,7 +75,9 @@ pub(crate) async fn check_position(
             }
         }
     }
-    Ok(nearest.and_then(|seen| too_far(berth, seen)).map(refusal))
+    Ok(nearest
+        .and_then(|(apart_s, seen)| too_far(berth, apart_s, seen))
+        .map(refusal))
 }
 
 fn refusal(words: String) -> Refusal {
@@ -87,7 +95,7 @@ fn refusal(words: String) -> Refusal {
 
 /// Compares the position with the listed port. Unknown ports are not checked.
 fn not_in_port(berth: Position, port: &str) -> Option<String> {
-    let known = port_meant(port)?;
+    let known = named_port(port)?;
     let (apart_nm, name) = (distance_nm(berth, known.position), known.name);
     (apart_nm > MAX_BERTH_DISTANCE_NM).then(|| {
         format!(
@@ -98,7 +106,7 @@ fn not_in_port(berth: Position, port: &str) -> Option<String> {
 }
 
 /// Compares the position with the nearest one on the vessel's track.
-fn too_far(berth: Position, (apart_s, seen): (f64, Position)) -> Option<String> {
+fn too_far(berth: Position, apart_s: f64, seen: Position) -> Option<String> {
     let apart_nm = distance_nm(berth, seen);
     let hours = apart_s / 3600.0;
     (apart_nm > TRACK_TOLERANCE_NM + MAX_SPEED_KN * hours).then(|| {
@@ -149,7 +157,7 @@ mod tests {
 
     #[test]
     fn she_is_no_farther_than_she_can_have_steamed() {
-        assert!(too_far(at(43.0, -3.0), (600.0, at(44.0, -3.0))).is_some());
-        assert_eq!(too_far(at(43.0, -3.0), (7_200.0, at(44.0, -3.0))), None);
+        assert!(too_far(at(43.0, -3.0), 600.0, at(44.0, -3.0)).is_some());
+        assert_eq!(too_far(at(43.0, -3.0), 7_200.0, at(44.0, -3.0)), None);
     }
 }

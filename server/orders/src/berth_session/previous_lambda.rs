@@ -47,7 +47,7 @@ struct Before {
 ///
 /// # Errors
 /// When the database fails.
-pub(crate) async fn of_compass(
+pub(crate) async fn find_for_compass(
     app: &App,
     vessel: VesselId,
     compass: CompassId,
@@ -67,7 +67,7 @@ pub(crate) async fn of_compass(
     let Some(record) = found.and_then(|(record,)| record) else {
         return Ok(None);
     };
-    // A record of a time when less was written down tells nothing.
+    // An early record lacks some of these fields.
     let Ok(recorded) = serde_json::from_str::<RecordedAdjustment>(&record) else {
         return Ok(None);
     };
@@ -75,7 +75,11 @@ pub(crate) async fn of_compass(
     let is_other_iron = logbook.iter().any(|entry| {
         changes_iron(entry.kind) && entry.from <= now && entry.to.unwrap_or(entry.from) >= since
     });
-    Ok(if is_other_iron { None } else { recorded.told() })
+    Ok(if is_other_iron {
+        None
+    } else {
+        recorded.estimate()
+    })
 }
 
 /// Returns whether such work may change λ.
@@ -90,7 +94,7 @@ fn changes_iron(kind: LogbookKind) -> bool {
 }
 
 impl RecordedAdjustment {
-    fn told(&self) -> Option<PreviousBerth> {
+    fn estimate(&self) -> Option<PreviousBerth> {
         let variation = Variation::try_from(self.earth_at_berth.variation_deg).ok()?;
         let binnacle = &self.binnacle_before.binnacle;
         let adjustment = Adjustment {

@@ -22,10 +22,9 @@ use binnacle_adjustment::berth::BerthReading;
 use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_platform::error::{Error, Result};
 
-const FITS_UNPLANNED: &str =
-    "the correctors do what they should where they are said to stand: plan anew from this reading";
+const FITS_UNPLANNED: &str = "the correctors do what they should where they are said to stand: plan basis_to_plan_from from this reading";
 const BEYOND_LIMITS: &str = "the correctors seem to stand as planned, but more is left than the limits \
-    allow: read once more, away from steel and cranes; if it is so again, plan anew from this \
+    allow: read once more, away from steel and cranes; if it is so again, plan basis_to_plan_from from this \
     reading";
 
 /// Second reading as it was sent, as a form of its own, and as the planner takes it.
@@ -82,9 +81,9 @@ impl SecondReading {
         planned: bool,
     ) -> std::result::Result<(RecordedSecondReading, Option<Basis>), AdjustError> {
         let again = self.read(plan_request, steps)?;
-        let mut said = SecondReadingResult {
+        let mut result = SecondReadingResult {
             verdict: SecondReadingVerdict::AsPlanned,
-            words: as_planned(steps, again.parts.len()),
+            words: confirmation_text(steps, again.parts.len()),
             parts: again.parts,
             step: None,
             setting: None,
@@ -93,39 +92,39 @@ impl SecondReading {
             refusals: Vec::new(),
             could_be: Vec::new(),
         };
-        let from_here = |learnt: &UpdatedPrediction, binnacle: Binnacle| {
+        let from_here = |updated: &UpdatedPrediction, binnacle: Binnacle| {
             let mut basis = plan_request.basis.clone();
-            basis.model.model = learnt.model_after.clone();
+            basis.model.model = updated.model_after.clone();
             basis.binnacle = binnacle;
             // The first reading was held against it.
             basis.earlier = None;
             basis.is_updated_here = true;
             basis
         };
-        let (mut foretold, mut anew) = (None, None);
+        let (mut prediction, mut basis_to_plan_from) = (None, None);
         match again.verdict {
-            Verdict::AsPlanned { updated: learnt } if planned => foretold = Some(*learnt),
-            Verdict::AsPlanned { updated: learnt } => {
-                said.verdict = SecondReadingVerdict::Replan;
-                FITS_UNPLANNED.clone_into(&mut said.words);
+            Verdict::AsPlanned { updated } if planned => prediction = Some(*updated),
+            Verdict::AsPlanned { updated } => {
+                result.verdict = SecondReadingVerdict::Replan;
+                FITS_UNPLANNED.clone_into(&mut result.words);
                 let setting = plan_request.adjustment().standing().clone();
-                anew = Some(from_here(
-                    &learnt,
+                basis_to_plan_from = Some(from_here(
+                    &updated,
                     plan_request.binnacle.with_setting(setting)?,
                 ));
-                foretold = Some(*learnt);
+                prediction = Some(*updated);
             }
             Verdict::Replan {
-                updated: learnt,
+                updated,
                 refusals,
                 binnacle,
                 ..
             } => {
-                said.verdict = SecondReadingVerdict::Replan;
-                BEYOND_LIMITS.clone_into(&mut said.words);
-                said.refusals = refusals.iter().map(Refusal::from).collect();
-                anew = Some(from_here(&learnt, *binnacle));
-                foretold = Some(*learnt);
+                result.verdict = SecondReadingVerdict::Replan;
+                BEYOND_LIMITS.clone_into(&mut result.words);
+                result.refusals = refusals.iter().map(Refusal::from).collect();
+                basis_to_plan_from = Some(from_here(&updated, *binnacle));
+                prediction = Some(*updated);
             }
             Verdict::Slip {
                 step,
@@ -133,32 +132,34 @@ impl SecondReading {
                 setting,
                 ..
             } => {
-                said.verdict = SecondReadingVerdict::Slip;
-                said.words = suspected(steps, step, slip);
-                said.step = u32::try_from(looked_at).ok().map(|before| before + step);
-                said.setting = Some(setting);
+                result.verdict = SecondReadingVerdict::Slip;
+                result.words = slip_text(steps, step, slip);
+                result.step = u32::try_from(looked_at).ok().map(|before| before + step);
+                result.setting = Some(setting);
             }
             Verdict::Unexplained {
                 misreadings: mistakes,
             } => {
-                said.verdict = SecondReadingVerdict::Unexplained;
-                said.words = unexplained(looked_at);
-                said.could_be = mistakes.iter().map(ToString::to_string).collect();
+                result.verdict = SecondReadingVerdict::Unexplained;
+                result.words = unexplained_text(looked_at);
+                result.could_be = mistakes.iter().map(ToString::to_string).collect();
                 if let Some(card) = again.card.filter(CardCheck::is_refused) {
-                    said.words = card.summary();
-                    said.could_be.extend(card.suspects());
+                    result.words = card.summary();
+                    result.could_be.extend(card.suspects());
                 }
             }
         }
-        said.worst_residual_deg = foretold.as_ref().map(|learnt| learnt.worst_residual_deg);
-        said.widest_band_deg = foretold.as_ref().map(|learnt| learnt.widest_band_deg);
+        result.worst_residual_deg = prediction
+            .as_ref()
+            .map(|updated| updated.worst_residual_deg);
+        result.widest_band_deg = prediction.as_ref().map(|updated| updated.widest_band_deg);
         let read = RecordedSecondReading {
             given: self.given,
-            said,
-            learnt: foretold,
-            anew: None,
+            result,
+            prediction,
+            reading_to_plan_from: None,
         };
-        Ok((read, anew))
+        Ok((read, basis_to_plan_from))
     }
 }
 
@@ -175,8 +176,8 @@ pub(crate) async fn explains_second_reading(
     before.restore_first_reading();
     let mut plan_request = before.plan_request()?;
     plan_request.moved_to = Some(moved.after.clone());
-    if let Some(anew) = &moved.learnt_anew {
-        plan_request.binnacle = anew.binnacle.clone();
+    if let Some(basis_to_plan_from) = &moved.revised_strength {
+        plan_request.binnacle = basis_to_plan_from.binnacle.clone();
     }
     let second = SecondReading::new(contradiction.given.clone(), &plan_request)?;
     let again = slots.run(move || second.read(&plan_request, &[])).await?;
@@ -200,7 +201,7 @@ pub(crate) fn as_first_reading(basis: Basis, given: ReadingForm) -> Result<Box<R
     }))
 }
 
-fn unexplained(looked_at: usize) -> String {
+fn unexplained_text(looked_at: usize) -> String {
     let steps = match looked_at {
         0 => "one of its steps",
         _ => "a step that nobody has looked at since",
@@ -212,7 +213,7 @@ fn unexplained(looked_at: usize) -> String {
 }
 
 /// Words for a reading that confirms the steps.
-fn as_planned(steps: &[CompletedStep], parts: usize) -> String {
+fn confirmation_text(steps: &[CompletedStep], parts: usize) -> String {
     let heels = |done: &CompletedStep| done.step.corrector == Corrector::Heeling;
     let mut words = "the correctors do what was planned".to_owned();
     if parts < PARTS_WITH_VERTICAL && steps.iter().any(heels) {
@@ -222,7 +223,7 @@ fn as_planned(steps: &[CompletedStep], parts: usize) -> String {
     words
 }
 
-fn suspected(steps: &[CompletedStep], number: u32, slip: Slip) -> String {
+fn slip_text(steps: &[CompletedStep], number: u32, slip: Slip) -> String {
     let step = steps.get((number as usize).saturating_sub(1));
     let words = step.map_or("", |done| done.step.words.as_str());
     let how = match slip {

@@ -15,7 +15,7 @@ use crate::work_orders::order::Order;
 use crate::work_orders::order_state::OrderState;
 use crate::work_orders::payload::recorded_second_reading::PARTS_WITH_VERTICAL;
 use crate::work_orders::state::State;
-use crate::work_orders::{order_update, shown};
+use crate::work_orders::{load_order, prepare_update};
 use axum::extract::{FromRef, State as Shared};
 use binnacle_adjustment::adjust::{ReadingForm, SecondReadingForm};
 use binnacle_platform::access::PartyWriter;
@@ -85,10 +85,10 @@ async fn read_field_again(
     key: Key,
     Valid(given): Valid<SecondReadingForm>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "second reading", &given)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "second reading", &given)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
     let mut state = stored.state();
     state.restore_first_reading();
@@ -106,7 +106,7 @@ async fn read_field_again(
     let planned = state.plan.is_some();
     let judge = move || second.judge(&plan_request, &steps, looked_at, planned);
     let (mut judged, basis) = slots.run(judge).await?;
-    judged.anew = basis
+    judged.reading_to_plan_from = basis
         .map(|basis| as_first_reading(basis, form))
         .transpose()?;
     if let Some(mut change) = update.begin(&stored).await? {
@@ -115,7 +115,7 @@ async fn read_field_again(
             .await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 fn require_steps_done(state: &OrderState) -> Result<()> {
@@ -136,14 +136,14 @@ fn require_steps_done(state: &OrderState) -> Result<()> {
 fn require_vertical_part(state: &OrderState, form: &ReadingForm) -> Result<()> {
     let contradiction = state.contradicting_reading();
     let was_whole =
-        contradiction.is_some_and(|again| again.said.parts.len() == PARTS_WITH_VERTICAL);
+        contradiction.is_some_and(|second| second.result.parts.len() == PARTS_WITH_VERTICAL);
     if form.down.is_some() || !was_whole {
         return Ok(());
     }
     Err(Error::Invalid {
         field: "down",
         detail: "the last reading did not confirm the steps, and had a vertical part: read that \
-                 again too"
+                 second too"
             .to_owned(),
     })
 }

@@ -79,7 +79,7 @@ pub(crate) fn judge(
     before_deg: f64,
     after_deg: f64,
 ) -> std::result::Result<RecordedStep, AdjustError> {
-    let said = |verdict, words: String| StepResult {
+    let result = |verdict, words: String| StepResult {
         number: step.number,
         before_deg,
         after_deg,
@@ -88,10 +88,10 @@ pub(crate) fn judge(
         verdict,
         words,
     };
-    let rechecked = check_step(&plan_request.adjustment(), &step, before_deg, after_deg)?;
-    let (said, setting, binnacle, outcome) = match rechecked {
+    let check = check_step(&plan_request.adjustment(), &step, before_deg, after_deg)?;
+    let (result, setting, binnacle, outcome) = match check {
         StepCheck::Confirmed { off_deg, proven } => (
-            said(
+            result(
                 StepVerdict::Confirmed,
                 format!("within {:.1} degrees: {}", off_deg.abs(), proven),
             ),
@@ -100,7 +100,7 @@ pub(crate) fn judge(
             None,
         ),
         StepCheck::NotSeen { .. } => (
-            said(
+            result(
                 StepVerdict::NotSeen,
                 "on this heading the compass does not show the step: look at it again".to_owned(),
             ),
@@ -113,7 +113,7 @@ pub(crate) fn judge(
             setting,
             outcome,
         } => (
-            said(
+            result(
                 StepVerdict::WrongEnd,
                 format!(
                     "the compass turned by {turned_deg:.1} degrees: the magnets are in with \
@@ -132,13 +132,13 @@ pub(crate) fn judge(
             outcome,
             ..
         } => (
-            said(StepVerdict::OtherStrength, strength_text(share, other_hole)),
+            result(StepVerdict::OtherStrength, strength_text(share, other_hole)),
             Some(setting),
             Some(*binnacle),
             Some(outcome),
         ),
         StepCheck::Unexplained { unmoved: true, .. } => (
-            said(
+            result(
                 StepVerdict::Unexplained,
                 format!(
                     "the compass stands as it stood, where {:.1} degrees were expected: was the \
@@ -151,7 +151,7 @@ pub(crate) fn judge(
             None,
         ),
         StepCheck::Unexplained { off_deg, .. } => (
-            said(
+            result(
                 StepVerdict::Unexplained,
                 format!(
                     "it is off by {off_deg:.1} degrees, which no strength of the corrector \
@@ -164,13 +164,14 @@ pub(crate) fn judge(
             None,
         ),
     };
-    let said = match &setting {
-        Some(setting) if said.is_confirmed() => in_all(plan_request, said, setting)?,
-        _ => said,
+    let result = match &setting {
+        Some(setting) if result.is_confirmed() => add_total_turn(plan_request, result, setting)?,
+        _ => result,
     };
-    let (replanned, refusals) = outcome.map_or((None, Vec::new()), |outcome| followed(*outcome));
+    let (replanned, refusals) =
+        outcome.map_or((None, Vec::new()), |outcome| split_outcome(*outcome));
     Ok(RecordedStep {
-        said,
+        result,
         step,
         setting,
         binnacle,
@@ -194,30 +195,30 @@ fn strength_text(share: f64, other_hole: Option<u16>) -> String {
 pub(crate) async fn revise_strength(
     slots: &CorrectorPlanSlots,
     state: &OrderState,
-    moved: &CorrectorMove,
+    report: &CorrectorMove,
 ) -> Result<Option<Box<RevisedStrength>>> {
-    let Some((plan_request, strength)) = disputed(state, moved)? else {
+    let Some((plan_request, strength)) = disputed(state, report)? else {
         return Ok(None);
     };
-    let (after, compass_deg) = (moved.after.clone(), moved.compass_deg);
-    let learnt = slots.run(move || {
+    let (after, compass_deg) = (report.after.clone(), report.compass_deg);
+    let revised = slots.run(move || {
         let (adjustment, step) = (plan_request.adjustment(), &strength.step);
         check_step_with_setting(&adjustment, step, strength.before_deg, &after, compass_deg)
     });
-    let (step, binnacle) = learnt.await?;
+    let (step, binnacle) = revised.await?;
     Ok(Some(Box::new(RevisedStrength { step, binnacle })))
 }
 
 /// Strength that this report disputes, with the binnacle as known before it.
 fn disputed(
     state: &OrderState,
-    moved: &CorrectorMove,
+    report: &CorrectorMove,
 ) -> Result<Option<(Box<PlanRequest>, Box<InferredStrength>)>> {
     let mut state = state.clone();
-    if state.setting() != Some(&moved.after) {
+    if state.setting() != Some(&report.after) {
         state.restore_first_reading();
     }
-    let Some(strength) = moved.disputed_strength(&state).cloned() else {
+    let Some(strength) = report.disputed_strength(&state).cloned() else {
         return Ok(None);
     };
     let mut plan_request = state.plan_request()?;
@@ -226,31 +227,31 @@ fn disputed(
 }
 
 /// Adds a warning where the total turn of all steps differs from the plan.
-fn in_all(
+fn add_total_turn(
     plan_request: &PlanRequest,
-    said: StepResult,
+    result: StepResult,
     setting: &Setting,
 ) -> std::result::Result<StepResult, AdjustError> {
     let Some(first_deg) = plan_request.given.compass_deg else {
-        return Ok(said);
+        return Ok(result);
     };
     let in_all = check_total_turn(
         &plan_request.adjustment(),
         first_deg,
         setting,
-        said.after_deg,
+        result.after_deg,
     )?;
     if in_all.agrees() {
-        return Ok(said);
+        return Ok(result);
     }
     let words = format!(
         "{}; but {}: see that each corrector stands as it should before you finish",
-        said.words, in_all
+        result.words, in_all
     );
-    Ok(StepResult { words, ..said })
+    Ok(StepResult { words, ..result })
 }
 
-fn followed(outcome: Outcome) -> (Option<Box<ChosenPlan>>, Vec<Refusal>) {
+fn split_outcome(outcome: Outcome) -> (Option<Box<ChosenPlan>>, Vec<Refusal>) {
     let refused = refusals(&outcome);
-    (ChosenPlan::of(outcome, 1).map(Box::new), refused)
+    (ChosenPlan::from_outcome(outcome, 1).map(Box::new), refused)
 }

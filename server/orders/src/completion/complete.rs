@@ -31,10 +31,10 @@ pub(crate) fn require_planned_setting(state: &OrderState) -> Result<&Setting> {
     let Some(plan) = &state.plan else {
         return wrong("there is no plan for how the correctors stand: choose one".to_owned());
     };
-    if let Some(again) = state.contradicting_reading() {
+    if let Some(second) = state.contradicting_reading() {
         return wrong(format!(
             "the second reading does not confirm it: {}",
-            again.said.words
+            second.result.words
         ));
     }
     if let Some(step) = state.next_step() {
@@ -49,9 +49,9 @@ pub(crate) fn require_planned_setting(state: &OrderState) -> Result<&Setting> {
 /// Completes an order.
 pub(crate) async fn complete(
     change: &mut Change<'_>,
-    aboard: &VesselAndCompass,
-    learnt: UpdatedPrediction,
-    word: SignOff,
+    vessel_and_compass: &VesselAndCompass,
+    prediction: UpdatedPrediction,
+    sign_off: SignOff,
     at: Time,
 ) -> Result<()> {
     let state = change.stored.state();
@@ -66,25 +66,32 @@ pub(crate) async fn complete(
         .with_setting(setting)
         .map_err(binnacle_fleet::binnacles::invalid_binnacle)?;
     let account = &change.author.name;
-    let record = record::text(aboard, &change.stored, &learnt, &word, account, &after)?;
+    let record = record::text(
+        vessel_and_compass,
+        &change.stored,
+        &prediction,
+        &sign_off,
+        account,
+        &after,
+    )?;
     let (vessel, compass) = (
         change.stored.summary.vessel_id,
         change.stored.summary.compass_id,
     );
     let completed = Completion {
         at,
-        adjuster_name: word.adjuster_name.clone(),
-        adjuster_licence: word.adjuster_licence.clone(),
-        firm: word.firm.clone(),
-        signature: word.signature.clone(),
+        adjuster_name: sign_off.adjuster_name.clone(),
+        adjuster_licence: sign_off.adjuster_licence.clone(),
+        firm: sign_off.firm.clone(),
+        signature: sign_off.signature.clone(),
         record_sha256: sha256_hex(record.as_bytes()),
         logbook_entry: EntryId::new(),
         model_id: ModelId::new(),
-        model_after: learnt.model_after,
+        model_after: prediction.model_after,
     };
-    change.stored.summary.adjuster_name = Some(word.adjuster_name);
-    change.stored.summary.adjuster_licence = Some(word.adjuster_licence);
-    change.stored.summary.firm = word.firm;
+    change.stored.summary.adjuster_name = Some(sign_off.adjuster_name);
+    change.stored.summary.adjuster_licence = Some(sign_off.adjuster_licence);
+    change.stored.summary.firm = sign_off.firm;
     change.stored.summary.completed_at = Some(at);
     let read_at = state
         .reading
@@ -122,13 +129,12 @@ pub(crate) async fn complete(
     let port = change.stored.summary.port.clone();
     write_logbook(change, completed.logbook_entry, at, &port).await?;
     let summary = change.stored.summary.clone();
-    let when = (at, change.now);
-    store::complete(&mut change.tx, &summary, when, &record).await?;
+    store::complete(&mut change.tx, &summary, at, change.now, &record).await?;
     change
         .append(OrderEvent::Completion(Box::new(completed)))
         .await?;
-    change.tell(Kind::Model).await?;
-    change.tell(Kind::Logbook).await
+    change.add_live_event(Kind::Model).await?;
+    change.add_live_event(Kind::Logbook).await
 }
 
 /// Writes the present settings as a revision of the binnacle.

@@ -1,6 +1,6 @@
 //! Handlers of photographs, completion, signatures and evidence.
 
-use crate::berth_session::photos::{Caption, MAX_BYTES, MOST};
+use crate::berth_session::photos::{Caption, MAX_BYTES, MAX_PHOTOS};
 use crate::berth_session::plan::{
     predict, require_current_reading, require_total_turn, require_within_limits,
 };
@@ -17,7 +17,7 @@ use crate::work_orders::payload::photograph::Photo;
 use crate::work_orders::payload::signed_record::{KnownKey, RecordedSignature, SubmittedSignature};
 use crate::work_orders::state::State;
 use crate::work_orders::store::StoredOrder;
-use crate::work_orders::{order_update, shown, store};
+use crate::work_orders::{load_order, prepare_update, store};
 use axum::body::{Body, Bytes};
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{DefaultBodyLimit, FromRef, State as Shared};
@@ -36,7 +36,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// States in which photographs may be added.
-const WITH_PHOTOS: [State; 8] = [
+const PHOTO_STATES: [State; 8] = [
     State::Planned,
     State::Accepted,
     State::OnBoard,
@@ -87,17 +87,19 @@ async fn add_photo(
 ) -> Result<Json<Order>> {
     let bytes = body.map_err(|_| Error::TooLarge(MAX_BYTES))?;
     let taken = Photo::new(PhotoId::new(), &bytes, &caption)?;
-    let update = order_update(&app, request, writer, id, key, "photo", &taken.sha256)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "photo", &taken.sha256)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
     stored.require_state(
-        &WITH_PHOTOS,
+        &PHOTO_STATES,
         "nothing is added before a firm has it, or any more",
     )?;
-    if photos(&stored).count() >= MOST {
-        return Err(Error::WrongState(format!("there are {MOST} photographs")));
+    if photos(&stored).count() >= MAX_PHOTOS {
+        return Err(Error::WrongState(format!(
+            "there are {MAX_PHOTOS} photographs"
+        )));
     }
     if let Some(mut change) = update.begin(&stored).await? {
         let (sha256, kind) = (taken.sha256.as_str(), taken.media_type.as_str());
@@ -113,7 +115,7 @@ async fn add_photo(
         change.append(OrderEvent::Photo(taken)).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 fn photos(stored: &StoredOrder) -> impl Iterator<Item = (i64, &Photo)> {
@@ -162,31 +164,38 @@ async fn complete_work_order(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(word): Valid<SignOff>,
+    Valid(sign_off): Valid<SignOff>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "completion", &word)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "completion", &sign_off)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
     stored.require_state(&[State::Adjusting], "there is no plan that was followed")?;
     let state = stored.state();
     let plan_request = state.plan_request()?;
     require_current_reading(&app, &stored.summary, &plan_request).await?;
     require_within_limits(&state)?;
-    let (word, at) = word.checked(&stored, app.clock.now().into())?;
+    let (sign_off, at) = sign_off.checked(&stored, app.clock.now().into())?;
     complete::require_planned_setting(&state)?;
     require_total_turn(&slots, &state, plan_request).await?;
-    let learnt = predict(&slots, &state).await?;
-    let aboard = aboard(&app, &stored).await?;
+    let prediction = predict(&slots, &state).await?;
+    let vessel = load_vessel(&app, &stored).await?;
     if let Some(mut change) = update.begin(&stored).await? {
-        Box::pin(complete::complete(&mut change, &aboard, learnt, word, at)).await?;
+        Box::pin(complete::complete(
+            &mut change,
+            &vessel,
+            prediction,
+            sign_off,
+            at,
+        ))
+        .await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
-async fn aboard(app: &App, stored: &StoredOrder) -> Result<VesselAndCompass> {
+async fn load_vessel(app: &App, stored: &StoredOrder) -> Result<VesselAndCompass> {
     let summary = &stored.summary;
     let vessel = vessels::find_row(&app.db, summary.operator_id, summary.vessel_id).await?;
     let vessel = vessel.ok_or(Error::NotFound("vessel"))?;
@@ -215,30 +224,30 @@ async fn sign_record(
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(signed): Valid<SubmittedSignature>,
+    Valid(signature): Valid<SubmittedSignature>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "signature", &signed)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "signature", &signature)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
     let completed = stored.state().completion;
     let completed = completed.ok_or_else(no_record)?;
-    signed.checked(&completed.record_sha256)?;
+    signature.checked(&completed.record_sha256)?;
     if let Some(mut change) = update.begin(&stored).await? {
         let holder = change.stored.summary.firm_id;
-        let key = keys::find_active(&mut change.tx, holder, &signed.public_key).await?;
+        let key = keys::find_active(&mut change.tx, holder, &signature.public_key).await?;
         let key = key.map(|key| KnownKey {
             id: key.id,
             name: key.name,
             firm_id: key.firm_id,
             firm_name: key.firm_name,
         });
-        let signed = RecordedSignature { signed, key };
-        change.append(OrderEvent::Signature(signed)).await?;
+        let recorded = RecordedSignature { signature, key };
+        change.append(OrderEvent::Signature(recorded)).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 fn no_record() -> Error {

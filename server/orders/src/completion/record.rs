@@ -27,10 +27,10 @@ pub(crate) struct VesselAndCompass {
 
 /// Makes the record of an order that is being completed.
 pub(crate) fn text(
-    aboard: &VesselAndCompass,
+    vessel: &VesselAndCompass,
     stored: &StoredOrder,
-    learnt: &UpdatedPrediction,
-    word: &SignOff,
+    prediction: &UpdatedPrediction,
+    sign_off: &SignOff,
     account: &str,
     after: &Binnacle,
 ) -> Result<String> {
@@ -39,7 +39,7 @@ pub(crate) fn text(
     let basis = read.and_then(|read| read.basis.as_ref());
     let plan = state.plan.as_ref();
     let before = state.before_adjustment.as_ref();
-    let again: Vec<_> = stored.log.iter().filter_map(second_reading).collect();
+    let second_readings: Vec<_> = stored.log.iter().filter_map(second_reading).collect();
     let hidden = state.unconfirmed_steps();
     let found: Vec<_> = stored.log.iter().filter_map(settings).collect();
     let steps: Vec<_> = stored.log.iter().filter_map(step).collect();
@@ -50,19 +50,19 @@ pub(crate) fn text(
         "standing": NOT_A_CERTIFICATE,
         "order": summary.id,
         "vessel": {
-            "id": summary.vessel_id, "name": aboard.vessel_name, "imo_number": aboard.imo_number,
-            "call_sign": aboard.call_sign, "flag": aboard.flag,
+            "id": summary.vessel_id, "name": vessel.vessel_name, "imo_number": vessel.imo_number,
+            "call_sign": vessel.call_sign, "flag": vessel.flag,
         },
         "compass": {
-            "id": aboard.compass.id, "name": aboard.compass.name, "role": aboard.compass.role,
-            "make": aboard.compass.make, "serial_number": aboard.compass.serial_number,
+            "id": vessel.compass.id, "name": vessel.compass.name, "role": vessel.compass.role,
+            "make": vessel.compass.make, "serial_number": vessel.compass.serial_number,
         },
         "port": summary.port,
         "berth": summary.berth,
-        "adjusted_at": word.at,
+        "adjusted_at": sign_off.at,
         "adjuster": {
-            "name": word.adjuster_name, "licence": word.adjuster_licence, "firm": word.firm,
-            "signature": word.signature, "account": account,
+            "name": sign_off.adjuster_name, "licence": sign_off.adjuster_licence, "firm": sign_off.firm,
+            "signature": sign_off.signature, "account": account,
         },
         "data": basis.map(|basis| json!({
             "sha256": basis.model.input_hash, "estimator": basis.model.estimator,
@@ -95,11 +95,11 @@ pub(crate) fn text(
         })),
         "steps_as_read": steps,
         "settings_as_said": found,
-        "second_readings": again,
+        "second_readings": second_readings,
         "not_shown": (!hidden.is_empty()).then(|| json!({ "steps": hidden, "words": NOT_SHOWN })),
         "predicted_before": before.map(|before| &before.deviations),
-        "predicted_after": learnt.after,
-        "model_after": learnt.model_after,
+        "predicted_after": prediction.after,
+        "model_after": prediction.model_after,
         "photos": photos,
         "log": { "entries": summary.last_seq, "last_sha256": summary.last_sha256 },
     }))
@@ -114,7 +114,7 @@ fn second_reading(entry: &Entry) -> Option<serde_json::Value> {
     let OrderEvent::SecondReading(read) = &entry.content else {
         return None;
     };
-    Some(json!({ "at": at(entry.at), "given": read.given, "said": read.said }))
+    Some(json!({ "at": at(entry.at), "given": read.given, "said": read.result }))
 }
 
 fn step(entry: &Entry) -> Option<serde_json::Value> {
@@ -122,7 +122,7 @@ fn step(entry: &Entry) -> Option<serde_json::Value> {
         return None;
     };
     Some(json!({
-        "at": at(entry.at), "said": done.said, "words": done.step.words,
+        "at": at(entry.at), "said": done.result, "words": done.step.words,
         "moved": done.setting.is_some(),
     }))
 }

@@ -39,9 +39,9 @@ impl SignOff {
     pub(crate) fn checked(self, stored: &StoredOrder, now: Time) -> Result<(SignOff, Time)> {
         let state = stored.state();
         let at = self.at.unwrap_or(now);
-        let again = state.second_reading.as_ref().map(|again| again.given.at);
+        let second = state.second_reading.as_ref().map(|second| second.given.at);
         let read = state.reading.as_ref().map(|read| read.given.at);
-        let read_at = again.or(read).map(Time);
+        let read_at = second.or(read).map(Time);
         if at > now || read_at.is_some_and(|read_at| at < read_at) {
             return Err(Error::Invalid {
                 field: "at",
@@ -49,19 +49,19 @@ impl SignOff {
             });
         }
         require_after_last_step(stored, at)?;
-        let word = SignOff {
+        let sign_off = SignOff {
             at: Some(at),
             adjuster_name: text("adjuster_name", &self.adjuster_name)?,
             adjuster_licence: text("adjuster_licence", &self.adjuster_licence)?,
             firm: optional_text("firm", self.firm.as_deref())?,
             signature: text("signature", &self.signature)?,
         };
-        if word.signature.to_lowercase() != word.adjuster_name.to_lowercase() {
+        if sign_off.signature.to_lowercase() != sign_off.adjuster_name.to_lowercase() {
             return Err(Error::Invalid {
                 field: "signature",
                 detail: "is not the adjuster's name".to_owned(),
             });
         }
-        Ok((word, at))
+        Ok((sign_off, at))
     }
 }

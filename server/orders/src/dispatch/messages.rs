@@ -6,7 +6,7 @@ use crate::dispatch::offer_requests::{message, require_own_firm};
 use crate::work_orders::events::{MessageSent, OrderEvent};
 use crate::work_orders::offers::{Offer, OfferState, Offers};
 use crate::work_orders::payload::exchange::Exchange;
-use crate::work_orders::{order_update, store};
+use crate::work_orders::{prepare_update, store};
 use axum::extract::{FromRef, State as Shared};
 use axum::http::StatusCode;
 use binnacle_platform::access::{PartyReader, PartyWriter};
@@ -94,7 +94,7 @@ async fn list_messages(
     let sent = stored.log.into_iter().filter_map(|entry| {
         let said = match entry.content {
             OrderEvent::Message(message) => message.0,
-            OrderEvent::CallMoved(moved) => moved.said,
+            OrderEvent::CallMoved(moved) => moved.exchange,
             _ => return None,
         };
         (entry.seq > after && mine(said.firm.firm_id)).then(|| Message {
@@ -131,7 +131,7 @@ async fn send_message(
     key: Key,
     Valid(new): Valid<NewMessage>,
 ) -> Result<StatusCode> {
-    let update = order_update(&app, request, writer, id, key, "message", &new)?;
+    let update = prepare_update(&app, request, writer, id, key, "message", &new)?;
     require_own_firm(writer.tenant, new.firm_id)?;
     let text = message(&new.text)?;
     let summary = store::summary(&app.db, writer.tenant, id).await?;

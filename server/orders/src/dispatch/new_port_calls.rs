@@ -5,7 +5,7 @@
 
 use crate::dispatch::port_call_changes::CallUpdate;
 use crate::dispatch::{call_links, port_call_changes};
-use crate::firms::port_meant;
+use crate::firms::named_port;
 use crate::work_orders::payload::port_call::{Alongside, CallChange, CallFit};
 use crate::work_orders::store;
 use binnacle_platform::db::Tx;
@@ -26,15 +26,15 @@ pub async fn attach_new_calls(
     by: &str,
     now: Time,
 ) -> Result<Vec<Event>> {
-    let mut told = Vec::new();
+    let mut events = Vec::new();
     if new.is_empty() {
-        return Ok(told);
+        return Ok(events);
     }
     for order in port_call_changes::under_way(tx, vessel).await? {
         if !order.is_adrift {
             continue;
         }
-        let Some((port, gone)) = waits(tx, vessel, order.id).await? else {
+        let Some((port, gone)) = port_and_lost_call(tx, vessel, order.id).await? else {
             continue;
         };
         let lies_in = |call: &Alongside| {
@@ -52,21 +52,23 @@ pub async fn attach_new_calls(
                 was: gone.is.unwrap_or(gone.was),
                 is: Some(is.clone()),
             };
-            told.extend(port_call_changes::tell(tx, vessel, order.id, &moving, by, now).await?);
+            events.extend(
+                port_call_changes::announce_update(tx, vessel, order.id, &moving, by, now).await?,
+            );
         }
     }
-    Ok(told)
+    Ok(events)
 }
 
 /// Port of an order, if its words name one, and the change of its earlier call.
-async fn waits(
+async fn port_and_lost_call(
     tx: &mut Tx,
     vessel: VesselId,
     order: OrderId,
 ) -> Result<Option<(String, Option<CallChange>)>> {
     let stored = store::lock(tx, vessel, order).await?;
     let state = stored.state();
-    let meant = || port_meant(&stored.summary.port).map(|port| port.code.to_string());
+    let meant = || named_port(&stored.summary.port).map(|port| port.code.to_string());
     let port = state.port.or_else(meant);
     Ok(port.map(|port| (port, state.call_change)))
 }

@@ -8,7 +8,7 @@ use crate::work_orders::events::{Boarding, OrderEvent};
 use crate::work_orders::new_order::NewOffer;
 use crate::work_orders::order::Order;
 use crate::work_orders::state::State;
-use crate::work_orders::{order_update, shown, store};
+use crate::work_orders::{load_order, prepare_update, store};
 use axum::extract::{FromRef, State as Shared};
 use axum::http::StatusCode;
 use binnacle_platform::access::{PartyWriter, Writer};
@@ -54,10 +54,10 @@ async fn offer_work_order(
     Valid(new): Valid<NewOffer>,
 ) -> Result<Json<Order>> {
     let operator = writer.operator;
-    let update = order_update(&app, request, writer, id, key, "offer", &new)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "offer", &new)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, operator, id).await;
+        return load_order(&app, operator, id).await;
     }
     let allowed = [State::Planned, State::Declined];
     stored.require_state(
@@ -69,7 +69,7 @@ async fn offer_work_order(
         offer_requests::offer(&mut change, offered).await?;
         change.commit().await?;
     }
-    shown(&app, operator, id).await
+    load_order(&app, operator, id).await
 }
 
 /// Vessel of an order to answer. A firm whose offer has ended finds it too, to be told the reason
@@ -99,7 +99,7 @@ async fn accept_work_order(
     key: Key,
     ValidOrNone(answer): ValidOrNone<OfferAnswer>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "yes", &answer)?;
+    let update = prepare_update(&app, request, writer, id, key, "yes", &answer)?;
     let answer = answer.checked(writer.tenant)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     if let Some(mut change) = update.begin_on(vessel).await? {
@@ -111,7 +111,7 @@ async fn accept_work_order(
         }
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 /// Decline an offer, or a proposal
@@ -132,7 +132,7 @@ async fn decline_work_order(
     key: Key,
     ValidOrNone(answer): ValidOrNone<OfferAnswer>,
 ) -> Result<StatusCode> {
-    let update = order_update(&app, request, writer, id, key, "no", &answer)?;
+    let update = prepare_update(&app, request, writer, id, key, "no", &answer)?;
     let answer = answer.checked(writer.tenant)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     if let Some(mut change) = update.begin_on(vessel).await? {
@@ -171,7 +171,7 @@ async fn propose_terms(
             "terms are proposed by a firm that is asked",
         ));
     };
-    let update = order_update(&app, request, writer, id, key, "proposal", &proposal)?;
+    let update = prepare_update(&app, request, writer, id, key, "proposal", &proposal)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     let now = app.clock.now().into();
     if let Some(mut change) = update.begin_on(vessel).await? {
@@ -179,7 +179,7 @@ async fn propose_terms(
         answer_as_firm(&mut change, firm, FirmAnswer::Propose(proposal)).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 /// Report the adjuster on board
@@ -199,10 +199,10 @@ async fn go_on_board(
     key: Key,
     ValidOrNone(boarded): ValidOrNone<Boarding>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "on board", &boarded)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "on board", &boarded)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.tenant, id).await;
+        return load_order(&app, writer.tenant, id).await;
     }
     let allowed = [State::Planned, State::Accepted];
     stored.require_state(&allowed, "the adjuster goes on board once a firm has it")?;
@@ -211,5 +211,5 @@ async fn go_on_board(
         change.append(OrderEvent::OnBoard(boarded)).await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }

@@ -156,7 +156,7 @@ impl OfferAnswer {
     }
 
     /// Exchange with a firm that contains the answer.
-    pub(crate) fn between(self, firm: NamedFirm) -> Exchange {
+    pub(crate) fn into_exchange(self, firm: NamedFirm) -> Exchange {
         Exchange {
             adjuster_name: self.adjuster_name,
             adjuster_licence: self.adjuster_licence,
@@ -286,7 +286,7 @@ pub(crate) async fn require_capacity(
     change: &mut Change<'_>,
     firm: &NamedFirm,
     at: Time,
-    told: Requester,
+    requester: Requester,
 ) -> Result<()> {
     let summary = &change.stored.summary;
     let visit = Visit {
@@ -295,8 +295,14 @@ pub(crate) async fn require_capacity(
         port: &summary.port,
         at,
     };
-    let name = (firm.firm_id, firm.firm_name.as_str());
-    firms::require_capacity(&mut change.tx, name, &visit, told).await
+    firms::require_capacity(
+        &mut change.tx,
+        firm.firm_id,
+        &firm.firm_name,
+        &visit,
+        requester,
+    )
+    .await
 }
 
 /// Answer of a firm to an offer.
@@ -316,7 +322,7 @@ pub(crate) async fn answer_as_firm(
     says: FirmAnswer,
 ) -> Result<()> {
     let offers = change.stored.state().offers;
-    let offer = offers.of(firm).ok_or(Error::NotFound("work order"))?;
+    let offer = offers.to_firm(firm).ok_or(Error::NotFound("work order"))?;
     let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
     let gives_back = matches!(says, FirmAnswer::Decline(_))
         && offer.state == OfferState::Accepted
@@ -341,13 +347,13 @@ pub(crate) async fn answer_as_firm(
             require_capacity(change, &asked, at, Requester::Firm).await?;
             let taken = Exchange {
                 fee_eur: offer.fee_eur,
-                ..answer.between(asked)
+                ..answer.into_exchange(asked)
             };
             change.append(OrderEvent::Accepted(Accepted(taken))).await
         }
         FirmAnswer::Decline(answer) => {
             change
-                .append(OrderEvent::Declined(Declined(answer.between(asked))))
+                .append(OrderEvent::Declined(Declined(answer.into_exchange(asked))))
                 .await?;
             send_next_offers(change).await
         }

@@ -54,7 +54,7 @@ pub async fn announce_call_updates(
     if moving.is_empty() {
         return Ok(Vec::new());
     }
-    let mut told = Vec::new();
+    let mut events = Vec::new();
     for order in under_way(tx, vessel).await? {
         let at = |one: &&CallUpdate| {
             let is_then = one.was.eta <= order.planned_at && order.planned_at <= one.was.etd;
@@ -62,10 +62,10 @@ pub async fn announce_call_updates(
         };
         if let Some(one) = moving.iter().find(at) {
             call_links::link(tx, vessel, order.id, one.then_id).await?;
-            told.extend(tell(tx, vessel, order.id, one, by, now).await?);
+            events.extend(announce_update(tx, vessel, order.id, one, by, now).await?);
         }
     }
-    Ok(told)
+    Ok(events)
 }
 
 /// Lists the orders of a vessel that may be planned at a call, and locks them until the
@@ -95,7 +95,7 @@ pub(crate) async fn under_way(tx: &mut Tx, vessel: VesselId) -> Result<Vec<Affec
     )?)
 }
 
-pub(crate) async fn tell(
+pub(crate) async fn announce_update(
     tx: &mut Tx,
     vessel: VesselId,
     order: OrderId,
@@ -105,7 +105,7 @@ pub(crate) async fn tell(
 ) -> Result<Vec<Event>> {
     let mut stored = store::lock(tx, vessel, order).await?;
     let state = stored.state();
-    let before = OrderBefore::of(&stored);
+    let before = OrderBefore::from_order(&stored);
     // The order is for the port that its call was at when it was written.
     let port = state.port.as_ref().unwrap_or(&moving.was.port);
     let planned_at = stored.summary.planned_at;

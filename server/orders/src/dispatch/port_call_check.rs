@@ -3,7 +3,7 @@
 //! What always holds: an order that names a port is planned for a day on which the vessel is
 //! known to be there, unless neither a coming call there nor another port at that time is known.
 
-use crate::firms::port_meant;
+use crate::firms::named_port;
 use crate::work_orders::order_update::Change;
 use crate::work_orders::payload::port_call::{Alongside, CallFit};
 use binnacle_platform::db::{Tx, rows};
@@ -59,13 +59,13 @@ pub(crate) async fn require_vessel_in_port(
     field: &'static str,
 ) -> Result<()> {
     let (vessel, port) = (change.stored.summary.vessel_id, &change.stored.summary.port);
-    let Some(meant) = port_meant(port) else {
+    let Some(meant) = named_port(port) else {
         return Ok(());
     };
     let there = ports_of(&mut change.tx, vessel, at).await?;
     let there: Vec<&Port> = there
         .iter()
-        .filter_map(|(code,)| port_meant(code))
+        .filter_map(|(code,)| named_port(code))
         .collect();
     let Some(other) = there.first() else {
         return require_port_call(change, meant, at, field).await;

@@ -10,7 +10,7 @@ use crate::dispatch::offer_requests::{
 };
 use crate::dispatch::offer_sequence::answer_by;
 use crate::dispatch::{call_links, port_call_check};
-use crate::firms::{Requester, port_meant};
+use crate::firms::{Requester, named_port};
 use crate::work_orders::events::{OrderEvent, RetimeAccepted, RetimeDeclined, RetimeProposed};
 use crate::work_orders::new_order::default_answer_hours;
 use crate::work_orders::offers::Offer;
@@ -19,7 +19,7 @@ use crate::work_orders::order_update::Change;
 use crate::work_orders::payload::exchange::{Exchange, NamedFirm, Terms};
 use crate::work_orders::payload::port_call::CallFit;
 use crate::work_orders::state::State;
-use crate::work_orders::{order_update, shown, store};
+use crate::work_orders::{load_order, prepare_update, store};
 use axum::extract::{FromRef, State as Shared};
 use binnacle_platform::access::{PartyWriter, Writer};
 use binnacle_platform::app::App;
@@ -84,10 +84,10 @@ async fn propose_retime(
     key: Key,
     Valid(retime): Valid<RetimeRequest>,
 ) -> Result<Json<Order>> {
-    let update = order_update(&app, request, writer, id, key, "retime", &retime)?;
-    let (stored, done) = update.look().await?;
+    let update = prepare_update(&app, request, writer, id, key, "retime", &retime)?;
+    let (stored, done) = update.load().await?;
     if done.is_some() {
-        return shown(&app, writer.operator, id).await;
+        return load_order(&app, writer.operator, id).await;
     }
     let hours = retime.answer_within_hours;
     if !(1..=MAX_ANSWER_HOURS).contains(&hours) {
@@ -113,7 +113,7 @@ async fn propose_retime(
             .await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    load_order(&app, writer.operator, id).await
 }
 
 /// Accept another time
@@ -134,7 +134,7 @@ async fn accept_retime(
     key: Key,
     ValidOrNone(answer): ValidOrNone<OfferAnswer>,
 ) -> Result<Json<Order>> {
-    let update = order_update(
+    let update = prepare_update(
         &app,
         request,
         writer,
@@ -155,7 +155,7 @@ async fn accept_retime(
         if offer.firm_id != firm {
             return Err(Error::NotFound("work order"));
         }
-        let terms = asked_terms(&change, &offer)?;
+        let terms = proposed_terms(&change, &offer)?;
         // What was agreed on besides the time stands.
         let agreed = offer.terms.clone();
         let terms = Terms {
@@ -175,7 +175,7 @@ async fn accept_retime(
             .await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 /// Decline another time
@@ -195,7 +195,7 @@ async fn decline_retime(
     key: Key,
     ValidOrNone(answer): ValidOrNone<OfferAnswer>,
 ) -> Result<Json<Order>> {
-    let update = order_update(
+    let update = prepare_update(
         &app,
         request,
         writer,
@@ -221,7 +221,7 @@ async fn decline_retime(
                 detail: "is not the firm that has the order".to_owned(),
             });
         }
-        asked_terms(&change, &offer)?;
+        proposed_terms(&change, &offer)?;
         let between = Exchange {
             text: answer.text,
             ..Exchange::with(offer.firm())
@@ -231,7 +231,7 @@ async fn decline_retime(
             .await?;
         change.commit().await?;
     }
-    shown(&app, writer.tenant, id).await
+    load_order(&app, writer.tenant, id).await
 }
 
 /// Firm that has an order, before the work begins.
@@ -245,7 +245,7 @@ fn holder(change: &Change<'_>) -> Result<Offer> {
 }
 
 /// Terms that the firm has been proposed.
-fn asked_terms(change: &Change<'_>, offer: &Offer) -> Result<Terms> {
+fn proposed_terms(change: &Change<'_>, offer: &Offer) -> Result<Terms> {
     let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
     let Some(terms) = offer.new_terms.clone() else {
         return wrong("no other time is asked for");
@@ -270,7 +270,7 @@ async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
         return Ok(Some(port));
     }
     let call = call_links::call_at(&mut change.tx, vessel, planned_at).await?;
-    let meant = port_meant(&change.stored.summary.port).map(|port| port.code.to_string());
+    let meant = named_port(&change.stored.summary.port).map(|port| port.code.to_string());
     let is_hers = |port: &String| meant.as_ref().is_none_or(|meant| meant == port);
     Ok(call.map(|call| call.port).filter(is_hers))
 }
@@ -283,12 +283,12 @@ async fn require_possible_time(
     change: &mut Change<'_>,
     firm: &NamedFirm,
     terms: &Terms,
-    told: Requester,
+    requester: Requester,
 ) -> Result<()> {
     // Without any call nobody knows where she will be: the firm judges for itself.
     let Some(port) = order_port(change).await? else {
         port_call_check::require_vessel_in_port(change, terms.planned_at, "planned_at").await?;
-        return require_capacity(change, firm, terms.planned_at, told).await;
+        return require_capacity(change, firm, terms.planned_at, requester).await;
     };
     let (at, vessel) = (terms.planned_at, change.stored.summary.vessel_id);
     let call = call_links::call_at(&mut change.tx, vessel, at).await?;
@@ -302,5 +302,5 @@ async fn require_possible_time(
             at.to_the_minute()
         )));
     }
-    require_capacity(change, firm, at, told).await
+    require_capacity(change, firm, at, requester).await
 }

@@ -6,7 +6,7 @@
 //! but the archive itself.
 
 mod archive;
-mod covered;
+mod coverage;
 mod findings;
 mod sheets;
 mod verify;

@@ -1,7 +1,7 @@
 //! Check of an archive by its own content.
 
 use super::archive::{File, LogHead, Manifest, write};
-use super::covered::{self, covered};
+use super::coverage::{self, report_coverage};
 use super::findings::Findings;
 use crate::work_orders::log::canonical_json::sha256_hex;
 use crate::work_orders::payload::photograph::Photo;
@@ -16,7 +16,7 @@ use zip::ZipArchive;
 const MAX_ARCHIVE_BYTES: u64 = 1 << 30;
 
 /// Files of every archive; the log names the photographs.
-const OF_THE_FORM: [&str; 6] = [
+const FIXED_FILES: [&str; 6] = [
     "README.txt",
     "entries.ndjson",
     "manifest.json",
@@ -38,7 +38,7 @@ pub fn verify(bytes: &[u8]) -> Findings {
             return found;
         }
     };
-    nothing_else(bytes, &files, &mut found);
+    check_no_extra_content(bytes, &files, &mut found);
     let manifest: Option<Manifest> = match files
         .get("manifest.json")
         .map(|b| serde_json::from_slice(b))
@@ -54,9 +54,9 @@ pub fn verify(bytes: &[u8]) -> Findings {
         Some(Ok(manifest)) => Some(manifest),
     };
     if let Some(manifest) = &manifest {
-        hashes(manifest, &files, &mut found);
+        check_hashes(manifest, &files, &mut found);
     }
-    log(manifest.as_ref(), &files, &mut found);
+    check_log(manifest.as_ref(), &files, &mut found);
     found
 }
 
@@ -91,7 +91,7 @@ fn unpack(bytes: &[u8], found: &mut Findings) -> Result<BTreeMap<String, Vec<u8>
 
 /// Reports content beside the archive's files: before, between or behind them, or in duplicate
 /// headers. These files alone make these bytes alone.
-fn nothing_else(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
+fn check_no_extra_content(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     if !found.problems.is_empty() {
         return;
     }
@@ -111,7 +111,7 @@ fn nothing_else(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found: &mut Fin
     }
 }
 
-fn hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
+fn check_hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     for (name, sha256) in &manifest.files {
         match files.get(name) {
             None => found.wrong(format!("{name} is missing")),
@@ -128,7 +128,7 @@ fn hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &mut Fi
     }
 }
 
-fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
+fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     let Some(text) = files.get("entries.ndjson") else {
         found.wrong("entries.ndjson is missing");
         return;
@@ -140,10 +140,10 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
     let mut previous: Option<String> = None;
     let mut signed = 0;
     let mut withheld: Vec<String> = Vec::new();
-    let mut known: Vec<String> = OF_THE_FORM.map(str::to_owned).to_vec();
+    let mut known: Vec<String> = FIXED_FILES.map(str::to_owned).to_vec();
     let mut completed: Option<Completion> = None;
     let mut entries: i64 = 0;
-    let recorded = covered::head(files);
+    let recorded = coverage::log_head(files);
     for line in text.lines() {
         entries += 1;
         let at = format!("entries.ndjson, line {entries}");
@@ -166,11 +166,11 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
         match entry["kind"].as_str() {
             Some("completion") => {
                 completed = content(&entry, &at, found);
-                record(completed.as_ref(), files, found);
+                check_record(completed.as_ref(), files, found);
             }
-            Some("photo") => known.extend(photo(&entry, entries, &at, files, found)),
+            Some("photo") => known.extend(check_photo(&entry, entries, &at, files, found)),
             Some("signature") => {
-                signed += signature(&entry, completed.as_ref(), &at, found);
+                signed += check_signature(&entry, completed.as_ref(), &at, found);
             }
             Some("verification") => {
                 let words = entry["content"]["words"].as_str().unwrap_or_default();
@@ -219,7 +219,7 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
     // Of a record that is not the one that was signed nothing follows.
     let text = files.get("record.json").map(|text| sha256_hex(text));
     if completed.is_some_and(|completed| Some(completed.record_sha256) == text) {
-        covered(files, entries, signed, found);
+        report_coverage(files, entries, signed, found);
     }
     if signed == 0 {
         found
@@ -234,7 +234,11 @@ fn content<T: DeserializeOwned>(entry: &Value, at: &str, found: &mut Findings) -
         .ok()
 }
 
-fn record(completed: Option<&Completion>, files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
+fn check_record(
+    completed: Option<&Completion>,
+    files: &BTreeMap<String, Vec<u8>>,
+    found: &mut Findings,
+) {
     let Some(completed) = completed else {
         return;
     };
@@ -260,7 +264,7 @@ fn record(completed: Option<&Completion>, files: &BTreeMap<String, Vec<u8>>, fou
 }
 
 /// Checks a photograph; returns its file name.
-fn photo(
+fn check_photo(
     entry: &Value,
     number: i64,
     at: &str,
@@ -280,7 +284,7 @@ fn photo(
 }
 
 /// Returns the number of valid signatures in an entry: one or none.
-fn signature(
+fn check_signature(
     entry: &Value,
     completed: Option<&Completion>,
     at: &str,
@@ -293,11 +297,11 @@ fn signature(
         found.wrong(format!("{at}: a signature before the completion"));
         return 0;
     };
-    if let Err(error) = by.signed.checked(&completed.record_sha256) {
+    if let Err(error) = by.signature.checked(&completed.record_sha256) {
         found.wrong(format!("{at}: {error}"));
         return 0;
     }
-    let public_key = &by.signed.public_key;
+    let public_key = &by.signature.public_key;
     found.facts.push(match &by.key {
         Some(key) => format!(
             "signed by the key {public_key}; {UNSIGNED} {} had registered it as {:?}. Whose it is, \

@@ -60,7 +60,7 @@ pub enum Requester {
 }
 
 /// Port that an order names: by its code, alone or behind its name, or by its name.
-pub fn port_meant(words: &str) -> Option<&'static Port> {
+pub fn named_port(words: &str) -> Option<&'static Port> {
     let code = words
         .rsplit_once('(')
         .and_then(|(_, code)| code.strip_suffix(')'));
@@ -80,12 +80,12 @@ pub fn port_meant(words: &str) -> Option<&'static Port> {
 
 /// Key of a port, however its name is written.
 fn place(words: &str) -> String {
-    port_meant(words).map_or_else(|| words.trim().to_lowercase(), |port| port.code.to_string())
+    named_port(words).map_or_else(|| words.trim().to_lowercase(), |port| port.code.to_string())
 }
 
 /// Day of an instant in a port's time.
 fn day(words: &str, at: Time) -> NaiveDate {
-    Instant(at.0).date(port_meant(words).map_or_else(Zone::utc, |port| port.zone))
+    Instant(at.0).date(named_port(words).map_or_else(Zone::utc, |port| port.zone))
 }
 
 impl Booking {
@@ -166,7 +166,7 @@ async fn require_suitable_firm(
              change the terms"
         )))
     };
-    if let Some(why) = terms.closed_at(visit.at, port_meant(visit.port)) {
+    if let Some(why) = terms.closed_at(visit.at, named_port(visit.port)) {
         return wrong(why, "time");
     }
     let (flag, licence) = particulars::asked_of_adjusters(tx, visit.vessel).await?;
@@ -182,9 +182,10 @@ async fn require_suitable_firm(
 /// [`Error::WrongState`], in words for the requester.
 pub async fn require_capacity(
     tx: &mut Tx,
-    (firm, firm_name): (FirmId, &str),
+    firm: FirmId,
+    firm_name: &str,
     visit: &Visit<'_>,
-    told: Requester,
+    requester: Requester,
 ) -> Result<()> {
     // Whoever books the firm meanwhile waits.
     execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
@@ -214,7 +215,7 @@ pub async fn require_capacity(
         .find(|(operator, _)| *operator == visit.operator);
     // When and for whom it works is the operator's word of the firm, which may know better
     // itself.
-    if told == Requester::Operator
+    if requester == Requester::Operator
         && let Some((_, terms)) = mine
     {
         require_suitable_firm(tx, firm_name, terms, visit).await?;
@@ -223,7 +224,7 @@ pub async fn require_capacity(
     let there = (place(visit.port), visit.vessel);
     let others: Vec<&Booking> = around.iter().filter(|one| one.day() == that_day).collect();
     let counts = |one: &Booking| {
-        one.is_taken || told == Requester::Operator && one.operator_id == visit.operator
+        one.is_taken || requester == Requester::Operator && one.operator_id == visit.operator
     };
     // Each operator knows how many teams work for it: the most that anybody knows of are all.
     let most = |figure: fn(&Terms) -> u32| said.iter().map(|(_, terms)| figure(terms)).max();
@@ -244,7 +245,7 @@ pub async fn require_capacity(
     if !is_full {
         return Ok(());
     }
-    Err(Error::WrongState(match told {
+    Err(Error::WrongState(match requester {
         Requester::Operator => {
             let mine = others
                 .iter()

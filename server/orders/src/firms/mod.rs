@@ -11,7 +11,7 @@ mod store;
 mod terms;
 
 pub use capacity::{
-    Booking, Requester, Visit, bookings, port_meant, require_capacity, teams_taken,
+    Booking, Requester, Visit, bookings, named_port, require_capacity, teams_taken,
 };
 pub use store::{create, engage, exists, name_for};
 pub use terms::{Terms, TermsChanged, of_operator, terms_for};

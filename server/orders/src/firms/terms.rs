@@ -27,7 +27,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// Longest list in terms.
-const MOST: usize = 1000;
+const MAX_LIST_LEN: usize = 1000;
 
 /// Change of a firm's terms for an operator.
 pub struct TermsChanged {
@@ -272,17 +272,20 @@ impl Terms {
             ("licences", self.licences.len()),
             ("flags", self.flags.len()),
         ];
-        if let Some((field, length)) = lengths.into_iter().find(|(_, length)| *length > MOST) {
+        if let Some((field, length)) = lengths
+            .into_iter()
+            .find(|(_, length)| *length > MAX_LIST_LEN)
+        {
             return Err(Error::Invalid {
                 field,
-                detail: format!("{length} are more than {MOST}"),
+                detail: format!("{length} are more than {MAX_LIST_LEN}"),
             });
         }
         for licence in &mut self.licences {
             *licence = text("licences", licence)?;
         }
         match input::check_firm(&self.firm("", None)) {
-            // That it is of no use is told, not refused.
+            // Unusable terms are reported, not refused.
             Ok(()) | Err(input::FirmError { idle: true, .. }) => Ok(self),
             Err(error) => Err(Error::Invalid {
                 field: error.field,

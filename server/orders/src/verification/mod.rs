@@ -25,7 +25,7 @@ use uuid::Uuid;
 /// Standard deviation of one heading at sea, degrees: reference, card and sea together.
 const HEADING_SD_DEG: f64 = 0.7;
 
-fn agree(headings: usize) -> String {
+fn agreement_text(headings: usize) -> String {
     if headings == 1 {
         "1 heading agrees".to_owned()
     } else {
@@ -43,11 +43,11 @@ impl SeaVerification {
             } => format!(
                 "{} with what was foretold, to {rms_deg:.1} degrees; the band is now \
                  {band95_deg:.1} degrees",
-                agree(*headings)
+                agreement_text(*headings)
             ),
             Verification::MoreNeeded { headings, needed } => format!(
                 "{} so far; {} more {} needed",
-                agree(*headings),
+                agreement_text(*headings),
                 needed.count,
                 if needed.count == 1 { "is" } else { "are" }
             ),
@@ -96,7 +96,7 @@ pub async fn after_analysis(
     };
     let mut stored = store::lock(tx, vessel, order).await?;
     let state = stored.state();
-    let before = OrderBefore::of(&stored);
+    let before = OrderBefore::from_order(&stored);
     let Some(completed) = state.completion else {
         return Ok(Vec::new());
     };
@@ -105,7 +105,10 @@ pub async fn after_analysis(
             && matches!(found.reason, None | Some(SampleReason::NoModel))
     };
     let counted: Vec<&SampleDiagnostic> = samples.iter().filter(counts).collect();
-    let settled: Vec<SettledHeading> = counted.iter().filter_map(|found| settled(found)).collect();
+    let settled: Vec<SettledHeading> = counted
+        .iter()
+        .filter_map(|found| settled_heading(found))
+        .collect();
     let (Some(last), Some(here)) = (counted.last(), settled.last().map(|last| last.earth)) else {
         return Ok(Vec::new());
     };
@@ -130,7 +133,7 @@ pub async fn after_analysis(
     publish::publish_changes(tx, &stored, &before, now).await
 }
 
-fn settled(found: &SampleDiagnostic) -> Option<SettledHeading> {
+fn settled_heading(found: &SampleDiagnostic) -> Option<SettledHeading> {
     Some(SettledHeading {
         compass: found.sample.compass,
         deviation_deg: found.deviation_deg?,

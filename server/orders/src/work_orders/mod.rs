@@ -48,7 +48,7 @@ use order_update::OrderUpdate;
 use serde::Serialize;
 
 /// Prepares a change of an order; `what` distinguishes it from other requests.
-pub(crate) fn order_update<'a>(
+pub(crate) fn prepare_update<'a>(
     app: &'a App,
     request: RequestContext,
     writer: impl Into<PartyWriter>,
@@ -68,7 +68,7 @@ pub(crate) fn order_update<'a>(
 }
 
 /// Returns the order as it is.
-pub(crate) async fn shown(
+pub(crate) async fn load_order(
     app: &App,
     tenant: impl Into<Tenant>,
     id: OrderId,

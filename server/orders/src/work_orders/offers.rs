@@ -68,14 +68,14 @@ pub(crate) struct Offers {
 }
 
 impl Offers {
-    fn to(&mut self, firm: FirmId) -> Option<&mut Offer> {
+    fn to_firm_mut(&mut self, firm: FirmId) -> Option<&mut Offer> {
         let mut offers = self.all.iter_mut();
         offers.find(|offer| offer.firm_id == firm)
     }
 
     /// Records a proposal of another time to the firm that has the order.
     pub(crate) fn propose_retime(&mut self, said: &Exchange) {
-        if let Some(offer) = self.to(said.firm.firm_id) {
+        if let Some(offer) = self.to_firm_mut(said.firm.firm_id) {
             offer.answer_by = said.answer_by;
             offer.new_terms.clone_from(&said.terms);
             offer.text.clone_from(&said.text);
@@ -95,7 +95,7 @@ impl Offers {
 
     /// Records an answer to the offer to a firm.
     pub(crate) fn set(&mut self, said: &Exchange, state: OfferState) {
-        let Some(offer) = self.to(said.firm.firm_id) else {
+        let Some(offer) = self.to_firm_mut(said.firm.firm_id) else {
             return;
         };
         offer.state = state;
@@ -143,7 +143,7 @@ impl Offers {
     }
 
     /// Returns the offer to a firm.
-    pub(crate) fn of(&self, firm: FirmId) -> Option<&Offer> {
+    pub(crate) fn to_firm(&self, firm: FirmId) -> Option<&Offer> {
         self.all.iter().find(|offer| offer.firm_id == firm)
     }
 

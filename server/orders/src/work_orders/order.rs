@@ -103,8 +103,8 @@ pub(crate) struct KeySignature {
 impl From<RecordedSignature> for KeySignature {
     fn from(by: RecordedSignature) -> KeySignature {
         KeySignature {
-            public_key: by.signed.public_key,
-            signature: by.signed.signature,
+            public_key: by.signature.public_key,
+            signature: by.signature.signature,
             key: by.key,
         }
     }
@@ -143,7 +143,7 @@ impl Order {
             compass_deg: state.compass_deg,
             last_step: state.last_step,
             looked_since: state.inspected_since_reading && state.second_reading.is_some(),
-            second_reading: state.second_reading.map(|again| again.said),
+            second_reading: state.second_reading.map(|second| second.result),
             reading: state.reading.as_ref().map(|read| read.given.clone()),
             berth_check: state.reading.and_then(|read| read.checked),
             // The plan is a firm's business while the order is open.

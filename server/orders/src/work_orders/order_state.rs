@@ -1,7 +1,7 @@
 //! State of an order: the fold of the events in its log.
 //!
 //! What always holds: it is a function of the log alone, so that the state in the
-//! database can be derived again.
+//! database can be derived second.
 
 use crate::work_orders::offers::Offers;
 use crate::work_orders::payload::chosen_plan::ChosenPlan;
@@ -179,11 +179,11 @@ impl OrderState {
 
     /// Returns whether the second reading is the one to plan from.
     fn plans_from_second_reading(&self) -> bool {
-        let anew = self
+        let reading = self
             .second_reading
             .as_ref()
-            .and_then(|again| again.anew.as_ref());
-        anew.is_some_and(|anew| anew.refusal.is_none())
+            .and_then(|second| second.reading_to_plan_from.as_ref());
+        reading.is_some_and(|reading| reading.refusal.is_none())
     }
 
     /// Drops a second reading that confirmed settings which no longer hold. One that
@@ -192,7 +192,7 @@ impl OrderState {
         self.second_reading = self
             .second_reading
             .take()
-            .filter(|again| again.is_contradiction());
+            .filter(|second| second.is_contradiction());
     }
 
     /// Next step of the plan.
@@ -220,15 +220,18 @@ impl OrderState {
 
     /// Prediction updated by a second reading that confirmed the steps.
     pub(crate) fn confirmed_prediction(&self) -> Option<&UpdatedPrediction> {
-        let again = self.second_reading.as_ref()?;
-        again.learnt.as_ref().filter(|_| !again.is_contradiction())
+        let second = self.second_reading.as_ref()?;
+        second
+            .prediction
+            .as_ref()
+            .filter(|_| !second.is_contradiction())
     }
 
     /// Second reading that did not confirm the steps.
     pub(crate) fn contradicting_reading(&self) -> Option<&RecordedSecondReading> {
         self.second_reading
             .as_deref()
-            .filter(|again| again.is_contradiction())
+            .filter(|second| second.is_contradiction())
     }
 
     /// Steps that neither the compass on this heading nor the magnetometer confirms.
@@ -238,8 +241,8 @@ impl OrderState {
             .and(self.second_reading.as_ref());
         let shows = |corrector: Corrector| {
             let is_whole =
-                |again: &RecordedSecondReading| again.said.parts.len() == PARTS_WITH_VERTICAL;
-            confirmed.is_some_and(|again| corrector != Corrector::Heeling || is_whole(again))
+                |second: &RecordedSecondReading| second.result.parts.len() == PARTS_WITH_VERTICAL;
+            confirmed.is_some_and(|second| corrector != Corrector::Heeling || is_whole(second))
         };
         let hidden = self.unconfirmed_heeling_steps.iter().chain(&self.steps);
         let hidden = hidden.filter(|done| !done.step.seen && !shows(done.step.corrector));

@@ -43,12 +43,12 @@ pub(crate) struct Change<'a> {
     pub(crate) id: Uuid,
     /// The order before the change.
     before: OrderBefore,
-    told: Vec<Event>,
+    live_events: Vec<Event>,
 }
 
 impl<'a> OrderUpdate<'a> {
     /// Loads the order, and the entry of this request if it was processed before.
-    pub(crate) async fn look(&self) -> Result<(StoredOrder, Option<Uuid>)> {
+    pub(crate) async fn load(&self) -> Result<(StoredOrder, Option<Uuid>)> {
         let tenant = self.writer.tenant;
         let stored = store::find(&self.app.db, tenant, self.order).await?;
         let db = &self.app.db;
@@ -104,12 +104,12 @@ impl<'a> Change<'a> {
         Change {
             app,
             tx,
-            before: OrderBefore::of(&stored),
+            before: OrderBefore::from_order(&stored),
             stored,
             author,
             now,
             id,
-            told: Vec::new(),
+            live_events: Vec::new(),
         }
     }
 
@@ -135,19 +135,19 @@ impl<'a> Change<'a> {
     }
 
     /// Adds a live event for something else that the change brings.
-    pub(crate) async fn tell(&mut self, kind: Kind) -> Result<()> {
+    pub(crate) async fn add_live_event(&mut self, kind: Kind) -> Result<()> {
         let vessel = self.stored.summary.vessel_id;
         let event = events::insert(&mut self.tx, vessel, kind, self.now).await?;
-        self.told.push(event);
+        self.live_events.push(event);
         Ok(())
     }
 
     /// Commits the change, and publishes its events.
     pub(crate) async fn commit(self) -> Result<()> {
         let app = self.app;
-        let (tx, told) = self.finish().await?;
+        let (tx, live_events) = self.finish().await?;
         tx.commit().await?;
-        for event in told {
+        for event in live_events {
             app.publish(event);
         }
         app.work.notify_one();
@@ -157,9 +157,9 @@ impl<'a> Change<'a> {
     /// Ends the change in a transaction that goes on. After its commit the caller publishes the
     /// events and wakes the worker.
     pub(crate) async fn finish(mut self) -> Result<(Tx, Vec<Event>)> {
-        let news = publish::publish_changes(&mut self.tx, &self.stored, &self.before, self.now);
-        let news = news.await?;
-        self.told.extend(news);
-        Ok((self.tx, self.told))
+        let changes = publish::publish_changes(&mut self.tx, &self.stored, &self.before, self.now);
+        let changes = changes.await?;
+        self.live_events.extend(changes);
+        Ok((self.tx, self.live_events))
     }
 }

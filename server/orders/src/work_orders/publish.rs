@@ -29,7 +29,7 @@ pub(crate) struct OrderBefore {
 }
 
 impl OrderBefore {
-    pub(crate) fn of(stored: &StoredOrder) -> OrderBefore {
+    pub(crate) fn from_order(stored: &StoredOrder) -> OrderBefore {
         OrderBefore {
             last_seq: stored.summary.last_seq,
             offers: stored.state().offers,
@@ -38,7 +38,7 @@ impl OrderBefore {
 
     /// State of the offer to a firm.
     fn offer_state(&self, firm: FirmId) -> Option<OfferState> {
-        self.offers.of(firm).map(|offer| offer.state)
+        self.offers.to_firm(firm).map(|offer| offer.state)
     }
 }
 
@@ -81,7 +81,7 @@ pub(crate) async fn publish_changes(
     // In the order of their ids: no two transactions wait for each other.
     for firm in firms(&before.offers, &offers) {
         let offer_before = before.offer_state(firm);
-        let Some(offer) = offers.of(firm) else {
+        let Some(offer) = offers.to_firm(firm) else {
             continue;
         };
         let messages = messages_for(summary, offer, offer_before, &new, now);

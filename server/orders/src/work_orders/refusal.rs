@@ -57,9 +57,9 @@ impl Refusal {
     }
 
     /// Puts an implausible position before all other explanations.
-    pub(crate) fn with_cause(mut self, doubt: Option<Refusal>) -> Refusal {
-        if let Some(doubt) = doubt {
-            self.could_be.insert(0, doubt.words);
+    pub(crate) fn with_cause(mut self, implausible_position: Option<Refusal>) -> Refusal {
+        if let Some(implausible_position) = implausible_position {
+            self.could_be.insert(0, implausible_position.words);
         }
         self
     }

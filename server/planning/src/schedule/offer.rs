@@ -106,7 +106,7 @@ async fn offer_job(
     }
     let (mut orders, mut told) = (Vec::new(), Vec::new());
     for order in &job.instead_of {
-        let (goes_on, news) = api::give_way(&app, tx, writer, job.vessel_id, *order).await?;
+        let (goes_on, news) = api::cancel_declined(&app, tx, writer, job.vessel_id, *order).await?;
         (tx, told) = (goes_on, told.into_iter().chain(news).collect());
     }
     for (nth, compass) in job.compasses.iter().enumerate() {

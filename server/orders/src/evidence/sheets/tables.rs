@@ -124,11 +124,11 @@ pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
         let microtesla = |value: &Value| format!("{:.2}", number(value) / 1e3);
         let parts: Vec<String> = parts
             .map(|(part, to)| {
-                let (read, foretold) = (&part["read_nt"], &part["expected_nt"]);
+                let (read, expected) = (&part["read_nt"], &part["expected_nt"]);
                 let figures = format!(
                     "{to} {} µT, foretold {} ± {}",
                     microtesla(read),
-                    microtesla(foretold),
+                    microtesla(expected),
                     microtesla(&part["standard_error_nt"])
                 );
                 figures.replace('-', "−")

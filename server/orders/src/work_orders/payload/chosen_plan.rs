@@ -31,7 +31,7 @@ pub(crate) struct PlanSummary {
 
 impl ChosenPlan {
     /// Chooses a plan of an outcome, from 1; `None` if there are fewer.
-    pub(crate) fn of(outcome: Outcome, chosen: usize) -> Option<ChosenPlan> {
+    pub(crate) fn from_outcome(outcome: Outcome, chosen: usize) -> Option<ChosenPlan> {
         let in_short = |plan: &Plan| PlanSummary {
             moves: plan.moves,
             worst_residual_deg: plan.worst_residual_deg,

@@ -17,17 +17,19 @@ pub(crate) struct RecordedSecondReading {
     pub given: SecondReadingForm,
     /// Result.
     #[serde(flatten)]
-    pub said: SecondReadingResult,
+    pub result: SecondReadingResult,
     /// Updated prediction, if the reading allows one.
-    pub learnt: Option<UpdatedPrediction>,
+    #[serde(rename = "learnt")]
+    pub prediction: Option<UpdatedPrediction>,
     /// Reading to replan from, if the residuals are beyond the limits.
-    pub anew: Option<Box<RecordedReading>>,
+    #[serde(rename = "anew")]
+    pub reading_to_plan_from: Option<Box<RecordedReading>>,
 }
 
 impl RecordedSecondReading {
     /// Returns whether the reading contradicts the settings of the correctors.
     pub(crate) fn is_contradiction(&self) -> bool {
-        self.said.verdict != SecondReadingVerdict::AsPlanned
+        self.result.verdict != SecondReadingVerdict::AsPlanned
     }
 }
 

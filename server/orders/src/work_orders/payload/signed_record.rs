@@ -53,7 +53,7 @@ pub(crate) struct SubmittedSignature {
 pub(crate) struct RecordedSignature {
     /// The signature.
     #[serde(flatten)]
-    pub signed: SubmittedSignature,
+    pub signature: SubmittedSignature,
     /// Owner of the key; `None` for a key that the order's firm has not registered.
     #[serde(default)]
     pub key: Option<KnownKey>,

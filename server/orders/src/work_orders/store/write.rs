@@ -187,7 +187,8 @@ async fn write_offers(tx: &mut Tx, stored: &StoredOrder, offers: &Offers) -> Res
 pub(crate) async fn complete(
     tx: &mut Tx,
     summary: &Summary,
-    (completed_at, received_at): (Time, Time),
+    completed_at: Time,
+    received_at: Time,
     record: &str,
 ) -> Result<()> {
     execute!(

@@ -6,7 +6,7 @@
 
 use crate::port_calls::Row as Call;
 use crate::schedule::plan::{LeftOut, NO_TERMS};
-use binnacle_orders::firms::port_meant;
+use binnacle_orders::firms::named_port;
 use binnacle_orders::work_orders::{Alongside, CallFit, State};
 use binnacle_platform::db::{Db, rows};
 use binnacle_platform::error::Result;
@@ -117,7 +117,7 @@ impl Order {
     /// lies in; at any port where its words mean none.
     pub(in crate::schedule) fn call(&self, calls: &[Call]) -> Option<CallId> {
         let hers = calls.iter().filter(|call| call.vessel_id == self.vessel_id);
-        let meant = port_meant(&self.port).map(|port| port.code.to_string());
+        let meant = named_port(&self.port).map(|port| port.code.to_string());
         let there = hers.filter(|call| meant.as_ref().is_none_or(|code| *code == call.port));
         let mut then =
             there.filter(|call| call.eta <= self.planned_at && self.planned_at <= call.etd);
@@ -155,7 +155,7 @@ impl Order {
 
     /// Returns the reason why its time lies outside its call, if it does.
     fn unfit(&self, there: &Alongside) -> Option<String> {
-        let meant = port_meant(&self.port).map(|port| port.code.to_string());
+        let meant = named_port(&self.port).map(|port| port.code.to_string());
         let port = meant.unwrap_or_else(|| there.port.clone());
         match there.fit(&port, self.planned_at) {
             CallFit::Fits => None,

@@ -24,8 +24,12 @@ pub(crate) struct CorrectorMove {
     #[serde(default)]
     pub explains_reading: bool,
     /// Correction of a strength that was inferred from an assumed setting.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub learnt_anew: Option<Box<RevisedStrength>>,
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        rename = "learnt_anew"
+    )]
+    pub revised_strength: Option<Box<RevisedStrength>>,
     /// Time of the report.
     pub at: Time,
 }
@@ -51,7 +55,7 @@ impl Event for CorrectorMove {
             state.restore_first_reading();
             state.second_reading = reading.filter(|reading| reading.is_contradiction());
         }
-        if let Some(revised) = &self.learnt_anew
+        if let Some(revised) = &self.revised_strength
             && let Some(index) = self.disputed_index(state)
         {
             state.inferred_strengths.truncate(index + 1);

@@ -11,10 +11,10 @@ impl Event for RecordedSecondReading {
     fn apply(&self, state: &mut OrderState) {
         state.restore_first_reading();
         let before = state.clone();
-        if let (Some(reading), Some(first)) = (&self.anew, before.reading.clone())
+        if let (Some(reading), Some(first)) = (&self.reading_to_plan_from, before.reading.clone())
             && state.accept_reading(reading)
         {
-            if self.said.parts.len() < PARTS_WITH_VERTICAL {
+            if self.result.parts.len() < PARTS_WITH_VERTICAL {
                 let heels = |done: &&CompletedStep| done.step.corrector == Corrector::Heeling;
                 let unconfirmed = before.steps.iter().filter(heels).cloned();
                 state.unconfirmed_heeling_steps.extend(unconfirmed);

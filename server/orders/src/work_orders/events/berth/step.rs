@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct RecordedStep {
     /// Result.
     #[serde(flatten)]
-    pub said: StepResult,
+    pub result: StepResult,
     /// The step.
     pub step: Step,
     /// Setting of the correctors afterwards; `None` if nothing changed.
@@ -34,15 +34,15 @@ impl Event for RecordedStep {
         state.before_second_reading = None;
         state.drop_confirmation();
         // What nothing explains is read again, from where it was.
-        if self.said.verdict != StepVerdict::Unexplained {
-            state.compass_deg = Some(self.said.after_deg);
+        if self.result.verdict != StepVerdict::Unexplained {
+            state.compass_deg = Some(self.result.after_deg);
         }
-        state.last_step = Some(self.said.clone());
+        state.last_step = Some(self.result.clone());
         if let Some(binnacle) = &self.binnacle {
             let before = state.binnacle.replace(binnacle.clone());
             let inferred = before.map(|binnacle| InferredStrength {
                 step: self.step.clone(),
-                before_deg: self.said.before_deg,
+                before_deg: self.result.before_deg,
                 binnacle,
             });
             state.inferred_strengths.extend(inferred);
@@ -50,9 +50,9 @@ impl Event for RecordedStep {
         if let Some(setting) = &self.setting {
             state.moved_to = Some(setting.clone());
         }
-        if self.said.is_confirmed() {
+        if self.result.is_confirmed() {
             state.steps_done += 1;
-            let turned_deg = wrap_180(self.said.after_deg - self.said.before_deg);
+            let turned_deg = wrap_180(self.result.after_deg - self.result.before_deg);
             state.steps.push(CompletedStep {
                 step: self.step.clone(),
                 turned_deg: Some(turned_deg),

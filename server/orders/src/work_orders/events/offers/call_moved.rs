@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct CallMoved {
     /// Firm and text.
     #[serde(flatten)]
-    pub said: Exchange,
+    pub exchange: Exchange,
     /// The change.
     pub call: CallChange,
 }
@@ -26,7 +26,7 @@ impl Event for CallMoved {
     }
 
     fn exchange(&self) -> Option<&Exchange> {
-        Some(&self.said)
+        Some(&self.exchange)
     }
 
     fn call_change(&self) -> Option<&CallChange> {
@@ -53,11 +53,11 @@ impl Event for CallMoved {
 impl CallMoved {
     /// An announcement to one firm of a call's change, for a job planned at this time.
     pub(crate) fn new(firm: NamedFirm, call: CallChange, planned_at: Time) -> CallMoved {
-        let said = Exchange {
+        let exchange = Exchange {
             text: Some(describe(&call, planned_at)),
             ..Exchange::with(firm)
         };
-        CallMoved { said, call }
+        CallMoved { exchange, call }
     }
 
     /// Headline for both sides.

@@ -10,21 +10,21 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Length of the log at completion, by the record.
-pub(super) fn head(files: &BTreeMap<String, Vec<u8>>) -> Option<LogHead> {
+pub(super) fn log_head(files: &BTreeMap<String, Vec<u8>>) -> Option<LogHead> {
     let record: Value = serde_json::from_slice(files.get("record.json")?).ok()?;
     serde_json::from_value(record["log"].clone()).ok()
 }
 
 /// Compares derived files with the record, and reports the record's coverage of an archive with
 /// this number of entries and signatures.
-pub(super) fn covered(
+pub(super) fn report_coverage(
     files: &BTreeMap<String, Vec<u8>>,
     entries: i64,
     signatures: usize,
     found: &mut Findings,
 ) {
-    made_from_the_record(files, found);
-    let Some(head) = head(files) else {
+    check_derived_files(files, found);
+    let Some(head) = log_head(files) else {
         found.problems.push("record.json names no log".to_owned());
         return;
     };
@@ -65,7 +65,7 @@ pub(super) fn covered(
     }
 }
 
-fn made_from_the_record(files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
+fn check_derived_files(files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) {
     let text = files
         .get("record.json")
         .map(|bytes| std::str::from_utf8(bytes));
