@@ -84,7 +84,7 @@ async fn open<'a>(
             "{vessel_name} is out of service: take her back into it first"
         )));
     }
-    // Whom it is offered to stands in entries of their own.
+    // The offer has entries of its own.
     let offer = new.offer.take();
     let now = app.clock.now().into();
     request.concerns_vessel(vessel, Some(id));

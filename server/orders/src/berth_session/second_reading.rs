@@ -96,7 +96,7 @@ impl SecondReading {
             let mut basis = plan_request.basis.clone();
             basis.model.model = updated.model_after.clone();
             basis.binnacle = binnacle;
-            // The first reading was held against it.
+            // The first reading was already compared with it.
             basis.earlier = None;
             basis.is_updated_here = true;
             basis

@@ -100,7 +100,7 @@ async fn read_field_again(
     check_reading_ranges(&form, app.clock.now().into())?;
     require_after_last_step(&stored, form.at.into())?;
     require_vertical_part(&state, &form)?;
-    // Of a step that someone has looked at since, no slip is suspected any more.
+    // A slip is only suspected in steps that nobody has inspected since.
     let looked_at = state.inspected_steps;
     let steps = state.steps[looked_at..].to_vec();
     let planned = state.plan.is_some();

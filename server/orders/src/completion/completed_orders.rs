@@ -32,7 +32,7 @@ pub struct CompletedOrder {
     pub firm_id: Option<FirmId>,
     /// Present state.
     pub state: State,
-    /// Whether headings at sea contradicted it, whatever the present state.
+    /// Contradiction by headings at sea, whatever the present state.
     pub disproved: bool,
     /// Agreed fee, as offered or proposed, euros.
     pub agreed_eur: Option<f64>,

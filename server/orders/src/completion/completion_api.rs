@@ -375,7 +375,7 @@ async fn find_evidence(
         bytes: record.clone().into_bytes(),
     });
     let lines = store::lines(&app.db, vessel, id, None, i64::MAX).await?;
-    // As many as were looked at: one that came meanwhile is in the next archive.
+    // An entry written meanwhile is left for the next archive.
     let lines = lines.into_iter().zip(&stored.log);
     let lines = lines.map(|((_, line, sha256), entry)| {
         let text = firm_view::line(reader.tenant, entry, line, &sha256)?;

@@ -54,7 +54,7 @@ struct Message {
     at: Time,
     /// Name of the sender.
     by: String,
-    /// Whether the firm sent it, rather than the operator.
+    /// True if the firm sent it, false if the operator did.
     from_firm: bool,
     /// The firm.
     firm_id: FirmId,
@@ -159,7 +159,7 @@ fn partner(offers: &Offers, tenant: Tenant, named: Option<FirmId>) -> Result<&Of
         |offer: &&Offer| offer.state.is_seen() && wanted.is_none_or(|firm| firm == offer.firm_id);
     let mut found: Vec<&Offer> = offers.all.iter().filter(seen).collect();
     if wanted.is_none() {
-        // Of several that are asked one may have it already.
+        // One of several firms with an offer may have accepted already.
         let holder = found
             .iter()
             .position(|offer| offer.state == OfferState::Accepted);

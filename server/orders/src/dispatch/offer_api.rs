@@ -72,7 +72,7 @@ async fn offer_work_order(
     load_order(&app, operator, id).await
 }
 
-/// Vessel of an order to answer. A firm whose offer has ended finds it too, to be told the reason
+/// Vessel of an order to answer. A firm whose offer has ended finds it too: the error names the reason
 /// by the error.
 async fn vessel_of(app: &App, tenant: Tenant, id: OrderId) -> Result<VesselId> {
     match tenant {
@@ -144,7 +144,7 @@ async fn decline_work_order(
         }
         change.commit().await?;
     }
-    // The order is no business of a firm's any more.
+    // The firm no longer sees the order.
     Ok(StatusCode::NO_CONTENT)
 }
 

@@ -59,12 +59,12 @@ async fn lapse_of(app: &App, vessel: VesselId, order: OrderId) -> Result<bool> {
         .filter(|offer| offer.answer_by.is_some_and(|by| by < change.now))
         .collect();
     if overdue.is_empty() {
-        // Another server was faster, or the answer came after all.
+        // Another server was faster, or the answer arrived after all.
         return Ok(false);
     }
     for offer in overdue {
         let between = Exchange::with(offer.firm());
-        // Who has the order has it, whether or not another time is agreed on.
+        // The firm keeps the order, whether or not another time is agreed on.
         let lapsed = if offer.state == OfferState::Accepted {
             OrderEvent::RetimeLapsed(RetimeLapsed(between))
         } else {

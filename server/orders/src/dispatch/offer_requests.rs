@@ -205,7 +205,7 @@ impl Proposal {
             berth: new.berth,
             fee_eur: new.fee_eur,
         };
-        // A time that stands is not judged again: the firm may still say yes to it.
+        // An unchanged time is not checked again: the firm may still accept it.
         let terms = match new.planned_at {
             Some(_) => checked_terms(terms, now)?,
             None => checked_words(terms)?,
@@ -255,7 +255,7 @@ pub(crate) fn message(said: &str) -> Result<String> {
             detail: format!("has control characters, or more than {MAX_MESSAGE} characters"),
         });
     }
-    // What is blank is refused as any text is.
+    // Blank text is refused as elsewhere.
     if said.is_empty() {
         return text("text", said);
     }
@@ -270,14 +270,14 @@ pub(crate) fn message(said: &str) -> Result<String> {
 pub(crate) async fn offer(change: &mut Change<'_>, offered: OfferRound) -> Result<()> {
     let at = change.stored.summary.planned_at;
     require_future_job(change, at)?;
-    // Everybody locks them in one order.
+    // All transactions lock firms in the same order.
     let mut firms: Vec<&NamedFirm> = offered.firms.iter().map(|one| &one.firm).collect();
     firms.sort_by_key(|firm| firm.firm_id.0);
     for firm in firms {
         require_capacity(change, firm, at, Requester::Operator).await?;
     }
     change.append(OrderEvent::OfferRound(offered)).await?;
-    // Whom the operator names first is asked at however short notice.
+    // The first firm named receives the offer however short the notice.
     send_offers(change).await
 }
 
@@ -327,7 +327,7 @@ pub(crate) async fn answer_as_firm(
     let gives_back = matches!(says, FirmAnswer::Decline(_))
         && offer.state == OfferState::Accepted
         && change.stored.summary.state == State::Accepted;
-    // A firm may think better of its own proposal.
+    // A firm may withdraw its own proposal.
     let takes_back = matches!(says, FirmAnswer::Decline(_) | FirmAnswer::Propose(_))
         && offer.state == OfferState::Proposed;
     if change.stored.summary.state == State::Cancelled {
@@ -414,7 +414,7 @@ pub(crate) async fn answer_as_operator(
     if yes {
         let (firm, fee_eur) = (between.firm.clone(), offer.fee());
         if let Some(terms) = &mut between.terms {
-            // What a firm says nothing of is as it was offered.
+            // Terms that the firm omits stay as offered.
             terms.fee_eur = fee_eur;
             let at = terms.planned_at;
             require_future_job(change, at)?;

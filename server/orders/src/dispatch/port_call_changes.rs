@@ -35,7 +35,7 @@ pub(crate) struct AffectedOrder {
     pub(crate) id: OrderId,
     pub(crate) planned_at: Time,
     call_id: Option<CallId>,
-    /// Whether it is linked to no valid call.
+    /// True without a link to a valid call.
     pub(crate) is_adrift: bool,
 }
 
@@ -71,7 +71,7 @@ pub async fn announce_call_updates(
 /// Lists the orders of a vessel that may be planned at a call, and locks them until the
 /// transaction ends.
 pub(crate) async fn under_way(tx: &mut Tx, vessel: VesselId) -> Result<Vec<AffectedOrder>> {
-    // Who agrees to another time meanwhile waits, or is waited for.
+    // This serialises with agreements on another time.
     execute!(
         &mut *tx,
         "UPDATE work_orders SET state = state
@@ -106,7 +106,7 @@ pub(crate) async fn announce_update(
     let mut stored = store::lock(tx, vessel, order).await?;
     let state = stored.state();
     let before = OrderBefore::from_order(&stored);
-    // The order is for the port that its call was at when it was written.
+    // The order's port is that of its first known call.
     let port = state.port.as_ref().unwrap_or(&moving.was.port);
     let planned_at = stored.summary.planned_at;
     let fit = moving

@@ -156,7 +156,7 @@ async fn accept_retime(
             return Err(Error::NotFound("work order"));
         }
         let terms = proposed_terms(&change, &offer)?;
-        // What was agreed on besides the time stands.
+        // Agreed terms other than the time stand.
         let agreed = offer.terms.clone();
         let terms = Terms {
             berth: (terms.berth).or_else(|| agreed.as_ref()?.berth.clone()),
@@ -285,7 +285,7 @@ async fn require_possible_time(
     terms: &Terms,
     requester: Requester,
 ) -> Result<()> {
-    // Without any call nobody knows where she will be: the firm judges for itself.
+    // Without any known call the firm judges for itself.
     let Some(port) = order_port(change).await? else {
         port_call_check::require_vessel_in_port(change, terms.planned_at, "planned_at").await?;
         return require_capacity(change, firm, terms.planned_at, requester).await;

@@ -99,7 +99,7 @@ pub fn archive(evidence: Evidence) -> anyhow::Result<Vec<u8>> {
 
 /// Packs files in this order; the same files give the same bytes.
 pub(super) fn write(files: &[File]) -> anyhow::Result<Vec<u8>> {
-    // Photographs are packed already; the rest is small. No file has a time of its own.
+    // Photographs are compressed already; the rest is small. Files carry no time of their own.
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
         .last_modified_time(DateTime::default())

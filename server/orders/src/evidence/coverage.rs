@@ -70,7 +70,7 @@ fn check_derived_files(files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) 
         .get("record.json")
         .map(|bytes| std::str::from_utf8(bytes));
     let Some(Ok(text)) = text else {
-        // That it is missing, or no text of ours, is said where it is held against the log.
+        // A missing or unreadable record is reported by the check against the log.
         return;
     };
     let made = [

@@ -70,7 +70,7 @@ fn unpack(bytes: &[u8], found: &mut Findings) -> Result<BTreeMap<String, Vec<u8>
         let name = file.name().map(std::borrow::Cow::into_owned);
         let name = name.map_err(|error| format!("file {}: {error}", index + 1))?;
         let mut content = Vec::new();
-        // A file that says it is small and is not comes to its end here.
+        // Bounds a file whose header understates its size.
         let read = file
             .by_ref()
             .take(MAX_ARCHIVE_BYTES)
@@ -174,7 +174,7 @@ fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, fou
             }
             Some("verification") => {
                 let words = entry["content"]["words"].as_str().unwrap_or_default();
-                // The record was made before the ship sailed.
+                // The record was made before the vessel sailed.
                 found.facts.push(format!("{UNSIGNED} at sea, {words}"));
             }
             _ => {}
@@ -216,7 +216,7 @@ fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, fou
          shore server says",
         head.last_sha256
     ));
-    // Of a record that is not the one that was signed nothing follows.
+    // A record other than the signed one covers nothing.
     let text = files.get("record.json").map(|text| sha256_hex(text));
     if completed.is_some_and(|completed| Some(completed.record_sha256) == text) {
         report_coverage(files, entries, signed, found);

@@ -34,7 +34,7 @@ pub struct Booking {
     pub order_id: OrderId,
     port: String,
     planned_at: Time,
-    /// Whether the firm has it; it is only offered otherwise.
+    /// True if the firm has it, false if it has an offer only.
     pub is_taken: bool,
 }
 
@@ -72,7 +72,7 @@ pub fn named_port(words: &str) -> Option<&'static Port> {
     code.and_then(by_code)
         .or_else(|| by_code(words))
         .or_else(|| {
-            // A name that several ports have tells nothing.
+            // A name shared by several ports is ambiguous.
             let mut all = ports::all().iter().filter(named);
             all.next().filter(|_| all.next().is_none())
         })
@@ -187,7 +187,7 @@ pub async fn require_capacity(
     visit: &Visit<'_>,
     requester: Requester,
 ) -> Result<()> {
-    // Whoever books the firm meanwhile waits.
+    // Other bookings of the firm wait.
     execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
     let said = store::terms_of(tx, firm).await?;
     let said: Vec<(OperatorId, Terms)> = said
@@ -213,7 +213,7 @@ pub async fn require_capacity(
     let mine = said
         .iter()
         .find(|(operator, _)| *operator == visit.operator);
-    // When and for whom it works is the operator's word of the firm, which may know better
+    // Times and vessels are the operator's own record of the firm: they do not bind the firm
     // itself.
     if requester == Requester::Operator
         && let Some((_, terms)) = mine
@@ -226,7 +226,7 @@ pub async fn require_capacity(
     let counts = |one: &Booking| {
         one.is_taken || requester == Requester::Operator && one.operator_id == visit.operator
     };
-    // Each operator knows how many teams work for it: the most that anybody knows of are all.
+    // Each operator records the teams that work for it: the largest number counts as all.
     let most = |figure: fn(&Terms) -> u32| said.iter().map(|(_, terms)| figure(terms)).max();
     let all = (
         most(|terms| terms.teams),

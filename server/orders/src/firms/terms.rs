@@ -115,7 +115,7 @@ struct ServedPortSchema {
     /// UN/LOCODE.
     #[schema(example = "NLRTM")]
     port: String,
-    /// What it costs to send a team there for a day, euros.
+    /// Cost of sending a team there for a day, euros.
     #[schema(required = false, minimum = 0, maximum = 1_000_000)]
     travel_eur: f64,
 }

@@ -101,8 +101,8 @@ impl NewOrder {
     /// Validates the request.
     pub fn checked(self, now: Time) -> Result<NewOrder> {
         let past = |grace_h: f64| now.0.seconds_since(self.planned_at.0) > grace_h * 3600.0;
-        // Who is on the quay already may write the order afterwards; who is asked for one needs
-        // time to answer, but for a page that was open for a while.
+        // An order without an offer may be entered afterwards. Firms need time to answer an
+        // offer; one hour covers a form that was open for a while.
         if past(if self.offer.is_some() { 1.0 } else { 24.0 }) {
             return Err(Error::Invalid {
                 field: "planned_at",

@@ -65,7 +65,7 @@ pub(crate) struct Order {
     /// Second reading of the present settings.
     #[schema(required)]
     pub second_reading: Option<SecondReadingResult>,
-    /// Whether the settings were reported since that reading.
+    /// True if the settings were reported since that reading.
     pub looked_since: bool,
     /// Present setting of the correctors; `null` before the first reading.
     #[schema(required, value_type = Option<SettingSchema>)]
@@ -114,7 +114,7 @@ impl Order {
     /// Combines the summary with the state by the log.
     pub(crate) fn new(summary: Summary, state: OrderState, tenant: Tenant) -> Order {
         let setting = state.setting().cloned();
-        // Held against what the compass reads now, as the next step will be.
+        // Relative to the present reading of the compass, as the next step will be judged.
         let next_step = state.next_step().map(|step| Step {
             expected_compass_deg: state
                 .compass_deg
@@ -146,7 +146,7 @@ impl Order {
             second_reading: state.second_reading.map(|second| second.result),
             reading: state.reading.as_ref().map(|read| read.given.clone()),
             berth_check: state.reading.and_then(|read| read.checked),
-            // The plan is a firm's business while the order is open.
+            // A firm sees the plan only while the order is open.
             plan: state.plan.filter(|_| !closed),
             completion: state.completion,
             verification: state.verification,

@@ -59,7 +59,7 @@ pub(crate) struct OrderState {
     pub inspected_steps: usize,
     /// Second reading of the present settings.
     pub second_reading: Option<Box<RecordedSecondReading>>,
-    /// Whether the settings were reported since the second reading.
+    /// True if the settings were reported since the second reading.
     pub inspected_since_reading: bool,
     /// First reading of an order that was replanned from a second one.
     pub first_reading: Option<Box<RecordedReading>>,
@@ -160,7 +160,7 @@ impl OrderState {
 
     /// Takes over a plan to follow.
     pub(crate) fn follow_plan(&mut self, planned: ChosenPlan) {
-        // Only a plan from a second reading knows what that has shown.
+        // A plan from a second reading already includes it.
         if self.plans_from_second_reading() {
             self.second_reading = None;
         }

@@ -128,7 +128,7 @@ impl<'a> Change<'a> {
 
     /// Writes the next entry.
     pub(crate) async fn append(&mut self, content: OrderEvent) -> Result<()> {
-        // The first entry is the one that the request's key stands for.
+        // The request's key stands for the first entry.
         let id = std::mem::replace(&mut self.id, Uuid::now_v7());
         let (tx, stored) = (&mut self.tx, &mut self.stored);
         store::append(tx, stored, id, &self.author, self.now, content).await

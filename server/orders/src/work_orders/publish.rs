@@ -78,7 +78,7 @@ pub(crate) async fn publish_changes(
     tx.publish(&published).await?;
     let order = (summary.vessel_id, summary.id);
     let mut live = vec![events::insert_of_order(tx, order, None, now).await?];
-    // In the order of their ids: no two transactions wait for each other.
+    // In the order of their ids, so that no two transactions wait for each other.
     for firm in firms(&before.offers, &offers) {
         let offer_before = before.offer_state(firm);
         let Some(offer) = offers.to_firm(firm) else {

@@ -71,7 +71,7 @@ impl From<&Refused> for Refusal {
         let word = word.and_then(|value| Some(value.get("refusal")?.as_str()?.to_owned()));
         Refusal {
             refusal: word.unwrap_or_else(|| "refused".to_owned()),
-            // What could explain it stands beside it.
+            // The explanations follow in their own field.
             words: refused.refusal.summary(),
             could_be: refused.refusal.explanations(),
             cures: refused.cures.iter().copied().map(Cure::from).collect(),

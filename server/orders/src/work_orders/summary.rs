@@ -62,7 +62,7 @@ pub(crate) struct Summary {
     /// Time of completion.
     #[schema(required)]
     pub completed_at: Option<Time>,
-    /// Whether the compass has a binnacle.
+    /// True if the compass has a binnacle.
     pub has_binnacle: bool,
     /// Number of entries in its log.
     pub last_seq: i64,

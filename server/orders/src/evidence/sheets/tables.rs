@@ -87,7 +87,7 @@ pub(super) fn steps(paper: &mut Paper, record: &Value) {
     if steps.is_none_or(Vec::is_empty) {
         paper.lines(LEFT, Style::plain(SIZE), "None: nothing had to be moved.");
     }
-    // A new plan counts its steps from one again; on paper they are counted through.
+    // Each plan numbers its steps from one; the sheet numbers them continuously.
     for (index, step) in steps.into_iter().flatten().enumerate() {
         let said = &step["said"];
         let turned =

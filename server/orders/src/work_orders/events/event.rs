@@ -92,7 +92,7 @@ impl Audience {
 /// Circumstances that decide the words of a notification.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Circumstances {
-    /// Whether a member of a firm wrote the entry.
+    /// True if a member of a firm wrote the entry.
     pub by_firm: bool,
     /// State of the offer to the firm before the event.
     pub offer_before: Option<OfferState>,

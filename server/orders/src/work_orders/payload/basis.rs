@@ -29,12 +29,12 @@ pub(crate) struct Basis {
     pub binnacle: Binnacle,
     /// Waters in which the vessel sails, by its own track.
     pub waters: Vec<Water>,
-    /// Whether magnetic cargo is on board, by the logbook or the reading.
+    /// Magnetic cargo on board, by the logbook or the reading.
     pub cargo_on_board: bool,
     /// Estimate of λ by the compass's last adjustment.
     #[serde(default)]
     pub earlier: Option<PreviousBerth>,
-    /// Whether the model includes a reading at this berth.
+    /// True if the model includes a reading at this berth.
     #[serde(default)]
     pub is_updated_here: bool,
 }

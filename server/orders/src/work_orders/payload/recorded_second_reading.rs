@@ -92,9 +92,9 @@ pub(crate) enum SecondReadingVerdict {
     reason = "describes binnacle_adjustment::adjust::FieldComponent"
 )]
 struct PartSchema {
-    /// What was foretold.
+    /// Predicted value.
     expected_nt: f64,
     read_nt: f64,
-    /// Of the difference.
+    /// Standard error of the difference.
     standard_error_nt: f64,
 }

@@ -46,7 +46,7 @@ impl StepResult {
     }
 }
 
-/// What became of a step.
+/// Result of a step.
 #[derive(ToSchema)]
 #[schema(as = StepSaid)]
 #[allow(dead_code, reason = "describes StepSaid")]
@@ -55,12 +55,12 @@ pub(crate) struct VerdictSchema {
     number: u32,
     before_deg: f64,
     after_deg: f64,
-    /// By how much the compass should have turned.
+    /// Expected turn of the compass, degrees.
     expected_change_deg: f64,
-    /// How far off that may be.
+    /// Tolerance of that turn, degrees.
     tolerance_deg: f64,
-    /// In a word.
+    /// Verdict.
     verdict: StepVerdict,
-    /// In words.
+    /// Verdict in words.
     words: String,
 }

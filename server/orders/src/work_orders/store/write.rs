@@ -117,7 +117,7 @@ pub(crate) async fn append(
         content,
     };
     let line = canonical(&entry)?;
-    // A number that JSON does not know would make the log unreadable.
+    // A number without a JSON form (NaN) would make the log unreadable.
     serde_json::from_str::<Entry>(&line)?;
     let sha256 = sha256_hex(line.as_bytes());
     execute!(

@@ -20,7 +20,7 @@ pub(crate) struct CorrectorMove {
     pub compass_deg: Option<f64>,
     /// Reason.
     pub note: Option<String>,
-    /// Whether the new setting explains a second reading that did not fit the old one.
+    /// True if the new setting explains a second reading that did not fit the old one.
     #[serde(default)]
     pub explains_reading: bool,
     /// Correction of a strength that was inferred from an assumed setting.
@@ -46,10 +46,10 @@ pub(crate) struct RevisedStrength {
 impl Event for CorrectorMove {
     fn apply(&self, state: &mut OrderState) {
         let stands = state.setting() == Some(&self.after);
-        // What it read before they were moved says nothing of how it reads now.
+        // A reading before the move does not hold after it.
         let still = state.compass_deg.filter(|_| stands);
         if !stands {
-            // What was learnt of them held for how they were taken to stand.
+            // The second reading was judged by the assumed setting.
             let reading = state.second_reading.take();
             let reading = reading.filter(|_| !self.explains_reading);
             state.restore_first_reading();
@@ -61,11 +61,11 @@ impl Event for CorrectorMove {
             state.inferred_strengths.truncate(index + 1);
             state.inferred_strengths[index].step = revised.step.clone();
             state.binnacle = Some(revised.binnacle.clone());
-            // What was said of it, and planned by it, holds no longer.
+            // The step's result and the plan rested on the disputed strength.
             (state.last_step, state.plan) = (None, None);
         }
         state.compass_deg = self.compass_deg.or(still);
-        // Someone has looked at every one of them.
+        // The report covers every corrector.
         state.inspected_steps = state.steps.len();
         state.inspected_since_reading = state.second_reading.is_some();
         state.moved_to = Some(self.after.clone());
@@ -73,7 +73,7 @@ impl Event for CorrectorMove {
             Some(plan) if plan.plan.setting == self.after => {
                 state.steps_done = plan.plan.steps.len();
             }
-            // Another way than the plan's: there has to be another plan.
+            // A setting other than the plan's needs another plan.
             _ => {
                 state.plan = None;
                 state.state = State::Measured;

@@ -21,7 +21,7 @@ impl Event for RecordedSecondReading {
             } else {
                 state.unconfirmed_heeling_steps.clear();
             }
-            // Nothing was moved since it was read last.
+            // No corrector was moved since the last compass reading.
             state.compass_deg = reading.given.compass_deg.or(before.compass_deg);
             state.first_reading.get_or_insert_with(|| Box::new(first));
             state.before_second_reading = Some(Box::new(before));

@@ -33,7 +33,7 @@ impl Event for RecordedStep {
     fn apply(&self, state: &mut OrderState) {
         state.before_second_reading = None;
         state.drop_confirmation();
-        // What nothing explains is read again, from where it was.
+        // An unexplained reading is repeated from the last known one.
         if self.result.verdict != StepVerdict::Unexplained {
             state.compass_deg = Some(self.result.after_deg);
         }

@@ -14,7 +14,7 @@ pub(crate) struct OfferRound {
     pub firms: Vec<OfferedFirm>,
     /// Hours for an answer.
     pub answer_within_hours: u32,
-    /// Whether all receive the offer at once.
+    /// True if all receive the offer at once.
     pub at_once: bool,
     /// Text for the firms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -37,7 +37,7 @@ impl Event for OfferRound {
         let offers = &mut state.offers;
         offers.answer_within_hours = self.answer_within_hours;
         offers.at_once = self.at_once;
-        // Firms of an earlier round stay known: they see that it is over.
+        // Firms of an earlier round stay listed: they see that it is over.
         let is_offered_again = |offer: &Offer| {
             let mut firms = self.firms.iter();
             firms.any(|one| one.firm.firm_id == offer.firm_id)

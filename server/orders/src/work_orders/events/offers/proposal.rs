@@ -58,7 +58,7 @@ impl Event for ProposalAccepted {
         if let Some(terms) = &self.0.terms
             && state.planned_at != Some(terms.planned_at)
         {
-            // A fee alone says nothing of the call.
+            // A proposal of a fee alone leaves the time and its call as they are.
             state.agree_time(terms.planned_at);
         }
         state.follow_offers();
