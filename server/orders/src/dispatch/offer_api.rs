@@ -72,8 +72,8 @@ async fn offer_work_order(
     load_order(&app, operator, id).await
 }
 
-/// Vessel of an order to answer. A firm whose offer has ended finds it too: the error names the reason
-/// by the error.
+/// Vessel of an order to answer. A firm whose offer has ended finds it too: the error then names
+/// the reason.
 async fn vessel_of(app: &App, tenant: Tenant, id: OrderId) -> Result<VesselId> {
     match tenant {
         Tenant::Firm(firm) => store::vessel_of_asked(&app.db, firm, id).await,
