@@ -33,7 +33,8 @@ ifdef CRATE
 test: web
 	@scripts/test-crate $(CRATE)
 else
-test: test-web test-rust test-api test-browser ## Run every test, real PostgreSQL and Chromium included (CRATE=orders: one crate's)
+test: web ## Run every test, real PostgreSQL and Chromium included (CRATE=orders: one crate's)
+	@CARGO="$(CARGO)" scripts/test
 endif
 
 test-web: web ## Test the dashboard's own functions

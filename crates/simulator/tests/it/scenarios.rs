@@ -69,7 +69,7 @@ fn an_impossible_scenario_is_refused() {
             "start = \"2026-03-01T00:00:00Z\"",
             "start = \"1850-03-01T00:00:00Z\""
         )
-        .contains("start: igrf14 knows")
+        .contains("start: igrf14 covers")
     );
     assert!(error("start = \"2026-03-01T00:00:00Z\"", "start = \"tomorrow\"").contains("start: "));
     assert!(error("port = \"Algeciras\", ", "").contains("must be ports"));
