@@ -156,7 +156,7 @@ fn refuse_moved_correctors(stored: &StoredOrder) -> Result<()> {
             "correctors were moved since the reading, and the model does not know them so: what \
              the magnetometer reads after the steps is a second reading. To begin again, put \
              them back as they stood, say so under corrector-settings, and read again; or cancel \
-             the order, which notes how they report, and let headings at sea make a model"
+             the order, which notes how they stand, and let headings at sea make a model"
                 .to_owned(),
         ));
     }

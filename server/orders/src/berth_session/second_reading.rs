@@ -22,9 +22,10 @@ use binnacle_adjustment::berth::BerthReading;
 use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_platform::error::{Error, Result};
 
-const FITS_UNPLANNED: &str = "the correctors do what they should where they are said to stand: plan basis_to_plan_from from this reading";
+const FITS_UNPLANNED: &str =
+    "the correctors do what they should where they are said to stand: plan anew from this reading";
 const BEYOND_LIMITS: &str = "the correctors seem to stand as planned, but more is left than the limits \
-    allow: read once more, away from steel and cranes; if it is so again, plan basis_to_plan_from from this \
+    allow: read once more, away from steel and cranes; if it is so again, plan anew from this \
     reading";
 
 /// Second reading as it was sent, as a form of its own, and as the planner takes it.
