@@ -77,7 +77,7 @@ pub(super) async fn cancel_work_order(
         return load_order(&app, writer.operator, id).await;
     }
     if !stored.summary.state.is_under_way() {
-        stored.require_state(&[], "it cannot be cancelled any more")?;
+        stored.require_state(&[], "it can no longer be cancelled")?;
     }
     if let Some(mut change) = update.begin(&stored).await? {
         record_moved_correctors(&mut change).await?;
@@ -151,7 +151,8 @@ pub(super) async fn close_work_order(
         let allowed = [State::Verified, State::Failed];
         stored.require_state(
             &allowed,
-            "it is closed when headings at sea have spoken, or once adjusted without_verification",
+            "it can be closed after verification at sea, or once adjusted with \
+                without_verification",
         )?;
     }
     if let Some(mut change) = update.begin(&stored).await? {

@@ -81,7 +81,7 @@ async fn open<'a>(
     }
     if !vessels::is_in_service(&mut tx, vessel).await? {
         return Err(Error::WrongState(format!(
-            "{vessel_name} is out of service: take her back into it first"
+            "{vessel_name} is out of service: return the vessel to service first"
         )));
     }
     // The offer has entries of its own.
@@ -146,8 +146,7 @@ pub async fn cancel_declined(
     }
     if state != State::Declined {
         return Err(Error::WrongState(format!(
-            "work order {id} is under way and says something else: cancel it, or agree on \
-             another time"
+            "work order {id} is under way on other terms: cancel it, or agree on another time"
         )));
     }
     let now = app.clock.now().into();

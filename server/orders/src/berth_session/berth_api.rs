@@ -153,10 +153,11 @@ fn refuse_moved_correctors(stored: &StoredOrder) -> Result<()> {
     )?;
     if stored.state().has_moved_correctors() {
         return Err(Error::WrongState(
-            "correctors were moved since the reading, and the model does not know them so: what \
-             the magnetometer reads after the steps is a second reading. To begin again, put \
-             them back as they stood, say so under corrector-settings, and read again; or cancel \
-             the order, which notes how they stand, and let headings at sea make a model"
+            "correctors were moved since the reading, and the model does not describe their \
+                present settings: a reading of the magnetometer after the steps is a second \
+                reading. To start over, put the correctors back, report this under \
+                corrector-settings, and read again; or cancel the order, which records their \
+                settings, and let headings at sea make a new model"
                 .to_owned(),
         ));
     }
@@ -267,8 +268,8 @@ async fn read_step(
     let before_deg = read.before_deg.or(state.compass_deg);
     let before_deg = before_deg.ok_or_else(|| Error::Invalid {
         field: "before_deg",
-        detail: "give what the compass read before the step: neither the berth's reading nor a \
-                 step before has said so"
+        detail: "is required: neither the berth reading nor an earlier step gives the compass \
+            reading before this step"
             .to_owned(),
     })?;
     degrees("before_deg", before_deg, 0.0, 360.0)?;
@@ -301,8 +302,8 @@ fn require_still_compass(before_deg: f64, last_deg: Option<f64>) -> Result<()> {
     Err(Error::Invalid {
         field: "before_deg",
         detail: format!(
-            "is {:.1} degrees off the {last_deg:.1} that it read last: read it once more; if the \
-             ship has swung, wait until she lies as she did when the berth was read",
+            "is {:.1} degrees off the last reading of {last_deg:.1}: read it again; if the ship \
+                has swung, wait until it lies as at the berth reading",
             turned_deg.abs()
         ),
     })

@@ -43,7 +43,8 @@ impl Photo {
         let sides = size(media_type, bytes).unwrap_or([0, 0]);
         if !sides.iter().all(|side| SIDE_RANGE_PX.contains(side)) {
             return Err(Error::UnsupportedMediaType(format!(
-                "the file begins as {media_type} and is no picture: it is cut off, or damaged"
+                "the file begins as {media_type} but is not a complete picture: it is truncated \
+                    or damaged"
             )));
         }
         Ok(Photo {

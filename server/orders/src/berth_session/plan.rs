@@ -78,8 +78,7 @@ pub(crate) async fn require_current_reading(
     let binnacle = binnacles::current(&app.db, vessel, compass).await?;
     if binnacle.is_some_and(|now| now.revision != plan_request.basis.binnacle_revision) {
         return Err(Error::WrongState(
-            "the binnacle was written anew since the berth was read: read the berth again"
-                .to_owned(),
+            "the binnacle was revised after the berth reading: read the berth again".to_owned(),
         ));
     }
     let model = models::current(&app.db, vessel, compass).await?;
@@ -87,8 +86,8 @@ pub(crate) async fn require_current_reading(
     let holds = model.is_some_and(|model| model.epoch_from.is_none_or(|from| from <= known_until));
     if !holds {
         return Err(Error::WrongState(
-            "the ship's magnetism has changed since the model that the berth was held against: \
-             when there is a model again, read it again"
+            "the ship's magnetism has changed since the model of the berth reading: wait for a \
+                new model, then read the berth again"
                 .to_owned(),
         ));
     }
@@ -117,8 +116,8 @@ pub(crate) async fn refuse_magnetic_cargo(
             return Ok(());
         }
         return Err(Error::WrongState(
-            "the logbook no longer has magnetic cargo on board when the berth was read: read the \
-             berth again"
+            "the logbook no longer shows magnetic cargo on board at the berth reading: read the \
+                berth again"
                 .to_owned(),
         ));
     }
@@ -126,9 +125,10 @@ pub(crate) async fn refuse_magnetic_cargo(
         return Ok(());
     };
     Err(Error::WrongState(format!(
-        "the logbook has magnetic cargo on board since {}, and the berth was read without it: if \
-         the entry is wrong, put it right or withdraw it there; if not, wait until the cargo is \
-         ashore, put back the correctors that were moved, say so, and read the berth again",
+        "the logbook shows magnetic cargo on board since {}, and the berth was read without it: \
+            if the entry is wrong, correct or withdraw it there; otherwise wait until the cargo \
+            is ashore, put the moved correctors back, report their settings, and read the berth \
+            again",
         Time(cargo.from).to_the_minute()
     )))
 }
@@ -176,8 +176,8 @@ pub(crate) async fn require_total_turn(
         return Ok(());
     }
     Err(Error::WrongState(format!(
-        "{in_all}: read the field again (second reading), or look at each corrector and say how \
-         they stand"
+        "{in_all}: read the field again (second reading), or inspect each corrector and report \
+            the settings"
     )))
 }
 
@@ -204,7 +204,7 @@ pub(crate) async fn predict(
     };
     let mut refusal = Refusal::from(&beyond);
     refusal.words = format!(
-        "by what the compass showed of the steps, {}: read the field again",
+        "by the compass readings of the steps, {}: read the field again",
         refusal.words
     );
     refusal.cures.insert(0, Cure::ReadAgain);
@@ -229,8 +229,8 @@ pub(crate) async fn offer_plans(
         outcome.notes.insert(
             0,
             format!(
-                "no heading at sea has confirmed the last adjustment, and the model is foretold \
-                 by it: the last heading behind it is of {}",
+                "no heading at sea has confirmed the last adjustment, which predicted the model: \
+                    the last heading behind it is from {}",
                 until.to_the_minute()
             ),
         );

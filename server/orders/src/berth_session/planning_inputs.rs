@@ -54,7 +54,7 @@ impl Basis {
         let model = models::must_have(app, vessel, compass).await?;
         let binnacle = binnacles::current(&app.db, vessel, compass).await?;
         let binnacle = binnacle.ok_or(Error::WrongState(
-            "the compass has no binnacle yet: write it first".to_owned(),
+            "the compass has no binnacle yet: enter it first".to_owned(),
         ))?;
         let position = Position::new(given.lat, given.lon).map_err(|error| Error::Invalid {
             field: "lat, lon",

@@ -36,7 +36,7 @@ pub(crate) fn check_reading_age(given: &ReadingForm, now: Time) -> Result<()> {
         return Err(Error::Invalid {
             field: "at",
             detail: format!(
-                "lies {:.0} hours back: a reading holds for {:.0}",
+                "is {:.0} hours old: a reading is valid for {:.0}",
                 age_s / 3600.0,
                 READING_VALIDITY_S / 3600.0
             ),
@@ -85,9 +85,9 @@ fn refusal(words: String) -> Refusal {
         refusal: "position_unlikely".to_owned(),
         words,
         could_be: vec![
-            "the position is another, perhaps east for west or north for south".to_owned(),
+            "the position is wrong, perhaps east for west or north for south".to_owned(),
             "it was read at another time".to_owned(),
-            "she lies in another port than the order says".to_owned(),
+            "the vessel is in another port than the order's".to_owned(),
         ],
         cures: vec![Cure::ReadAgain],
     }
@@ -111,8 +111,8 @@ fn too_far(berth: Position, apart_s: f64, seen: Position) -> Option<String> {
     let hours = apart_s / 3600.0;
     (apart_nm > TRACK_TOLERANCE_NM + MAX_SPEED_KN * hours).then(|| {
         format!(
-            "the position of the reading is {apart_nm:.0} nautical miles from where her track \
-             has her, {hours:.1} hours from then"
+            "the position of the reading is {apart_nm:.0} nautical miles from the vessel's \
+                track, {hours:.1} hours apart"
         )
     })
 }

@@ -23,10 +23,10 @@ use binnacle_adjustment::binnacle::Binnacle;
 use binnacle_platform::error::{Error, Result};
 
 const FITS_UNPLANNED: &str =
-    "the correctors do what they should where they are said to stand: plan anew from this reading";
-const BEYOND_LIMITS: &str = "the correctors seem to stand as planned, but more is left than the limits \
-    allow: read once more, away from steel and cranes; if it is so again, plan anew from this \
-    reading";
+    "the correctors act as they should at the reported settings: replan from this reading";
+const BEYOND_LIMITS: &str = "the correctors seem to stand as planned, but the residuals exceed \
+    the limits: read again, away from steel and cranes; if the result is the same, replan from \
+    this reading";
 
 /// Second reading as it was sent, as a form of its own, and as the planner takes it.
 pub(crate) struct SecondReading {
@@ -205,21 +205,21 @@ pub(crate) fn as_first_reading(basis: Basis, given: ReadingForm) -> Result<Box<R
 fn unexplained_text(looked_at: usize) -> String {
     let steps = match looked_at {
         0 => "one of its steps",
-        _ => "a step that nobody has looked at since",
+        _ => "a step that nobody has inspected since",
     };
     format!(
-        "neither the plan nor a slip in {steps} explains what was read: look at every step and at \
-         the magnetometer, and read again"
+        "neither the plan nor a slip in {steps} explains the reading: inspect every step and the \
+            magnetometer, and read again"
     )
 }
 
 /// Words for a reading that confirms the steps.
 fn confirmation_text(steps: &[CompletedStep], parts: usize) -> String {
     let heels = |done: &CompletedStep| done.step.corrector == Corrector::Heeling;
-    let mut words = "the correctors do what was planned".to_owned();
+    let mut words = "the correctors act as planned".to_owned();
     if parts < PARTS_WITH_VERTICAL && steps.iter().any(heels) {
-        words += "; the vertical part was not read both times, and nothing confirms the heeling \
-                  magnets";
+        words += "; the vertical part was not read both times, so nothing confirms the heeling \
+            magnets";
     }
     words
 }
@@ -233,7 +233,7 @@ fn slip_text(steps: &[CompletedStep], number: u32, slip: Slip) -> String {
         Slip::NotDone => "it was not done".to_owned(),
     };
     format!(
-        "look at the step \"{words}\": by the field, {how}. Say how the correctors stand; where \
-         they stand as planned, or are put right, read again"
+        "inspect the step \"{words}\": by the field, {how}. Report the settings of the \
+            correctors; if they are as planned, or corrected, read again"
     )
 }

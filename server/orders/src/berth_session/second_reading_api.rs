@@ -142,8 +142,7 @@ fn require_vertical_part(state: &OrderState, form: &ReadingForm) -> Result<()> {
     }
     Err(Error::Invalid {
         field: "down",
-        detail: "the last reading did not confirm the steps, and had a vertical part: read that \
-                 again too"
+        detail: "is required: the last reading did not confirm the steps, and had a vertical part"
             .to_owned(),
     })
 }

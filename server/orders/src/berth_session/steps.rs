@@ -102,7 +102,7 @@ pub(crate) fn judge(
         StepCheck::NotSeen { .. } => (
             result(
                 StepVerdict::NotSeen,
-                "on this heading the compass does not show the step: look at it again".to_owned(),
+                "on this heading the compass does not show the step: inspect it again".to_owned(),
             ),
             Some(step.setting_after.clone()),
             None,
@@ -141,8 +141,8 @@ pub(crate) fn judge(
             result(
                 StepVerdict::Unexplained,
                 format!(
-                    "the compass stands as it stood, where {:.1} degrees were expected: was the \
-                     step done, and does the card turn freely? Tap the bowl and read again",
+                    "the compass did not turn, where {:.1} degrees were expected: was the step \
+                        done, and does the card turn freely? Tap the bowl and read again",
                     step.change_deg
                 ),
             ),
@@ -155,8 +155,8 @@ pub(crate) fn judge(
                 StepVerdict::Unexplained,
                 format!(
                     "it is off by {off_deg:.1} degrees, which no strength of the corrector \
-                     explains: read again, see whether the ship moved, and look for magnetism \
-                     in the iron"
+                        explains: read again, check whether the ship moved, and look for \
+                        magnetism in the iron"
                 ),
             ),
             None,
@@ -181,11 +181,11 @@ pub(crate) fn judge(
 }
 
 fn strength_text(share: f64, other_hole: Option<u16>) -> String {
-    let words = format!("the corrector is {share:.2} times as strong as was taken");
+    let words = format!("the corrector is {share:.2} times as strong as assumed");
     match other_hole {
         Some(hole) => format!(
-            "{words}, or stands at hole {hole}: count again; if it does, say how the correctors \
-             stand, or put it right and say so with what the compass then reads"
+            "{words}, or stands at hole {hole}: count again; if it does, report the settings, or \
+                correct it and report that with the new compass reading"
         ),
         None => words,
     }
@@ -245,7 +245,7 @@ fn add_total_turn(
         return Ok(result);
     }
     let words = format!(
-        "{}; but {}: see that each corrector stands as it should before you finish",
+        "{}; but {}: check that each corrector stands as it should before you finish",
         result.words, in_all
     );
     Ok(StepResult { words, ..result })

@@ -29,7 +29,9 @@ pub const PREDICTED_BY_PLAN: &str = "adjustment-plan-1";
 pub(crate) fn require_planned_setting(state: &OrderState) -> Result<&Setting> {
     let wrong = |detail: String| Err(Error::WrongState(detail));
     let Some(plan) = &state.plan else {
-        return wrong("there is no plan for how the correctors stand: choose one".to_owned());
+        return wrong(
+            "there is no plan for the present settings of the correctors: choose one".to_owned(),
+        );
     };
     if let Some(second) = state.contradicting_reading() {
         return wrong(format!(
@@ -40,7 +42,7 @@ pub(crate) fn require_planned_setting(state: &OrderState) -> Result<&Setting> {
     if let Some(step) = state.next_step() {
         let number = step.number;
         return wrong(format!(
-            "step {number} is not done: do it, or plan from how they stand"
+            "step {number} is not done: do it, or plan from the present settings"
         ));
     }
     Ok(&plan.plan.setting)

@@ -94,7 +94,7 @@ async fn add_photo(
     }
     stored.require_state(
         &PHOTO_STATES,
-        "nothing is added before a firm has it, or any more",
+        "photographs are added once a firm has it, until it is closed",
     )?;
     if photos(&stored).count() >= MAX_PHOTOS {
         return Err(Error::WrongState(format!(
@@ -171,7 +171,7 @@ async fn complete_work_order(
     if done.is_some() {
         return load_order(&app, writer.tenant, id).await;
     }
-    stored.require_state(&[State::Adjusting], "there is no plan that was followed")?;
+    stored.require_state(&[State::Adjusting], "no plan was followed")?;
     let state = stored.state();
     let plan_request = state.plan_request()?;
     require_current_reading(&app, &stored.summary, &plan_request).await?;

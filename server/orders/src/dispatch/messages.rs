@@ -136,7 +136,9 @@ async fn send_message(
     let text = message(&new.text)?;
     let summary = store::summary(&app.db, writer.tenant, id).await?;
     if summary.state.is_over() {
-        return Err(Error::WrongState("the order is over".to_owned()));
+        return Err(Error::WrongState(
+            "the order is closed or cancelled".to_owned(),
+        ));
     }
     if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
         let offers = change.stored.state().offers;
@@ -170,11 +172,11 @@ fn partner(offers: &Offers, tenant: Tenant, named: Option<FirmId>) -> Result<&Of
     match found.as_slice() {
         [firm] => Ok(firm),
         [] => Err(Error::WrongState(
-            "there is no such firm that is asked or has the order".to_owned(),
+            "no such firm has an open offer or the order".to_owned(),
         )),
         _ => Err(Error::Invalid {
             field: "firm_id",
-            detail: "is missing: more than one firm is asked".to_owned(),
+            detail: "is required: more than one firm has an open offer".to_owned(),
         }),
     }
 }

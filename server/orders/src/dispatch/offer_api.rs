@@ -62,7 +62,7 @@ async fn offer_work_order(
     let allowed = [State::Planned, State::Declined];
     stored.require_state(
         &allowed,
-        "it is offered before a firm has it, and not twice at a time",
+        "it can be offered before a firm has it, and not while an offer is open",
     )?;
     if let Some(mut change) = update.begin(&stored).await? {
         let offered = new.checked(&mut change.tx, operator).await?;
@@ -168,7 +168,7 @@ async fn propose_terms(
 ) -> Result<Json<Order>> {
     let Tenant::Firm(firm) = writer.tenant else {
         return Err(Error::Forbidden(
-            "terms are proposed by a firm that is asked",
+            "only a firm with an open offer proposes terms",
         ));
     };
     let update = prepare_update(&app, request, writer, id, key, "proposal", &proposal)?;

@@ -105,10 +105,13 @@ impl NewOffer {
         let mut firms: Vec<OfferedFirm> = Vec::new();
         for firm_id in self.firms {
             if firms.iter().any(|one| one.firm.firm_id == firm_id) {
-                return invalid("firms", format!("{firm_id} stands there twice"));
+                return invalid("firms", format!("{firm_id} is listed twice"));
             }
             let Some(firm_name) = firms::name_for(tx, operator, firm_id).await? else {
-                return invalid("firms", format!("{firm_id} is no firm that you work with"));
+                return invalid(
+                    "firms",
+                    format!("{firm_id} is not a firm that works for you"),
+                );
             };
             let fee_eur = if let Some(fee) = self.fees_eur.get(&firm_id) {
                 Some(*fee)
@@ -213,7 +216,7 @@ impl Proposal {
         if new.planned_at.is_none() && terms.berth.is_none() && terms.fee_eur.is_none() {
             return Err(Error::Invalid {
                 field: "terms",
-                detail: "say nothing else: give planned_at, berth or fee_eur".to_owned(),
+                detail: "propose nothing: give planned_at, berth or fee_eur".to_owned(),
             });
         }
         Ok(CheckedProposal {
@@ -400,7 +403,7 @@ pub(crate) async fn answer_as_operator(
     if proposed.next().is_some() {
         return Err(Error::Invalid {
             field: "firm_id",
-            detail: "is missing: more than one firm has proposed terms".to_owned(),
+            detail: "is required: more than one firm has proposed terms".to_owned(),
         });
     }
     if offer.answer_by.is_some_and(|by| by < change.now) {

@@ -23,7 +23,7 @@ pub(crate) fn require_future_job(change: &Change<'_>, at: Time) -> Result<()> {
         return Ok(());
     }
     Err(Error::WrongState(format!(
-        "the job was for {}, which is over: it needs another time",
+        "the job was planned for {}, which is past: it needs another time",
         at.to_the_minute()
     )))
 }
@@ -93,9 +93,9 @@ pub(crate) async fn send_next_offers(change: &mut Change<'_>) -> Result<()> {
             }
             let text = if is_in_time(change, 0.0) {
                 let hours = lead_s / HOUR_S;
-                format!("not asked: it wants to be asked {hours} h ahead")
+                format!("not asked: it requires {hours} h notice")
             } else {
-                "not asked: the time of the job is over".to_owned()
+                "not asked: the time of the job is past".to_owned()
             };
             let passed = Exchange {
                 text: Some(text),

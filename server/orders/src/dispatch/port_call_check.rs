@@ -74,7 +74,7 @@ pub(crate) async fn require_vessel_in_port(
         return Ok(());
     }
     let detail = format!(
-        "by her port calls she is at {} ({}) then, not at {} ({})",
+        "by its port calls the vessel is at {} ({}) then, not at {} ({})",
         other.name, other.code, meant.name, meant.code
     );
     Err(Error::Invalid { field, detail })
@@ -96,8 +96,8 @@ async fn require_port_call(
     }
     let there: Vec<String> = calls.iter().map(Alongside::describe).collect();
     let detail = format!(
-        "by her port calls she is at {} ({port}) {}, not on the day of {}: choose a time in a \
-         call, or enter the call that is not known yet",
+        "by its port calls the vessel is at {} ({port}) {}, not on the day of {}: choose a time \
+            in a call, or enter the missing call",
         meant.name,
         there.join(", "),
         at.to_the_minute()

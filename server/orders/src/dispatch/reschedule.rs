@@ -98,7 +98,11 @@ async fn propose_retime(
     }
     let terms = checked_terms(retime.terms, app.clock.now().into())?;
     let text = optional_text("text", retime.text.as_deref())?;
-    stored.require_state(&[State::Accepted], "a firm that has it is asked")?;
+    stored.require_state(
+        &[State::Accepted],
+        "only a firm that has it can be asked for another \
+        time",
+    )?;
     if let Some(mut change) = update.begin(&stored).await? {
         let holder = holder(&change)?;
         require_possible_time(&mut change, &holder.firm(), &terms, Requester::Operator).await?;
@@ -147,7 +151,7 @@ async fn accept_retime(
     let summary = store::summary(&app.db, writer.tenant, id).await?;
     let Tenant::Firm(firm) = writer.tenant else {
         return Err(Error::WrongState(
-            "the firm that has the order answers what it is asked".to_owned(),
+            "only the firm that has the order can accept another time".to_owned(),
         ));
     };
     if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
@@ -236,9 +240,10 @@ async fn decline_retime(
 
 /// Firm that has an order, before the work begins.
 fn holder(change: &Change<'_>) -> Result<Offer> {
-    change
-        .stored
-        .require_state(&[State::Accepted], "a firm that has it is asked")?;
+    change.stored.require_state(
+        &[State::Accepted],
+        "only a firm that has it can be asked for another time",
+    )?;
     let offers = change.stored.state().offers;
     let holder = offers.holder().cloned();
     holder.ok_or_else(|| Error::WrongState("no firm has the order".to_owned()))
@@ -248,10 +253,10 @@ fn holder(change: &Change<'_>) -> Result<Offer> {
 fn proposed_terms(change: &Change<'_>, offer: &Offer) -> Result<Terms> {
     let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
     let Some(terms) = offer.new_terms.clone() else {
-        return wrong("no other time is asked for");
+        return wrong("no other time is proposed");
     };
     if offer.answer_by.is_some_and(|by| by < change.now) {
-        return wrong("the question has lapsed: what was agreed stands");
+        return wrong("the proposal has lapsed: the agreed time stands");
     }
     Ok(terms)
 }
@@ -298,7 +303,7 @@ async fn require_possible_time(
     };
     if fit != CallFit::Fits {
         return Err(Error::WrongState(format!(
-            "she has no call at {port} that lasts for three hours from {}",
+            "the vessel has no call at {port} that lasts three hours from {}",
             at.to_the_minute()
         )));
     }

@@ -245,7 +245,7 @@ async fn nobody_is_asked_for_a_job_whose_time_is_over(shore: Shore) {
     assert_eq!(order["state"], "declined");
     assert_eq!(
         order["offers"][1]["text"],
-        "not asked: the time of the job is over"
+        "not asked: the time of the job is past"
     );
     let refused = trade.post(juan, "/accept", &json!({})).await;
     assert!(refused.status >= 400, "{refused:?}");
@@ -253,7 +253,7 @@ async fn nobody_is_asked_for_a_job_whose_time_is_over(shore: Shore) {
     let late = trade.post(&trade.ada, "/offer", &trade.offer()).await;
     assert_eq!(late.problem(), "wrong-state");
     assert!(
-        late.text.contains("2026-11-21 09:00 UTC, which is over"),
+        late.text.contains("2026-11-21 09:00 UTC, which is past"),
         "{late:?}"
     );
     shore.finish().await;
@@ -277,7 +277,7 @@ async fn a_firm_that_wants_to_be_asked_earlier_is_passed_over(shore: Shore) {
     assert_eq!(lapse(&shore.app).await.unwrap(), 1);
     assert_eq!(trade.offers().await, ["lapsed", "lapsed", "open"]);
     let passed = &trade.seen().await["offers"][1];
-    assert_eq!(passed["text"], "not asked: it wants to be asked 24 h ahead");
+    assert_eq!(passed["text"], "not asked: it requires 24 h notice");
     shore.finish().await;
 }
 

@@ -215,7 +215,7 @@ async fn a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team(shore: Shore)
         .await;
     for (at, said) in [
         ("2026-12-15T08:00:00Z", "no call at NLRTM"),
-        ("2026-12-18T16:00:00Z", "lasts for three hours"),
+        ("2026-12-18T16:00:00Z", "lasts three hours"),
         (&format!("{taken}T12:00:00Z"), "no team left"),
     ] {
         let refused = agreed.retime(at).await;

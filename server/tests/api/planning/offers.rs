@@ -319,7 +319,7 @@ async fn an_order_is_for_a_call_where_calls_at_its_port_are_known(shore: Shore) 
         .post("/work-orders", &order("2026-12-18T08:00:00Z"))
         .await;
     assert_eq!(other.problem(), "invalid");
-    let said = "she is at Rotterdam (NLRTM) from 2026-12-14 06:00 UTC";
+    let said = "the vessel is at Rotterdam (NLRTM) from 2026-12-14 06:00 UTC";
     assert!(other.text.contains(said), "{other:?}");
     let made = ada
         .post("/work-orders", &order("2026-12-15T08:00:00Z"))

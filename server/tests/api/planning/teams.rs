@@ -238,7 +238,7 @@ async fn an_order_is_for_a_port_and_a_time_that_can_be(shore: Shore) {
     assert!(
         elsewhere
             .text
-            .contains("she is at Rotterdam (NLRTM) then, not at Bilbao (ESBIO)"),
+            .contains("the vessel is at Rotterdam (NLRTM) then, not at Bilbao (ESBIO)"),
         "{elsewhere:?}"
     );
     for at in [

@@ -204,7 +204,7 @@ async fn what_was_read_before_the_ship_changed_is_read_again(shore: Shore) {
     shore.work().await;
     let refused = job.post("/plan", &json!({})).await;
     assert_eq!(refused.problem(), "wrong-state");
-    assert!(refused.text.contains("read it again"), "{refused:?}");
+    assert!(refused.text.contains("read the berth again"), "{refused:?}");
     // And what was read long ago, when she may have lain elsewhere.
     let other = Job::of(&shore, shore.admin("eve").await).await;
     other.post("/berth-reading", &reading()).await.good();

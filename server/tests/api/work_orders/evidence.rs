@@ -103,7 +103,7 @@ async fn only_a_picture_is_a_photograph(shore: Shore) {
     );
     let cut_off = job.photo(b"\x89PNG\r\n\x1a\n").await;
     assert_eq!(cut_off.problem(), "unsupported-media-type");
-    assert!(cut_off.text.contains("cut off"), "{cut_off:?}");
+    assert!(cut_off.text.contains("truncated"), "{cut_off:?}");
     job.photo(PICTURE).await.good();
     let order = job.seen().await;
     assert_eq!(order["photos"].as_array().unwrap().len(), 1);

@@ -165,13 +165,13 @@ async fn a_reading_is_doubted_by_the_port_and_by_the_track(shore: Shore) {
     let old = with(json!({ "at": "2026-11-14T06:30:00Z" }));
     let answer = job.post("/berth-reading", &old).await;
     assert_eq!(answer.problem(), "invalid");
-    assert!(answer.text.contains("hours back"), "{answer:?}");
+    assert!(answer.text.contains("hours old"), "{answer:?}");
     // East for west; and when by her own track she was at sea.
     for (body, words) in [
         (with(json!({ "lon": 3.04 })), "nautical miles from Bilbao"),
         (
             with(json!({ "at": "2026-11-19T22:00:00Z" })),
-            "from where her track has her",
+            "from the vessel's track",
         ),
     ] {
         let answer = job.post("/berth-reading", &body).await;
@@ -194,7 +194,7 @@ async fn what_was_moved_can_be_put_back_and_the_berth_read_again(shore: Shore) {
     job.post(&path, &after).await.good();
     let refused = job.post("/berth-reading", &reading()).await;
     assert_eq!(refused.problem(), "wrong-state");
-    assert!(refused.text.contains("put them back"), "{refused:?}");
+    assert!(refused.text.contains("put the correctors back"), "{refused:?}");
     let stand = json!({ "setting": before });
     job.post("/corrector-settings", &stand).await.good();
     let order = job.post("/berth-reading", &reading()).await.good();
