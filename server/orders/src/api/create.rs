@@ -151,7 +151,7 @@ pub async fn cancel_declined(
     }
     let now = app.clock.now().into();
     let mut change = Change::new(app, tx, stored, author, now, Uuid::now_v7());
-    let text = "declined by every firm, and offered anew as the schedule has it".to_owned();
+    let text = "declined by every firm, and offered again by the schedule".to_owned();
     change
         .append(OrderEvent::Cancelled(Cancelled { text }))
         .await?;

@@ -366,7 +366,7 @@ async fn find_evidence(
     }];
     for (seq, photo) in photos(&stored) {
         let found = store::photo(&app.db, vessel, id, photo.photo).await?;
-        let (_, bytes) = found.ok_or_else(|| anyhow::anyhow!("a photograph is gone"))?;
+        let (_, bytes) = found.ok_or_else(|| anyhow::anyhow!("a photograph is missing"))?;
         let name = photo.file(seq);
         files.push(File { name, bytes });
     }

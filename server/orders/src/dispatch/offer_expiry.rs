@@ -21,7 +21,7 @@ const BATCH_SIZE: i64 = 100;
 pub async fn watch(app: App) {
     while !app.stopping.is_cancelled() {
         if let Err(error) = lapse(&app).await {
-            error!(?error, "overdue answers cannot be looked for");
+            error!(?error, "overdue answers cannot be checked");
         }
         tokio::select! {
             () = app.stopping.cancelled() => {}

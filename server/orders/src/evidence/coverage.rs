@@ -25,7 +25,9 @@ pub(super) fn report_coverage(
 ) {
     check_derived_files(files, found);
     let Some(head) = log_head(files) else {
-        found.problems.push("record.json names no log".to_owned());
+        found
+            .problems
+            .push("record.json does not name the log".to_owned());
         return;
     };
     let of_the_record = |name: &&String| {
@@ -41,27 +43,27 @@ pub(super) fn report_coverage(
     found.facts.push(format!(
         "{} {} and the log's entries 1 to {}",
         if signatures > 0 {
-            "the adjuster's word, and the signature by a key, cover"
+            "the adjuster's sign-off, and the signature by a key, cover"
         } else {
-            "the adjuster's word covers"
+            "the adjuster's sign-off covers"
         },
         covers.join(", "),
         head.entries
     ));
     let mut beyond: Vec<String> = later.into_iter().cloned().collect();
     if entries > head.entries {
-        beyond.push(format!("the log's entries from {} on", head.entries + 1));
+        beyond.push(format!("the log's entries from {}", head.entries + 1));
     }
     if !beyond.is_empty() {
         found.facts.push(format!(
-            "no signature covers {}: they came with the record or after it",
+            "no signature covers {}: they were written with the record or after it",
             beyond.join(", ")
         ));
     }
     if files.get("README.txt").map(Vec::as_slice) != Some(super::README.as_bytes()) {
-        found
-            .facts
-            .push("README.txt is not this version's; it is no part of the evidence".to_owned());
+        found.facts.push(
+            "README.txt differs from this version's; it is not part of the evidence".to_owned(),
+        );
     }
 }
 
@@ -81,8 +83,8 @@ fn check_derived_files(files: &BTreeMap<String, Vec<u8>>, found: &mut Findings) 
         let is_so = made.is_ok_and(|made| files.get(name) == Some(&made));
         if !is_so {
             found.problems.push(format!(
-                "{name} is not what version {} makes from record.json: it was changed, or made \
-                 by another version; what was signed is record.json",
+                "{name} differs from what version {} makes from record.json: it was changed, or \
+                    made by another version; the signed file is record.json",
                 env!("CARGO_PKG_VERSION")
             ));
         }

@@ -62,7 +62,7 @@ pub fn verify(bytes: &[u8]) -> Findings {
 
 fn unpack(bytes: &[u8], found: &mut Findings) -> Result<BTreeMap<String, Vec<u8>>, String> {
     let mut archive =
-        ZipArchive::new(Cursor::new(bytes)).map_err(|error| format!("no archive: {error}"))?;
+        ZipArchive::new(Cursor::new(bytes)).map_err(|error| format!("not an archive: {error}"))?;
     let mut files = BTreeMap::new();
     for index in 0..archive.len() {
         let file = archive.by_index(index);
@@ -82,8 +82,8 @@ fn unpack(bytes: &[u8], found: &mut Findings) -> Result<BTreeMap<String, Vec<u8>
     }
     if archive.has_duplicate_names() {
         found.wrong(
-            "files of one name are in it more than once: what an unpacker shows may not be what \
-             is checked here",
+            "it contains files of one name more than once: an unpacker may show other content \
+                than is checked here",
         );
     }
     Ok(files)
@@ -105,8 +105,8 @@ fn check_no_extra_content(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found
     files.sort_by_key(|file| file.name == "manifest.json");
     if !write(&files).is_ok_and(|made| made == bytes) {
         found.wrong(
-            "the archive is not as it was given out: something stands beside its files, or they \
-             were packed anew, and an unpacker may show what is not checked here",
+            "the archive is not in its original form: it has content beside its files, or was \
+                repacked, and an unpacker may show other content than is checked here",
         );
     }
 }
@@ -116,7 +116,7 @@ fn check_hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &
         match files.get(name) {
             None => found.wrong(format!("{name} is missing")),
             Some(content) if sha256_hex(content) != *sha256 => {
-                found.wrong(format!("{name} is not what the manifest says"));
+                found.wrong(format!("{name} differs from the manifest"));
             }
             Some(_) => {}
         }
@@ -134,7 +134,7 @@ fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, fou
         return;
     };
     let Ok(text) = std::str::from_utf8(text) else {
-        found.wrong("entries.ndjson is no text");
+        found.wrong("entries.ndjson is not text");
         return;
     };
     let mut previous: Option<String> = None;
@@ -148,7 +148,7 @@ fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, fou
         entries += 1;
         let at = format!("entries.ndjson, line {entries}");
         let Ok(entry) = serde_json::from_str::<Value>(line) else {
-            found.wrong(format!("{at} is no JSON"));
+            found.wrong(format!("{at} is not JSON"));
             previous = Some(sha256_hex(line.as_bytes()));
             continue;
         };
@@ -193,11 +193,11 @@ fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, fou
         }
     }
     for name in files.keys().filter(|name| !known.contains(name)) {
-        found.wrong(format!("{name} is no part of this evidence"));
+        found.wrong(format!("{name} is not part of this evidence"));
     }
     if !withheld.is_empty() {
         found.facts.push(format!(
-            "entries {} are withheld: what they say cannot be looked into here",
+            "entries {} are withheld: their content cannot be checked here",
             withheld.join(", ")
         ));
     }
@@ -212,8 +212,8 @@ fn check_log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, fou
         found.wrong("the log does not end where the manifest says");
     }
     found.facts.push(format!(
-        "the log has {entries} entries, the last with SHA-256 {}: whether more came after it, the \
-         shore server says",
+        "the log has {entries} entries, the last with SHA-256 {}: ask the server whether more \
+            followed",
         head.last_sha256
     ));
     // A record other than the signed one covers nothing.
@@ -304,13 +304,13 @@ fn check_signature(
     let public_key = &by.signature.public_key;
     found.facts.push(match &by.key {
         Some(key) => format!(
-            "signed by the key {public_key}; {UNSIGNED} {} had registered it as {:?}. Whose it is, \
-             ask the firm",
+            "signed by the key {public_key}; {UNSIGNED} {} had registered it as {:?}. Ask the \
+                firm whether the key is its own",
             key.firm_name, key.name
         ),
         None => format!(
-            "signed by the key {public_key}; {UNSIGNED} no firm had registered it. Whose it is, ask \
-             the firm"
+            "signed by the key {public_key}; {UNSIGNED} no firm had registered it. Ask the firm \
+                whether the key is its own"
         ),
     });
     1

@@ -162,8 +162,7 @@ async fn require_suitable_firm(
 ) -> Result<()> {
     let wrong = |why: String, instead: &str| {
         Err(Error::WrongState(format!(
-            "by the terms that you have said, {firm_name} {why}: choose another {instead}, or \
-             change the terms"
+            "by your terms, {firm_name} {why}: choose another {instead}, or change the terms"
         )))
     };
     if let Some(why) = terms.closed_at(visit.at, named_port(visit.port)) {

@@ -153,8 +153,8 @@ async fn dismiss_firm(
             more => format!("{more} orders"),
         };
         return Err(Error::WrongState(format!(
-            "the firm is asked for {orders} of the operator's or has them: they are cancelled, \
-             or given back, before"
+            "the firm has been offered {orders} of the operator, or has them: cancel them, or \
+                have them given back, first"
         )));
     }
     tx.commit().await?;

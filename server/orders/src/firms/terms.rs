@@ -254,7 +254,7 @@ async fn end_terms(
 
 impl FirmWithTerms {
     fn new((firm_id, firm_name, terms): (FirmId, String, Option<Terms>)) -> FirmWithTerms {
-        let none = || vec!["terms: nobody has said on what terms it works".to_owned()];
+        let none = || vec!["terms: no terms are set".to_owned()];
         FirmWithTerms {
             firm_id,
             firm_name,
@@ -278,7 +278,7 @@ impl Terms {
         {
             return Err(Error::Invalid {
                 field,
-                detail: format!("{length} are more than {MAX_LIST_LEN}"),
+                detail: format!("has {length} entries, more than {MAX_LIST_LEN}"),
             });
         }
         for licence in &mut self.licences {
@@ -316,7 +316,7 @@ impl Terms {
         }
         let licence = licence.filter(|asked| !self.licences.iter().any(|held| held == asked))?;
         Some(format!(
-            "does not hold the licence that she asks for, {licence}"
+            "does not hold the licence that the vessel requires, {licence}"
         ))
     }
 
@@ -324,7 +324,7 @@ impl Terms {
     pub fn problems(&self) -> Vec<String> {
         let error = input::check_firm(&self.firm("", None)).err();
         let wrong = error.map(|error| format!("{}: {}", error.field, error.detail));
-        let none = (self.teams == 0).then(|| "teams: a firm without teams does nothing".to_owned());
+        let none = (self.teams == 0).then(|| "teams: a firm without teams does no jobs".to_owned());
         wrong.into_iter().chain(none).collect()
     }
 

@@ -41,8 +41,8 @@ impl SeaVerification {
                 band95_deg,
                 rms_deg,
             } => format!(
-                "{} with what was foretold, to {rms_deg:.1} degrees; the band is now \
-                 {band95_deg:.1} degrees",
+                "{} with the prediction, to {rms_deg:.1} degrees; the band is now \
+                    {band95_deg:.1} degrees",
                 agreement_text(*headings)
             ),
             Verification::MoreNeeded { headings, needed } => format!(
@@ -57,7 +57,7 @@ impl SeaVerification {
                 standard_error_deg,
             } => format!(
                 "on compass heading {compass_deg:03.0} the deviation is {off_deg:.1} degrees off \
-                 what was foretold (standard error {standard_error_deg:.1})"
+                    the prediction (standard error {standard_error_deg:.1})"
             ),
         };
         SeaVerification {

@@ -64,7 +64,7 @@ pub(crate) fn withdrawn(summary: &Summary, last: &Entry) -> Notice {
     let headline = Headline::new(Kind::Withdrawn, "the offer is withdrawn");
     let facts = facts(summary, Reader::Firm);
     Notice {
-        text: facts + "\nAnother firm may have it, or it is not to be done.\n",
+        text: facts + "\nAnother firm may have the job, or it is cancelled.\n",
         ..notice(&headline, String::new(), summary, last)
     }
 }

@@ -186,7 +186,7 @@ impl OfferState {
         match self {
             OfferState::Waiting => "it is not offered to your firm yet",
             OfferState::Open => "it is offered to your firm",
-            OfferState::Proposed => "the operator has not answered what your firm proposed",
+            OfferState::Proposed => "the operator has not answered your firm's proposal",
             OfferState::Accepted => "your firm has it already",
             OfferState::Declined => "the offer to your firm was declined",
             OfferState::Lapsed => "the offer to your firm has lapsed",

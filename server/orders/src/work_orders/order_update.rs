@@ -64,7 +64,7 @@ impl<'a> OrderUpdate<'a> {
             && change.stored.summary.last_seq != seen.summary.last_seq
         {
             return Err(Error::WrongState(
-                "the order has gone on meanwhile: look at it again".to_owned(),
+                "the order has changed meanwhile: load it again".to_owned(),
             ));
         }
         Ok(begun)

@@ -110,7 +110,7 @@ pub(crate) fn not_adjustable(refusals: Vec<Refusal>) -> Error {
     let problem = DomainProblem {
         status: StatusCode::UNPROCESSABLE_ENTITY,
         kind: "not-adjustable",
-        title: "No plan as it stands",
+        title: "No plan is possible",
         detail: detail.collect::<Vec<_>>().join("; "),
         extra: Map::new(),
     };

@@ -39,8 +39,8 @@ pub fn refuse_amended_binnacle<'a>(
             return Ok(());
         }
         Err(Error::WrongState(
-            "this compass is being adjusted: how its correctors stand is said to its work order, \
-             which writes the binnacle when it is completed or cancelled"
+            "this compass is being adjusted: report the settings of its correctors to its work \
+                order, which revises the binnacle when it is completed or cancelled"
                 .to_owned(),
         ))
     })

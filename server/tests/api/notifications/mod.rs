@@ -87,7 +87,7 @@ async fn an_offer_and_its_answers_reach_the_other_side(shore: Shore) {
     trade.post(juan, "/on-board", &json!({})).await.good();
     assert_eq!(
         told(juan).await,
-        [offered, "Nao: your terms are agreed to at Bilbao"]
+        [offered, "Nao: your terms are accepted at Bilbao"]
     );
     let all = told(&trade.ada).await;
     assert_eq!(
@@ -134,7 +134,7 @@ async fn who_does_something_is_not_told_of_it(shore: Shore) {
     let theirs = told(rosa).await;
     let expected = [
         "Nao: a job is offered to you at Bilbao",
-        "Nao: the operator writes at Bilbao",
+        "Nao: message from the operator at Bilbao",
     ];
     assert_eq!(theirs, expected);
     shore.finish().await;

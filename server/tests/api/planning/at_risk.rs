@@ -88,7 +88,7 @@ async fn an_agreed_job_whose_firm_has_no_teams_any_more_is_at_risk(shore: Shore)
     assert_eq!(told.len(), 1, "{told:?}");
     let summary = told[0]["summary"].as_str().unwrap();
     assert!(
-        summary.contains("a firm without teams does nothing"),
+        summary.contains("a firm without teams does no jobs"),
         "{summary}"
     );
     put(&agreed.ada, &path, &terms()).await.good();

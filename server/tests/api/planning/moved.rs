@@ -157,7 +157,7 @@ async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(shore: Shore) 
     let new = &asked["offers"][0]["new_terms"]["planned_at"];
     assert_eq!(new, "2026-12-17T08:00:00Z");
     let last = told(&agreed.rosa).await.pop().unwrap();
-    assert!(last.contains("another time is asked of you"), "{last}");
+    assert!(last.contains("another time is proposed to you"), "{last}");
     let refused = agreed.answer(&agreed.rosa, "decline").await.good();
     assert_eq!(refused["planned_at"], "2026-12-15T07:00:00Z");
     assert_eq!(refused["state"], "accepted");

@@ -300,7 +300,7 @@ async fn no_firm_is_asked_that_may_not_adjust_her(shore: Shore) {
     assert!(
         refused
             .text
-            .contains("does not hold the licence that she asks for, NO-7"),
+            .contains("does not hold the licence that the vessel requires, NO-7"),
         "{refused:?}"
     );
     some["licences"] = json!(["NO-7"]);

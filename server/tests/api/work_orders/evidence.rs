@@ -86,7 +86,7 @@ async fn the_record_can_be_had_in_each_form(shore: Shore) {
                 // Of each sheet, what it is.
                 let sheets = text.matches("<g transform").count();
                 assert!(sheets > 0, "{text}");
-                let says = text.matches("A prediction, and no certificate.").count();
+                let says = text.matches("A prediction, not a certificate.").count();
                 assert_eq!(says, sheets);
             }
         }
@@ -205,7 +205,7 @@ fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
         let mut forged = files.clone();
         forge(&mut forged, name, b"CERTIFICATE".to_vec());
         let problems = evidence::verify(&packed(&forged)).problems;
-        assert_eq!(problems, [format!("{name} is no part of this evidence")]);
+        assert_eq!(problems, [format!("{name} is not part of this evidence")]);
     }
     // a log that lost a line by its chain, and one that lost its end by its head.
     let log = String::from_utf8(files["entries.ndjson"].clone()).unwrap();

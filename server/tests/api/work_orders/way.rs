@@ -125,7 +125,7 @@ async fn a_heading_at_sea_that_does_not_agree_is_an_alert(shore: Shore) {
     let path = "/notifications?kind=verification_failed";
     let told = job.person.get(path).await.good();
     let text = told["items"][0]["text"].as_str().unwrap();
-    assert!(text.contains("off what was foretold"), "{text}");
+    assert!(text.contains("off the prediction"), "{text}");
     // And the compass is to be adjusted once more.
     let needs = job.person.get("/needs").await.good();
     let mut causes = needs["items"][0]["causes"].as_array().unwrap().iter();

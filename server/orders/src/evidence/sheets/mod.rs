@@ -50,8 +50,8 @@ fn drawn(text: &str) -> anyhow::Result<(Vec<Sheet>, About)> {
     signed(&mut paper, &record);
     let foot = [
         format!(
-            "A prediction, and no certificate. Work order {}; what headings at sea said since \
-             stands in its log.",
+            "A prediction, not a certificate. Work order {}; its log has the later verification \
+                at sea.",
             word(&record["order"])
         ),
         format!("SHA-256 of record.json: {}", sha256_hex(text.as_bytes())),
@@ -132,7 +132,7 @@ fn head(paper: &mut Paper, record: &Value) {
 fn rests_on(paper: &mut Paper, record: &Value) {
     let (read, check) = (&record["reading"], &record["berth_check"]);
     let (earth, data) = (&record["earth_at_berth"], &record["data"]);
-    paper.title("What it rests on");
+    paper.title("Basis");
     paper.fact(
         "Model",
         &format!(
@@ -187,7 +187,7 @@ fn rests_on(paper: &mut Paper, record: &Value) {
     paper.fact(
         "Shielding factor",
         &format!(
-            "{:.3} ± {:.3}; the field points {:.1}° from where the model has it: {}",
+            "{:.3} ± {:.3}; the field points {:.1}° off the model: {}",
             number(&check["lambda"]),
             number(&check["lambda_sd"]),
             number(&check["consistency_deg"]).abs(),
@@ -238,7 +238,7 @@ fn plan(paper: &mut Paper, record: &Value) {
     let optimality = &plan["optimality"];
     if optimality.is_object() {
         let proven = if optimality["proven"] == true {
-            "proven: no setting of what is on board is better"
+            "proven: no setting of the correctors on board is better"
         } else {
             "not proven: another setting may be better"
         };
@@ -301,7 +301,7 @@ fn photos(paper: &mut Paper, record: &Value) {
     paper.title("Photographs");
     for (index, photo) in photos.iter().enumerate() {
         let caption = match word(&photo["caption"]) {
-            none if none.is_empty() => "without words".to_owned(),
+            none if none.is_empty() => "without caption".to_owned(),
             words => words,
         };
         let says = format!("{caption}; SHA-256 {}", word(&photo["sha256"]));

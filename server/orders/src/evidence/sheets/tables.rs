@@ -54,7 +54,7 @@ pub(super) fn settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result
     for (index, said) in said.enumerate() {
         paper.room_for(3);
         if index == 0 {
-            paper.title("Correctors, as they were said to stand");
+            paper.title("Correctors, as reported");
         }
         let before: Setting = serde_json::from_value(said["before"].clone())?;
         let after: Setting = serde_json::from_value(said["after"].clone())?;
@@ -66,7 +66,7 @@ pub(super) fn settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result
             .map(|((label, before), (_, after))| format!("{label}: {after} (before: {before})"))
             .collect();
         let stands = if moved.is_empty() {
-            "as they were taken to".to_owned()
+            "as assumed".to_owned()
         } else {
             moved.join("; ")
         };
@@ -83,7 +83,7 @@ pub(super) fn settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result
 /// Steps, with the compass readings.
 pub(super) fn steps(paper: &mut Paper, record: &Value) {
     let steps = record["steps_as_read"].as_array();
-    paper.title("Steps, as the compass showed them");
+    paper.title("Steps, as shown by the compass");
     if steps.is_none_or(Vec::is_empty) {
         paper.lines(LEFT, Style::plain(SIZE), "None: nothing had to be moved.");
     }
@@ -126,7 +126,7 @@ pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
             .map(|(part, to)| {
                 let (read, expected) = (&part["read_nt"], &part["expected_nt"]);
                 let figures = format!(
-                    "{to} {} µT, foretold {} ± {}",
+                    "{to} {} µT, predicted {} ± {}",
                     microtesla(read),
                     microtesla(expected),
                     microtesla(&part["standard_error_nt"])
@@ -162,7 +162,7 @@ pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
         .as_array()
         .and_then(|all| all.last());
     if last.is_some_and(|last| last["said"]["verdict"] == "as_planned") {
-        let rests = "What is foretold below rests on the last of these readings.";
+        let rests = "The predictions below are based on the last of these readings.";
         paper.lines(LEFT, Style::plain(SIZE), rests);
     }
     let hidden = &record["not_shown"];
@@ -189,7 +189,7 @@ pub(super) fn predicted(paper: &mut Paper, record: &Value) {
     let tables: Vec<(&str, &Value)> = before.chain(after).collect();
     for some in tables.chunks(PLACES) {
         paper.room_for(30);
-        paper.title("Deviation foretold, with its 95 % band, by compass heading");
+        paper.title("Predicted deviation, with its 95 % band, by compass heading");
         let across = |index: usize| LEFT + 110.0 + (COLUMN + 16.0) * index as f32;
         let cells = |cell: &dyn Fn(&str, &Value) -> String| -> Vec<(f32, String)> {
             let cells = some.iter().enumerate();
@@ -258,6 +258,6 @@ pub(super) fn parameters(paper: &mut Paper, record: &Value) {
             .collect();
         paper.row(Style::plain(SIZE), label, &cells);
     }
-    let says = "Their covariance, whole, stands in record.json.";
+    let says = "The full covariance is in record.json.";
     paper.lines(LEFT, Style::plain(7.0).grey(90), says);
 }

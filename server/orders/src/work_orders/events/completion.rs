@@ -18,6 +18,6 @@ impl Event for Completion {
     }
 
     fn operator_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
-        Some(Headline::new(Kind::Completed, "adjusted, and signed"))
+        Some(Headline::new(Kind::Completed, "adjusted and signed"))
     }
 }

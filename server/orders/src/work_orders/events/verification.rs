@@ -46,7 +46,7 @@ impl SeaVerification {
             Verification::Passed { .. } => Some(Headline::new(Kind::Verified, "verified at sea")),
             Verification::Alarm { .. } => Some(Headline::new(
                 Kind::VerificationFailed,
-                "the sea does not confirm the adjustment",
+                "headings at sea do not confirm the adjustment",
             )),
             Verification::MoreNeeded { .. } => None,
         }

@@ -67,7 +67,7 @@ impl CallMoved {
             (_, CallFit::Fits) => "the port call has moved",
             (_, CallFit::OtherHour) => "the port call has moved, another hour is needed",
             (_, CallFit::NeedsNewDay) => "the port call has moved, a new day is needed",
-            (_, CallFit::NoCall) => "the port call is at another port now",
+            (_, CallFit::NoCall) => "the port call is now at another port",
         };
         Headline::new(Kind::CallMoved, words)
     }
@@ -82,7 +82,7 @@ fn describe(call: &CallChange, planned_at: Time) -> String {
             call.was.describe()
         ),
         Some(is) if is.port != call.was.port => format!(
-            "The port call at {}, {}, is at {} now, {}.",
+            "The port call at {}, {}, is now at {}, {}.",
             call.was.port,
             call.was.describe(),
             is.port,
@@ -90,7 +90,7 @@ fn describe(call: &CallChange, planned_at: Time) -> String {
         ),
         Some(is) if *is == call.was => {
             format!(
-                "The port call at {} is there again, {}.",
+                "The port call at {} is planned again, {}.",
                 is.port,
                 is.describe()
             )
@@ -109,10 +109,10 @@ fn describe(call: &CallChange, planned_at: Time) -> String {
             format!("The job's day still lies in it, but not its hour, {agreed}: agree on another.")
         }
         CallFit::NeedsNewDay => {
-            format!("The job's time, {agreed}, lies in it no more: agree on a new day.")
+            format!("The job's time, {agreed}, no longer lies in it: agree on a new day.")
         }
         CallFit::NoCall => {
-            format!("The job's time, {agreed}, stands without a call: agree on another or cancel.")
+            format!("The job's time, {agreed}, has no call: agree on another or cancel.")
         }
     };
     format!("{became} {what}")

@@ -30,7 +30,7 @@ impl Event for Lapsed {
     fn operator_headline(&self, circumstances: Circumstances) -> Option<Headline> {
         let firm = &self.0.firm.firm_name;
         let words = match circumstances.offer_before {
-            Some(OfferState::Waiting) => format!("{firm} cannot be asked in time"),
+            Some(OfferState::Waiting) => format!("{firm} cannot be offered the job in time"),
             Some(OfferState::Proposed) => format!("no answer in time to the terms of {firm}"),
             _ => format!("no answer in time from {firm}"),
         };

@@ -31,6 +31,6 @@ impl Event for MessageSent {
     }
 
     fn firm_headline(&self, circumstances: Circumstances) -> Option<Headline> {
-        (!circumstances.by_firm).then(|| Headline::new(Kind::Message, "the operator writes"))
+        (!circumstances.by_firm).then(|| Headline::new(Kind::Message, "message from the operator"))
     }
 }

@@ -79,7 +79,7 @@ impl Event for ProposalAccepted {
     }
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
-        Some(Headline::new(Kind::Answered, "your terms are agreed to"))
+        Some(Headline::new(Kind::Answered, "your terms are accepted"))
     }
 
     fn changes_offers(&self) -> bool {

@@ -45,7 +45,10 @@ impl Event for RetimeProposed {
     }
 
     fn firm_headline(&self, _circumstances: Circumstances) -> Option<Headline> {
-        Some(Headline::new(Kind::Offered, "another time is asked of you"))
+        Some(Headline::new(
+            Kind::Offered,
+            "another time is proposed to you",
+        ))
     }
 
     fn changes_offers(&self) -> bool {
@@ -107,7 +110,7 @@ impl Event for RetimeDeclined {
     }
 
     fn firm_headline(&self, circumstances: Circumstances) -> Option<Headline> {
-        let words = "another time is asked of you no more";
+        let words = "the proposal of another time is withdrawn";
         (!circumstances.by_firm).then(|| Headline::new(Kind::Answered, words))
     }
 
