@@ -142,3 +142,56 @@ pub(crate) fn replay<'a>(log: impl Iterator<Item = &'a OrderEvent>) -> OrderStat
     }
     state
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    const FIRM: &str = "0199aa00-0000-7000-8000-000000000003";
+
+    #[test]
+    fn an_event_is_stored_as_it_was_read() {
+        let exchange = json!({ "firm_id": FIRM, "firm_name": "Rosa", "fee_eur": 900.0 });
+        let text = json!({ "text": "Crane alongside." });
+        let kinds = [
+            "asked",
+            "accepted",
+            "declined",
+            "proposed",
+            "proposal_accepted",
+            "proposal_declined",
+            "lapsed",
+            "retime_proposed",
+            "retime_accepted",
+            "retime_declined",
+            "retime_lapsed",
+            "message",
+        ];
+        let exchanges = kinds.map(|kind| (kind, exchange.clone()));
+        let texts = ["remark", "closed", "cancelled"].map(|kind| (kind, text.clone()));
+        let round = json!({
+            "firms": [exchange], "answer_within_hours": 48, "at_once": false,
+        });
+        for (kind, content) in exchanges
+            .into_iter()
+            .chain(texts)
+            .chain([("offered", round)])
+        {
+            let stored = json!({ "kind": kind, "content": content });
+            let event: OrderEvent = serde_json::from_value(stored.clone()).unwrap();
+            assert_eq!(serde_json::to_value(&event).unwrap(), stored);
+        }
+    }
+
+    #[test]
+    fn an_exchange_is_for_the_operator_and_its_firm_alone() {
+        let content = json!({ "firm_id": FIRM, "firm_name": "Rosa" });
+        let accepted = json!({ "kind": "accepted", "content": content });
+        let event: OrderEvent = serde_json::from_value(accepted).unwrap();
+        let exchange = event.event().exchange().unwrap();
+        let audience = event.event().audience();
+        assert!(audience.includes(exchange.firm.firm_id));
+        assert!(!audience.includes(binnacle_platform::ids::FirmId::new()));
+    }
+}
