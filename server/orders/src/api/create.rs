@@ -73,7 +73,7 @@ async fn open<'a>(
     author: Author,
 ) -> Result<Change<'a>> {
     let (vessel, compass) = (new.vessel_id, new.compass_id);
-    let (vessel_name, compass_name) = store::names(&mut tx, operator, vessel, compass).await?;
+    let (vessel_name, compass_name) = store::find_names(&mut tx, operator, vessel, compass).await?;
     if store::is_under_way(&mut tx, vessel, compass).await? {
         return Err(Error::WrongState(
             "another order of this compass is under way".to_owned(),

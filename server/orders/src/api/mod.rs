@@ -72,7 +72,7 @@ async fn log_order(
 ) -> Response {
     let mut ids = path.iter().map(|(_, value)| Uuid::parse_str(value));
     if let Some(order) = ids.find_map(std::result::Result::ok) {
-        context.concerns_order(OrderId(order), store::vessel_of);
+        context.concerns_order(OrderId(order), store::find_vessel);
     }
     context.log_reads_of_firms();
     next.run(request).await
@@ -123,9 +123,9 @@ async fn list_entries(
     Id(id): Id<OrderId>,
     page: Page,
 ) -> Result<Json<LineList>> {
-    let summary = store::summary(&app.db, reader.tenant, id).await?;
+    let summary = store::find_summary(&app.db, reader.tenant, id).await?;
     let after = page.after_number()?;
-    let found = store::lines(&app.db, summary.vessel_id, id, after, page.fetch()).await?;
+    let found = store::list_lines(&app.db, summary.vessel_id, id, after, page.fetch()).await?;
     let listed = page.cut(found, |(seq, _, _)| seq.to_string());
     let read = |(seq, line, sha256): (i64, String, String)| {
         let entry: Entry = serde_json::from_str(&line)?;

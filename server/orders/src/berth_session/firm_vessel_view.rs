@@ -62,7 +62,7 @@ async fn find_order_binnacle(
 
 /// Returns the order, if the reader may read this of its compass now.
 async fn open(app: &App, reader: &PartyReader, id: OrderId, what: &'static str) -> Result<Summary> {
-    let summary = store::summary(&app.db, reader.tenant, id).await?;
+    let summary = store::find_summary(&app.db, reader.tenant, id).await?;
     if reader.tenant.firm().is_some() && !summary.state.is_under_way() {
         return Err(Error::NotFound(what));
     }

@@ -140,9 +140,9 @@ pub(crate) async fn refuse_magnetic_cargo(
 pub(crate) fn require_within_limits(state: &OrderState) -> Result<()> {
     let basis = state.reading.as_ref().and_then(|read| read.basis.as_ref());
     let followed = state.plan.as_ref().zip(basis);
-    let beyond =
+    let violation =
         followed.and_then(|(plan, basis)| plan.plan.limit_violation(&state.limits, &basis.waters));
-    match beyond {
+    match violation {
         Some(refused) => Err(not_adjustable(vec![Refusal::from(&refused)])),
         None => Ok(()),
     }
@@ -159,12 +159,12 @@ pub(crate) async fn require_total_turn(
     state: &OrderState,
     plan_request: PlanRequest,
 ) -> Result<()> {
-    let looked = state.inspected_steps == state.steps.len();
+    let all_inspected = state.inspected_steps == state.steps.len();
     let read = (plan_request.given.compass_deg, plan_request.compass_deg);
     let (Some(first_deg), Some(now_deg)) = read else {
         return Ok(());
     };
-    if state.confirmed_prediction().is_some() || looked {
+    if state.confirmed_prediction().is_some() || all_inspected {
         return Ok(());
     }
     let in_all = slots.run(move || {
@@ -190,19 +190,19 @@ pub(crate) async fn predict(
     slots: &CorrectorPlanSlots,
     state: &OrderState,
 ) -> Result<UpdatedPrediction> {
-    if let Some(learnt) = state.confirmed_prediction() {
-        return Ok(learnt.clone());
+    if let Some(prediction) = state.confirmed_prediction() {
+        return Ok(prediction.clone());
     }
     let plan_request = state.plan_request()?;
     let (limits, waters) = (state.limits, plan_request.basis.waters.clone());
     let steps = state.steps.clone();
-    let learnt = slots
+    let prediction = slots
         .run(move || predict_by_compass(&plan_request.adjustment(), &steps))
         .await?;
-    let Some(beyond) = learnt.limit_violation(&limits, &waters) else {
-        return Ok(learnt);
+    let Some(violation) = prediction.limit_violation(&limits, &waters) else {
+        return Ok(prediction);
     };
-    let mut refusal = Refusal::from(&beyond);
+    let mut refusal = Refusal::from(&violation);
     refusal.words = format!(
         "by the compass readings of the steps, {}: read the field again",
         refusal.words

@@ -149,7 +149,7 @@ async fn headings_until(app: &App, vessel: VesselId, model: &StoredModel) -> Res
     if state.is_some_and(|(state,)| state == State::Verified) {
         return Ok(None);
     }
-    let Some(record) = store::record(&app.db, vessel, order).await? else {
+    let Some(record) = store::find_record(&app.db, vessel, order).await? else {
         return Ok(None);
     };
     let record: Value = serde_json::from_str(&record)?;

@@ -115,7 +115,7 @@ impl RecordedAdjustment {
         };
         Some(PreviousBerth {
             lambda: EarlierLambda::from_berth(self.reading.at, &adjustment).ok()??,
-            stood: binnacle.setting.clone(),
+            setting: binnacle.setting.clone(),
         })
     }
 }

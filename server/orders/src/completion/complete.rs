@@ -68,7 +68,7 @@ pub(crate) async fn complete(
         .with_setting(setting)
         .map_err(binnacle_fleet::binnacles::invalid_binnacle)?;
     let account = &change.author.name;
-    let record = record::text(
+    let record = record::make_record(
         vessel_and_compass,
         &change.stored,
         &prediction,
@@ -131,7 +131,7 @@ pub(crate) async fn complete(
     let port = change.stored.summary.port.clone();
     write_logbook(change, completed.logbook_entry, at, &port).await?;
     let summary = change.stored.summary.clone();
-    store::complete(&mut change.tx, &summary, at, change.now, &record).await?;
+    store::store_completion(&mut change.tx, &summary, at, change.now, &record).await?;
     change
         .append(OrderEvent::Completion(Box::new(completed)))
         .await?;

@@ -135,8 +135,8 @@ async fn find_photo(
     reader: PartyReader,
     Id((id, photo)): Id<(OrderId, PhotoId)>,
 ) -> Result<Response> {
-    let summary = store::summary(&app.db, reader.tenant, id).await?;
-    let found = store::photo(&app.db, summary.vessel_id, id, photo).await?;
+    let summary = store::find_summary(&app.db, reader.tenant, id).await?;
+    let found = store::find_photo(&app.db, summary.vessel_id, id, photo).await?;
     let (media_type, bytes) = found.ok_or(Error::NotFound("photograph"))?;
     let headers = [
         (CONTENT_TYPE, media_type.as_str()),
@@ -267,8 +267,8 @@ async fn find_record(
     reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Response> {
-    let summary = store::summary(&app.db, reader.tenant, id).await?;
-    let record = store::record(&app.db, summary.vessel_id, id).await?;
+    let summary = store::find_summary(&app.db, reader.tenant, id).await?;
+    let record = store::find_record(&app.db, summary.vessel_id, id).await?;
     let headers = [(CONTENT_TYPE, "application/json")];
     Ok((headers, record.ok_or_else(no_record)?).into_response())
 }
@@ -330,8 +330,8 @@ async fn render_record<T: Send + 'static>(
     id: OrderId,
     make: fn(&str) -> anyhow::Result<T>,
 ) -> Result<T> {
-    let summary = store::summary(&app.db, reader.tenant, id).await?;
-    let record = store::record(&app.db, summary.vessel_id, id).await?;
+    let summary = store::find_summary(&app.db, reader.tenant, id).await?;
+    let record = store::find_record(&app.db, summary.vessel_id, id).await?;
     let record = record.ok_or_else(no_record)?;
     Ok(tokio::task::spawn_blocking(move || make(&record)).await??)
 }
@@ -358,14 +358,14 @@ async fn find_evidence(
 ) -> Result<Response> {
     let stored = store::find(&app.db, reader.tenant, id).await?;
     let vessel = stored.summary.vessel_id;
-    let record = store::record(&app.db, vessel, id).await?;
+    let record = store::find_record(&app.db, vessel, id).await?;
     let record = record.ok_or_else(no_record)?;
     let mut files = vec![File {
         name: "predicted.csv".to_owned(),
         bytes: predicted_csv(&record)?.into_bytes(),
     }];
     for (seq, photo) in photos(&stored) {
-        let found = store::photo(&app.db, vessel, id, photo.photo).await?;
+        let found = store::find_photo(&app.db, vessel, id, photo.photo).await?;
         let (_, bytes) = found.ok_or_else(|| anyhow::anyhow!("a photograph is missing"))?;
         let name = photo.file(seq);
         files.push(File { name, bytes });
@@ -374,7 +374,7 @@ async fn find_evidence(
         name: "record.json".to_owned(),
         bytes: record.clone().into_bytes(),
     });
-    let lines = store::lines(&app.db, vessel, id, None, i64::MAX).await?;
+    let lines = store::list_lines(&app.db, vessel, id, None, i64::MAX).await?;
     // An entry written meanwhile is left for the next archive.
     let lines = lines.into_iter().zip(&stored.log);
     let lines = lines.map(|((_, line, sha256), entry)| {

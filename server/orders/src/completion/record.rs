@@ -26,7 +26,7 @@ pub(crate) struct VesselAndCompass {
 }
 
 /// Makes the record of an order that is being completed.
-pub(crate) fn text(
+pub(crate) fn make_record(
     vessel: &VesselAndCompass,
     stored: &StoredOrder,
     prediction: &UpdatedPrediction,

@@ -134,7 +134,7 @@ async fn send_message(
     let update = prepare_update(&app, request, writer, id, key, "message", &new)?;
     require_own_firm(writer.tenant, new.firm_id)?;
     let text = message(&new.text)?;
-    let summary = store::summary(&app.db, writer.tenant, id).await?;
+    let summary = store::find_summary(&app.db, writer.tenant, id).await?;
     if summary.state.is_over() {
         return Err(Error::WrongState(
             "the order is closed or cancelled".to_owned(),
@@ -144,7 +144,7 @@ async fn send_message(
         let offers = change.stored.state().offers;
         let said = Exchange {
             text: Some(text),
-            ..Exchange::with(partner(&offers, writer.tenant, new.firm_id)?.firm())
+            ..Exchange::with(addressee(&offers, writer.tenant, new.firm_id)?.firm())
         };
         change
             .append(OrderEvent::Message(MessageSent(said)))
@@ -155,12 +155,12 @@ async fn send_message(
 }
 
 /// Firm that a message is from or to.
-fn partner(offers: &Offers, tenant: Tenant, named: Option<FirmId>) -> Result<&Offer> {
-    let wanted = tenant.firm().or(named);
+fn addressee(offers: &Offers, tenant: Tenant, named: Option<FirmId>) -> Result<&Offer> {
+    let firm = tenant.firm().or(named);
     let seen =
-        |offer: &&Offer| offer.state.is_seen() && wanted.is_none_or(|firm| firm == offer.firm_id);
+        |offer: &&Offer| offer.state.is_seen() && firm.is_none_or(|firm| firm == offer.firm_id);
     let mut found: Vec<&Offer> = offers.all.iter().filter(seen).collect();
-    if wanted.is_none() {
+    if firm.is_none() {
         // One of several firms with an offer may have accepted already.
         let holder = found
             .iter()

@@ -34,7 +34,7 @@ pub async fn attach_new_calls(
         if !order.is_adrift {
             continue;
         }
-        let Some((port, gone)) = port_and_lost_call(tx, vessel, order.id).await? else {
+        let Some((port, lost)) = port_and_lost_call(tx, vessel, order.id).await? else {
             continue;
         };
         let lies_in = |call: &Alongside| {
@@ -45,11 +45,11 @@ pub async fn attach_new_calls(
             continue;
         };
         call_links::link(tx, vessel, order.id, *id).await?;
-        if let Some(gone) = gone {
+        if let Some(lost) = lost {
             let moving = CallUpdate {
-                call_id: gone.call_id,
+                call_id: lost.call_id,
                 then_id: *id,
-                was: gone.is.unwrap_or(gone.was),
+                was: lost.is.unwrap_or(lost.was),
                 is: Some(is.clone()),
             };
             events.extend(
@@ -68,7 +68,7 @@ async fn port_and_lost_call(
 ) -> Result<Option<(String, Option<CallChange>)>> {
     let stored = store::lock(tx, vessel, order).await?;
     let state = stored.state();
-    let meant = || named_port(&stored.summary.port).map(|port| port.code.to_string());
-    let port = state.port.or_else(meant);
+    let named = || named_port(&stored.summary.port).map(|port| port.code.to_string());
+    let port = state.port.or_else(named);
     Ok(port.map(|port| (port, state.call_change)))
 }

@@ -76,8 +76,8 @@ async fn offer_work_order(
 /// the reason.
 async fn vessel_of(app: &App, tenant: Tenant, id: OrderId) -> Result<VesselId> {
     match tenant {
-        Tenant::Firm(firm) => store::vessel_of_asked(&app.db, firm, id).await,
-        Tenant::Operator(_) => Ok(store::summary(&app.db, tenant, id).await?.vessel_id),
+        Tenant::Firm(firm) => store::find_vessel_for_firm(&app.db, firm, id).await,
+        Tenant::Operator(_) => Ok(store::find_summary(&app.db, tenant, id).await?.vessel_id),
     }
 }
 

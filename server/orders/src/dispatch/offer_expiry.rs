@@ -35,11 +35,11 @@ pub async fn watch(app: App) {
 pub async fn lapse(app: &App) -> Result<usize> {
     let mut went_on = 0;
     loop {
-        let overdue = store::overdue(&app.db, app.clock.now().into(), BATCH_SIZE).await?;
+        let overdue = store::list_overdue(&app.db, app.clock.now().into(), BATCH_SIZE).await?;
         let found = overdue.len();
         let before = went_on;
         for (vessel, order) in overdue {
-            match lapse_of(app, vessel, order).await {
+            match lapse_order(app, vessel, order).await {
                 Ok(is_new) => went_on += usize::from(is_new),
                 Err(error) => error!(?error, %order, "an overdue answer cannot lapse"),
             }
@@ -50,7 +50,7 @@ pub async fn lapse(app: &App) -> Result<usize> {
     }
 }
 
-async fn lapse_of(app: &App, vessel: VesselId, order: OrderId) -> Result<bool> {
+async fn lapse_order(app: &App, vessel: VesselId, order: OrderId) -> Result<bool> {
     let mut change = Change::by_server(app, vessel, order).await?;
     let offers = change.stored.state().offers;
     let overdue: Vec<_> = offers

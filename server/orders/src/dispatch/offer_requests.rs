@@ -107,7 +107,7 @@ impl NewOffer {
             if firms.iter().any(|one| one.firm.firm_id == firm_id) {
                 return invalid("firms", format!("{firm_id} is listed twice"));
             }
-            let Some(firm_name) = firms::name_for(tx, operator, firm_id).await? else {
+            let Some(firm_name) = firms::find_name(tx, operator, firm_id).await? else {
                 return invalid(
                     "firms",
                     format!("{firm_id} is not a firm that works for you"),
@@ -116,7 +116,7 @@ impl NewOffer {
             let fee_eur = if let Some(fee) = self.fees_eur.get(&firm_id) {
                 Some(*fee)
             } else {
-                let terms = firms::terms_for(tx, operator, firm_id).await?;
+                let terms = firms::find_terms(tx, operator, firm_id).await?;
                 terms.map(|terms| f64::from(terms.fee_eur))
             };
             let firm = NamedFirm { firm_id, firm_name };
@@ -342,27 +342,29 @@ pub(crate) async fn answer_as_firm(
     if !gives_back && offer.answer_by.is_some_and(|by| by < change.now) {
         return wrong(OfferState::Lapsed.reason_closed());
     }
-    let asked = offer.firm();
+    let named_firm = offer.firm();
     match says {
         FirmAnswer::Accept(answer) => {
             let at = change.stored.summary.planned_at;
             require_future_job(change, at)?;
-            require_capacity(change, &asked, at, Requester::Firm).await?;
+            require_capacity(change, &named_firm, at, Requester::Firm).await?;
             let taken = Exchange {
                 fee_eur: offer.fee_eur,
-                ..answer.into_exchange(asked)
+                ..answer.into_exchange(named_firm)
             };
             change.append(OrderEvent::Accepted(Accepted(taken))).await
         }
         FirmAnswer::Decline(answer) => {
             change
-                .append(OrderEvent::Declined(Declined(answer.into_exchange(asked))))
+                .append(OrderEvent::Declined(Declined(
+                    answer.into_exchange(named_firm),
+                )))
                 .await?;
             send_next_offers(change).await
         }
         FirmAnswer::Propose(proposal) => {
             let at = proposal.terms.planned_at;
-            require_capacity(change, &asked, at, Requester::Firm).await?;
+            require_capacity(change, &named_firm, at, Requester::Firm).await?;
             if at != change.stored.summary.planned_at {
                 port_call_check::require_vessel_in_port(change, at, "planned_at").await?;
             }
@@ -373,7 +375,7 @@ pub(crate) async fn answer_as_firm(
                 answer_by: Some(until),
                 terms: Some(proposal.terms),
                 text: proposal.text,
-                ..Exchange::with(asked)
+                ..Exchange::with(named_firm)
             };
             change
                 .append(OrderEvent::Proposed(Proposed(proposed)))
@@ -393,8 +395,8 @@ pub(crate) async fn answer_as_operator(
 ) -> Result<()> {
     let offers = change.stored.state().offers;
     let mut proposed = offers.all.iter().filter(|offer| {
-        let meant = answer.firm_id.is_none_or(|firm| firm == offer.firm_id);
-        meant && offer.state == OfferState::Proposed
+        let is_addressed = answer.firm_id.is_none_or(|firm| firm == offer.firm_id);
+        is_addressed && offer.state == OfferState::Proposed
     });
     let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
     let Some(offer) = proposed.next() else {

@@ -13,13 +13,13 @@ use binnacle_platform::time::Time;
 const HOUR_S: f64 = 3600.0;
 
 /// Deadline for an answer to an offer that is sent now.
-fn due(change: &Change<'_>, hours: u32) -> Time {
+fn deadline(change: &Change<'_>, hours: u32) -> Time {
     Time(change.now.0.plus_seconds(f64::from(hours) * HOUR_S))
 }
 
 /// Refuses a job whose time is past.
 pub(crate) fn require_future_job(change: &Change<'_>, at: Time) -> Result<()> {
-    if latest(at) > change.now {
+    if latest_acceptance(at) > change.now {
         return Ok(());
     }
     Err(Error::WrongState(format!(
@@ -29,34 +29,38 @@ pub(crate) fn require_future_job(change: &Change<'_>, at: Time) -> Result<()> {
 }
 
 /// Latest acceptance of a job that should have begun, for an adjuster already on the quay.
-fn latest(at: Time) -> Time {
+fn latest_acceptance(at: Time) -> Time {
     Time(at.0.plus_seconds(HOUR_S))
 }
 
 /// Deadline for an answer: the begin of the job at the latest, if that is ahead or just past.
 pub(crate) fn answer_by(change: &Change<'_>, within_hours: u32, at: Time) -> Time {
-    let due = due(change, within_hours);
-    let ends = if at > change.now { at } else { latest(at) };
-    if ends > change.now {
-        due.min(ends)
+    let deadline = deadline(change, within_hours);
+    let ends = if at > change.now {
+        at
     } else {
-        due
+        latest_acceptance(at)
+    };
+    if ends > change.now {
+        deadline.min(ends)
+    } else {
+        deadline
     }
 }
 
-/// Deadline that leaves time for the firms after the next `asked` ones: the time until the job,
+/// Deadline that leaves time for the firms after the next `sent` ones: the time until the job,
 /// less their notice, is shared among all. `None` if nobody follows.
 pub(crate) async fn share_deadline(
     change: &mut Change<'_>,
     offers: &Offers,
-    asked: usize,
+    sent: usize,
 ) -> Result<Option<Time>> {
     let at = change.stored.summary.planned_at;
     let left_s = at.0.seconds_since(change.now.0);
     let (mut turns, mut share_s) = (1.0, f64::INFINITY);
     let waiting = offers.all.iter();
     let waiting = waiting.filter(|offer| offer.state == OfferState::Waiting);
-    for offer in waiting.skip(asked) {
+    for offer in waiting.skip(sent) {
         let lead_s = lead_time_s(change, offer.firm_id).await?;
         if left_s > lead_s {
             turns += 1.0;
@@ -70,7 +74,7 @@ pub(crate) async fn share_deadline(
 /// Notice that a firm requires by its terms, seconds.
 async fn lead_time_s(change: &mut Change<'_>, firm: FirmId) -> Result<f64> {
     let operator = change.stored.summary.operator_id;
-    let terms = firms::terms_for(&mut change.tx, operator, firm).await?;
+    let terms = firms::find_terms(&mut change.tx, operator, firm).await?;
     Ok(terms.map_or(0.0, |terms| terms.lead_time_h * HOUR_S))
 }
 
@@ -119,14 +123,14 @@ pub(crate) async fn send_offers(change: &mut Change<'_>) -> Result<()> {
     let share = share_deadline(change, &offers, next.len()).await?;
     let answer_by = share.map_or(until, |share| share.min(until));
     for next in next {
-        let asked = Exchange {
+        let sent = Exchange {
             answer_by: Some(answer_by),
             fee_eur: next.fee_eur,
             text: next.text.clone(),
             ..Exchange::with(next.firm())
         };
         change
-            .append(OrderEvent::OfferSent(OfferSent(asked)))
+            .append(OrderEvent::OfferSent(OfferSent(sent)))
             .await?;
     }
     Ok(())

@@ -13,7 +13,7 @@ use binnacle_platform::time::Time;
 use binnacle_schedule::ports::{Port, PortCode};
 
 /// Ports of a vessel's calls at a time.
-async fn ports_of(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Vec<(String,)>> {
+async fn ports_at(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Vec<(String,)>> {
     Ok(rows!(
         in tx,
         (String,),
@@ -26,7 +26,7 @@ async fn ports_of(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Vec<(String
 }
 
 /// Calls of a vessel at a port that are not past.
-async fn coming(
+async fn coming_calls(
     tx: &mut Tx,
     vessel: VesselId,
     port: PortCode,
@@ -59,36 +59,36 @@ pub(crate) async fn require_vessel_in_port(
     field: &'static str,
 ) -> Result<()> {
     let (vessel, port) = (change.stored.summary.vessel_id, &change.stored.summary.port);
-    let Some(meant) = named_port(port) else {
+    let Some(named) = named_port(port) else {
         return Ok(());
     };
-    let there = ports_of(&mut change.tx, vessel, at).await?;
+    let there = ports_at(&mut change.tx, vessel, at).await?;
     let there: Vec<&Port> = there
         .iter()
         .filter_map(|(code,)| named_port(code))
         .collect();
     let Some(other) = there.first() else {
-        return require_port_call(change, meant, at, field).await;
+        return require_port_call(change, named, at, field).await;
     };
-    if there.iter().any(|port| port.code == meant.code) {
+    if there.iter().any(|port| port.code == named.code) {
         return Ok(());
     }
     let detail = format!(
         "by its port calls the vessel is at {} ({}) then, not at {} ({})",
-        other.name, other.code, meant.name, meant.code
+        other.name, other.code, named.name, named.code
     );
     Err(Error::Invalid { field, detail })
 }
 
 async fn require_port_call(
     change: &mut Change<'_>,
-    meant: &Port,
+    named: &Port,
     at: Time,
     field: &'static str,
 ) -> Result<()> {
     let vessel = change.stored.summary.vessel_id;
-    let calls = coming(&mut change.tx, vessel, meant.code, change.now).await?;
-    let port = meant.code.to_string();
+    let calls = coming_calls(&mut change.tx, vessel, named.code, change.now).await?;
+    let port = named.code.to_string();
     let is_that_day =
         |call: &Alongside| matches!(call.fit(&port, at), CallFit::Fits | CallFit::OtherHour);
     if calls.is_empty() || calls.iter().any(is_that_day) {
@@ -98,7 +98,7 @@ async fn require_port_call(
     let detail = format!(
         "by its port calls the vessel is at {} ({port}) {}, not on the day of {}: choose a time \
             in a call, or enter the missing call",
-        meant.name,
+        named.name,
         there.join(", "),
         at.to_the_minute()
     );

@@ -148,7 +148,7 @@ async fn accept_retime(
         &answer,
     )?;
     let answer = answer.checked(writer.tenant)?;
-    let summary = store::summary(&app.db, writer.tenant, id).await?;
+    let summary = store::find_summary(&app.db, writer.tenant, id).await?;
     let Tenant::Firm(firm) = writer.tenant else {
         return Err(Error::WrongState(
             "only the firm that has the order can accept another time".to_owned(),
@@ -209,7 +209,7 @@ async fn decline_retime(
         &answer,
     )?;
     let answer = answer.checked(writer.tenant)?;
-    let summary = store::summary(&app.db, writer.tenant, id).await?;
+    let summary = store::find_summary(&app.db, writer.tenant, id).await?;
     if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
         let offer = holder(&change)?;
         if writer
@@ -275,9 +275,9 @@ async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
         return Ok(Some(port));
     }
     let call = call_links::call_at(&mut change.tx, vessel, planned_at).await?;
-    let meant = named_port(&change.stored.summary.port).map(|port| port.code.to_string());
-    let is_hers = |port: &String| meant.as_ref().is_none_or(|meant| meant == port);
-    Ok(call.map(|call| call.port).filter(is_hers))
+    let named = named_port(&change.stored.summary.port).map(|port| port.code.to_string());
+    let is_orders_port = |port: &String| named.as_ref().is_none_or(|named| named == port);
+    Ok(call.map(|call| call.port).filter(is_orders_port))
 }
 
 /// Refuses a time at which the vessel is not there, or the firm has no team.

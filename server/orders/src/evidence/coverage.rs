@@ -50,14 +50,14 @@ pub(super) fn report_coverage(
         covers.join(", "),
         head.entries
     ));
-    let mut beyond: Vec<String> = later.into_iter().cloned().collect();
+    let mut uncovered: Vec<String> = later.into_iter().cloned().collect();
     if entries > head.entries {
-        beyond.push(format!("the log's entries from {}", head.entries + 1));
+        uncovered.push(format!("the log's entries from {}", head.entries + 1));
     }
-    if !beyond.is_empty() {
+    if !uncovered.is_empty() {
         found.facts.push(format!(
             "no signature covers {}: they were written with the record or after it",
-            beyond.join(", ")
+            uncovered.join(", ")
         ));
     }
     if files.get("README.txt").map(Vec::as_slice) != Some(super::README.as_bytes()) {

@@ -188,7 +188,7 @@ pub async fn require_capacity(
 ) -> Result<()> {
     // Other bookings of the firm wait.
     execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
-    let said = store::terms_of(tx, firm).await?;
+    let said = store::list_terms(tx, firm).await?;
     let said: Vec<(OperatorId, Terms)> = said
         .into_iter()
         .map(|(operator, text)| Ok((operator, serde_json::from_str(&text)?)))

@@ -143,7 +143,7 @@ async fn dismiss_firm(
 ) -> Result<StatusCode> {
     admin.who_may_write()?;
     let mut tx = request.begin().await?;
-    let orders = store::orders_between(&mut tx, operator, firm).await?;
+    let orders = store::count_open_orders(&mut tx, operator, firm).await?;
     if !store::dismiss(&mut tx, operator, firm).await? {
         return Err(Error::NotFound("firm"));
     }

@@ -13,8 +13,8 @@ mod terms;
 pub use capacity::{
     Booking, Requester, Visit, bookings, named_port, require_capacity, teams_taken,
 };
-pub use store::{create, engage, exists, name_for};
-pub use terms::{Terms, TermsChanged, of_operator, terms_for};
+pub use store::{create, engage, exists, find_name};
+pub use terms::{Terms, TermsChanged, find_terms, of_operator};
 
 use axum::extract::FromRef;
 use binnacle_platform::app::App;

@@ -50,7 +50,7 @@ pub async fn exists(tx: &mut Tx, id: FirmId) -> Result<bool> {
 }
 
 /// Finds the name of a firm that works for an operator.
-pub async fn name_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<String>> {
+pub async fn find_name(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<String>> {
     let found = row!(
         in tx,
         (String,),
@@ -90,7 +90,11 @@ pub(super) async fn dismiss(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> 
 
 /// Counts an operator's unfinished orders that a firm has been offered or has. Other bookings of
 /// the firm wait for the transaction.
-pub(super) async fn orders_between(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<i64> {
+pub(super) async fn count_open_orders(
+    tx: &mut Tx,
+    operator: OperatorId,
+    firm: FirmId,
+) -> Result<i64> {
     execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
     let found = row!(
         in tx,
@@ -144,7 +148,7 @@ pub(super) async fn remove_terms(tx: &mut Tx, operator: OperatorId, firm: FirmId
 }
 
 /// Lists the firms that work for an operator: id, name, and terms if any.
-pub(super) async fn with_terms(
+pub(super) async fn list_with_terms(
     db: &Db,
     operator: OperatorId,
 ) -> Result<Vec<(FirmId, String, Option<String>)>> {
@@ -160,7 +164,7 @@ pub(super) async fn with_terms(
 }
 
 /// Lists a firm's terms, for all its operators.
-pub(super) async fn terms_of(tx: &mut Tx, firm: FirmId) -> Result<Vec<(OperatorId, String)>> {
+pub(super) async fn list_terms(tx: &mut Tx, firm: FirmId) -> Result<Vec<(OperatorId, String)>> {
     rows!(
         in tx,
         (OperatorId, String),

@@ -72,26 +72,26 @@ pub struct Terms {
     #[schema(value_type = f64, minimum = 0, maximum = 1_000_000)]
     pub extra_compass_eur: Eur,
     /// Teams for you on a working day; 1 by default.
-    #[serde(default = "one")]
+    #[serde(default = "default_count")]
     #[schema(maximum = 1000)]
     pub teams: u32,
     /// Jobs of a team on one day in one port; 1 by default.
-    #[serde(default = "one")]
+    #[serde(default = "default_count")]
     #[schema(minimum = 1, maximum = 20)]
     pub jobs_a_team_day: u32,
     /// Working days of the week, as `Mon`; Monday to Friday by default.
-    #[serde(default = "working_week")]
+    #[serde(default = "default_working_days")]
     #[schema(value_type = Vec<String>)]
     pub working_days: Vec<Weekday>,
     /// Days without work.
     #[serde(default)]
     pub closed: Vec<NaiveDate>,
     /// Hour at which its day begins, in the port's time; 8 by default.
-    #[serde(default = "eight")]
+    #[serde(default = "default_first_hour")]
     #[schema(minimum = 0, maximum = 24)]
     pub first_hour: f64,
     /// Hour at which its day ends; 18 by default.
-    #[serde(default = "eighteen")]
+    #[serde(default = "default_last_hour")]
     #[schema(minimum = 0, maximum = 24)]
     pub last_hour: f64,
     /// Notice before a job, hours.
@@ -120,20 +120,20 @@ struct ServedPortSchema {
     travel_eur: f64,
 }
 
-fn one() -> u32 {
+fn default_count() -> u32 {
     1
 }
 
-fn working_week() -> Vec<Weekday> {
+fn default_working_days() -> Vec<Weekday> {
     use Weekday::{Fri, Mon, Thu, Tue, Wed};
     vec![Mon, Tue, Wed, Thu, Fri]
 }
 
-fn eight() -> f64 {
+fn default_first_hour() -> f64 {
     8.0
 }
 
-fn eighteen() -> f64 {
+fn default_last_hour() -> f64 {
     18.0
 }
 
@@ -179,13 +179,13 @@ pub async fn of_operator(
         let terms = text.map(|text| serde_json::from_str(&text)).transpose()?;
         Ok((id, name, terms))
     };
-    let found = store::with_terms(db, operator).await?;
+    let found = store::list_with_terms(db, operator).await?;
     found.into_iter().map(read).collect()
 }
 
 /// Returns the terms of a firm for an operator, if any.
-pub async fn terms_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<Terms>> {
-    let said = store::terms_of(tx, firm).await?;
+pub async fn find_terms(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<Terms>> {
+    let said = store::list_terms(tx, firm).await?;
     let said = said.into_iter().find(|(whose, _)| *whose == operator);
     let terms = said.map(|(_, text)| serde_json::from_str(&text));
     Ok(terms.transpose()?)
@@ -211,7 +211,7 @@ async fn set_terms(
     let terms = terms.checked()?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
-    let name = store::name_for(&mut tx, writer.operator, firm)
+    let name = store::find_name(&mut tx, writer.operator, firm)
         .await?
         .ok_or(Error::NotFound("firm"))?;
     let by = session::name_of(&mut tx, writer.user).await?;

@@ -90,7 +90,7 @@ pub async fn after_analysis(
     samples: &[SampleDiagnostic],
     now: Time,
 ) -> Result<Vec<Event>> {
-    let last = store::last_completed(tx, vessel, compass).await?;
+    let last = store::find_last_completed(tx, vessel, compass).await?;
     let Some((order, State::Adjusted, _)) = last else {
         return Ok(Vec::new());
     };
@@ -125,7 +125,7 @@ pub async fn after_analysis(
     }
     if matches!(verified.verification, Verification::Passed { .. }) {
         let text = serde_json::to_string(&verified)?;
-        store::verified(tx, &stored.summary, now, &text).await?;
+        store::store_verification(tx, &stored.summary, now, &text).await?;
     }
     let author = Author::server();
     let content = OrderEvent::Verification(Box::new(verified));
@@ -151,7 +151,7 @@ pub async fn unconfirmed_adjustment(
     vessel: VesselId,
     compass: CompassId,
 ) -> Result<Option<UnconfirmedAdjustment>> {
-    let last = store::last_completed(tx, vessel, compass).await?;
+    let last = store::find_last_completed(tx, vessel, compass).await?;
     let Some((order, State::Failed, adjusted_at)) = last else {
         return Ok(None);
     };

@@ -74,11 +74,11 @@ impl Offers {
     }
 
     /// Records a proposal of another time to the firm that has the order.
-    pub(crate) fn propose_retime(&mut self, said: &Exchange) {
-        if let Some(offer) = self.to_firm_mut(said.firm.firm_id) {
-            offer.answer_by = said.answer_by;
-            offer.new_terms.clone_from(&said.terms);
-            offer.text.clone_from(&said.text);
+    pub(crate) fn propose_retime(&mut self, exchange: &Exchange) {
+        if let Some(offer) = self.to_firm_mut(exchange.firm.firm_id) {
+            offer.answer_by = exchange.answer_by;
+            offer.new_terms.clone_from(&exchange.terms);
+            offer.text.clone_from(&exchange.text);
         }
     }
 
@@ -94,22 +94,22 @@ impl Offers {
     }
 
     /// Records an answer to the offer to a firm.
-    pub(crate) fn set(&mut self, said: &Exchange, state: OfferState) {
-        let Some(offer) = self.to_firm_mut(said.firm.firm_id) else {
+    pub(crate) fn set(&mut self, exchange: &Exchange, state: OfferState) {
+        let Some(offer) = self.to_firm_mut(exchange.firm.firm_id) else {
             return;
         };
         offer.state = state;
         offer.new_terms = None;
-        offer.answer_by = said.answer_by;
-        offer.terms = said.terms.clone().or(offer.terms.take());
-        offer.text = said.text.clone().or(offer.text.take());
+        offer.answer_by = exchange.answer_by;
+        offer.terms = exchange.terms.clone().or(offer.terms.take());
+        offer.text = exchange.text.clone().or(offer.text.take());
     }
 
     /// Ends a proposal of another time: the agreed terms stand.
-    pub(crate) fn keep_agreed_terms(&mut self, said: &Exchange) {
+    pub(crate) fn keep_agreed_terms(&mut self, exchange: &Exchange) {
         let agreed = Exchange {
             terms: None,
-            ..said.clone()
+            ..exchange.clone()
         };
         self.set(&agreed, OfferState::Accepted);
     }
@@ -206,7 +206,7 @@ impl Offer {
 
     /// Fee by the present terms; the offered fee if they name none.
     pub(crate) fn fee(&self) -> Option<f64> {
-        let said = self.terms.as_ref().and_then(|terms| terms.fee_eur);
-        said.or(self.fee_eur)
+        let exchange = self.terms.as_ref().and_then(|terms| terms.fee_eur);
+        exchange.or(self.fee_eur)
     }
 }

@@ -58,7 +58,7 @@ pub(crate) async fn publish_changes(
     let mut messages = Vec::new();
     for entry in &once {
         if let Some(kind) = entry.content.event().webhook() {
-            messages.push(message(kind, summary, entry, now));
+            messages.push(entry_message(kind, summary, entry, now));
         }
     }
     let operator = Tenant::Operator(summary.operator_id);
@@ -131,7 +131,7 @@ fn messages_for(
     let mut messages = Vec::new();
     for entry in new.iter().filter(|entry| offer.shows(entry)) {
         if let Some(kind) = entry.content.event().webhook() {
-            messages.push(message(kind, &seen, entry, now));
+            messages.push(entry_message(kind, &seen, entry, now));
         }
     }
     if offer.is_withdrawn_since(offer_before)
@@ -139,7 +139,7 @@ fn messages_for(
     {
         // The reason is confidential: another firm may have it.
         let body = json!({ "seq": last.seq, "kind": "withdrawn", "at": last.at });
-        messages.push(written(Kind::OrderWithdrawn, &seen, &body, now));
+        messages.push(message_with_entry(Kind::OrderWithdrawn, &seen, &body, now));
     }
     messages
 }
@@ -184,7 +184,7 @@ fn author(new: &[&Entry]) -> Option<UserId> {
 }
 
 /// Returns the webhook message of an entry.
-fn message(kind: Kind, summary: &Summary, entry: &Entry, now: Time) -> Message {
+fn entry_message(kind: Kind, summary: &Summary, entry: &Entry, now: Time) -> Message {
     let event = entry.content.event();
     let said = event.exchange();
     let name = serde_json::to_value(&entry.content).ok();
@@ -197,11 +197,11 @@ fn message(kind: Kind, summary: &Summary, entry: &Entry, now: Time) -> Message {
         "text": said.and_then(|said| said.text.as_ref()),
         "call": event.call_change(),
     });
-    written(kind, summary, &entry, now)
+    message_with_entry(kind, summary, &entry, now)
 }
 
 /// Body of a message: the order in short, and the event.
-fn written(kind: Kind, summary: &Summary, entry: &Value, now: Time) -> Message {
+fn message_with_entry(kind: Kind, summary: &Summary, entry: &Value, now: Time) -> Message {
     let id = DeliveryId::new();
     let (state, answer_by): (State, Option<Time>) = (summary.state, summary.answer_by);
     let body = json!({

@@ -20,7 +20,7 @@ use values::{minute, number, word};
 /// # Errors
 /// When the text is not an adjustment record.
 pub fn record_pdf(text: &str) -> anyhow::Result<Vec<u8>> {
-    let (sheets, about) = drawn(text)?;
+    let (sheets, about) = draw(text)?;
     pdf(&sheets, &about)
 }
 
@@ -29,25 +29,25 @@ pub fn record_pdf(text: &str) -> anyhow::Result<Vec<u8>> {
 /// # Errors
 /// When the text is not an adjustment record.
 pub fn record_svg(text: &str) -> anyhow::Result<String> {
-    let (sheets, about) = drawn(text)?;
+    let (sheets, about) = draw(text)?;
     Ok(svg(&sheets, &about.title))
 }
 
-fn drawn(text: &str) -> anyhow::Result<(Vec<Sheet>, About)> {
+fn draw(text: &str) -> anyhow::Result<(Vec<Sheet>, About)> {
     let record: Value = serde_json::from_str(text)?;
     let at = record["adjusted_at"].as_str().context("adjusted_at")?;
     let mut paper = Paper::new();
-    head(&mut paper, &record);
-    rests_on(&mut paper, &record);
-    tables::correctors(&mut paper, &record)?;
-    plan(&mut paper, &record);
-    tables::steps(&mut paper, &record);
-    tables::settings_said(&mut paper, &record)?;
-    tables::second_readings(&mut paper, &record);
-    tables::predicted(&mut paper, &record);
-    tables::parameters(&mut paper, &record);
-    photos(&mut paper, &record);
-    signed(&mut paper, &record);
+    draw_head(&mut paper, &record);
+    draw_basis(&mut paper, &record);
+    tables::draw_correctors(&mut paper, &record)?;
+    draw_plan(&mut paper, &record);
+    tables::draw_steps(&mut paper, &record);
+    tables::draw_settings_said(&mut paper, &record)?;
+    tables::draw_second_readings(&mut paper, &record);
+    tables::draw_predicted(&mut paper, &record);
+    tables::draw_parameters(&mut paper, &record);
+    draw_photos(&mut paper, &record);
+    draw_signatures(&mut paper, &record);
     let foot = [
         format!(
             "A prediction, not a certificate. Work order {}; its log has the later verification \
@@ -87,13 +87,13 @@ pub fn predicted_csv(text: &str) -> anyhow::Result<String> {
     Ok(lines.join("\n"))
 }
 
-fn joined(parts: &[String]) -> String {
+fn join_nonempty(parts: &[String]) -> String {
     let given: Vec<&str> = parts.iter().map(String::as_str).collect();
     let given: Vec<&str> = given.into_iter().filter(|part| !part.is_empty()).collect();
     given.join(", ")
 }
 
-fn head(paper: &mut Paper, record: &Value) {
+fn draw_head(paper: &mut Paper, record: &Value) {
     paper.put(LEFT, Style::bold(18.0), "Adjustment record");
     let says = "PREDICTED – NOT A CERTIFICATE";
     paper.put(RIGHT, Style::bold(11.0).end(), says);
@@ -108,11 +108,11 @@ fn head(paper: &mut Paper, record: &Value) {
         ("IMO number", word(&vessel["imo_number"])),
         (
             "Call sign, flag",
-            joined(&[word(&vessel["call_sign"]), word(&vessel["flag"])]),
+            join_nonempty(&[word(&vessel["call_sign"]), word(&vessel["flag"])]),
         ),
         (
             "Compass",
-            joined(&[
+            join_nonempty(&[
                 word(&compass["name"]),
                 word(&compass["make"]),
                 numbered("no.", &compass["serial_number"]),
@@ -120,7 +120,7 @@ fn head(paper: &mut Paper, record: &Value) {
         ),
         (
             "Port, berth",
-            joined(&[word(&record["port"]), word(&record["berth"])]),
+            join_nonempty(&[word(&record["port"]), word(&record["berth"])]),
         ),
         ("Adjusted at", minute(&record["adjusted_at"])),
         ("Work order", word(&record["order"])),
@@ -129,7 +129,7 @@ fn head(paper: &mut Paper, record: &Value) {
     }
 }
 
-fn rests_on(paper: &mut Paper, record: &Value) {
+fn draw_basis(paper: &mut Paper, record: &Value) {
     let (read, check) = (&record["reading"], &record["berth_check"]);
     let (earth, data) = (&record["earth_at_berth"], &record["data"]);
     paper.title("Basis");
@@ -170,7 +170,7 @@ fn rests_on(paper: &mut Paper, record: &Value) {
     paper.fact("Magnetometer", &magnetometer(read));
     paper.fact(
         "Read",
-        &joined(&[
+        &join_nonempty(&[
             minute(&read["at"]),
             if read["steel_nearby"] == true {
                 "steel nearby".to_owned()
@@ -213,7 +213,7 @@ fn magnetometer(read: &Value) -> String {
         "µT" => String::new(),
         other => format!("read in {other}"),
     };
-    joined(&[
+    join_nonempty(&[
         word(&read["magnetometer"]),
         word(&read["magnetometer_serial"]),
         part("forward", "forward"),
@@ -223,14 +223,14 @@ fn magnetometer(read: &Value) -> String {
     ])
 }
 
-fn plan(paper: &mut Paper, record: &Value) {
+fn draw_plan(paper: &mut Paper, record: &Value) {
     let (plan, limits) = (&record["plan"], &record["limits"]);
     paper.title("The plan");
     paper.fact(
         "Followed",
         &format!(
             "{}; worst residual {:.1}°, weighted over the waters; widest band ±{:.1}°",
-            steps_done(record),
+            step_counts(record),
             number(&plan["worst_residual_deg"]),
             number(&plan["widest_band_deg"])
         ),
@@ -279,7 +279,7 @@ fn plan(paper: &mut Paper, record: &Value) {
 }
 
 /// Numbers of steps, including those before a new plan, and of steps that moved correctors.
-fn steps_done(record: &Value) -> String {
+fn step_counts(record: &Value) -> String {
     let steps = record["steps_as_read"].as_array().into_iter().flatten();
     let (moved, read): (Vec<&Value>, Vec<&Value>) = steps.partition(|step| step["moved"] == true);
     let said = |steps: usize| match steps {
@@ -292,7 +292,7 @@ fn steps_done(record: &Value) -> String {
     }
 }
 
-fn photos(paper: &mut Paper, record: &Value) {
+fn draw_photos(paper: &mut Paper, record: &Value) {
     let photos = record["photos"].as_array();
     let photos = photos.filter(|photos| !photos.is_empty());
     let Some(photos) = photos else {
@@ -309,7 +309,7 @@ fn photos(paper: &mut Paper, record: &Value) {
     }
 }
 
-fn signed(paper: &mut Paper, record: &Value) {
+fn draw_signatures(paper: &mut Paper, record: &Value) {
     let adjuster = &record["adjuster"];
     paper.room_for(8);
     paper.title("Signed");

@@ -15,7 +15,7 @@ const COLUMN: f32 = 84.0;
 const PLACES: usize = 5;
 
 /// Corrector settings before and after.
-pub(super) fn correctors(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
+pub(super) fn draw_correctors(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
     let setting = |name: &str| serde_json::from_value::<Setting>(record[name].clone());
     let (before, after) = (setting("setting_before")?, setting("setting_after")?);
     let binnacle: Binnacle = serde_json::from_value(record["binnacle_after"].clone())?;
@@ -48,7 +48,7 @@ fn shape_of(binnacle: &Binnacle, settings: [&Setting; 2]) -> Option<Shape> {
 }
 
 /// Reported corrector settings, beside the steps.
-pub(super) fn settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
+pub(super) fn draw_settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
     let binnacle: Binnacle = serde_json::from_value(record["binnacle_after"].clone())?;
     let said = record["settings_as_said"].as_array().into_iter().flatten();
     for (index, said) in said.enumerate() {
@@ -81,7 +81,7 @@ pub(super) fn settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result
 }
 
 /// Steps, with the compass readings.
-pub(super) fn steps(paper: &mut Paper, record: &Value) {
+pub(super) fn draw_steps(paper: &mut Paper, record: &Value) {
     let steps = record["steps_as_read"].as_array();
     paper.title("Steps, as shown by the compass");
     if steps.is_none_or(Vec::is_empty) {
@@ -110,7 +110,7 @@ pub(super) fn steps(paper: &mut Paper, record: &Value) {
 }
 
 /// Second readings, and the steps that nothing confirmed.
-pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
+pub(super) fn draw_second_readings(paper: &mut Paper, record: &Value) {
     let readings = record["second_readings"].as_array();
     let readings = readings.into_iter().flatten();
     for (index, reading) in readings.enumerate() {
@@ -177,7 +177,7 @@ pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
 }
 
 /// Deviation by heading, before the adjustment at the berth and after it at each place.
-pub(super) fn predicted(paper: &mut Paper, record: &Value) {
+pub(super) fn draw_predicted(paper: &mut Paper, record: &Value) {
     let of = |name: &str| record[name].as_array().into_iter().flatten();
     let before = of("predicted_before")
         .take(1)
@@ -216,7 +216,7 @@ pub(super) fn predicted(paper: &mut Paper, record: &Value) {
 }
 
 /// Parameters over λ with their standard errors, before and as predicted.
-pub(super) fn parameters(paper: &mut Paper, record: &Value) {
+pub(super) fn draw_parameters(paper: &mut Paper, record: &Value) {
     const NAMES: [(&str, &str, f64, &str); 8] = [
         ("bx_nt", "bx/λ", 1e-3, "µT"),
         ("chi13", "χ13/λ", 1.0, ""),

@@ -65,13 +65,14 @@ pub(crate) struct PreviousBerth {
     /// The estimate.
     pub lambda: EarlierLambda,
     /// Setting of the correctors at that time.
-    pub stood: Setting,
+    #[serde(rename = "stood")]
+    pub setting: Setting,
 }
 
 impl PreviousBerth {
     /// Adapts the estimate to the settings of this binnacle.
     pub(crate) fn set_as(&self, binnacle: &Binnacle) -> Option<EarlierLambda> {
-        self.lambda.adapted_to(binnacle, &self.stood)
+        self.lambda.adapted_to(binnacle, &self.setting)
     }
 }
 

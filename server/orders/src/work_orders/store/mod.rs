@@ -7,11 +7,11 @@ mod write;
 
 pub(crate) use idempotency_keys::{find as find_written, once as write_once};
 pub(crate) use queries::{
-    find, last_completed, lines, list, lock, names, overdue, photo, record, summary, vessel_of,
-    vessel_of_asked,
+    find, find_last_completed, find_names, find_photo, find_record, find_summary, find_vessel,
+    find_vessel_for_firm, list, list_lines, list_overdue, lock,
 };
 pub(crate) use stored_order::StoredOrder;
 pub use write::lock_compass;
 pub(crate) use write::{
-    append, complete, insert, insert_photo, is_adjusting, is_under_way, verified,
+    append, insert, insert_photo, is_adjusting, is_under_way, store_completion, store_verification,
 };

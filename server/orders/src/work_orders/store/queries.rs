@@ -75,7 +75,7 @@ pub(crate) async fn list(
 ///
 /// # Errors
 /// [`Error::NotFound`] when there is none.
-pub(crate) async fn summary(db: &Db, tenant: Tenant, id: OrderId) -> Result<Summary> {
+pub(crate) async fn find_summary(db: &Db, tenant: Tenant, id: OrderId) -> Result<Summary> {
     row!(
         db,
         Summary,
@@ -92,7 +92,7 @@ pub(crate) async fn summary(db: &Db, tenant: Tenant, id: OrderId) -> Result<Summ
 }
 
 /// Finds the vessel of an order, for any tenant.
-pub(crate) fn vessel_of(
+pub(crate) fn find_vessel(
     tx: &mut Tx,
     order: OrderId,
 ) -> BoxFuture<'_, db::Result<Option<VesselId>>> {
@@ -108,7 +108,7 @@ pub(crate) fn vessel_of(
 }
 
 /// Finds the vessel of an order that a firm was once offered, whether or not it still sees it.
-pub(crate) async fn vessel_of_asked(db: &Db, firm: FirmId, id: OrderId) -> Result<VesselId> {
+pub(crate) async fn find_vessel_for_firm(db: &Db, firm: FirmId, id: OrderId) -> Result<VesselId> {
     let found = row!(
         db,
         (VesselId,),
@@ -123,7 +123,11 @@ pub(crate) async fn vessel_of_asked(db: &Db, firm: FirmId, id: OrderId) -> Resul
 }
 
 /// Lists orders with an overdue answer, the longest overdue first.
-pub(crate) async fn overdue(db: &Db, now: Time, limit: i64) -> Result<Vec<(VesselId, OrderId)>> {
+pub(crate) async fn list_overdue(
+    db: &Db,
+    now: Time,
+    limit: i64,
+) -> Result<Vec<(VesselId, OrderId)>> {
     Ok(rows!(
         db,
         (VesselId, OrderId),
@@ -167,7 +171,7 @@ pub(crate) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<S
 
 /// Finds an order that the tenant sees, with its log.
 pub(crate) async fn find(db: &Db, tenant: Tenant, id: OrderId) -> Result<StoredOrder> {
-    let summary = summary(db, tenant, id).await?;
+    let summary = find_summary(db, tenant, id).await?;
     let lines = rows!(
         db,
         (String,),
@@ -181,7 +185,7 @@ pub(crate) async fn find(db: &Db, tenant: Tenant, id: OrderId) -> Result<StoredO
 }
 
 /// Lists the original lines of an order's log after a number, with their hashes.
-pub(crate) async fn lines(
+pub(crate) async fn list_lines(
     db: &Db,
     vessel: VesselId,
     id: OrderId,
@@ -204,7 +208,7 @@ pub(crate) async fn lines(
 
 /// Finds the compass's last completed order. One that was closed after headings at sea had
 /// contradicted it still counts as failed.
-pub(crate) async fn last_completed(
+pub(crate) async fn find_last_completed(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
@@ -228,7 +232,7 @@ pub(crate) async fn last_completed(
 ///
 /// # Errors
 /// [`Error::NotFound`] when there is no such vessel or compass.
-pub(crate) async fn names(
+pub(crate) async fn find_names(
     tx: &mut Tx,
     operator: OperatorId,
     vessel: VesselId,
@@ -254,7 +258,7 @@ pub(crate) async fn names(
 }
 
 /// Finds the signed record; `None` before the order is completed.
-pub(crate) async fn record(db: &Db, vessel: VesselId, id: OrderId) -> Result<Option<String>> {
+pub(crate) async fn find_record(db: &Db, vessel: VesselId, id: OrderId) -> Result<Option<String>> {
     let found = row!(
         db,
         (Option<String>,),
@@ -266,7 +270,7 @@ pub(crate) async fn record(db: &Db, vessel: VesselId, id: OrderId) -> Result<Opt
 }
 
 /// Finds a photograph's media type and bytes.
-pub(crate) async fn photo(
+pub(crate) async fn find_photo(
     db: &Db,
     vessel: VesselId,
     order: OrderId,

@@ -184,7 +184,7 @@ async fn write_offers(tx: &mut Tx, stored: &StoredOrder, offers: &Offers) -> Res
 }
 
 /// Stores the completion of an order, with its signed record.
-pub(crate) async fn complete(
+pub(crate) async fn store_completion(
     tx: &mut Tx,
     summary: &Summary,
     completed_at: Time,
@@ -210,7 +210,7 @@ pub(crate) async fn complete(
 }
 
 /// Stores the verification of an adjustment by headings at sea.
-pub(crate) async fn verified(
+pub(crate) async fn store_verification(
     tx: &mut Tx,
     summary: &Summary,
     verified_at: Time,

@@ -45,10 +45,10 @@ pub(crate) struct RevisedStrength {
 
 impl Event for CorrectorMove {
     fn apply(&self, state: &mut OrderState) {
-        let stands = state.setting() == Some(&self.after);
+        let is_unchanged = state.setting() == Some(&self.after);
         // A reading before the move does not hold after it.
-        let still = state.compass_deg.filter(|_| stands);
-        if !stands {
+        let unmoved_deg = state.compass_deg.filter(|_| is_unchanged);
+        if !is_unchanged {
             // The second reading was judged by the assumed setting.
             let reading = state.second_reading.take();
             let reading = reading.filter(|_| !self.explains_reading);
@@ -64,7 +64,7 @@ impl Event for CorrectorMove {
             // The step's result and the plan rested on the disputed strength.
             (state.last_step, state.plan) = (None, None);
         }
-        state.compass_deg = self.compass_deg.or(still);
+        state.compass_deg = self.compass_deg.or(unmoved_deg);
         // The report covers every corrector.
         state.inspected_steps = state.steps.len();
         state.inspected_since_reading = state.second_reading.is_some();
