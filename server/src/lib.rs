@@ -1,7 +1,6 @@
-//! The server: ingest, analysis, API, dashboard host, and the science on
-//! the command line.
+//! Binnacle server: commands, routes, the analysis worker and the dashboard.
 //!
-//! One folder or file for each thing it can do; in reading order:
+//! One folder or file per capability, in reading order:
 
 #![allow(
     clippy::missing_errors_doc,

@@ -1,4 +1,4 @@
-//! The server.
+//! Entry point of the server.
 
 use anyhow::{Result, anyhow};
 use binnacle_server::cli::{Cli, Command};

@@ -1,4 +1,4 @@
-//! State of the whole server: the platform's, and what single capabilities need of it.
+//! State of the whole server: that of the platform and of single capabilities.
 
 use axum::extract::FromRef;
 use binnacle_orders::berth_session::CorrectorPlanSlots;
@@ -10,14 +10,14 @@ use binnacle_platform::app::App;
 pub struct ServerState {
     /// State of the platform.
     pub app: App,
-    /// Slots for schedules being made.
+    /// Slots for schedules being solved.
     pub plan_slots: PlanSlots,
     /// Slots for corrector plans being made.
     pub corrector_plan_slots: CorrectorPlanSlots,
 }
 
 impl ServerState {
-    /// State of a server with its capabilities idle.
+    /// Creates the state of an idle server.
     pub fn new(app: App) -> ServerState {
         ServerState {
             app,

@@ -1,10 +1,10 @@
-//! Takes jobs from the queue, one after the other.
+//! Analysis worker: takes jobs from the queue, one after the other.
 
 use binnacle_analysis::advice::sail_next;
 use binnacle_analysis::analyse::analyse;
 use binnacle_fleet::analysis::Findings;
-use binnacle_fleet::analysis::{Covered, Found, input, queue, store};
-use binnacle_fleet::{alerts, compasses, settings};
+use binnacle_fleet::analysis::{AnalysisResult, Covered, input, store};
+use binnacle_fleet::{alerts, analysis_queue, compasses, settings};
 use binnacle_orders::verification;
 use binnacle_platform::app::App;
 use binnacle_platform::error::{Error, Result};
@@ -26,13 +26,13 @@ const PRUNE_EVERY: Duration = Duration::from_hours(1);
 /// Result of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Worked {
-    /// A vessel was analysed; so many compasses had news.
+    /// A vessel was analysed, with new results for this number of compasses.
     Analysed(VesselId, usize),
-    /// A job failed, and was put back or given up.
+    /// A job failed, and was requeued or given up.
     Failed(VesselId),
 }
 
-/// Works until the server stops; what was begun is finished.
+/// Runs jobs until the server stops. A job that has begun is finished.
 pub async fn run(app: App) {
     let mut pruned = Instant::now();
     while !app.stopping.is_cancelled() {
@@ -63,33 +63,33 @@ pub async fn run(app: App) {
 /// # Errors
 /// When the queue cannot be reached; a job that fails is not an error here.
 pub async fn step(app: &App) -> anyhow::Result<Option<Worked>> {
-    let Some(job) = queue::claim(&app.db, app.clock.now().into()).await? else {
+    let Some(job) = analysis_queue::claim(&app.db, app.clock.now().into()).await? else {
         return Ok(None);
     };
     let vessel = job.vessel_id;
     let begun = Instant::now();
     let outcome = match job.attempts {
-        // Its worker died each time: whatever it is, it takes the process with it.
-        ..=queue::MOST_ATTEMPTS => tokio::select! {
+        // Beyond this limit its worker died each time: the job crashes the process.
+        ..=analysis_queue::MOST_ATTEMPTS => tokio::select! {
             done = work(app, job) => done,
             never = keep_lease(app, job) => match never {},
         },
         _ => Err(Error::Internal(anyhow::anyhow!(
-            "its lease ended too often"
+            "its lease expired too often"
         ))),
     };
     histogram!("binnacle_analysis_seconds").record(begun.elapsed().as_secs_f64());
     let error = match outcome {
-        Ok(news) => {
+        Ok(count) => {
             counter!("binnacle_analyses_total", "result" => "done").increment(1);
-            info!(%vessel, compasses_with_news = news, "vessel analysed");
-            return Ok(Some(Worked::Analysed(vessel, news)));
+            info!(%vessel, compasses_with_news = count, "vessel analysed");
+            return Ok(Some(Worked::Analysed(vessel, count)));
         }
         Err(Error::Internal(error)) => format!("{error:#}"),
         Err(error) => error.to_string(),
     };
     counter!("binnacle_analyses_total", "result" => "failed").increment(1);
-    let dead = queue::fail(&app.db, job, &error, app.clock.now().into()).await?;
+    let dead = analysis_queue::fail(&app.db, job, &error, app.clock.now().into()).await?;
     if dead {
         error!(%vessel, error, "the analysis failed too often and was given up");
     } else {
@@ -98,57 +98,58 @@ pub async fn step(app: &App) -> anyhow::Result<Option<Worked>> {
     Ok(Some(Worked::Failed(vessel)))
 }
 
-/// Renews a job's lease for as long as it is waited for.
-async fn keep_lease(app: &App, job: queue::Job) -> Infallible {
+/// Renews a job's lease while the job runs.
+async fn keep_lease(app: &App, job: analysis_queue::Job) -> Infallible {
     loop {
         tokio::time::sleep(RENEW_EVERY).await;
-        if let Err(error) = queue::renew(&app.db, job, app.clock.now().into()).await {
+        if let Err(error) = analysis_queue::renew(&app.db, job, app.clock.now().into()).await {
             warn!(vessel = %job.vessel_id, %error, "a lease was not renewed");
         }
     }
 }
 
 /// Analyses a vessel's compasses and stores what is new.
-async fn work(app: &App, job: queue::Job) -> Result<usize> {
-    let mut news = Vec::new();
-    let mut comes_true = None;
+async fn work(app: &App, job: analysis_queue::Job) -> Result<usize> {
+    let mut results = Vec::new();
+    let mut next_entry_at = None;
     let now: Time = app.clock.now().into();
     let compasses = compasses::of_vessel(&app.db, job.vessel_id).await?;
     for compass in &compasses {
         let stored = input::load(&app.db, job.vessel_id, compass.id, now.0).await?;
-        comes_true = comes_true.into_iter().chain(stored.comes_true).min();
-        news.extend(analyse_compass(app, job.vessel_id, compass.id, stored).await?);
+        next_entry_at = next_entry_at.into_iter().chain(stored.next_entry_at).min();
+        results.extend(analyse_compass(app, job.vessel_id, compass.id, stored).await?);
     }
     let limits = settings::find(&app.db, job.vessel_id).await?.alerts;
     let now: Time = app.clock.now().into();
     let mut tx = app.db.begin().await?;
-    if !queue::finish(&mut tx, job).await? {
+    if !analysis_queue::finish(&mut tx, job).await? {
         return Err(Error::Internal(anyhow::anyhow!("the lease was lost")));
     }
-    if let Some(time) = comes_true {
+    if let Some(time) = next_entry_at {
         let delay_s = time.seconds_since(now.0).max(0.0);
-        queue::enqueue(&mut tx, job.vessel_id, now, delay_s).await?;
+        analysis_queue::enqueue(&mut tx, job.vessel_id, now, delay_s).await?;
     }
     let mut events = Vec::new();
-    for found in &news {
+    for found in &results {
         let (compass, samples) = (found.compass_id, &found.analysis.samples);
-        let held = verification::after_analysis(&mut tx, job.vessel_id, compass, samples, now);
-        let held = Box::pin(held);
-        events.extend(held.await?);
+        let verified = verification::after_analysis(&mut tx, job.vessel_id, compass, samples, now);
+        let verified = Box::pin(verified);
+        events.extend(verified.await?);
         events.extend(store::save(&mut tx, found, now).await?);
     }
-    // Also where nothing new was found: the limits may be others.
+    // Also without new results: the limits may have changed.
     for compass in &compasses {
         let (vessel, compass) = (job.vessel_id, compass.id);
         let unconfirmed = verification::unconfirmed_adjustment(&mut tx, vessel, compass).await?;
-        let told = alerts::reconcile_analysis(&mut tx, vessel, compass, &limits, unconfirmed, now);
-        events.extend(told.await?);
+        let changed =
+            alerts::reconcile_analysis(&mut tx, vessel, compass, &limits, unconfirmed, now);
+        events.extend(changed.await?);
     }
     tx.commit().await?;
     for event in events {
         app.publish(event);
     }
-    Ok(news.len())
+    Ok(results.len())
 }
 
 /// Analyses a compass; `None` when its input has not changed.
@@ -156,10 +157,10 @@ async fn analyse_compass(
     app: &App,
     vessel_id: VesselId,
     compass_id: CompassId,
-    stored: input::Stored,
-) -> Result<Option<Found>> {
+    stored: input::StoredInput,
+) -> Result<Option<AnalysisResult>> {
     let last_hash = store::last_hash(&app.db, vessel_id, compass_id).await?;
-    let found = tokio::task::spawn_blocking(move || -> anyhow::Result<Option<Found>> {
+    let found = tokio::task::spawn_blocking(move || -> anyhow::Result<Option<AnalysisResult>> {
         let input = stored.decode()?;
         let input_hash = input::input_hash(&input)?;
         if input.samples.is_empty() || last_hash.as_ref() == Some(&input_hash) {
@@ -171,7 +172,7 @@ async fn analyse_compass(
             sail_next: sail_next(&analysis),
             references: analysis.current_epoch().and_then(|epoch| epoch.references),
         };
-        Ok(Some(Found {
+        Ok(Some(AnalysisResult {
             vessel_id,
             compass_id,
             input_hash,

@@ -95,7 +95,11 @@ async fn fit_names_file_line_and_field() {
         ),
         ("short.csv", rows("2026-11-20T01:00:00Z,48"), vec!["32"]),
         ("empty.csv", String::new(), vec!["the file is empty"]),
-        ("header.csv", format!("{HEADER}\n"), vec!["no row follows"]),
+        (
+            "header.csv",
+            format!("{HEADER}\n"),
+            vec!["no row after the column names"],
+        ),
         (
             "digits.csv",
             rows("2026-11-20T01:00:00Z,48,-6,1e308,10"),

@@ -7,6 +7,7 @@
 
 mod gyro_speed_error;
 mod observation;
+mod robust_scale;
 
 pub mod estimate;
 pub mod fit;

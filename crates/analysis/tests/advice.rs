@@ -212,7 +212,7 @@ fn a_ship_of_one_latitude_is_sent_across_the_equator() {
 }
 
 #[test]
-fn who_knows_all_that_headings_show_is_told_so() {
+fn a_fit_that_no_heading_can_improve_is_reported_as_such() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
     let mut ship = known_ship(&mut rng, 0, BISCAY);
     for line in ship.covariance.as_mut().unwrap() {

@@ -78,7 +78,7 @@ fn two_samples_are_refused_for_want_of_samples() {
 
 /// A clock that stood still: a hundred rows of one time.
 #[test]
-fn rows_of_one_time_do_not_upset_the_fit() {
+fn rows_of_one_time_do_not_disturb_the_fit() {
     let voyage = voyage(30.0);
     let mut observations = voyage.observations.clone();
     let stopped = observations[500].time;

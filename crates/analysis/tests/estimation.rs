@@ -254,7 +254,7 @@ fn too_few_samples_are_not_taken_for_too_few_latitudes() {
 /// One sea after a jump: the induced parameters rest on prior knowledge, and are as
 /// uncertain as stated.
 #[test]
-fn what_was_known_before_an_upset_counts_for_no_more_than_it_is_worth() {
+fn what_was_known_before_a_jump_counts_for_no_more_than_it_is_worth() {
     let sd = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008];
     // Sizes as of jumps: a third of the difference between ships.
     let jumps = [-1.5, -0.9, -0.4, 0.1, 0.5, 0.8, 1.3_f64];

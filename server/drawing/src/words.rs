@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_is_told_in_degrees_and_minutes_of_its_own_side() {
+    fn a_place_is_printed_in_degrees_and_minutes_of_its_own_side() {
         assert_eq!(latitude(43.456), "43° 27.4′ N");
         assert_eq!(latitude(-0.5), "00° 30.0′ S");
         assert_eq!(longitude(-3.1), "003° 06.0′ W");

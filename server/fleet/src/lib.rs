@@ -1,4 +1,4 @@
-//! The fleet: operators, vessels, compasses, their samples, models, alerts and documents.
+//! Fleet: operators, vessels, compasses, their samples, models, alerts and documents.
 
 #![allow(
     clippy::missing_errors_doc,
@@ -15,8 +15,10 @@ pub mod operators;
 pub mod overview;
 pub mod particulars;
 pub mod settings;
+pub mod vessel_api;
 pub mod vessels;
 
+pub mod agent_auth;
 pub mod enrolment;
 pub mod ingest;
 pub mod samples;
@@ -24,8 +26,10 @@ pub mod samples;
 pub mod adjustments;
 pub mod alerts;
 pub mod analysis;
+pub mod analysis_queue;
 pub mod changes;
 pub mod deviation;
+pub mod deviation_table;
 pub mod models;
 
 pub mod card;

@@ -10,9 +10,10 @@ use crate::app::App;
 use crate::audit::{Actor, RequestContext};
 use crate::error::{Error, Result};
 use crate::ids::{FirmId, OperatorId, SessionId, TokenId, UserId};
+use crate::secret;
 use crate::session::{self, Role, User, cookie};
 use crate::tenants::Tenant;
-use crate::{secret, tokens};
+use crate::tokens::{self, Scope};
 use axum::extract::{FromRef, FromRequestParts};
 use axum::http::header::AUTHORIZATION;
 use axum::http::request::Parts;
@@ -53,7 +54,7 @@ pub struct Writer {
 
 /// Operator's admin, who may read what only admins may.
 #[derive(Clone, Copy, Debug)]
-pub struct Overseer {
+pub struct AdminReader {
     /// Operator that the admin belongs to.
     pub operator: OperatorId,
     /// Calling user.
@@ -63,7 +64,7 @@ pub struct Overseer {
 /// Operator's admin with a session, who may manage users and sign-in rules. A leaked token
 /// must not be able to create users or to take over an account.
 #[derive(Clone, Copy, Debug)]
-pub struct Custodian {
+pub struct AdminWriter {
     /// Operator that the admin belongs to.
     pub operator: OperatorId,
     /// Calling user.
@@ -140,11 +141,11 @@ impl Caller {
     ///
     /// # Errors
     /// When the database fails.
-    pub async fn still_vouched_for(&self, app: &App) -> Result<bool> {
+    pub async fn is_still_valid(&self, app: &App) -> Result<bool> {
         let now = app.clock.now().into();
         let found = match (self.session, self.token) {
-            (Some(session), _) => session::lasts(&app.db, session, now).await?,
-            (None, Some(token)) => tokens::lasts(&app.db, token, now).await?,
+            (Some(session), _) => session::is_valid(&app.db, session, now).await?,
+            (None, Some(token)) => tokens::is_valid(&app.db, token, now).await?,
             (None, None) => false,
         };
         Ok(found)
@@ -153,7 +154,7 @@ impl Caller {
     fn operator(&self) -> Result<OperatorId> {
         self.must_have_second_factor()?;
         let operator = self.user.operator_id;
-        operator.ok_or(Error::Forbidden("only an operator's people have a fleet"))
+        operator.ok_or(Error::Forbidden("only an operator's users have a fleet"))
     }
 
     /// Returns the caller's tenant.
@@ -205,7 +206,7 @@ impl Auditor {
 
 impl Platform {
     /// Returns the owner of the admin's idempotency keys; refuses a read-only token.
-    pub fn who_may_write(&self) -> Result<Tenant> {
+    pub fn must_be_writer(&self) -> Result<Tenant> {
         if self.read_only {
             return Err(Error::Forbidden("this token may only read"));
         }
@@ -232,9 +233,14 @@ impl Caller {
     async fn find(parts: &Parts, app: &App) -> Result<Caller> {
         let now = app.clock.now().into();
         if let Some(token) = bearer(parts) {
-            return tokens::caller(&app.db, token, now)
-                .await?
-                .ok_or(Error::Unauthenticated);
+            let holder = tokens::find_holder(&app.db, token, now).await?;
+            let holder = holder.ok_or(Error::Unauthenticated)?;
+            return Ok(Caller {
+                user: holder.user,
+                read_only: holder.scope == Scope::Read,
+                session: None,
+                token: Some(holder.token_id),
+            });
         }
         let token = cookie::token(parts, &app.config).ok_or(Error::Unauthenticated)?;
         let (user, session) = session::find_user(&app.db, &secret::hash(token), now, app.idle_s())
@@ -242,7 +248,7 @@ impl Caller {
             .ok_or(Error::Unauthenticated)?;
         if !parts.method.is_safe() && !parts.headers.contains_key(REQUEST_HEADER) {
             return Err(Error::Forbidden(
-                "a change asked for with a cookie needs the header X-Binnacle-Request: 1",
+                "a change authenticated by cookie needs the header X-Binnacle-Request: 1",
             ));
         }
         Ok(Caller {
@@ -290,37 +296,37 @@ where
     }
 }
 
-impl<S> FromRequestParts<S> for Overseer
+impl<S> FromRequestParts<S> for AdminReader
 where
     App: FromRef<S>,
     S: Send + Sync,
 {
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Overseer> {
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<AdminReader> {
         let caller = Caller::from_request_parts(parts, state).await?;
         let operator = caller.operator()?;
         caller.must_be_admin()?;
-        Ok(Overseer {
+        Ok(AdminReader {
             operator,
             user: caller.user.user_id,
         })
     }
 }
 
-impl<S> FromRequestParts<S> for Custodian
+impl<S> FromRequestParts<S> for AdminWriter
 where
     App: FromRef<S>,
     S: Send + Sync,
 {
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Custodian> {
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<AdminWriter> {
         let caller = Caller::from_request_parts(parts, state).await?;
         let operator = caller.operator()?;
         caller.must_be_admin()?;
         caller.must_be_signed_in()?;
-        Ok(Custodian {
+        Ok(AdminWriter {
             operator,
             user: caller.user.user_id,
         })
@@ -353,7 +359,7 @@ where
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<PartyWriter> {
         let caller = Caller::from_request_parts(parts, state).await?;
         let tenant = caller.party()?;
-        if !caller.user.role.may_bring_orders_on() {
+        if !caller.user.role.may_act_on_orders() {
             return Err(Error::Forbidden(
                 "only an admin or an adjuster may change this",
             ));

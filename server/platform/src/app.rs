@@ -2,9 +2,9 @@
 
 use crate::clock::Clock;
 use crate::config::Serve;
-use crate::db::Db;
-use crate::events::Live;
-use crate::oidc::Provider;
+use crate::db::{Db, Pools};
+use crate::events::{Event, Live};
+use crate::identity_provider::Provider;
 use metrics_exporter_prometheus::PrometheusHandle;
 use std::sync::Arc;
 use tokio::sync::{Notify, Semaphore};
@@ -52,5 +52,14 @@ impl App {
     /// Returns the seconds without a request after which a session ends.
     pub fn idle_s(&self) -> f64 {
         f64::from(self.config.session_idle_hours) * 3600.0
+    }
+
+    /// Publishes an event whose transaction was committed, to this process. On PostgreSQL
+    /// the commit itself has notified all processes.
+    pub fn publish(&self, event: Event) {
+        if matches!(self.db.pools(), Pools::Sqlite { .. }) {
+            self.live.send(event);
+            self.work.notify_one();
+        }
     }
 }

@@ -12,14 +12,14 @@ use ed25519_dalek::{Signature, VerifyingKey};
 /// # Errors
 /// [`Error::Invalid`] if it is not a valid key.
 pub fn key(public_key: &str) -> Result<VerifyingKey> {
-    let octets = from_hex(public_key).and_then(|octets| octets.try_into().ok());
-    let octets = octets.ok_or_else(|| wrong("public_key", "is not 64 hexadecimal digits"))?;
-    let key = VerifyingKey::from_bytes(&octets)
-        .map_err(|_| wrong("public_key", "is no Ed25519 public key"))?;
+    let bytes = from_hex(public_key).and_then(|bytes| bytes.try_into().ok());
+    let bytes = bytes.ok_or_else(|| wrong("public_key", "is not 64 hexadecimal digits"))?;
+    let key = VerifyingKey::from_bytes(&bytes)
+        .map_err(|_| wrong("public_key", "is not an Ed25519 public key"))?;
     if key.is_weak() {
         return Err(wrong(
             "public_key",
-            "is of small order: one signature by it fits every text",
+            "is a key of small order: one of its signatures fits every text",
         ));
     }
     Ok(key)
@@ -32,14 +32,15 @@ pub fn key(public_key: &str) -> Result<VerifyingKey> {
 /// [`Error::Invalid`] with the field.
 pub fn must_be_signed(
     key: &VerifyingKey,
-    (field, signature): (&'static str, &str),
+    field: &'static str,
+    signature: &str,
     text: &[u8],
     called: &str,
 ) -> Result<()> {
-    let octets = from_hex(signature).and_then(|octets| octets.try_into().ok());
-    let octets = octets.ok_or_else(|| wrong(field, "is not 128 hexadecimal digits"))?;
-    key.verify_strict(text, &Signature::from_bytes(&octets))
-        .map_err(|_| wrong(field, &format!("is not this key's over {called}")))
+    let bytes = from_hex(signature).and_then(|bytes| bytes.try_into().ok());
+    let bytes = bytes.ok_or_else(|| wrong(field, "is not 128 hexadecimal digits"))?;
+    key.verify_strict(text, &Signature::from_bytes(&bytes))
+        .map_err(|_| wrong(field, &format!("is not this key's signature over {called}")))
 }
 
 fn wrong(field: &'static str, detail: &str) -> Error {
@@ -94,11 +95,11 @@ mod tests {
         let signature = "92a009a9f0d4cab8720e820b5f642540a2b27b5416503f8fb3762223ebdb69da\
                          085ac1e43e15996e458f3613d0f11d8c387b2eaeb4302aeeb00d291612bb0c00";
         let signed =
-            |key: &VerifyingKey, text: &[u8]| must_be_signed(key, ("proof", signature), text, "it");
+            |key: &VerifyingKey, text: &[u8]| must_be_signed(key, "proof", signature, text, "it");
         assert!(signed(&one, &[0x72]).is_ok());
         assert!(signed(&one, &[0x73]).is_err());
         assert!(signed(&other, &[0x72]).is_err());
-        let short = must_be_signed(&one, ("proof", "00"), &[0x72], "it").unwrap_err();
+        let short = must_be_signed(&one, "proof", "00", &[0x72], "it").unwrap_err();
         assert!(short.to_string().contains("128"), "{short}");
     }
 }

@@ -4,7 +4,6 @@
 //! domain: a domain's refusal becomes a [`DomainProblem`] by its own conversion.
 
 use axum::Json;
-use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
@@ -32,7 +31,7 @@ pub enum Error {
     #[error("the code is wrong, or was used before")]
     WrongCode,
     /// Second factor required by the operator, but not set up by this user.
-    #[error("your company wants a second factor: set one up first")]
+    #[error("your company requires a second factor; set one up first")]
     SecondFactorRequired,
     /// Visible to the caller, but not allowed.
     #[error("{0}")]
@@ -76,17 +75,17 @@ pub enum Error {
         retry_after_s: u64,
     },
     /// Path that exists, but not for this method.
-    #[error("this path knows no such method")]
+    #[error("this path does not support the method")]
     MethodNotAllowed,
     /// Internal failure.
-    #[error("something went wrong here; it has been logged")]
+    #[error("internal error; it has been logged")]
     Internal(anyhow::Error),
 }
 
-/// A result whose error can be sent.
+/// Result whose error can be sent to the client.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Refusal that only one domain knows: its kind, its words, and fields of its own.
+/// Refusal by one domain: its kind, its text, and its own fields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DomainProblem {
     /// HTTP status.
@@ -95,9 +94,9 @@ pub struct DomainProblem {
     pub kind: &'static str,
     /// Kind in a few words.
     pub title: &'static str,
-    /// Sentence that says what is wrong this time.
+    /// Explanation of this occurrence.
     pub detail: String,
-    /// Fields of this kind alone, as members of the problem document.
+    /// Fields of this kind only, as members of the problem document.
     pub extra: Map<String, Value>,
 }
 
@@ -111,7 +110,7 @@ impl DomainProblem {
     /// Adds the fields of a serialisable struct.
     ///
     /// # Panics
-    /// When the value is no struct, which is a mistake in the code.
+    /// When the value is not a struct, which is a mistake in the code.
     #[must_use]
     pub fn with(mut self, extra: &impl Serialize) -> DomainProblem {
         let value = serde_json::to_value(extra).expect("a struct of plain fields is JSON");
@@ -132,7 +131,7 @@ impl From<DomainProblem> for Error {
 /// Error as it is sent (RFC 9457).
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Problem {
-    /// Names the kind of problem; ends in a word that programs may act on.
+    /// Kind of problem; ends in a word that programs may act on.
     #[serde(rename = "type")]
     pub kind: String,
     /// The kind in a few words.
@@ -141,7 +140,7 @@ pub struct Problem {
     pub status: u16,
     /// Details of this occurrence.
     pub detail: String,
-    /// Fields of one kind of problem alone; the document lists them by domain.
+    /// Fields of one kind of problem only; the document lists them by domain.
     #[serde(flatten)]
     #[schema(ignore)]
     pub extra: Map<String, Value>,
@@ -247,7 +246,7 @@ impl From<sqlx::Error> for Error {
 }
 
 impl From<serde_json::Error> for Error {
-    /// Only for JSON of our own; a request's goes through [`JsonRejection`].
+    /// Converts an error in the server's own JSON; that of a request is a `JsonRejection`.
     fn from(error: serde_json::Error) -> Error {
         Error::Internal(error.into())
     }
@@ -262,38 +261,5 @@ impl From<anyhow::Error> for Error {
 impl From<tokio::task::JoinError> for Error {
     fn from(error: tokio::task::JoinError) -> Error {
         Error::Internal(error.into())
-    }
-}
-
-impl From<JsonRejection> for Error {
-    fn from(rejection: JsonRejection) -> Error {
-        match rejection {
-            JsonRejection::JsonDataError(error) => Error::Invalid {
-                field: "body",
-                detail: error.body_text(),
-            },
-            JsonRejection::MissingJsonContentType(error) => {
-                Error::UnsupportedMediaType(error.body_text())
-            }
-            JsonRejection::BytesRejection(error)
-                if error.status() == StatusCode::PAYLOAD_TOO_LARGE =>
-            {
-                Error::TooLarge(crate::http::MAX_JSON_BYTES)
-            }
-            other => Error::BadRequest(other.body_text()),
-        }
-    }
-}
-
-impl From<QueryRejection> for Error {
-    fn from(rejection: QueryRejection) -> Error {
-        Error::BadRequest(rejection.body_text())
-    }
-}
-
-impl From<PathRejection> for Error {
-    /// A path that does not parse names nothing that exists.
-    fn from(_: PathRejection) -> Error {
-        Error::NotFound("page")
     }
 }

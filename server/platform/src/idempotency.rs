@@ -1,9 +1,8 @@
-//! `Idempotency-Key`: a create request that is sent again creates nothing more.
+//! Idempotency keys: a repeated create request creates nothing more.
 //!
-//! Invariants: the key and what it made are stored in one transaction, so
-//! that either both exist or neither. A key is the operator's or the firm's own and is
-//! forgotten after a day; those of a work order are kept with the order
-//! (`work_orders::keys`).
+//! Invariants: the key and the created resource are stored in one transaction, so that either
+//! both exist or neither. A key belongs to one operator or firm and is deleted after a day.
+//! Keys of a work order are kept with the order.
 
 use crate::db::{Tx, execute, row};
 use crate::error::{Error, Result};
@@ -21,17 +20,17 @@ const HEADER: &str = "Idempotency-Key";
 const MAX_BYTES: usize = 255;
 const KEPT_FOR_S: f64 = 86_400.0;
 
-/// The request's key, if it has one.
+/// Idempotency key of a request, if it has one.
 pub struct Key(Option<String>);
 
 impl Key {
-    /// SHA-256 of the key, if there is one.
+    /// Returns the SHA-256 of the key, if there is one.
     pub fn hash(&self) -> Option<Vec<u8>> {
         self.0.as_deref().map(secret::hash)
     }
 
-    /// The id to create under: `wanted`, or the one that the same request created
-    /// before under this key.
+    /// Returns the id to create: `wanted`, or the id that the same request created earlier with
+    /// this key.
     ///
     /// # Errors
     /// When the key was used for another request.
@@ -74,7 +73,7 @@ impl Key {
             tenant,
             key_hash.as_slice()
         )?
-        .ok_or_else(|| anyhow::anyhow!("an idempotency key vanished"))?;
+        .ok_or_else(|| anyhow::anyhow!("an idempotency key is missing"))?;
         if made_for != request_hash {
             return Err(Error::KeyReused);
         }
@@ -82,7 +81,7 @@ impl Key {
     }
 }
 
-/// Returns the hash that identifies a request: of the kind it creates and its content.
+/// Returns the hash that identifies a request, over the kind of resource and the content.
 ///
 /// # Errors
 /// When the content cannot be written as JSON.
@@ -116,7 +115,7 @@ impl utoipa::IntoParams for Key {
                 .parameter_in(ParameterIn::Header)
                 .required(Required::False)
                 .description(Some(
-                    "The same key with the same request again creates nothing more",
+                    "Key of the request; the same request with the same key creates nothing more",
                 ))
                 .schema(Some(ObjectBuilder::new().schema_type(Type::String)))
                 .build(),

@@ -1,4 +1,4 @@
-//! Ids: UUIDs of version 7, a type for each thing they name.
+//! Ids: UUIDs of version 7, one type for each kind of thing.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -27,7 +27,7 @@ macro_rules! id {
         pub struct $name(pub Uuid);
 
         impl $name {
-            /// A new one; later ones sort after earlier ones.
+            /// Creates a new id; later ids sort after earlier ones.
             pub fn new() -> Self {
                 Self(Uuid::now_v7())
             }
@@ -47,26 +47,35 @@ macro_rules! id {
     };
 }
 
-id!(OperatorId, "A company with a fleet.");
-id!(FirmId, "A company that adjusts compasses.");
-id!(UserId, "A person who signs in.");
-id!(SessionId, "A time that a person is signed in for.");
-id!(TokenId, "An API token.");
-id!(VesselId, "A ship.");
-id!(CompassId, "A magnetic element aboard.");
-id!(AgentId, "An installation of the agent.");
-id!(ModelId, "A version of a compass's model.");
-id!(JobId, "A piece of work in the queue.");
-id!(EntryId, "An entry of a vessel's logbook.");
-id!(AlertId, "Something that people must know of.");
-id!(WebhookId, "Where an operator's programs want to be told.");
-id!(RecipientId, "Someone who gets mail.");
-id!(DeliveryId, "What a receiver is told: the id of the event.");
-id!(BinnacleId, "A revision of a binnacle.");
-id!(OrderId, "An order to adjust a compass.");
-id!(PhotoId, "A photograph in an order.");
-id!(CallId, "A vessel's call at a port.");
-id!(KeyId, "A public key that a firm signs with.");
-id!(FeedId, "A calendar that is read by its secret address.");
-id!(NotificationId, "Something that a person is told.");
-id!(EventId, "Something a dashboard is told.");
+id!(OperatorId, "Id of an operator: a company with a fleet.");
+id!(FirmId, "Id of a firm: a company that adjusts compasses.");
+id!(UserId, "Id of a user: a person who signs in.");
+id!(SessionId, "Id of a session.");
+id!(TokenId, "Id of an API token.");
+id!(VesselId, "Id of a vessel.");
+id!(
+    CompassId,
+    "Id of a compass: one magnetic element on a vessel."
+);
+id!(AgentId, "Id of an agent installation.");
+id!(ModelId, "Id of a version of a compass's model.");
+id!(JobId, "Id of a job in the work queue.");
+id!(EntryId, "Id of an entry in a vessel's logbook.");
+id!(AlertId, "Id of an alert.");
+id!(WebhookId, "Id of a webhook.");
+id!(RecipientId, "Id of a mail recipient.");
+id!(
+    DeliveryId,
+    "Id of a message, the same at each delivery attempt."
+);
+id!(BinnacleId, "Id of a revision of a binnacle.");
+id!(OrderId, "Id of a work order.");
+id!(PhotoId, "Id of a photograph of a work order.");
+id!(CallId, "Id of a port call.");
+id!(KeyId, "Id of a public key with which a firm signs.");
+id!(
+    FeedId,
+    "Id of a calendar feed, which is read at a secret address."
+);
+id!(NotificationId, "Id of a notification to a person.");
+id!(EventId, "Id of a live event.");

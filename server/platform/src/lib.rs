@@ -23,18 +23,22 @@ pub mod time;
 
 pub mod access;
 pub mod audit;
+pub mod audit_api;
 pub mod client_address;
 pub mod ed25519;
 pub mod idempotency;
+pub mod identity_provider;
 pub mod oidc;
 pub mod password;
 pub mod second_factor;
 pub mod secret;
 pub mod session;
+pub mod session_api;
 pub mod tenants;
 pub mod tokens;
 pub mod users;
 
+pub mod event_stream;
 pub mod events;
 pub mod mail;
 pub mod notices;
@@ -42,4 +46,5 @@ pub mod outbox;
 pub mod webhooks;
 
 pub mod http;
+pub mod outbound;
 pub mod tls;

@@ -1,4 +1,4 @@
-//! Notices: messages to an operator's or a firm's people, whoever delivers them.
+//! Notices: messages to the users of an operator or a firm, independent of their delivery.
 
 use crate::db::DomainEvent;
 use crate::ids::{AlertId, OrderId, UserId, VesselId};
@@ -16,64 +16,63 @@ use utoipa::ToSchema;
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = NotificationKind)]
 pub enum Kind {
-    /// A compass is to be adjusted soon, very soon, or should have been.
+    /// A compass needs adjustment soon or very soon, or is overdue.
     DueSoon,
     /// A due date was brought forward.
     NeedRaised,
-    /// Your firm is asked to do an order, or to do one at another time.
+    /// Your firm is offered a work order, or another time for one.
     Offered,
-    /// The other side of an order accepts, declines, or proposes other terms.
+    /// The other party of a work order accepts, declines, or proposes other terms.
     Answered,
-    /// There was no answer in time.
+    /// A work order was not answered in time.
     AnswerLate,
-    /// Someone of the other side wrote about an order.
+    /// The other party wrote a message about a work order.
     Message,
-    /// The port call of an order has moved, or is withdrawn.
+    /// The port call of a work order was moved or withdrawn.
     CallMoved,
     /// The adjuster is on board.
     OnBoard,
-    /// The adjuster has finished and signed.
+    /// The adjuster has completed and signed the work order.
     Completed,
-    /// Headings at sea agree with the prediction.
+    /// Deviations at sea agree with the prediction.
     Verified,
-    /// A heading at sea does not.
+    /// A deviation at sea disagrees with the prediction.
     VerificationFailed,
-    /// An order is not to be done, or another firm has it.
+    /// A work order is cancelled, or another firm has it.
     Withdrawn,
-    /// An alert of severity warning or worse is raised, becomes critical, sinks to a notice,
-    /// or is over.
-    /// Critical ones wait for nothing.
+    /// An alert of severity warning or worse is raised, becomes critical, sinks to a notice, or
+    /// is over. Critical alerts are sent at once.
     Alert,
 }
 
-/// Message to the people whom its kind concerns.
+/// Message to the users whom its kind concerns.
 #[derive(Clone, Debug)]
 pub struct Notice {
     /// Subject of the notice.
     pub kind: Kind,
     /// True if the notice must go out at once.
     pub urgent: bool,
-    /// In a line.
+    /// Subject line.
     pub subject: String,
-    /// In a letter: a fact on each line, then sentences.
+    /// Text of a letter: one fact per line, then sentences.
     pub text: String,
-    /// The dashboard's page to look at.
+    /// Page of the dashboard to link to.
     pub path: String,
-    /// The vessel.
+    /// Vessel concerned.
     pub vessel: VesselId,
-    /// The work order, if it is of one.
+    /// Work order concerned, if any.
     pub order: Option<OrderId>,
-    /// The alert, if it is of one.
+    /// Alert concerned, if any.
     pub alert: Option<AlertId>,
 }
 
-/// Notices for a tenant's people, to be delivered to each as the person has chosen.
+/// Notices for a tenant's users, delivered to each as the user has chosen.
 pub struct NoticesPublished {
-    /// The tenant whose users are notified.
+    /// Tenant whose users are notified.
     pub tenant: Tenant,
-    /// The notices.
+    /// Notices to deliver.
     pub notices: Vec<Notice>,
-    /// The user who caused the notices and receives none.
+    /// User who caused the notices and receives none.
     pub by: Option<UserId>,
     /// Time of the notices.
     pub at: Time,
@@ -82,7 +81,7 @@ pub struct NoticesPublished {
 impl DomainEvent for NoticesPublished {}
 
 impl Kind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Kind; 13] = [
         Kind::DueSoon,
         Kind::NeedRaised,

@@ -1,7 +1,7 @@
-//! Passwords and tokens: made here, compared here, stored only as hashes.
+//! Passwords and tokens: creation, comparison and hashing. Only the hashes are stored.
 //!
-//! Invariants: a password's hash is Argon2id with a salt of its own; a
-//! token has at least 128 random bits, so that a plain SHA-256 of it is enough.
+//! Invariants: a password is hashed by Argon2id with its own salt. A token has at least 128
+//! random bits, so that a plain SHA-256 is enough.
 
 use argon2::Argon2;
 use argon2::password_hash::phc::PasswordHash;
@@ -10,7 +10,7 @@ use rand::{RngExt, rng};
 use sha2::{Digest, Sha256};
 use uuid::Uuid;
 
-/// SHA-256 of a token, a code or a key, as it is stored.
+/// Returns the SHA-256 of a token, a code or a key, as it is stored.
 pub fn hash(secret: &str) -> Vec<u8> {
     Sha256::digest(secret.as_bytes()).to_vec()
 }
@@ -20,20 +20,18 @@ pub fn random<const N: usize>() -> [u8; N] {
     rng().random()
 }
 
-/// A new token of 256 random bits.
+/// Creates a token of 256 random bits.
 pub fn new_token() -> String {
     base64url(&random::<32>())
 }
 
-/// A token that is always the same for a secret and a purpose, and does not lead back to
-/// the secret.
+/// Derives a token from a secret and a purpose. It does not reveal the secret.
 pub fn derived(purpose: &str, secret: &str) -> String {
     base64url(&hash(&format!("{purpose} {secret}")))
 }
 
-/// A new token that names the vessel it belongs to: 128 bits of the vessel's id
-/// and 128 random ones. Short, because it crosses the satellite link with every
-/// batch.
+/// Creates a token that contains its vessel: 128 bits of the vessel's id and 128 random ones.
+/// It is short because it crosses the satellite link with every batch.
 pub fn new_vessel_token(vessel: Uuid) -> String {
     let mut bytes = [0; 32];
     bytes[..16].copy_from_slice(vessel.as_bytes());
@@ -41,20 +39,20 @@ pub fn new_vessel_token(vessel: Uuid) -> String {
     base64url(&bytes)
 }
 
-/// Checks whether a token may be one that [`new_vessel_token`] made for the vessel.
+/// Checks whether a token has the form of one from [`new_vessel_token`] for the vessel.
 pub fn is_vessel_token(token: &str, vessel: Uuid) -> bool {
     from_base64url(token).is_some_and(|bytes| bytes.len() == 32)
         && vessel_of_token(token) == Some(vessel)
 }
 
-/// The vessel that such a token names, whether or not the token is valid.
+/// Returns the vessel in a token, whether or not the token is valid.
 pub fn vessel_of_token(token: &str) -> Option<Uuid> {
     let bytes = from_base64url(token)?;
     Some(Uuid::from_bytes(bytes.get(..16)?.try_into().ok()?))
 }
 
-/// A new one-time code for people to read out: 80 random bits in the letters of
-/// Crockford's base 32, which lacks I, L, O and U.
+/// Creates a one-time code for people to read out: 80 random bits in Crockford's base 32, which
+/// lacks I, L, O and U.
 pub fn new_code() -> String {
     const LETTERS: &[u8; 32] = b"0123456789ABCDEFGHJKMNPQRSTVWXYZ";
     let letters: String = rng()
@@ -71,7 +69,7 @@ pub fn new_code() -> String {
     )
 }
 
-/// A code as typed: without regard to case, spaces and hyphens.
+/// Normalises a typed code: case, spaces and hyphens do not matter.
 pub fn normal_code(typed: &str) -> String {
     typed
         .chars()
@@ -80,7 +78,7 @@ pub fn normal_code(typed: &str) -> String {
         .collect()
 }
 
-/// A new password for people to copy: 96 random bits.
+/// Creates a password for people to copy: 96 random bits.
 pub fn new_password() -> String {
     base64url(&rng().random::<[u8; 12]>())
 }
@@ -88,7 +86,7 @@ pub fn new_password() -> String {
 /// Hashes a password; takes tens of milliseconds, so not for an async thread.
 ///
 /// # Errors
-/// When the machine has no randomness or too little memory.
+/// When the machine has no random source or too little memory.
 pub fn hash_password(password: &str) -> anyhow::Result<String> {
     let hash = Argon2::default().hash_password(password.as_bytes())?;
     Ok(hash.to_string())
@@ -111,7 +109,7 @@ pub fn password_matches(password: &str, stored: Option<&str>) -> bool {
 
 const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
-/// RFC 4648 section 5, without padding.
+/// Encodes bytes in base64url (RFC 4648, section 5) without padding.
 fn base64url(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(bytes.len() * 4 / 3 + 2);
     for chunk in bytes.chunks(3) {

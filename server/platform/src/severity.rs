@@ -1,4 +1,4 @@
-//! Severity of what people are alerted to.
+//! Severity of alerts.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -11,17 +11,17 @@ use utoipa::ToSchema;
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 pub enum Severity {
-    /// For information.
+    /// Information only.
     Notice,
-    /// Needs action.
+    /// Action is needed.
     Warning,
     /// The compass must not be relied on.
     Critical,
 }
 
 impl Severity {
-    /// Returns this severity and all that are worse; the last one is repeated to fill the
-    /// places of a query.
+    /// Returns this severity and all worse ones. The last one is repeated to fill the parameters
+    /// of a query.
     pub fn and_worse(self) -> [Severity; 3] {
         match self {
             Severity::Notice => [Severity::Notice, Severity::Warning, Severity::Critical],

@@ -3,17 +3,17 @@
 use crate::ids::{FirmId, OperatorId};
 use uuid::Uuid;
 
-/// An operator or a firm.
+/// Operator or firm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tenant {
-    /// A company with a fleet.
+    /// Company with a fleet.
     Operator(OperatorId),
-    /// A company that adjusts compasses.
+    /// Company that adjusts compasses.
     Firm(FirmId),
 }
 
 impl Tenant {
-    /// The operator, if it is one: what a column of operators is compared with.
+    /// Returns the operator, if the tenant is one: the value for a column of operators.
     pub fn operator(self) -> Option<OperatorId> {
         match self {
             Tenant::Operator(operator) => Some(operator),
@@ -21,7 +21,7 @@ impl Tenant {
         }
     }
 
-    /// The firm, if it is one.
+    /// Returns the firm, if the tenant is one.
     pub fn firm(self) -> Option<FirmId> {
         match self {
             Tenant::Operator(_) => None,
@@ -29,7 +29,7 @@ impl Tenant {
         }
     }
 
-    /// Its id, whichever it is.
+    /// Returns the id of the operator or firm.
     pub fn id(self) -> Uuid {
         match self {
             Tenant::Operator(operator) => operator.0,

@@ -1,4 +1,4 @@
-//! An instant as it goes into both databases and into JSON.
+//! Instants in the databases and in JSON.
 
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use sqlx::error::BoxDynError;
 use sqlx::{Database, Decode, Encode, Type};
 use utoipa::ToSchema;
 
-/// BIGINT microseconds in the database, RFC 3339 in JSON.
+/// Instant: BIGINT microseconds in the database, RFC 3339 in JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
 #[serde(transparent)]
 #[schema(value_type = String, format = DateTime, example = "2026-11-21T07:00:00Z")]
@@ -20,12 +20,12 @@ impl From<Timestamp> for Time {
 }
 
 impl Time {
-    /// For people, the day in UTC: `2026-11-21`.
+    /// Returns the day in UTC for people: `2026-11-21`.
     pub fn day(self) -> String {
         self.0.to_string().chars().take(10).collect()
     }
 
-    /// For people, to the minute: `2026-11-21 07:00 UTC`.
+    /// Returns the time to the minute for people: `2026-11-21 07:00 UTC`.
     pub fn to_the_minute(self) -> String {
         let text = self.0.to_string();
         let minute: String = text.chars().take(16).collect();

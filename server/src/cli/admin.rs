@@ -1,10 +1,10 @@
-//! `admin`: who there is, from the command line.
+//! Arguments of `admin`, which manages operators, firms and users.
 
 use super::Database;
 use clap::{Args, Subcommand, ValueEnum};
 use uuid::Uuid;
 
-/// `admin`.
+/// Arguments of `admin`.
 #[derive(Debug, Args)]
 pub struct Admin {
     /// Database to use.
@@ -24,20 +24,20 @@ pub enum AdminCommand {
         #[command(subcommand)]
         what: Create,
     },
-    /// Give someone who lost password or telephone a one-time code to begin anew with:
-    /// password, second factor, sessions, API tokens, calendars and whom a sign-in provider
-    /// means are gone
+    /// Reset a user who lost the password or the phone, and print a one-time code for a new
+    /// password; removes password, second factor, sessions, API tokens, calendar feeds and the
+    /// binding to a sign-in provider
     ResetUser {
-        /// Email address the person signs in with
+        /// Email address that the user signs in with
         #[arg(long)]
         email: String,
     },
-    /// Revoke an agent's token: it is known no more until the agent is enrolled again
+    /// Revoke an agent's token; the agent must be enrolled again
     RevokeAgent {
-        /// The vessel's id
+        /// Id of the vessel
         #[arg(long)]
         vessel: Uuid,
-        /// The agent's id, as `GET /api/v1/vessels/{id}/agents` lists it
+        /// Id of the agent, as listed by `GET /api/v1/vessels/{id}/agents`
         #[arg(long)]
         agent: Uuid,
     },
@@ -46,60 +46,60 @@ pub enum AdminCommand {
 /// Commands of `admin create`.
 #[derive(Debug, Subcommand)]
 pub enum Create {
-    /// A company with a fleet
+    /// An operator: a company with a fleet
     Operator {
-        /// Its name
+        /// Name of the company
         #[arg(long)]
         name: String,
     },
-    /// Someone who may see, or manage, an operator's fleet
+    /// A user who may see or manage an operator's fleet
     User {
-        /// The operator's id
+        /// Id of the operator
         #[arg(long)]
         operator: Uuid,
-        /// New person.
+        /// New user.
         #[command(flatten)]
         person: Person,
-        /// May the user change things?
+        /// Rights of the user
         #[arg(long, value_enum)]
         role: FleetRole,
     },
-    /// A company that adjusts compasses
+    /// A firm: a company that adjusts compasses
     Firm {
-        /// Its name
+        /// Name of the company
         #[arg(long)]
         name: String,
-        /// The id of an operator that works with it, as often as there are such
+        /// Id of an operator that works with the firm; may be repeated
         #[arg(long = "operator")]
         operators: Vec<Uuid>,
     },
-    /// Someone who adjusts compasses for a firm
+    /// A user who adjusts compasses for a firm
     Adjuster {
-        /// The firm's id
+        /// Id of the firm
         #[arg(long)]
         firm: Uuid,
-        /// New person.
+        /// New user.
         #[command(flatten)]
         person: Person,
     },
-    /// Someone who manages operators and firms
+    /// A user who manages operators and firms
     PlatformAdmin {
-        /// New person.
+        /// New user.
         #[command(flatten)]
         person: Person,
     },
 }
 
-/// A person to be created.
+/// User to be created.
 #[derive(Debug, Args)]
 pub struct Person {
-    /// Email address the person signs in with
+    /// Email address that the user signs in with
     #[arg(long)]
     pub email: String,
-    /// The person's name
+    /// Name of the user
     #[arg(long)]
     pub name: String,
-    /// Read the password from standard input; otherwise one is made and printed
+    /// Read the password from standard input; otherwise one is generated and printed
     #[arg(long)]
     pub password_stdin: bool,
 }
@@ -107,8 +107,8 @@ pub struct Person {
 /// Rights of an operator's user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FleetRole {
-    /// See and change
+    /// May see and change the fleet
     Admin,
-    /// See
+    /// May see the fleet
     Viewer,
 }

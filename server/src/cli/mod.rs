@@ -1,4 +1,4 @@
-//! The command line: every command with its flags.
+//! Command line: every command with its flags.
 
 mod admin;
 
@@ -9,8 +9,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use uuid::Uuid;
 
-/// The server: ingest, analysis, API and dashboard; and the science on the
-/// command line.
+/// Binnacle server: ingest, analysis, API and dashboard, and the science on the command line.
 #[derive(Debug, Parser)]
 #[command(version, name = "binnacle-server")]
 pub struct Cli {
@@ -19,7 +18,7 @@ pub struct Cli {
     pub command: Command,
 }
 
-/// Everything this program can do.
+/// Commands of this program.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Serve the API and the dashboard, and analyse what arrives
@@ -28,7 +27,7 @@ pub enum Command {
     Migrate(Database),
     /// Create operators and users, revoke agents
     Admin(Admin),
-    /// Store batches that came as short-burst messages
+    /// Store batches that were sent as short-burst messages
     Bursts(Bursts),
     /// Print the OpenAPI document
     Openapi,
@@ -42,20 +41,20 @@ pub enum Command {
     Analyse(Analyse),
     /// Check an archive of evidence of an adjustment
     VerifyEvidence(VerifyEvidence),
-    /// Print how to set a binnacle's correctors, from a reading at the berth
+    /// Plan the setting of a binnacle's correctors, from a reading at the berth
     Plan(Plan),
     /// Plan who adjusts which compass, where and when
     Schedule(Schedule),
 }
 
-/// `verify-evidence`.
+/// Arguments of `verify-evidence`.
 #[derive(Debug, Args)]
 pub struct VerifyEvidence {
-    /// The archive
+    /// Archive to check
     pub file: PathBuf,
 }
 
-/// A model of the earth's field.
+/// Model of the earth's field.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum FieldModel {
     /// International Geomagnetic Reference Field, 1900 to 2030
@@ -65,19 +64,19 @@ pub enum FieldModel {
     Wmm2025,
 }
 
-/// `field`.
+/// Arguments of `field`.
 #[derive(Debug, Args)]
 pub struct Field {
-    /// Degrees north
+    /// Latitude in degrees, north positive
     #[arg(long, allow_negative_numbers = true)]
     pub lat: f64,
-    /// Degrees east
+    /// Longitude in degrees, east positive
     #[arg(long, allow_negative_numbers = true)]
     pub lon: f64,
-    /// YYYY-MM-DD, RFC 3339 or a decimal year
+    /// Date: YYYY-MM-DD, RFC 3339 or a decimal year
     #[arg(long)]
     pub date: String,
-    /// Metres above the WGS 84 ellipsoid
+    /// Altitude above the WGS 84 ellipsoid in metres
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub altitude_m: f64,
     /// Model of the earth's field
@@ -90,9 +89,9 @@ pub struct Field {
 pub enum Method {
     /// Equation 11 of Basterretxea-Iribar, Sotés and Uriarte 2016, for comparison
     Paper,
-    /// Ordinary least squares on the exact deviation, every sample alike, for comparison
+    /// Ordinary least squares on the exact deviation with equal weights, for comparison
     Ols,
-    /// The product's: noise that remembers, outliers, and what ships are like
+    /// The product's estimator: correlated noise, outliers, and a prior from other ships
     #[default]
     Robust,
 }
@@ -100,28 +99,28 @@ pub enum Method {
 /// Handling of the gyro's error from the vessel's own speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum GyroSpeedError {
-    /// It does
+    /// The gyro corrects the error
     #[default]
     Corrected,
-    /// It does not: it is taken out here, from sog_kn and latitude
+    /// The gyro does not; the error is corrected here, from sog_kn and latitude
     Uncorrected,
 }
 
 impl From<GyroSpeedError> for binnacle_compass::settings::GyroSpeedError {
-    fn from(said: GyroSpeedError) -> Self {
-        match said {
+    fn from(choice: GyroSpeedError) -> Self {
+        match choice {
             GyroSpeedError::Corrected => Self::Corrected,
             GyroSpeedError::Uncorrected => Self::Uncorrected,
         }
     }
 }
 
-/// `fit`.
+/// Arguments of `fit`.
 #[derive(Debug, Args)]
 pub struct Fit {
-    /// Samples, a line each; columns by the names in the first line
+    /// Samples as CSV; the first line names the columns
     pub file: PathBuf,
-    /// Print JSON rather than a table
+    /// Print JSON instead of a table
     #[arg(long)]
     pub json: bool,
     /// Method of fitting
@@ -132,19 +131,19 @@ pub struct Fit {
     pub gyro_speed_error: GyroSpeedError,
 }
 
-/// `deviation`.
+/// Arguments of `deviation`.
 #[derive(Debug, Args)]
 pub struct Deviation {
     /// Output of `fit --json`
     #[arg(long)]
     pub model: PathBuf,
-    /// Degrees north
+    /// Latitude in degrees, north positive
     #[arg(long, allow_negative_numbers = true, requires_all = ["lon", "date"], conflicts_with = "h_nt")]
     pub lat: Option<f64>,
-    /// Degrees east
+    /// Longitude in degrees, east positive
     #[arg(long, allow_negative_numbers = true, requires = "lat")]
     pub lon: Option<f64>,
-    /// YYYY-MM-DD, RFC 3339 or a decimal year
+    /// Date: YYYY-MM-DD, RFC 3339 or a decimal year
     #[arg(long, requires = "lat")]
     pub date: Option<String>,
     /// Horizontal field in nT, instead of place and date
@@ -156,30 +155,30 @@ pub struct Deviation {
     /// Degrees of compass heading between rows
     #[arg(long, default_value_t = 15.0)]
     pub step_deg: f64,
-    /// Print JSON rather than a table
+    /// Print JSON instead of a table
     #[arg(long)]
     pub json: bool,
 }
 
-/// `bursts`.
+/// Arguments of `bursts`.
 #[derive(Debug, Args)]
 pub struct Bursts {
     /// Database to use.
     #[command(flatten)]
     pub database: Database,
-    /// The vessel whose messages they are
+    /// Vessel that sent the messages
     #[arg(long)]
     pub vessel: Uuid,
-    /// A folder for answers to the ship, one message a stream
+    /// Folder for the responses to the vessel, one message per stream
     #[arg(long)]
     pub answers: Option<PathBuf>,
-    /// Messages as they came, one a file, in any order; again with those before, until
-    /// a batch is whole
+    /// Messages as received, one per file, in any order; repeat earlier ones until a batch is
+    /// complete
     #[arg(required = true)]
     pub messages: Vec<PathBuf>,
 }
 
-/// `schedule`.
+/// Arguments of `schedule`.
 #[derive(Debug, Args)]
 pub struct Schedule {
     /// Ships, needs, port calls and firms (docs/schedule.md)
@@ -187,13 +186,13 @@ pub struct Schedule {
     pub input: PathBuf,
 }
 
-/// `plan`.
+/// Arguments of `plan`.
 #[derive(Debug, Args)]
 pub struct Plan {
     /// Output of `fit --json`
     #[arg(long)]
     pub model: PathBuf,
-    /// The binnacle and its correctors (docs/binnacle.md)
+    /// Binnacle and its correctors (docs/binnacle.md)
     #[arg(long)]
     pub binnacle: PathBuf,
     /// Readings at the berth (docs/plan.md)
@@ -204,13 +203,13 @@ pub struct Plan {
     pub after: Option<PathBuf>,
 }
 
-/// `analyse`.
+/// Arguments of `analyse`.
 #[derive(Debug, Args)]
 pub struct Analyse {
-    /// Samples, as `fit` reads them, with time and place; a field or a weight of their own is
-    /// not used
+    /// Samples, in the format of `fit`, with time and place; columns for the field and the weight
+    /// are ignored
     pub file: PathBuf,
-    /// Logbook entries: a JSON array, or a page of them as the API answers it
+    /// Logbook entries: a JSON array, or a page as the API returns it
     #[arg(long)]
     pub logbook: Option<PathBuf>,
     /// Handling of the gyro's error from the vessel's own speed

@@ -1,8 +1,7 @@
-//! `admin create …`: what must exist before anyone can sign in; `admin reset-user` and
-//! `admin revoke-agent`.
+//! `admin`: creates operators, firms and users, resets users and revokes agents.
 
 use super::operate::block_on;
-use super::{BadInput, answer};
+use super::{BadInput, print_result};
 use crate::cli::{Admin, AdminCommand, Create, FleetRole, Person};
 use crate::subscriptions::subscribers;
 use anyhow::Result;
@@ -35,7 +34,7 @@ pub fn admin(arguments: Admin) -> Result<ExitCode> {
         let request = RequestContext::of_command(&db, name, now);
         let made = run(&request, arguments.command, now).await;
         db.close().await;
-        answer(made?.map(|made| made.to_string()).map_err(BadInput))
+        print_result(made?.map(|made| made.to_string()).map_err(BadInput))
     })
 }
 
@@ -97,7 +96,7 @@ async fn create(request: &RequestContext, what: Create, now: Time) -> Made {
 async fn reset_user(request: &RequestContext, email: &str, now: Time) -> Made {
     match users::reset(request, email, now).await? {
         Some((code, expires_at)) => Ok(Ok(json!({ "code": code, "expires_at": expires_at }))),
-        None => Ok(Err(format!("--email: nobody signs in with {email:?}"))),
+        None => Ok(Err(format!("--email: no user has the address {email:?}"))),
     }
 }
 
@@ -189,7 +188,7 @@ async fn create_user(
     }
     let id = match created {
         Err(sqlx::Error::Database(error)) if error.is_unique_violation() => {
-            return Ok(Err(format!("--email: {email} has an account already")));
+            return Ok(Err(format!("--email: {email} already has an account")));
         }
         created => created?,
     };
@@ -204,7 +203,7 @@ async fn create_user(
     Ok(Ok(made))
 }
 
-/// The password from standard input, or a new one.
+/// Returns the password from standard input, or generates one.
 fn read_password(person: &Person, about: &[&str]) -> Result<Result<Option<String>, String>> {
     if !person.password_stdin {
         return Ok(Ok(Some(secret::new_password())));

@@ -1,6 +1,6 @@
-//! `analyse`: from a file, what the server does with a vessel's uploads.
+//! `analyse`: analyses a file as the server analyses a vessel's uploads.
 
-use super::{BadInput, answer, input, json, logbook};
+use super::{BadInput, input, json, logbook, print_result};
 use crate::cli::Analyse;
 use binnacle_analysis::advice::sail_next;
 use binnacle_analysis::analyse::analyse as run;
@@ -22,20 +22,19 @@ struct Analysed {
     sail_next: Option<SailNext>,
 }
 
-/// Prints epochs, models, what to sail next and what became of each sample, as
-/// JSON.
+/// Prints epochs, models, headings to sail next and the use of each sample, as JSON.
 ///
 /// # Errors
 /// When standard output cannot be written.
 pub fn analyse(arguments: &Analyse) -> anyhow::Result<ExitCode> {
-    answer(find(arguments))
+    print_result(find(arguments))
 }
 
 fn find(arguments: &Analyse) -> Result<String, BadInput> {
     let table = input::Table::read(&arguments.file)?;
-    // What `fit` refuses is refused here, too.
+    // Input that `fit` refuses is refused here too.
     readings_from_csv(&table.rows, arguments.gyro_speed_error.into())
-        .map_err(|error| table.complaint(&error))?;
+        .map_err(|error| table.error_at(&error))?;
     let mut samples = Vec::with_capacity(table.rows.len());
     for (index, row) in table.rows.iter().enumerate() {
         samples.push(sample(row).map_err(|(column, what)| table.invalid(index, column, what))?);
@@ -55,13 +54,13 @@ fn find(arguments: &Analyse) -> Result<String, BadInput> {
     }))
 }
 
-/// A sample of a row, or the column at fault and what is wrong with it.
+/// Returns the sample of a row, or the column at fault and the problem.
 fn sample(row: &CsvRow) -> Result<Sample, (&'static str, String)> {
     let empty = |column| move || (column, "is empty".to_owned());
     let lat = row.lat.ok_or_else(empty("lat"))?;
     let lon = row.lon.ok_or_else(empty("lon"))?;
     let compass_deg = row.compass_deg.ok_or_else(empty("compass_deg"))?;
-    // Which of the two is at fault shows when the other is made harmless.
+    // Replacing the other coordinate by 0 shows which one is at fault.
     Position::new(lat, 0.0).map_err(|error| ("lat", error.to_string()))?;
     let (satellite, satellite_deg) = match row.satellite_deg {
         Some(found) => ("satellite_deg", Some(found)),

@@ -1,7 +1,7 @@
-//! `bursts`: batches that came as short-burst messages, one a file.
+//! `bursts`: imports batches that were sent as short-burst messages, one per file.
 
 use super::operate::block_on;
-use super::{BadInput, answer, json};
+use super::{BadInput, json, print_result};
 use crate::cli::Bursts;
 use crate::subscriptions::subscribers;
 use anyhow::{Context, Result};
@@ -15,18 +15,18 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Stores the batches and prints what became of the messages as JSON. The exit code is 2
-/// when some were refused; the others are stored all the same.
+/// Stores the batches and prints the outcome as JSON. The exit code is 2 when some messages
+/// were refused; the others are stored nevertheless.
 ///
 /// # Errors
-/// When the database cannot be reached, or an answer not be written.
+/// When the database cannot be reached, or a response cannot be written.
 pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
     let mut messages = Vec::new();
     for path in &arguments.messages {
         let name = path.display().to_string();
         match read(path) {
             Ok(bytes) => messages.push((name, bytes)),
-            Err(error) => return answer(Err(BadInput(format!("{name}: {error}")))),
+            Err(error) => return print_result(Err(BadInput(format!("{name}: {error}")))),
         }
     }
     let vessel = VesselId(arguments.vessel);
@@ -34,29 +34,29 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
         let db = Db::connect(&arguments.database.database_url, subscribers()).await?;
         db.migrate().await?;
         let now = Clock::System.now().into();
-        let imported = ingest::import(&db, vessel, &messages, now).await;
+        let imported = ingest::import_messages(&db, vessel, &messages, now).await;
         db.close().await;
         Ok(imported?)
     })?;
     if let Some(folder) = &arguments.answers {
-        for (stream, bytes) in &imported.answers {
+        for (stream, bytes) in &imported.acknowledgements {
             let path = folder.join(format!("{stream}.sbd"));
             write_whole(&path, bytes).with_context(|| path.display().to_string())?;
         }
     }
-    let told = answer(Ok(json(&imported)))?;
+    let printed = print_result(Ok(json(&imported)))?;
     for refused in &imported.refused {
         let (message, problem) = (&refused.message, &refused.problem);
         writeln!(io::stderr().lock(), "binnacle-server: {message}: {problem}")?;
     }
     Ok(if imported.refused.is_empty() {
-        told
+        printed
     } else {
         ExitCode::from(2)
     })
 }
 
-/// One byte more than a message may have, so that what is longer is seen to be.
+/// Reads at most one byte more than a message may have, so that a longer file is detected.
 fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let most = MESSAGE_BYTES as u64 + 1;

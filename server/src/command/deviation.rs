@@ -1,12 +1,12 @@
-//! `deviation`: what a model says about every heading at one place.
+//! `deviation`: prints the deviation that a model predicts on every heading at one place.
 
-use super::{BadInput, answer, input, json, table};
+use super::{BadInput, input, json, print_result, table};
 use crate::cli::Deviation;
 use binnacle_compass::deviation::DeviationError;
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::model::Model;
 use binnacle_compass::ship::EarthField;
-use binnacle_fleet::deviation::{Row, table as predict};
+use binnacle_fleet::deviation::{DeviationRow, table as predict};
 use serde_json::json;
 use std::process::ExitCode;
 
@@ -15,7 +15,7 @@ use std::process::ExitCode;
 /// # Errors
 /// When standard output cannot be written.
 pub fn deviation(arguments: &Deviation) -> anyhow::Result<ExitCode> {
-    answer(find(arguments).map(|rows| {
+    print_result(find(arguments).map(|rows| {
         if arguments.json {
             json(&json!({ "rows": rows }))
         } else {
@@ -24,7 +24,7 @@ pub fn deviation(arguments: &Deviation) -> anyhow::Result<ExitCode> {
     }))
 }
 
-fn find(arguments: &Deviation) -> Result<Vec<Row>, BadInput> {
+fn find(arguments: &Deviation) -> Result<Vec<DeviationRow>, BadInput> {
     if !(0.1..=360.0).contains(&arguments.step_deg) {
         let what = format!("{} is outside 0.1 to 360", arguments.step_deg);
         return Err(BadInput::option("--step-deg", what));
@@ -74,7 +74,7 @@ fn earth(arguments: &Deviation) -> Result<EarthField, BadInput> {
         .for_ship())
 }
 
-fn describe(rows: &[Row]) -> String {
+fn describe(rows: &[DeviationRow]) -> String {
     let rows: Vec<[String; 4]> = rows
         .iter()
         .map(|row| {

@@ -1,6 +1,6 @@
-//! `field`: the earth's field at a place and time.
+//! `field`: prints the earth's field at a place and time.
 
-use super::{BadInput, answer, input, json};
+use super::{BadInput, input, json, print_result};
 use crate::cli::{Field, FieldModel};
 use binnacle_compass::field::{FieldModel as Model, field as evaluate};
 use serde::Serialize;
@@ -22,7 +22,7 @@ struct Answer {
 /// # Errors
 /// When standard output cannot be written.
 pub fn field(arguments: &Field) -> anyhow::Result<ExitCode> {
-    answer(find(arguments).map(|found| json(&found)))
+    print_result(find(arguments).map(|found| json(&found)))
 }
 
 fn find(arguments: &Field) -> Result<Answer, BadInput> {

@@ -1,6 +1,6 @@
-//! `fit`: a model from a file.
+//! `fit`: fits a model to a file.
 
-use super::{BadInput, answer, input, json, table};
+use super::{BadInput, input, json, print_result, table};
 use crate::cli::{Fit, Method};
 use binnacle_analysis::advice::{Question, advise};
 use binnacle_analysis::fit::{
@@ -16,10 +16,10 @@ use binnacle_compass::ship::EarthField;
 use std::process::ExitCode;
 
 /// Result of a fit.
-struct Found {
+struct FitResult {
     model: Model,
     check: ReferenceCheck,
-    /// Only of the product's own fit.
+    /// Advice on headings; only with the product's estimator.
     sail_next: Option<SailNext>,
 }
 
@@ -28,7 +28,7 @@ struct Found {
 /// # Errors
 /// When standard output cannot be written.
 pub fn fit(arguments: &Fit) -> anyhow::Result<ExitCode> {
-    answer(find(arguments).map(|found| {
+    print_result(find(arguments).map(|found| {
         if arguments.json {
             json(&found.model)
         } else {
@@ -37,10 +37,10 @@ pub fn fit(arguments: &Fit) -> anyhow::Result<ExitCode> {
     }))
 }
 
-fn find(arguments: &Fit) -> Result<Found, BadInput> {
+fn find(arguments: &Fit) -> Result<FitResult, BadInput> {
     let table = input::Table::read(&arguments.file)?;
     let readings = readings_from_csv(&table.rows, arguments.gyro_speed_error.into())
-        .map_err(|error| table.complaint(&error))?;
+        .map_err(|error| table.error_at(&error))?;
     let refused = |error: FitError| BadInput(format!("{}: {error}", arguments.file.display()));
     let referred = observe_readings(&readings, REFERENCE_CONSTANT_SD_DEG).map_err(refused)?;
     let observations: Vec<Observation> = referred.observations.into_iter().flatten().collect();
@@ -51,14 +51,14 @@ fn find(arguments: &Fit) -> Result<Found, BadInput> {
         Method::Robust => {
             let options = RobustOptions::for_unknown_vessel(referred.check.constant_sd_deg);
             fit_robust(&observations, &options).map(|fit| {
-                sail_next = what_to_sail(&fit, &observations, &referred.check);
+                sail_next = advise_headings(&fit, &observations, &referred.check);
                 fit.model
             })
         }
     };
     let mut model = fitted.map_err(refused)?;
     model.samples_rejected += (readings.len() - observations.len()) as u64;
-    Ok(Found {
+    Ok(FitResult {
         model,
         check: referred.check,
         sail_next,
@@ -66,7 +66,7 @@ fn find(arguments: &Fit) -> Result<Found, BadInput> {
 }
 
 /// Advises on headings that would narrow the confidence band at the vessel's last position.
-fn what_to_sail(
+fn advise_headings(
     fit: &RobustFit,
     observations: &[Observation],
     check: &ReferenceCheck,
@@ -77,7 +77,7 @@ fn what_to_sail(
         model: &fit.model,
         noise: &fit.noise,
         reference_constant_sd_deg: check.constant_sd_deg,
-        // Beside a satellite compass a gyro has little weight.
+        // Beside a satellite compass the gyro has little weight.
         gyro_share: if last.gyro_share < 1.0 { 0.0 } else { 1.0 },
         here: EarthField {
             h_nt: last.h_nt,
@@ -89,7 +89,7 @@ fn what_to_sail(
     .ok()
 }
 
-fn describe(found: &Found) -> String {
+fn describe(found: &FitResult) -> String {
     let model = &found.model;
     let values = model.parameters_over_lambda.to_array();
     let identifiable = model.identifiable.map(|known| {
@@ -136,25 +136,33 @@ fn describe(found: &Found) -> String {
         ),
         model.samples_used,
         model.samples_rejected
-    ) + &model.quality.as_ref().map_or_else(String::new, worth)
-        + &dropped(&found.check)
-        + &found.sail_next.as_ref().map_or_else(String::new, band)
+    ) + &model
+        .quality
+        .as_ref()
+        .map_or_else(String::new, describe_quality)
+        + &describe_rejected(&found.check)
+        + &found
+            .sail_next
+            .as_ref()
+            .map_or_else(String::new, describe_band)
 }
 
 /// Names the reference that was rejected.
-fn dropped(check: &ReferenceCheck) -> String {
+fn describe_rejected(check: &ReferenceCheck) -> String {
     let line = |name: &str, count: u64| match count {
         0 => String::new(),
-        _ => format!("\n{name} not believed in {count} samples: stuck, or off from the other"),
+        _ => format!(
+            "\n{name} rejected in {count} samples: stuck, or in disagreement with the other reference"
+        ),
     };
     line("gyro", check.gyro_dropped) + &line("satellite compass", check.satellite_dropped)
 }
 
-/// The band, here and elsewhere, and what would narrow it.
-fn band(next: &SailNext) -> String {
+/// Describes the confidence band, here and elsewhere, and the headings that would narrow it.
+fn describe_band(next: &SailNext) -> String {
     let here = &next.here;
     let mut lines = vec![format!(
-        "95 % band where she was last: ± {:.1}°, on the worst heading {:.1}°",
+        "95 % band at the last position: ± {:.1}°, on the worst heading {:.1}°",
         here.band.rms_deg, here.band.worst_deg
     )];
     lines.extend(here.suggestions.first().map(|best| {
@@ -204,7 +212,7 @@ fn headings(range: HeadingRange) -> String {
 }
 
 /// Describes the quality of the samples and the limits of the model.
-fn worth(quality: &Quality) -> String {
+fn describe_quality(quality: &Quality) -> String {
     let samples = quality.effective_samples;
     let condition = quality.condition.map_or_else(
         || "open: the data leave one combination of parameters unknown".to_owned(),
@@ -218,7 +226,7 @@ fn worth(quality: &Quality) -> String {
     })
 }
 
-/// Fields to the nanotesla, angles to the hundredth, ratios to the fourth place.
+/// Formats a value: fields to a nanotesla, angles to 0.01°, ratios to 0.0001.
 fn number(name: &str, value: f64) -> String {
     if name.ends_with("_nt") {
         format!("{value:.0}")

@@ -1,4 +1,4 @@
-//! Reading the commands' input: options, JSON files and tables of samples.
+//! Input of the commands: options, JSON files and tables of samples.
 
 use super::BadInput;
 use binnacle_analysis::fit::{CsvRow, CsvRowError};
@@ -10,10 +10,10 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-/// No file that a command reads is larger.
+/// Largest file that a command reads, bytes.
 const MAX_FILE_BYTES: u64 = 256 * 1024 * 1024;
 
-/// An RFC 3339 time, a day (its noon, UTC) or a decimal year.
+/// Parses an RFC 3339 time, a day (its noon, UTC) or a decimal year.
 pub(super) fn date(text: &str) -> Result<Timestamp, BadInput> {
     let day = || Timestamp::parse(&format!("{text}T12:00:00Z")).ok();
     Timestamp::parse(text)
@@ -38,13 +38,13 @@ fn decimal_year(text: &str) -> Option<Timestamp> {
     Some(begins.plus_seconds(ends.seconds_since(begins) * year.fract()))
 }
 
-/// A position from two options.
+/// Returns a position from two options.
 pub(super) fn position(lat: f64, lon: f64) -> Result<Position, BadInput> {
     Position::new(lat, 0.0).map_err(|error| BadInput::option("--lat", error))?;
     Position::new(lat, lon).map_err(|error| BadInput::option("--lon", error))
 }
 
-/// A JSON file.
+/// Reads a JSON file.
 pub(super) fn json_file<T: DeserializeOwned>(path: &Path) -> Result<T, BadInput> {
     let text = text_file(path)?;
     let mut json = serde_json::Deserializer::from_str(&text);
@@ -53,28 +53,28 @@ pub(super) fn json_file<T: DeserializeOwned>(path: &Path) -> Result<T, BadInput>
             "." => String::new(),
             field => format!("{field}: "),
         };
-        json_complaint(path, 0, &field, error.inner())
+        json_error(path, 0, &field, error.inner())
     })?;
     json.end()
-        .map_err(|error| json_complaint(path, 0, "", &error))?;
+        .map_err(|error| json_error(path, 0, "", &error))?;
     Ok(read)
 }
 
 /// Describes an error in JSON that begins some lines down a file, with its field.
-pub(super) fn json_complaint(
+pub(super) fn json_error(
     path: &Path,
     lines_before: usize,
     field: &str,
     error: &serde_json::Error,
 ) -> BadInput {
-    // serde_json's message ends in the place, which stands in front here.
+    // serde_json's message ends with the position, which is at the front here.
     let message = error.to_string();
     let what = message.split(" at line ").next().unwrap_or(&message);
     let line = lines_before + error.line().max(1);
     BadInput(format!("{}:{line}: {field}{what}", path.display()))
 }
 
-/// A text file.
+/// Reads a text file.
 pub(super) fn text_file(path: &Path) -> Result<String, BadInput> {
     let failed = |error: &dyn std::fmt::Display| BadInput(format!("{}: {error}", path.display()));
     let mut bytes = Vec::new();
@@ -93,10 +93,10 @@ pub(super) fn text_file(path: &Path) -> Result<String, BadInput> {
     })
 }
 
-/// A table of samples, with the line in the file on which each row stands.
+/// Table of samples, with the line number of each row in the file.
 pub(super) struct Table {
     path: String,
-    /// The rows.
+    /// Rows of the table.
     pub(super) rows: Vec<CsvRow>,
     lines: Vec<u64>,
 }
@@ -118,7 +118,7 @@ impl Table {
             let what = match error.kind() {
                 csv::ErrorKind::UnequalLengths {
                     expected_len, len, ..
-                } => format!("{len} fields, where the first line has {expected_len}"),
+                } => format!("{len} fields, but the first line has {expected_len}"),
                 _ => error.to_string(),
             };
             BadInput(format!("{path}:{line}: {what}"))
@@ -137,14 +137,14 @@ impl Table {
             lines.push(line);
         }
         if rows.is_empty() {
-            let what = "the first line names the columns, and no row follows";
+            let what = "there is no row after the column names in the first line";
             return Err(BadInput(format!("{path}: {what}")));
         }
         Ok(Table { path, rows, lines })
     }
 
-    /// A complaint about one of the rows, with its line.
-    pub(super) fn complaint(&self, error: &CsvRowError) -> BadInput {
+    /// Returns an error about a row, with its line.
+    pub(super) fn error_at(&self, error: &CsvRowError) -> BadInput {
         let line = error
             .row()
             .and_then(|row| self.lines.get(row))
@@ -152,9 +152,9 @@ impl Table {
         BadInput(format!("{}:{line}: {error}", self.path))
     }
 
-    /// A complaint about a column of one row.
+    /// Returns an error about a column of one row.
     pub(super) fn invalid(&self, row: usize, column: &'static str, message: String) -> BadInput {
-        self.complaint(&CsvRowError::Invalid {
+        self.error_at(&CsvRowError::Invalid {
             row,
             column,
             message,
@@ -166,16 +166,14 @@ fn check_header(path: &str, header: &StringRecord) -> Result<(), BadInput> {
     let names: Vec<&str> = header.iter().collect();
     for (index, name) in names.iter().enumerate() {
         if names[..index].contains(name) {
-            return Err(BadInput(format!(
-                "{path}:1: column {name} stands there twice"
-            )));
+            return Err(BadInput(format!("{path}:1: column {name} occurs twice")));
         }
     }
     binnacle_analysis::fit::check_columns(names)
         .map_err(|error| BadInput(format!("{path}:1: {error}")))
 }
 
-/// The columns that are known.
+/// Known columns.
 const COLUMNS: [&str; 15] = [
     "time",
     "lat",
@@ -193,10 +191,10 @@ const COLUMNS: [&str; 15] = [
     "windows",
     "weight",
 ];
-/// No time and no number is longer, and a complaint quotes it.
+/// Longest time or number, bytes; error messages quote it.
 const LONGEST_VALUE: usize = 64;
 
-/// Reads the columns that are known; others are let be.
+/// Reads the known columns; others are ignored.
 fn row(header: &StringRecord, record: &StringRecord) -> Result<CsvRow, (String, String)> {
     let mut row = CsvRow::default();
     let mut unused = None;
@@ -204,7 +202,7 @@ fn row(header: &StringRecord, record: &StringRecord) -> Result<CsvRow, (String, 
         let number = match column {
             _ if !COLUMNS.contains(&column) => continue,
             _ if text.len() > LONGEST_VALUE => {
-                let what = format!("{} bytes are no value", text.len());
+                let what = format!("{} bytes are too long for a value", text.len());
                 return Err((column.to_owned(), what));
             }
             "time" => {
@@ -227,7 +225,7 @@ fn row(header: &StringRecord, record: &StringRecord) -> Result<CsvRow, (String, 
             "spread_deg" => &mut row.spread_deg,
             "windows" => &mut row.windows,
             "weight" => &mut row.weight,
-            // Nothing is made of it here, but it must be what it says it is.
+            // The value is not used here, but it must be valid.
             _ => &mut unused,
         };
         *number = parse(text).map_err(|what| (column.to_owned(), what))?;
@@ -235,7 +233,7 @@ fn row(header: &StringRecord, record: &StringRecord) -> Result<CsvRow, (String, 
     Ok(row)
 }
 
-/// A number, or nothing where nothing stands.
+/// Parses a number; an empty text gives `None`.
 fn parse(text: &str) -> Result<Option<f64>, String> {
     if text.is_empty() {
         return Ok(None);

@@ -1,12 +1,10 @@
-//! Reading a logbook from a file: a list of entries, or a page of them as the API
-//! answers it.
+//! Logbook files: a list of entries, or a page of them as the API returns it.
 //!
-//! What always holds: what is wrong is said with file, line and field, and a field
-//! that is not known is wrong, for it may be a known one misspelt. An entry that was
-//! withdrawn does not count.
+//! Invariants: an error names the file, the line and the field. An unknown field is an error,
+//! because it may be a misspelt one. Withdrawn entries are ignored.
 
 use super::BadInput;
-use super::input::{json_complaint, text_file};
+use super::input::{json_error, text_file};
 use binnacle_compass::logbook::LogbookEntry;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
@@ -14,7 +12,7 @@ use serde_json::value::RawValue;
 use std::fmt::Display;
 use std::path::Path;
 
-/// As `GET /vessels/{id}/logbook` answers.
+/// Response of `GET /vessels/{id}/logbook`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a list of logbook entries")]
 struct Page<'a> {
@@ -23,7 +21,7 @@ struct Page<'a> {
     next: Option<String>,
 }
 
-/// An entry, each field of which is read when it is known which one it is.
+/// Entry whose fields are still raw JSON, so that an error can name the field.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a logbook entry")]
 struct Written<'a> {
@@ -38,7 +36,7 @@ struct Written<'a> {
     #[serde(borrow)]
     note: Option<&'a RawValue>,
     withdrawn_at: Option<IgnoredAny>,
-    // What an entry of the API says beside it, and no analysis asks for.
+    // Fields of an entry in the API that no analysis needs.
     #[serde(rename = "id")]
     _id: Option<IgnoredAny>,
     #[serde(rename = "compass_id")]
@@ -65,13 +63,13 @@ struct Written<'a> {
     _withdrawal_reason: Option<IgnoredAny>,
 }
 
-/// A file, and its text.
+/// File and its text.
 struct Book<'a> {
     path: &'a Path,
     text: &'a str,
 }
 
-/// The entries of a file that count.
+/// Returns the entries of a file, without the withdrawn ones.
 pub(super) fn read(path: &Path) -> Result<Vec<LogbookEntry>, BadInput> {
     let text = text_file(path)?;
     let book = Book { path, text: &text };
@@ -84,7 +82,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<LogbookEntry>, BadInput> {
 
 impl Book<'_> {
     fn items(&self) -> Result<Vec<&RawValue>, BadInput> {
-        let failed = |error: serde_json::Error| json_complaint(self.path, 0, "", &error);
+        let failed = |error: serde_json::Error| json_error(self.path, 0, "", &error);
         if !self.text.trim_start().starts_with('{') {
             return serde_json::from_str(self.text).map_err(failed);
         }
@@ -98,9 +96,9 @@ impl Book<'_> {
 
     fn entry(&self, item: &RawValue) -> Result<Option<LogbookEntry>, BadInput> {
         let written: Written<'_> = serde_json::from_str(item.get())
-            .map_err(|error| json_complaint(self.path, self.lines_before(item), "", &error))?;
+            .map_err(|error| json_error(self.path, self.lines_before(item), "", &error))?;
         let required = |name, value: Option<_>| {
-            value.ok_or_else(|| self.complaint(item, format!("{name}: is missing")))
+            value.ok_or_else(|| self.error_at(item, format!("{name}: is missing")))
         };
         let entry = LogbookEntry {
             kind: self.field("kind", required("kind", written.kind)?)?,
@@ -111,7 +109,7 @@ impl Book<'_> {
         };
         let entry = entry
             .checked()
-            .map_err(|error| self.complaint(item, error))?;
+            .map_err(|error| self.error_at(item, error))?;
         Ok(written.withdrawn_at.is_none().then_some(entry))
     }
 
@@ -126,16 +124,16 @@ impl Book<'_> {
     fn field<T: DeserializeOwned>(&self, name: &str, value: &RawValue) -> Result<T, BadInput> {
         serde_json::from_str(value.get()).map_err(|error| {
             let field = format!("{name}: ");
-            json_complaint(self.path, self.lines_before(value), &field, &error)
+            json_error(self.path, self.lines_before(value), &field, &error)
         })
     }
 
-    fn complaint(&self, item: &RawValue, what: impl Display) -> BadInput {
+    fn error_at(&self, item: &RawValue, what: impl Display) -> BadInput {
         let line = self.lines_before(item) + 1;
         BadInput(format!("{}:{line}: {what}", self.path.display()))
     }
 
-    /// A value is a part of the text.
+    /// The value is a slice of the text.
     fn lines_before(&self, value: &RawValue) -> usize {
         let begin = value.get().as_ptr() as usize - self.text.as_ptr() as usize;
         self.text[..begin].matches('\n').count()

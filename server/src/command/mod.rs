@@ -1,8 +1,8 @@
-//! The commands.
+//! Commands of the command line.
 //!
-//! What always holds: bad input ends with exit code 2 and one line on standard
-//! error that names the file, the line and the field; nothing is printed on
-//! standard output before all of the input was read and found good.
+//! Invariants: invalid input ends with exit code 2 and one line on standard error that names
+//! the file, the line and the field. Nothing is printed on standard output before all of the
+//! input was read and found valid.
 
 mod admin;
 mod analyse;
@@ -40,15 +40,15 @@ use std::process::ExitCode;
 struct BadInput(String);
 
 impl BadInput {
-    /// Of a command-line option.
+    /// Describes an invalid command-line option.
     fn option(option: &str, detail: impl Display) -> BadInput {
         BadInput(format!("{option}: {detail}"))
     }
 }
 
-/// Prints a command's answer, or what is wrong with its input.
-fn answer(answer: Result<String, BadInput>) -> anyhow::Result<ExitCode> {
-    match answer {
+/// Prints a command's result, or the problem of its input.
+fn print_result(result: Result<String, BadInput>) -> anyhow::Result<ExitCode> {
+    match result {
         Ok(text) => {
             print(text.trim_end())?;
             Ok(ExitCode::SUCCESS)
@@ -60,7 +60,7 @@ fn answer(answer: Result<String, BadInput>) -> anyhow::Result<ExitCode> {
     }
 }
 
-/// Prints on standard output; a reader who has seen enough (`| head`) is no error.
+/// Prints on standard output; a closed pipe (`| head`) is not an error.
 fn print(text: &str) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {

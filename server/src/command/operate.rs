@@ -6,7 +6,7 @@ use crate::{health, routes, worker};
 use anyhow::{Context, Result};
 use axum::extract::connect_info::Connected;
 use axum::serve::{IncomingStream, Listener};
-use binnacle_fleet::{alerts, analysis};
+use binnacle_fleet::{alerts, analysis_queue};
 use binnacle_orders::dispatch;
 use binnacle_planning::{notifications, reports, schedule};
 use binnacle_platform::app::App;
@@ -14,9 +14,10 @@ use binnacle_platform::client_address::Peer;
 use binnacle_platform::clock::Clock;
 use binnacle_platform::config::{Database, Serve};
 use binnacle_platform::db::Db;
+use binnacle_platform::event_stream::EventListener;
 use binnacle_platform::mail::Mailer;
 use binnacle_platform::tls::TlsListener;
-use binnacle_platform::{audit, events, outbox, webhooks};
+use binnacle_platform::{audit, outbox, webhooks};
 use std::future::Future;
 use std::io::Write;
 use std::net::SocketAddr;
@@ -33,13 +34,13 @@ const GRACE: Duration = Duration::from_secs(20);
 
 /// Number of webhooks sent concurrently, so that a slow receiver delays only its own.
 const WEBHOOK_SENDERS: usize = 4;
-/// All letters go through one relay.
+/// Number of letters sent concurrently: all go through one relay.
 const MAIL_SENDERS: usize = 2;
 
-/// Serves until told to stop.
+/// Serves until the process is stopped.
 ///
 /// # Errors
-/// When the database or the address cannot be had.
+/// When the database cannot be opened or the address is not available.
 pub fn serve(config: Serve) -> Result<ExitCode> {
     start_log(config.log_json);
     block_on(async {
@@ -62,8 +63,7 @@ pub fn serve(config: Serve) -> Result<ExitCode> {
     })
 }
 
-/// Serves an application on a listener until it is told to stop, by a signal or
-/// by its own `stopping`.
+/// Serves an application on a listener until a signal or its own `stopping` stops it.
 ///
 /// # Errors
 /// When the listener fails.
@@ -74,12 +74,16 @@ where
 {
     let state = ServerState::new(app.clone());
     let mailer = Mailer::new(&app.config.mail)?;
+    let mailer = mailer.map(|mailer| mailer.with_list(reports::MAILING_LIST));
     let mut parts = JoinSet::new();
-    let line = events::Line::open(&app.db).await?;
-    parts.spawn(line.listen(app.clone()));
-    let outdated = analysis::enqueue_outdated(&app.db, app.clock.now().into()).await?;
+    let events = EventListener::open(&app.db).await?;
+    parts.spawn(events.listen(app.clone()));
+    let outdated = analysis_queue::enqueue_outdated(&app.db, app.clock.now().into()).await?;
     if outdated > 0 {
-        info!(vessels = outdated, "another estimator: analysing again");
+        info!(
+            vessels = outdated,
+            "the estimator has changed; analysing again"
+        );
     }
     for _ in 0..app.config.analysis_workers {
         parts.spawn(worker::run(app.clone()));
@@ -97,7 +101,7 @@ where
                     parts.spawn(outbox::run(app.clone(), sender.clone()));
                 }
             }
-            // A machine without certificates can still take batches.
+            // A machine without root certificates can still receive batches.
             Err(error) => error!(error = format!("{error:#}"), "webhooks cannot be sent"),
         }
         if let Some(mailer) = mailer {
@@ -117,12 +121,12 @@ where
     };
     tokio::select! {
         served = serving => served?,
-        () = deadline => warn!("requests under way were cut off"),
+        () = deadline => warn!("running requests were cut off"),
     }
     app.stopping.cancel();
     let finished = async { while parts.join_next().await.is_some() {} };
     if tokio::time::timeout(GRACE, finished).await.is_err() {
-        warn!("an analysis under way was cut off; its lease will end");
+        warn!("a running analysis was cut off; its lease will expire");
     }
     app.db.close().await;
     info!("stopped");
@@ -140,7 +144,7 @@ async fn stop_on_signal(app: App) {
     app.stopping.cancel();
 }
 
-/// Tells whoever started us where to reach us.
+/// Prints the address for whoever started the server.
 fn announce(scheme: &str, listener: &impl Listener<Addr = SocketAddr>) -> Result<()> {
     let mut out = std::io::stdout().lock();
     writeln!(out, "listening on {scheme}://{}", listener.local_addr()?)?;
@@ -171,7 +175,7 @@ pub fn openapi() -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Runs something asynchronous to its end.
+/// Runs a future to completion.
 pub(super) fn block_on<T>(work: impl Future<Output = Result<T>>) -> Result<T> {
     tokio::runtime::Builder::new_multi_thread()
         .enable_all()

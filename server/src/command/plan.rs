@@ -1,10 +1,10 @@
-//! `plan`: from a model, a binnacle and a reading at the berth, how to set the
-//! correctors; and from another reading after the steps, whether they stand so.
+//! `plan`: plans the setting of the correctors from a model, a binnacle and a reading at the
+//! berth. With another reading after the steps it checks the result.
 //!
-//! A refusal is an answer: it says why, and what would cure it. A mistake in a file that
-//! alone explains a berth that does not fit is bad input.
+//! A refusal is a regular result, with its reason and its cures. If a mistake in a file alone
+//! explains readings that do not fit, the file is invalid input.
 
-use super::{BadInput, answer, input, json};
+use super::{BadInput, input, json, print_result};
 use crate::cli::Plan;
 use binnacle_adjustment::adjust::{
     AdjustError, Adjustment, BerthForm, CompletedStep, Outcome, PostCheckForm,
@@ -25,12 +25,12 @@ struct Planned {
     outcome: Outcome,
 }
 
-/// Prints the best few plans, or why there is none, as JSON.
+/// Prints the best plans, or the reasons why there is none, as JSON.
 ///
 /// # Errors
 /// When standard output cannot be written.
 pub fn plan(arguments: &Plan) -> anyhow::Result<ExitCode> {
-    answer(find(arguments))
+    print_result(find(arguments))
 }
 
 fn find(arguments: &Plan) -> Result<String, BadInput> {
@@ -75,7 +75,7 @@ fn read_after(
     if let Some(refused) = outcome.refusals.first() {
         return Err(of(
             &arguments.berth,
-            format!("no plan was given: {}", refused.words),
+            format!("no plan is possible: {}", refused.words),
         ));
     }
     let after: PostCheckForm = input::json_file(file)?;

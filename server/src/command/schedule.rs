@@ -1,6 +1,6 @@
-//! `schedule`: from ships, needs, port calls and firms, who does what where and when.
+//! `schedule`: plans adjustments from vessels, needs, port calls and firms.
 
-use super::{BadInput, answer, input, json};
+use super::{BadInput, input, json, print_result};
 use crate::cli::Schedule;
 use binnacle_schedule::input::read;
 use binnacle_schedule::plan::plan;
@@ -11,7 +11,7 @@ use std::process::ExitCode;
 /// # Errors
 /// When standard output cannot be written.
 pub fn schedule(arguments: &Schedule) -> anyhow::Result<ExitCode> {
-    answer(find(arguments))
+    print_result(find(arguments))
 }
 
 fn find(arguments: &Schedule) -> Result<String, BadInput> {

@@ -1,6 +1,6 @@
-//! Tables for people.
+//! Text tables.
 
-/// Lines up columns to the right, under their names.
+/// Renders right-aligned columns under their names.
 pub(super) fn render<const N: usize>(names: [&str; N], rows: &[[String; N]]) -> String {
     let widths: [usize; N] = std::array::from_fn(|column| {
         rows.iter()

@@ -1,12 +1,12 @@
-//! `verify-evidence`: checks an archive of evidence with nothing but what is in it.
+//! `verify-evidence`: checks an archive of evidence by its own content alone.
 
-use super::{BadInput, answer};
+use super::{BadInput, print_result};
 use crate::cli::VerifyEvidence;
 use binnacle_orders::evidence::{self, Findings};
 use std::fs;
 use std::process::ExitCode;
 
-/// Says what the archive is, or what is wrong with it.
+/// Prints the facts of the archive, or its problems.
 ///
 /// # Errors
 /// When standard output cannot be written to.
@@ -14,11 +14,11 @@ pub fn verify_evidence(arguments: &VerifyEvidence) -> anyhow::Result<ExitCode> {
     let file = arguments.file.display();
     let checked = fs::read(&arguments.file)
         .map_err(|error| BadInput(format!("{file}: {error}")))
-        .and_then(|bytes| told(&file.to_string(), &evidence::verify(&bytes)));
-    answer(checked)
+        .and_then(|bytes| describe(&file.to_string(), &evidence::verify(&bytes)));
+    print_result(checked)
 }
 
-fn told(file: &str, found: &Findings) -> Result<String, BadInput> {
+fn describe(file: &str, found: &Findings) -> Result<String, BadInput> {
     if !found.problems.is_empty() {
         return Err(BadInput(format!("{file}: {}", found.problems.join("; "))));
     }

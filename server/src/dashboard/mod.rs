@@ -1,8 +1,8 @@
-//! The dashboard: files embedded when the server was built.
+//! Dashboard files, which are embedded when the server is built.
 //!
-//! What always holds: a path that names no file answers with the dashboard's own
-//! page, which knows what to show there; files whose names carry a hash may be
-//! kept for ever, all others are asked for again.
+//! Invariants: for a path that names no file the response is the dashboard's page, which does
+//! its own routing. Files with a hash in their name may be cached for ever; all others are
+//! revalidated.
 
 mod preload;
 
@@ -24,7 +24,7 @@ const NOT_BUILT: &str = "<!doctype html><html lang=en><meta charset=utf-8><title
     <p>Run <code>make web</code>, then build the server again.</p>\
     <p>The API is there: <a href=/api/docs>read about it</a>.</p></html>";
 
-/// Answers with a file, or with the page that shows everything.
+/// Serves a file, or the page of the dashboard.
 pub async fn serve(State(app): State<App>, request: Request) -> Response {
     let (mut parts, _) = request.into_parts();
     let path = parts.uri.path().trim_start_matches('/').to_owned();

@@ -1,9 +1,9 @@
 //! Preload links of a page, in its `Link` headers (RFC 8288), so that a browser requests them at
 //! once.
 //!
-//! What always holds: data is preloaded only with one of our cookies, and a vessel's data only
-//! for users with a fleet. The page itself requests everything named, so that nothing is fetched
-//! in vain.
+//! Invariants: data is preloaded only with one of our cookies, and a vessel's data only for
+//! users with a fleet. The page itself requests everything named, so that nothing is fetched in
+//! vain.
 
 use super::Files;
 use axum::http::HeaderMap;
@@ -29,7 +29,7 @@ struct Built {
     is_entry: bool,
 }
 
-/// The files of a vessel's page, but for the first of every page.
+/// Files of a vessel's page, without those that every page loads.
 static VESSELS_FILES: LazyLock<Vec<String>> = LazyLock::new(|| {
     let manifest = Files::get(MANIFEST);
     let manifest = manifest.and_then(|file| serde_json::from_slice(&file.data).ok());
@@ -50,7 +50,7 @@ fn files_of(source: &str, manifest: &BTreeMap<String, Built>) -> Vec<String> {
     found.into_iter().collect()
 }
 
-/// The vessel whose page is at `path`.
+/// Returns the vessel whose page is at `path`.
 pub(super) fn vessel(path: &str) -> Option<Uuid> {
     let id = path.strip_prefix("vessels/")?;
     Uuid::try_parse(id).ok()
@@ -65,7 +65,7 @@ pub(super) fn links(
 ) -> Option<HeaderValue> {
     let mut links = Vec::new();
     if request.contains_key(COOKIE) {
-        // What is read first of a vessel: who she is, and all that says what she needs.
+        // Data of the vessel that the page shows first.
         let ours = vessel.filter(|_| has_fleet).map(|id| {
             [
                 format!("vessels/{id}"),
@@ -94,7 +94,7 @@ pub(super) fn links(
         .filter(|links| !links.is_empty())
 }
 
-/// Adds them to what a page is answered with.
+/// Adds the preload links to the response headers of a page.
 pub(super) fn add(links: Option<HeaderValue>, headers: &mut HeaderMap) {
     headers.extend(links.map(|links| (LINK, links)));
 }

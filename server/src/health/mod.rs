@@ -14,7 +14,7 @@ use std::time::Instant;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Routes of health checks and metrics.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -29,7 +29,7 @@ where
 /// Sets up the process's metrics.
 ///
 /// # Errors
-/// When it is done twice.
+/// When the metrics are already installed.
 pub fn install_metrics() -> anyhow::Result<PrometheusHandle> {
     let handle = PrometheusBuilder::new()
         .set_buckets(&[0.001, 0.01, 0.1, 1.0, 10.0])?
@@ -55,15 +55,15 @@ async fn readyz(State(app): State<App>) -> (StatusCode, &'static str) {
         Ok(()) => (StatusCode::OK, "ready"),
         Err(_) => (
             StatusCode::SERVICE_UNAVAILABLE,
-            "the database does not answer",
+            "the database does not respond",
         ),
     }
 }
 
 /// Metrics for Prometheus
 ///
-/// For who sends the token that the server was started with (`BINNACLE_METRICS_TOKEN`); where
-/// it was started without one, for programs on the same machine.
+/// Requires the token that the server was started with (`BINNACLE_METRICS_TOKEN`). Without a
+/// token, only programs on the same machine may read them.
 #[utoipa::path(get, path = "/metrics", tag = "operations", security((), ("token" = [])),
     responses((status = 200, body = String), (status = 401, body = Problem)))]
 async fn metrics_page(
@@ -74,7 +74,7 @@ async fn metrics_page(
     if !may_read_metrics(&app, &origin, &headers) {
         return Err(Error::Unauthenticated);
     }
-    let waiting = binnacle_fleet::analysis::count_jobs(&app.db).await?;
+    let waiting = binnacle_fleet::analysis_queue::count(&app.db).await?;
     for (state, jobs) in waiting {
         metrics::gauge!("binnacle_jobs", "state" => state).set(jobs as f64);
     }
@@ -90,7 +90,7 @@ fn may_read_metrics(app: &App, origin: &Origin, headers: &HeaderMap) -> bool {
         let sent = sent.and_then(|sent| sent.strip_prefix("Bearer "));
         return sent.is_some_and(|sent| token.is(sent));
     }
-    // Who comes by way of a proxy that the server was not told of may be anybody.
+    // A client behind an unknown proxy may be anybody.
     let is_forwarded = [FORWARDED, HeaderName::from_static("x-forwarded-for")]
         .iter()
         .any(|name| headers.contains_key(name));

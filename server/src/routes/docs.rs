@@ -1,7 +1,7 @@
-//! The API's document, and a page on which people can read it.
+//! OpenAPI document, and a readable page of it.
 //!
-//! The page is made from the document, without scripts and without anything from
-//! elsewhere, so that it reads on a closed network too.
+//! The page is generated from the document, without scripts and external resources, so that it
+//! works on a closed network too.
 
 use axum::Json;
 use axum::response::Html;

@@ -1,7 +1,7 @@
 //! Completion of the OpenAPI document with details common to all operations.
 //!
-//! What always holds: each response has a description, which OpenAPI 3.1 demands. Each problem
-//! has the media type of RFC 9457. The problems of reading a request are listed wherever there is
+//! Invariants: each response has a description, which OpenAPI 3.1 demands. Each problem has the
+//! media type of RFC 9457. The problems of reading a request are listed wherever there is
 //! something to read.
 
 use axum::http::StatusCode;
@@ -14,7 +14,7 @@ use utoipa::openapi::{OpenApi, RefOr, Response};
 /// Adds the fields that one domain's problems carry to the schema `Problem`.
 ///
 /// # Panics
-/// When `T` is no struct, or the document has no `Problem`: a mistake in the code.
+/// When `T` is not a struct, or the document has no `Problem`: a mistake in the code.
 pub(super) fn add_problem_fields<T: ToSchema>(document: &mut OpenApi) {
     let RefOr::T(Schema::Object(fields)) = T::schema() else {
         panic!("only a struct has fields");
@@ -29,7 +29,7 @@ pub(super) fn add_problem_fields<T: ToSchema>(document: &mut OpenApi) {
     problem.properties.extend(fields.properties);
 }
 
-/// Adds it.
+/// Adds the details common to all operations.
 pub(super) fn complete(document: &mut OpenApi) {
     for path in document.paths.paths.values_mut() {
         let all = [
@@ -50,7 +50,7 @@ pub(super) fn complete(document: &mut OpenApi) {
     }
 }
 
-/// Lists what a request may be refused for before the operation sees it.
+/// Lists the problems for which a request may be refused before the operation runs.
 fn add_problems(operation: &mut Operation) {
     let answers = &mut operation.responses.responses;
     let Some(problem) = answers.get("401").or_else(|| answers.get("404")).cloned() else {
@@ -67,7 +67,7 @@ fn add_problems(operation: &mut Operation) {
     let fleet = tags.any(|tag| ["fleet", "adjusting", "alerts", "people"].contains(&tag.as_str()));
     let query = parameters().any(|found| found.parameter_in == ParameterIn::Query);
     let body = operation.request_body.is_some();
-    // A batch's frame is taken whatever its media type is called.
+    // A batch is accepted with any media type.
     let json = body && !parameters().any(|found| found.name == "seq");
     for (status, may_be) in [
         ("400", query || body),

@@ -1,4 +1,4 @@
-//! Every route, the document that describes them, and what surrounds them.
+//! All routes, their OpenAPI document and their middleware.
 
 mod docs;
 mod document;
@@ -12,15 +12,15 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use binnacle_fleet::models::NoModelFields;
 use binnacle_fleet::{
-    alerts, binnacles, card, changes, compasses, deviation, deviation_book, enrolment, ingest,
-    logbook, models, operators, overview, particulars, samples, settings, vessels,
+    alerts, binnacles, card, changes, compasses, deviation_book, deviation_table, enrolment,
+    ingest, logbook, models, operators, overview, particulars, samples, settings, vessel_api,
 };
 use binnacle_orders::work_orders::NotAdjustableFields;
 use binnacle_orders::{api as orders_api, firms};
 use binnacle_planning::{calendar, needs, notifications, port_calls, reports, schedule};
 use binnacle_platform::http::{MAX_JSON_BYTES, cross_site, headers};
 use binnacle_platform::{
-    audit, error, events, mail, oidc, second_factor, session, tokens, users, webhooks,
+    audit, audit_api, error, event_stream, mail, oidc, session, session_api, users, webhooks,
 };
 use std::time::Duration;
 use tower_http::catch_panic::CatchPanicLayer;
@@ -32,7 +32,7 @@ use utoipa::OpenApi;
 use utoipa::openapi::security::{ApiKey, ApiKeyValue, Http, HttpAuthScheme, SecurityScheme};
 use utoipa_axum::router::OpenApiRouter;
 
-/// A batch over a satellite link may take its time; nothing takes longer.
+/// Time limit of a request: a batch over a satellite link may take long.
 const PATIENCE: Duration = Duration::from_mins(2);
 
 #[derive(OpenApi)]
@@ -49,14 +49,14 @@ const PATIENCE: Duration = Duration::from_mins(2);
     modifiers(&Security),
     tags(
         (name = "session", description = "Signing in; one's sessions, second factor, API tokens"),
-        (name = "people", description = "Who may sign in, and how"),
+        (name = "people", description = "Users, and the rules for signing in"),
         (name = "platform", description = "Operators and firms, for platform admins"),
-        (name = "agents", description = "What the agents on board talk to"),
-        (name = "fleet", description = "Vessels, compasses, models"),
-        (name = "adjusting", description = "Binnacles, port calls and work orders. What is predicted here is \
-            a prediction, not a certificate"),
-        (name = "alerts", description = "What people must know of, and how they are told"),
-        (name = "notifications", description = "What you yourself are told, and in which ways"),
+        (name = "agents", description = "Interface of the agents on board"),
+        (name = "fleet", description = "Vessels, compasses and their models"),
+        (name = "adjusting", description = "Binnacles, port calls and work orders. Predictions here are not \
+            certificates"),
+        (name = "alerts", description = "Alerts, and their delivery by mail and webhook"),
+        (name = "notifications", description = "Your own notifications and their channels"),
         (name = "operations", description = "Health and metrics"),
     )
 )]
@@ -88,16 +88,14 @@ fn for_agents() -> OpenApiRouter<ServerState> {
 
 fn for_people() -> OpenApiRouter<ServerState> {
     OpenApiRouter::new()
-        .merge(session::router())
+        .merge(session_api::router())
         .merge(oidc::router())
-        .merge(second_factor::router())
-        .merge(tokens::router())
         .merge(users::router())
-        .merge(audit::router())
+        .merge(audit_api::router())
         .merge(operators::router())
         .merge(firms::router())
         .merge(overview::router())
-        .merge(vessels::router())
+        .merge(vessel_api::router())
         .merge(compasses::router())
         .merge(binnacles::router())
         .merge(orders_api::router())
@@ -110,7 +108,7 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(settings::router())
         .merge(logbook::router())
         .merge(models::router())
-        .merge(deviation::router())
+        .merge(deviation_table::router())
         .merge(card::router())
         .merge(deviation_book::router())
         .merge(changes::router())
@@ -120,16 +118,16 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(webhooks::router())
         .merge(mail::router())
         .merge(notifications::router())
-        .merge(events::router())
+        .merge(event_stream::router())
 }
 
-/// The OpenAPI document.
+/// Returns the OpenAPI document.
 pub fn openapi() -> utoipa::openapi::OpenApi {
     let (_, _, document) = parts();
     document
 }
 
-/// The routes of agents, those of people, and the document of both.
+/// Returns the routes of agents, those of people, and the document of both.
 fn parts() -> (
     Router<ServerState>,
     Router<ServerState>,
@@ -177,7 +175,7 @@ fn span(request: &Request) -> Span {
     debug_span!("http", method = %request.method(), route)
 }
 
-/// The whole server.
+/// Returns the router of the whole server.
 pub fn router(state: ServerState) -> Router {
     let app = state.app.clone();
     let (agents, mut people, _) = parts();

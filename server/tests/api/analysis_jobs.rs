@@ -3,7 +3,7 @@
 use crate::analysis::{A_WHILE_S, DAY};
 use crate::on_both;
 use crate::support::{Shore, passage};
-use binnacle_fleet::analysis;
+use binnacle_fleet::analysis_queue;
 use binnacle_server::worker::{self, Worked};
 use serde_json::json;
 
@@ -19,7 +19,7 @@ on_both!(
 /// Takes a job as a worker does that then dies.
 async fn claim(shore: &Shore) -> bool {
     let now = shore.app.clock.now().into();
-    let job = analysis::claim(&shore.app.db, now).await.unwrap();
+    let job = analysis_queue::claim(&shore.app.db, now).await.unwrap();
     job.is_some()
 }
 
@@ -136,21 +136,25 @@ async fn a_lease_that_is_renewed_is_not_taken(shore: Shore) {
     nao.put(1, &passage(DAY, 30)).await.good();
     shore.advance(A_WHILE_S);
     let now = || shore.app.clock.now().into();
-    let job = analysis::claim(&shore.app.db, now())
+    let job = analysis_queue::claim(&shore.app.db, now())
         .await
         .unwrap()
         .unwrap();
     for _ in 0..3 {
         shore.advance(50.0);
-        analysis::renew(&shore.app.db, job, now()).await.unwrap();
+        analysis_queue::renew(&shore.app.db, job, now())
+            .await
+            .unwrap();
     }
     assert_eq!(shore.work().await, []);
     // The worker was killed: within a minute another takes its job.
     shore.advance(60.0);
     assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
     // Whoever comes back late renews nothing.
-    analysis::renew(&shore.app.db, job, now()).await.unwrap();
-    let left = analysis::count_jobs(&shore.app.db).await.unwrap();
+    analysis_queue::renew(&shore.app.db, job, now())
+        .await
+        .unwrap();
+    let left = analysis_queue::count(&shore.app.db).await.unwrap();
     assert_eq!(left, [("queued", 0), ("running", 0), ("dead", 0)]);
     shore.finish().await;
 }
@@ -183,7 +187,7 @@ async fn a_job_that_fails_is_tried_again_and_then_given_up(shore: Shore) {
     nao.put(2, &passage("2026-11-20T00:00:00Z", 3)).await.good();
     shore.advance(A_WHILE_S);
     assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
-    let left = analysis::count_jobs(&shore.app.db).await.unwrap();
+    let left = analysis_queue::count(&shore.app.db).await.unwrap();
     assert_eq!(left, [("queued", 0), ("running", 0), ("dead", 0)]);
     shore.finish().await;
 }

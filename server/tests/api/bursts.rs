@@ -4,7 +4,7 @@ use crate::commands::{assert_refused, run};
 use crate::on_both;
 use crate::support::{Ship, Shore, frame, passage};
 use binnacle_compass::sample::Sample;
-use binnacle_fleet::ingest::{Imported, Incomplete, import};
+use binnacle_fleet::ingest::{ImportResult, IncompleteBatch, import_messages};
 use binnacle_platform::ids::VesselId;
 use binnacle_wire::burst::{read_ack, split};
 use serde_json::json;
@@ -27,14 +27,16 @@ fn long_passage(ship: &Ship) -> Vec<Sample> {
     long.next().unwrap()
 }
 
-async fn brought(shore: &Shore, ship: &Ship, messages: &[Vec<u8>]) -> Imported {
+async fn brought(shore: &Shore, ship: &Ship, messages: &[Vec<u8>]) -> ImportResult {
     let vessel = VesselId(ship.id.parse().unwrap());
     let named = messages.iter().zip(1..);
     let named: Vec<_> = named
         .map(|(m, n)| (format!("{n}.sbd"), m.clone()))
         .collect();
     let now = shore.app.clock.now().into();
-    import(&shore.app.db, vessel, &named, now).await.unwrap()
+    import_messages(&shore.app.db, vessel, &named, now)
+        .await
+        .unwrap()
 }
 
 async fn messages_become_the_batches_that_they_were_cut_from_and_once(shore: Shore) {
@@ -49,11 +51,21 @@ async fn messages_become_the_batches_that_they_were_cut_from_and_once(shore: Sho
     let imported = brought(&shore, &nao, &messages).await;
     assert_eq!((imported.stored, imported.repeated), (1, 0));
     assert!(imported.incomplete.is_empty() && imported.refused.is_empty());
-    assert_eq!(read_ack(&imported.answers[0].1).unwrap().contiguous_seq, 1);
+    assert_eq!(
+        read_ack(&imported.acknowledgements[0].1)
+            .unwrap()
+            .contiguous_seq,
+        1
+    );
     messages.push(missing);
     let imported = brought(&shore, &nao, &messages).await;
     assert_eq!((imported.stored, imported.repeated), (1, 1));
-    assert_eq!(read_ack(&imported.answers[0].1).unwrap().contiguous_seq, 2);
+    assert_eq!(
+        read_ack(&imported.acknowledgements[0].1)
+            .unwrap()
+            .contiguous_seq,
+        2
+    );
     // Over the ordinary link, too.
     let answer = nao.put(1, &passage_1).await.good();
     assert_eq!(answer["contiguous_seq"], 2);
@@ -83,7 +95,7 @@ async fn what_is_no_message_or_no_batch_of_the_vessel_keeps_nothing_else_back(sh
         .map(|r| r.message.as_str())
         .collect();
     assert_eq!(refused, ["1.sbd", "2.sbd"]);
-    let waits = Incomplete {
+    let waits = IncompleteBatch {
         seq: 2,
         messages: 1,
         of: day.len(),

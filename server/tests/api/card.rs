@@ -384,7 +384,10 @@ async fn a_card_from_after_a_change_says_that_no_older_one_holds(shore: Shore) {
         .get(&nao.path("/card.json?at=2026-11-05T00:00:00Z"))
         .await;
     assert_eq!(before.problem(), "invalid");
-    assert!(before.text.contains("the model holds from"), "{before:?}");
+    assert!(
+        before.text.contains("the model is valid only from"),
+        "{before:?}"
+    );
 
     let calm = shore.ship(&ada, "Calm").await;
     calm.put(1, &passage(FROM, 300)).await.good();

@@ -361,7 +361,10 @@ fn admin_creates_who_may_sign_in() {
     let user = [&user[..], &more].concat();
     let created: Value = serde_json::from_str(&good(&run(folder.path(), &user))).unwrap();
     assert!(created["password"].as_str().unwrap().len() >= 16);
-    assert_refused(&run(folder.path(), &user), &["--email", "account already"]);
+    assert_refused(
+        &run(folder.path(), &user),
+        &["--email", "already has an account"],
+    );
     let nobody = user.iter().map(|word| match *word {
         word if word == operator => "00000000-0000-0000-0000-000000000000",
         "A@b.example" => "c@d.example",

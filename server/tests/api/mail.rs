@@ -4,6 +4,7 @@ use crate::alerts::{limit, with_model};
 use crate::on_both;
 use crate::support::{Answer, Letter, Person, Relay, Shore};
 use binnacle_fleet::alerts;
+use binnacle_planning::reports;
 use binnacle_platform::config;
 use binnacle_platform::mail::Mailer;
 use binnacle_platform::outbox::{self, Sent};
@@ -34,6 +35,7 @@ pub(crate) fn mailer(relay: &Relay) -> Mailer {
         public_url: Some("https://binnacle.example/".to_owned()),
     };
     let mailer = Mailer::new(&config).unwrap().unwrap();
+    let mailer = mailer.with_list(reports::MAILING_LIST);
     mailer.with_patience(PATIENCE)
 }
 
@@ -255,7 +257,7 @@ async fn names_make_no_headers_and_come_through_whole(shore: Shore) {
     assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered; 3]);
     let mut got: Vec<Value> = relay.got().iter().map(read).collect();
     for name in names {
-        let subject = format!("{name}: notice, no word from the vessel").replace("=?", "= ?");
+        let subject = format!("{name}: notice, no data from the vessel").replace("=?", "= ?");
         let place = got
             .iter()
             .position(|read| read["subject"] == subject.as_str());

@@ -121,7 +121,7 @@ async fn a_certificate_that_cannot_be_used_is_refused_with_its_files_name() {
     renew(folder.path());
     let chain = fs::read(&files.chain).unwrap();
     fs::write(&files.chain, "").unwrap();
-    assert!(refusal().contains("chain.pem: there is no certificate in it"));
+    assert!(refusal().contains("chain.pem: contains no certificate"));
     renew(folder.path());
     fs::write(&files.chain, chain).unwrap();
     assert!(refusal().contains("key.pem: not the certificate's key"));

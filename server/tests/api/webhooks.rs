@@ -9,8 +9,9 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Redirect, Response};
 use axum::routing::post;
 use binnacle_fleet::alerts;
+use binnacle_platform::outbound::Reach;
 use binnacle_platform::outbox::{self, Sent};
-use binnacle_platform::webhooks::{Reach, SIGNATURE_HEADER, Sender};
+use binnacle_platform::webhooks::{SIGNATURE_HEADER, Sender};
 use reqwest::Method;
 use serde_json::{Value, json};
 use std::collections::VecDeque;
@@ -296,7 +297,10 @@ async fn a_redirect_is_a_failure_and_is_not_followed(shore: Shore) {
     assert_eq!(deliver(&shore).await, [Sent::Failed]);
     assert_eq!(elsewhere.got(), []);
     let listed = ada.get(&path(&webhook, "/deliveries")).await.good();
-    assert_eq!(listed["items"][0]["last_error"], "answered with status 307");
+    assert_eq!(
+        listed["items"][0]["last_error"],
+        "responded with status 307"
+    );
     shore.finish().await;
 }
 

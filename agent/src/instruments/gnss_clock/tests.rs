@@ -151,7 +151,7 @@ fn a_first_stamp_that_cannot_be_right_is_not_believed() {
 }
 
 #[test]
-fn a_first_stamp_in_doubt_is_believed_when_the_server_bears_it_out() {
+fn an_uncertain_first_stamp_is_accepted_when_the_server_confirms_it() {
     const WEEK_S: i64 = 7 * 86_400;
     let (mut clock, start) = restarted();
     hear(&mut clock, start, 0..60, WEEK_S);

@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disturbance_that_was_told_speaks_neither_for_a_return_nor_against_it() {
+    fn a_disturbance_that_was_reported_speaks_neither_for_a_return_nor_against_it() {
         let calls = after_two_calls([5.0, -30.0]);
         let probability = |is_disturbed: bool| {
             let likeliest = calls.likeliest(&vessel(), 60.0, is_disturbed);

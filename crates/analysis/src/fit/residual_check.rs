@@ -6,6 +6,7 @@
 //! of the plain residuals, which outliers do not move, and the noise found by the
 //! estimator, which is small where the vessel itself changed with time.
 
+use crate::robust_scale::{median, robust_sd};
 use binnacle_compass::model::Caution;
 use binnacle_compass::result::{FitError, NoiseLevels};
 
@@ -16,8 +17,6 @@ const ALLOWED_DEG: f64 = 3.0;
 const ALLOWED_NOISE_DEG: f64 = 1.25;
 /// Residual and noise from which the result needs a caution.
 const CAUTION_DEG: f64 = 1.0;
-/// Median of |x| of a Gaussian, as a part of its standard deviation.
-const MEDIAN_TO_SD: f64 = 0.674_489_8;
 
 /// Fails for implausible residuals, and returns a caution for large ones.
 pub(super) fn check_residuals(
@@ -25,31 +24,21 @@ pub(super) fn check_residuals(
     levels: &NoiseLevels,
 ) -> Result<Option<Caution>, FitError> {
     let residuals: Vec<f64> = residuals_deg.collect();
-    if residuals.is_empty() {
+    let about = |centre| robust_sd(residuals.iter().copied(), centre);
+    let spreads = median(residuals.clone()).and_then(about).zip(about(0.0));
+    let Some((spread_deg, residual_deg)) = spreads else {
         return Ok(None);
-    }
+    };
     let noise_deg = levels.row_variance().sqrt();
-    // A reference that was wrong for days moves the constant away from all the rest, which
-    // is still plausible.
-    let spread_deg = robust_sd(&residuals, median(residuals.clone()));
+    // The spread is about the median: a reference that was wrong for days moves the constant
+    // away from all the rest, which is still plausible.
     if spread_deg > ALLOWED_DEG && noise_deg > ALLOWED_NOISE_DEG {
         return Err(FitError::Contradictory {
             residual_deg: spread_deg,
             allowed_deg: ALLOWED_DEG,
         });
     }
-    let residual_deg = robust_sd(&residuals, 0.0);
     let is_large =
         residual_deg > ALLOWED_DEG || (residual_deg > CAUTION_DEG && noise_deg > CAUTION_DEG);
     Ok(is_large.then_some(Caution::LargeResiduals { residual_deg }))
-}
-
-fn robust_sd(residuals: &[f64], about: f64) -> f64 {
-    median(residuals.iter().map(|r| (r - about).abs()).collect()) / MEDIAN_TO_SD
-}
-
-/// Returns the median of at least one number.
-fn median(mut numbers: Vec<f64>) -> f64 {
-    let middle = numbers.len() / 2;
-    *numbers.select_nth_unstable_by(middle, f64::total_cmp).1
 }

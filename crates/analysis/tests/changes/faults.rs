@@ -216,7 +216,7 @@ fn by_one_reference_a_zero_that_moved_twice_may_be_off_by_both() {
 }
 
 #[test]
-fn a_zero_that_moved_by_much_is_told_once() {
+fn a_zero_that_moved_by_much_is_reported_once() {
     for (seed, moved_deg) in [
         (60, 8.0),
         (61, -8.0),
@@ -353,7 +353,7 @@ fn a_gyro_that_stays_wrong_is_not_right_again_with_the_end_of_a_worse_fault() {
 }
 
 #[test]
-fn a_jammed_card_that_trembles_much_is_told_once() {
+fn a_jammed_card_that_trembles_much_is_reported_once() {
     for seed in [61, 62, 64] {
         let mut log = sail_log(seed, &calm(Event::Nothing));
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -397,7 +397,7 @@ fn that_a_ship_on_one_course_is_not_watched_is_said() {
 
 /// The errors are two or three degrees, against the gyro and the vessel's own past.
 #[test]
-fn a_reference_off_for_good_is_told_and_bends_no_model() {
+fn a_reference_off_for_good_is_reported_and_bends_no_model() {
     for (seed, gyro_deg, satellite_deg) in [
         (60, 0.0, -3.0),
         (61, 0.0, -2.0),

@@ -40,7 +40,7 @@ fn a_gyro_fault_with_a_satellite_compass_on_board_is_named_at_once() {
 }
 
 #[test]
-fn an_adjustment_is_told_as_expected() {
+fn an_adjustment_is_reported_as_expected() {
     let log = sail_log(10, &calm(Event::Nothing));
     let at = log.samples[log.samples.len() / 2].time;
     let logbook = [entry(LogbookKind::Adjustment, at, None)];

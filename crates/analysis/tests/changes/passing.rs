@@ -96,7 +96,7 @@ fn what_is_gone_within_hours_at_sea_is_no_strike() {
 }
 
 #[test]
-fn a_step_that_was_told_and_is_gone_again_says_so_and_stays_one_change() {
+fn a_step_that_was_reported_and_is_gone_again_says_so_and_stays_one_change() {
     let log = sail_log(2, &calm(Event::VariationError(8.0)));
     let analysis = run(&log.samples);
     let reported = &analysis.changes[0];

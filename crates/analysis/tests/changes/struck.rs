@@ -111,7 +111,7 @@ fn days_after_a_strike_the_band_is_narrow_again() {
 }
 
 #[test]
-fn a_strike_of_any_size_is_told_as_one_and_the_band_holds_the_truth_a_day_after() {
+fn a_strike_of_any_size_is_reported_as_one_and_the_band_holds_the_truth_a_day_after() {
     let (mut all, mut in_band) = (0, 0);
     for nt in [12_000.0, 20_000.0] {
         for seed in 1..7 {
@@ -154,7 +154,7 @@ fn what_one_course_does_not_show_of_a_strike_is_open() {
 /// first reading after it would be another strike; on the first two courses of the others
 /// the strike looks like an alignment change.
 #[test]
-fn a_strike_is_told_once_whatever_courses_come_after_it() {
+fn a_strike_is_reported_once_whatever_courses_come_after_it() {
     let ships = [
         (381_005, Variety::Poor),
         (381_019, Variety::Medium),

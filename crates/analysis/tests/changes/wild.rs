@@ -140,7 +140,7 @@ fn a_swing_in_high_latitudes_where_the_field_is_weak_is_no_strike() {
 }
 
 #[test]
-fn no_compass_is_told_to_be_astray_by_more_than_half_a_turn() {
+fn no_compass_is_reported_as_off_by_more_than_half_a_turn() {
     let mut reversed = 0;
     for seed in [61, 62, 63, 65, 67] {
         let (log, _) = with_error(

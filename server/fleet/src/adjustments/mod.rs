@@ -1,8 +1,7 @@
-//! Completed adjustments of a compass: by whom, and whether headings at sea confirm them.
+//! Completed adjustments of a compass: adjuster, firm, and verification by headings at sea.
 //!
-//! What always holds: an adjustment bears on the model that it predicted and on what was
-//! fitted later to the epoch that it began, and on no other. Work orders write these rows;
-//! they are only read here.
+//! Invariants: an adjustment applies to the model that it predicted, to later fits of the epoch
+//! that it began, and to no other. Work orders write these rows; this crate only reads them.
 
 use crate::models::StoredModel;
 use binnacle_adjustment::adjust::Verification;
@@ -41,11 +40,11 @@ pub struct AtSea {
     pub samples: usize,
     /// The time of the last of these.
     pub until: Time,
-    /// Root mean square of what the headings were off, degrees.
+    /// Root mean square of the headings' differences from the prediction, degrees.
     pub rms_deg: f64,
 }
 
-/// The adjustments of a compass that orders brought about, in order of time.
+/// Lists the adjustments of a compass that work orders completed, in order of time.
 pub async fn completed(
     db: &Db,
     vessel: VesselId,
@@ -65,8 +64,8 @@ pub async fn completed(
     found.into_iter().map(Row::read).collect()
 }
 
-/// Returns the version of the model that an order's adjustment was predicted from, by its record.
-pub async fn foretold_from(db: &Db, vessel: VesselId, order: OrderId) -> Result<Option<i64>> {
+/// Returns the version of the model from which an order's record predicted the adjustment.
+pub async fn predicted_from(db: &Db, vessel: VesselId, order: OrderId) -> Result<Option<i64>> {
     let found = row!(
         db,
         (Option<String>,),
@@ -81,10 +80,7 @@ pub async fn foretold_from(db: &Db, vessel: VesselId, order: OrderId) -> Result<
     Ok(record["data"]["model_version"].as_i64())
 }
 
-/// Returns when a compass's last adjustment by an order was.
-///
-/// # Errors
-/// When the database cannot be read.
+/// Returns the time of a compass's last adjustment by an order.
 pub async fn last_adjusted_at(
     tx: &mut Tx,
     vessel: VesselId,
@@ -113,7 +109,7 @@ struct Verdict {
 
 impl CompletedOrder {
     /// Tells whether a model was predicted by this order, or is of the epoch that it began.
-    pub fn bears_on(&self, model: &StoredModel) -> bool {
+    pub fn is_source_of(&self, model: &StoredModel) -> bool {
         let begun_by = model.epoch_begun_by.as_deref();
         model.foretold_by == Some(self.order)
             || (begun_by == Some("adjustment") && model.epoch_from == Some(self.at))
@@ -150,7 +146,7 @@ impl Row {
 }
 
 impl AtSea {
-    /// None of a verdict that is no agreement.
+    /// Returns `None` for a verdict other than agreement.
     fn of(verified_at: Time, verified: &Verdict) -> Option<AtSea> {
         let Verification::Passed {
             headings, rms_deg, ..

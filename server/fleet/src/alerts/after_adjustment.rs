@@ -1,10 +1,10 @@
-//! Alerts about the ship before an adjustment, which the adjustment ends.
+//! End of alerts by an adjustment.
 //!
 //! Invariants:
 //!
-//! - From an adjustment that a work order completed, the card that it predicts is in force until
-//!   headings at sea contradict it. Then the order's own alert counts.
-//! - Alerts about gyro, satellite compass or the compass itself stand.
+//! - The card that a completed adjustment predicts is in force until headings at sea contradict it.
+//!   The order then has an alert of its own.
+//! - Alerts about gyro, satellite compass or the magnetic compass itself stay open.
 
 use super::cause::Cause;
 use super::store::{self, OpenAlert};

@@ -16,7 +16,7 @@ use utoipa::ToSchema;
 pub enum State {
     /// Nobody has acknowledged it.
     Raised,
-    /// Someone has; its cause goes on.
+    /// Someone has acknowledged it; its cause lasts.
     Acknowledged,
     /// It is over, or someone cleared it.
     Cleared,

@@ -1,7 +1,7 @@
-//! Words in which a change of an alert is announced: a letter, a webhook's message, a notice.
+//! Text of an announced alert: letter, webhook message and notice.
 
 use super::alert::Alert;
-use super::publish::AlertChange;
+use super::change::AlertChange;
 use binnacle_platform::ids::OperatorId;
 use binnacle_platform::mail::{Announcement, Letter, header, one_line, wrapped};
 use binnacle_platform::notices::{self, Notice, NoticesPublished};
@@ -36,15 +36,15 @@ pub(super) fn announcement(change: &AlertChange) -> Announcement {
         letter: Letter {
             subject: header(&subject),
             text,
-            told: Vec::new(),
+            items: Vec::new(),
             path: format!("/vessels/{}", alert.vessel_id),
             about: Some(alert.id.0),
-            report: None,
+            files: None,
         },
     }
 }
 
-/// Names what alerts that follow one another have in common: compass and cause.
+/// Names the series of alerts with the same compass and cause.
 fn series(alert: &Alert) -> String {
     format!("{}: {:?}", alert.compass_id, alert.cause)
 }
@@ -66,12 +66,12 @@ pub(super) fn notices(
 fn notice(change: &AlertChange) -> Option<Notice> {
     let alert = &change.alert;
     let critical = alert.severity == Severity::Critical;
-    let presses = alert.severity >= Severity::Warning;
-    let pressed = change.was.is_some_and(|was| was >= Severity::Warning);
+    let is_urgent = alert.severity >= Severity::Warning;
+    let was_urgent = change.was.is_some_and(|was| was >= Severity::Warning);
     let is_announced = match change.kind {
-        Kind::AlertRaised | Kind::AlertCleared => presses,
-        // Who was notified hears once that it presses no more, now or when it is over.
-        Kind::AlertUpdated => critical || presses != pressed,
+        Kind::AlertRaised | Kind::AlertCleared => is_urgent,
+        // People who were notified hear once that it is less urgent, now or when it is over.
+        Kind::AlertUpdated => critical || is_urgent != was_urgent,
         _ => false,
     };
     let (subject, text) = words_of(change);

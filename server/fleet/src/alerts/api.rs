@@ -1,7 +1,8 @@
 //! HTTP API of alerts.
 
 use super::alert::{Alert, State};
-use super::publish::{PendingChange, publish_changes};
+use super::change::PendingChange;
+use super::publish::publish_changes;
 use super::schema::{Acknowledgement, AlertList, Clearing, Filter};
 use super::store::{self, Remark};
 use axum::extract::{FromRef, State as Shared};
@@ -83,7 +84,7 @@ async fn acknowledge_alert(
 
 /// Clear an alert
 ///
-/// It comes back only when its cause does, or gets worse. Clearing it again changes
+/// It is raised again only when its cause recurs or gets worse. Clearing it again changes
 /// nothing.
 #[utoipa::path(post, path = "/alerts/{id}/clear", tag = "alerts",
     params(("id" = AlertId, Path)), request_body = Clearing,

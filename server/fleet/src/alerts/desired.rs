@@ -1,4 +1,4 @@
-//! Alerts that ought to be open, whatever is stored.
+//! Alerts that ought to be open, before they are compared with stored ones.
 
 use super::alert::{Evidence, KnownAlert};
 use super::cause::Cause;
@@ -26,7 +26,7 @@ pub(super) struct DesiredAlert {
 
 /// The dates that an event may have been given before, when less was known of it.
 ///
-/// The default is any date: of a state that goes on, rather than an event at a time.
+/// The default is any date, for a lasting state rather than an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct EventWindow {
     /// Not before this.
@@ -36,8 +36,8 @@ pub(super) struct EventWindow {
 }
 
 impl DesiredAlert {
-    /// Tells whether a stored alert already says the same.
-    pub(super) fn is_said_by(&self, known: &KnownAlert) -> bool {
+    /// Tells whether a stored alert has the same contents.
+    pub(super) fn is_stored_as(&self, known: &KnownAlert) -> bool {
         self.severity == known.severity
             && self.summary == known.summary
             && self.advice == known.advice

@@ -1,16 +1,15 @@
-//! Alerts: conditions of a compass that people must know, from the first sign to the end.
+//! Alerts: conditions of a compass that people must know of, from the first sign to the end.
 //!
 //! Invariants:
 //!
-//! - An alert is raised, acknowledged and cleared, and kept for good. A compass has one open
-//!   alert of each cause, which is updated while the cause goes on.
-//! - An alert clears itself when its cause is over. One that a person cleared comes back only
-//!   when its cause does, gets worse, or happens again.
-//! - An alert is about one event. Another event of its cause clears it, with the remarks on it,
-//!   and raises the next.
+//! - An alert is raised, acknowledged and cleared, and never deleted. A compass has at most one
+//!   open alert of each cause, which is updated while the cause lasts.
+//! - An alert clears itself when its cause is over. One that a person cleared is raised again only
+//!   when its cause recurs or gets worse.
+//! - An alert is about one event. Another event of the same cause clears it and raises a new one.
 //! - A vessel out of service has no open alert.
-//! - An alert changes in the transaction that stores the facts: an analysis, a batch or a
-//!   schedule. The clock finds silence.
+//! - An alert changes in the transaction that stores the facts: an analysis, a batch or a schedule.
+//!   A timer detects silence.
 //! - Every change is stored together with its announcements.
 
 mod after_adjustment;
@@ -19,9 +18,9 @@ mod announcement;
 mod api;
 mod cause;
 mod causes;
+mod change;
 mod clearing;
 mod desired;
-mod limits;
 mod publish;
 mod reconcile;
 mod schema;
@@ -33,8 +32,6 @@ pub use alert::{Alert, Evidence, State};
 pub use api::router;
 pub use cause::Cause;
 pub use causes::{Effect, JobAtRisk, UnconfirmedAdjustment};
-pub use limits::AlertLimits;
-pub use publish::AlertChange;
 pub use reconcile::end_all;
 pub use sources::{
     check_duplicate_agent, check_silence, check_timed, end_duplicate_agent, reconcile_analysis,

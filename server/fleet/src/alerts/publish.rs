@@ -1,44 +1,19 @@
-//! Publication of changed alerts: to dashboards, webhooks, mail and notifications.
+//! Publication of changed alerts to dashboards, webhooks, mail and notifications.
 //!
 //! Invariant: it is part of the transaction that changes the alert.
 
-use super::alert::Alert;
 use super::announcement::{announcement, message, notices};
+use super::change::{AlertChange, PendingChange};
 use super::store;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
 use binnacle_platform::events::{self, Event};
-use binnacle_platform::ids::{AlertId, DeliveryId, VesselId};
+use binnacle_platform::ids::{DeliveryId, VesselId};
 use binnacle_platform::mail::Announcement;
-use binnacle_platform::outbox::{Kind, Message};
-use binnacle_platform::severity::Severity;
+use binnacle_platform::outbox::Message;
 use binnacle_platform::time::Time;
 use binnacle_platform::{mail, webhooks};
 use tracing::info;
-
-/// A change of an alert, not yet published.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PendingChange {
-    /// The alert.
-    pub alert: AlertId,
-    /// Kind of change; none where only its words are others.
-    pub kind: Option<Kind>,
-    /// The severity before, where it changed.
-    pub was: Option<Severity>,
-}
-
-/// A change of an alert, with the alert as it is now.
-#[derive(Clone, Debug)]
-pub struct AlertChange {
-    /// The event's id.
-    pub id: DeliveryId,
-    /// Kind of change.
-    pub kind: Kind,
-    /// The alert.
-    pub alert: Alert,
-    /// The severity before, where it changed.
-    pub was: Option<Severity>,
-}
 
 /// Publishes changes of a vessel's alerts.
 pub(super) async fn publish_changes(
@@ -71,15 +46,4 @@ pub(super) async fn publish_changes(
     mail::announce(tx, operator, &announcements, now).await?;
     tx.publish(&notices(operator, &changes, now)).await?;
     Ok(Some(event))
-}
-
-impl PendingChange {
-    /// Makes a change of a kind that leaves the severity as it was.
-    pub(super) fn of(alert: AlertId, kind: Kind) -> PendingChange {
-        PendingChange {
-            alert,
-            kind: Some(kind),
-            was: None,
-        }
-    }
 }

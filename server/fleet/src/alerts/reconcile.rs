@@ -1,16 +1,17 @@
-//! Reconciliation of a compass's stored alerts with those that ought to be open.
+//! Reconciliation of a compass's stored alerts with the desired ones.
 //!
 //! Invariants:
 //!
-//! - Whoever changes a compass's alerts holds its lock until the transaction ends.
-//! - An alert is about one event. Another event of its cause is another alert, whatever people
-//!   said of the first.
+//! - A transaction that changes a compass's alerts holds their lock until it ends.
+//! - An alert is about one event. Another event of its cause is another alert, whatever remarks the
+//!   first one has.
 
 use super::alert::{KnownAlert, State};
 use super::causes::Source;
+use super::change::PendingChange;
 use super::clearing::{FOLLOWED, OUT_OF_SERVICE, OVER};
 use super::desired::DesiredAlert;
-use super::publish::{PendingChange, publish_changes};
+use super::publish::publish_changes;
 use super::store;
 use crate::{compasses, vessels};
 use binnacle_platform::db::Tx;
@@ -50,7 +51,7 @@ pub async fn end_all(tx: &mut Tx, vessel: VesselId, now: Time) -> Result<Vec<Eve
     Ok(events)
 }
 
-/// Brings the known alerts in line with the desired ones; the compass's alerts are locked.
+/// Reconciles the known alerts with the desired ones. The compass's alerts are locked.
 pub(super) async fn reconcile(
     tx: &mut Tx,
     vessel: VesselId,
@@ -106,7 +107,7 @@ async fn open_or_update(
         let id = store::insert(tx, vessel, compass, desired, now).await?;
         return Ok(cleared.into_iter().chain([raised(id)]).collect());
     }
-    if is_cleared || desired.is_said_by(known) {
+    if is_cleared || desired.is_stored_as(known) {
         return Ok(Vec::new());
     }
     store::update(tx, vessel, known, desired, now).await?;

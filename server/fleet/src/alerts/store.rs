@@ -5,7 +5,7 @@ use super::cause::Cause;
 use super::causes::Source;
 use super::desired::DesiredAlert;
 use super::schema::Filter;
-use crate::enrolment::Agent;
+use crate::agent_auth::Agent;
 use binnacle_platform::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{AlertId, CompassId, OperatorId, VesselId};
@@ -163,7 +163,7 @@ pub(super) async fn insert(
     Ok(id)
 }
 
-/// Updates an alert; one that is worse than what was acknowledged is raised again.
+/// Updates an alert. One that got worse after its acknowledgement is raised again.
 pub(super) async fn update(
     tx: &mut Tx,
     vessel: VesselId,
@@ -376,7 +376,7 @@ pub(super) async fn last_uploads(db: &Db) -> DbResult<Vec<LastUpload>> {
     )
 }
 
-/// Lists the compasses whose alert of a cause goes on, and was not updated since.
+/// Lists the compasses with an open alert of a cause that was not updated since.
 pub(super) async fn not_updated_since(
     db: &Db,
     cause: Cause,

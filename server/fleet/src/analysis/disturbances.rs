@@ -1,15 +1,15 @@
-//! Passing disturbances, compared across the ships of all fleets.
+//! Transient disturbances, compared across the ships of all fleets.
 //!
 //! Invariants:
 //!
-//! - The findings of a ship's own analysis are stored as they are. They are compared with those
-//!   of other ships when they are read.
-//! - Of another ship nothing is revealed but its presence.
-//! - A new disturbance queues the analyses of the ships disturbed at the same time. That changes
-//!   their alerts alone.
+//! - The findings of a ship's own analysis are stored unchanged. They are compared with those of
+//!   other ships when they are read.
+//! - Nothing is revealed of another ship but its presence.
+//! - A new disturbance enqueues the analyses of the ships disturbed at the same time. That changes
+//!   only their alerts.
 
-use super::findings::{Findings, FoundChange};
-use super::queue;
+use super::findings::{ChangeFinding, Findings};
+use crate::analysis_queue;
 use binnacle_compass::position::Position;
 use binnacle_compass::result::{FleetDisturbance, weigh_with_fleet};
 use binnacle_compass::time::Timestamp;
@@ -41,7 +41,7 @@ const OTHERS: &str = "SELECT vessel_id, began_at, ended_at, lat, lon FROM distur
 
 /// A disturbance of another ship.
 #[derive(Clone, Copy, Debug, sqlx::FromRow)]
-struct Disturbed {
+struct OtherDisturbance {
     vessel_id: VesselId,
     began_at: Time,
     ended_at: Time,
@@ -50,7 +50,7 @@ struct Disturbed {
 }
 
 /// Place and time in which disturbances of other ships bear on one.
-struct Around {
+struct Neighbourhood {
     from: Time,
     until: Time,
     began_after: Time,
@@ -139,7 +139,7 @@ async fn queue_others(
         Time(began_at.0.plus_seconds(-LONGEST_S))
     )?;
     for (other,) in others {
-        queue::enqueue(tx, other, now, DELAY_S).await?;
+        analysis_queue::enqueue(tx, other, now, DELAY_S).await?;
     }
     Ok(())
 }
@@ -148,23 +148,23 @@ async fn queue_others(
 pub async fn compare_with_fleet(db: &Db, vessel: VesselId, findings: &mut Findings) -> Result<()> {
     let until = findings.data_until;
     for found in findings.changes.iter_mut().filter(|found| may_pass(found)) {
-        let Some(around) = Around::of(found, until) else {
+        let Some(near) = Neighbourhood::of(found, until) else {
             continue;
         };
         let others = rows!(
             db,
-            Disturbed,
+            OtherDisturbance,
             OTHERS,
             vessel,
-            around.from,
-            around.until,
-            around.began_after,
-            around.lat.0,
-            around.lat.1,
-            around.lon.0,
-            around.lon.1
+            near.from,
+            near.until,
+            near.began_after,
+            near.lat.0,
+            near.lat.1,
+            near.lon.0,
+            near.lon.1
         )?;
-        compare(found, &around, &others)?;
+        compare(found, &near, &others)?;
     }
     Ok(())
 }
@@ -177,33 +177,33 @@ pub async fn compare_with_fleet_in(
 ) -> Result<()> {
     let until = findings.data_until;
     for found in findings.changes.iter_mut().filter(|found| may_pass(found)) {
-        let Some(around) = Around::of(found, until) else {
+        let Some(near) = Neighbourhood::of(found, until) else {
             continue;
         };
-        let others: DbResult<Vec<Disturbed>> = rows!(
+        let others: DbResult<Vec<OtherDisturbance>> = rows!(
             in &mut *tx,
-            Disturbed,
+            OtherDisturbance,
             OTHERS,
             vessel,
-            around.from,
-            around.until,
-            around.began_after,
-            around.lat.0,
-            around.lat.1,
-            around.lon.0,
-            around.lon.1
+            near.from,
+            near.until,
+            near.began_after,
+            near.lat.0,
+            near.lat.1,
+            near.lon.0,
+            near.lon.1
         );
-        compare(found, &around, &others?)?;
+        compare(found, &near, &others?)?;
     }
     Ok(())
 }
 
-fn may_pass(found: &FoundChange) -> bool {
+fn may_pass(found: &ChangeFinding) -> bool {
     found.change.cause.is_transient() || !found.change.confirmed
 }
 
-impl Around {
-    fn of(found: &FoundChange, data_until: Option<Timestamp>) -> Option<Around> {
+impl Neighbourhood {
+    fn of(found: &ChangeFinding, data_until: Option<Timestamp>) -> Option<Neighbourhood> {
         let from = found.change.from;
         let until = found.change.ended.or(data_until)?.max(from);
         // No place is in an empty belt.
@@ -214,7 +214,7 @@ impl Around {
                 (lon - BELT_LON_DEG, lon + BELT_LON_DEG),
             )
         });
-        Some(Around {
+        Some(Neighbourhood {
             from: from.into(),
             until: until.into(),
             began_after: Time(from.plus_seconds(-LONGEST_S)),
@@ -224,7 +224,11 @@ impl Around {
     }
 }
 
-fn compare(found: &mut FoundChange, around: &Around, others: &[Disturbed]) -> Result<()> {
+fn compare(
+    found: &mut ChangeFinding,
+    near: &Neighbourhood,
+    others: &[OtherDisturbance],
+) -> Result<()> {
     let mut ships = BTreeMap::new();
     let mut elsewhere = Vec::with_capacity(others.len());
     for other in others {
@@ -236,6 +240,6 @@ fn compare(found: &mut FoundChange, around: &Around, others: &[Disturbed]) -> Re
             position: Position::new(other.lat, other.lon).map_err(anyhow::Error::from)?,
         });
     }
-    found.change = weigh_with_fleet(&found.change, found.position, around.until.0, &elsewhere);
+    found.change = weigh_with_fleet(&found.change, found.position, near.until.0, &elsewhere);
     Ok(())
 }

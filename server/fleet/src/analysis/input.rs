@@ -14,7 +14,7 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
-/// Everything that an analysis of one compass depends on.
+/// Input of an analysis of one compass.
 #[derive(Clone, Debug)]
 pub struct Input {
     /// Distinct, in order of time.
@@ -26,17 +26,22 @@ pub struct Input {
 }
 
 /// Stored input of a compass, with its batches as received.
-pub struct Stored {
+pub struct StoredInput {
     batches: Vec<(Vec<u8>,)>,
     logbook: Vec<LogbookEntry>,
     settings: AnalysisSettings,
     /// Time at which the next future-dated entry takes effect.
-    pub comes_true: Option<Timestamp>,
+    pub next_entry_at: Option<Timestamp>,
 }
 
-/// Reads what is stored of a compass. What the logbook has of times to come is no part of
-/// it: the card holds until the work that is planned is done.
-pub async fn load(db: &Db, vessel: VesselId, compass: CompassId, now: Timestamp) -> Result<Stored> {
+/// Reads the stored input of a compass. Future-dated logbook entries are left out: the card
+/// holds until the planned work is done.
+pub async fn load(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+    now: Timestamp,
+) -> Result<StoredInput> {
     let batches = rows!(
         db,
         (Vec<u8>,),
@@ -51,16 +56,16 @@ pub async fn load(db: &Db, vessel: VesselId, compass: CompassId, now: Timestamp)
         .await?
         .into_iter()
         .partition(|entry| entry.from <= now);
-    Ok(Stored {
+    Ok(StoredInput {
         batches,
         logbook,
-        comes_true: ahead.iter().map(|entry| entry.from).min(),
+        next_entry_at: ahead.iter().map(|entry| entry.from).min(),
         settings: settings::find(db, vessel).await?.analysis,
     })
 }
 
-impl Stored {
-    /// Decodes the batches; takes a while, so not for an async thread.
+impl StoredInput {
+    /// Decodes the batches. It takes long, so it must not run on an async thread.
     pub fn decode(self) -> anyhow::Result<Input> {
         let mut samples = Vec::new();
         for (bytes,) in self.batches {
@@ -75,7 +80,7 @@ impl Stored {
     }
 }
 
-/// In order of time, each once: a batch sent again in a new stream counts once.
+/// Sorts samples by time and removes repetitions: a batch sent again in a new stream counts once.
 fn distinct(samples: Vec<Sample>) -> anyhow::Result<Vec<Sample>> {
     let mut keyed = Vec::with_capacity(samples.len());
     for sample in samples {
@@ -86,10 +91,10 @@ fn distinct(samples: Vec<Sample>) -> anyhow::Result<Vec<Sample>> {
     Ok(keyed.into_iter().map(|(_, _, sample)| sample).collect())
 }
 
-/// SHA-256 over estimator, settings, logbook and samples, as hexadecimal.
+/// Returns the SHA-256 of estimator, settings, logbook and samples, as hexadecimal.
 ///
 /// # Errors
-/// When they cannot be written as JSON.
+/// Fails when they cannot be written as JSON.
 pub fn input_hash(input: &Input) -> anyhow::Result<String> {
     let mut hash = Sha256::new();
     hash.update(ESTIMATOR);

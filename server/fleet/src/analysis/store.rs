@@ -2,13 +2,10 @@
 
 use super::disturbances::store_disturbances;
 use super::findings::Findings;
-use super::left_out::LeftOut;
 use super::track::track;
 use crate::models::{self, ModelJson, StoredModel};
 use binnacle_compass::coverage::Coverage;
-use binnacle_compass::result::{
-    Analysis, Epoch, FitError, ReferenceCheck, SailNext, SampleDiagnostic,
-};
+use binnacle_compass::result::{Analysis, Epoch, ReferenceCheck, SailNext, SampleDiagnostic};
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::db::{Db, Tx, execute, row, rows};
 use binnacle_platform::error::{Error, Result};
@@ -19,11 +16,11 @@ use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Samples are kept in rows of so many microseconds: 30 days.
+/// Period of a stored row of samples, microseconds: 30 days.
 const CHUNK_MICROS: i64 = 30 * 86_400 * 1_000_000;
 
 /// Results of one compass's analysis.
-pub struct Found {
+pub struct AnalysisResult {
     /// The vessel.
     pub vessel_id: VesselId,
     /// The compass.
@@ -45,16 +42,15 @@ pub struct Covered {
     /// Counts of samples.
     #[serde(flatten)]
     pub coverage: Coverage,
-    /// None without a model, and in what was stored before there was advice.
+    /// None without a model, and in old rows from before there was advice.
     #[serde(default)]
     pub sail_next: Option<SailNext>,
-    /// None where they could not be compared, and in what was stored before they
-    /// were.
+    /// None where they could not be compared, and in old rows.
     #[serde(default)]
     pub references: Option<ReferenceCheck>,
 }
 
-/// The input of the compass's last analysis.
+/// Returns the hash of the input of a compass's last analysis.
 pub async fn last_hash(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Option<String>> {
     let found = row!(
         db,
@@ -65,39 +61,6 @@ pub async fn last_hash(db: &Db, vessel: VesselId, compass: CompassId) -> Result<
         compass
     )?;
     Ok(found.map(|(hash,)| hash))
-}
-
-/// Returns the reason for which the current epoch has no model, and the samples that the logbook
-/// leaves out. The reason is none before the first analysis.
-pub async fn refusal(
-    db: &Db,
-    vessel: VesselId,
-    compass: CompassId,
-) -> Result<(Option<FitError>, LeftOut)> {
-    #[derive(Deserialize)]
-    struct Refused {
-        refusal: Option<FitError>,
-    }
-    #[derive(Default, Deserialize)]
-    struct Beside {
-        #[serde(default)]
-        left_out: LeftOut,
-    }
-    let found = row!(
-        db,
-        (String, Option<String>),
-        "SELECT epochs, findings FROM analyses WHERE vessel_id = $1 AND compass_id = $2
-         ORDER BY compass_id",
-        vessel,
-        compass
-    )?;
-    let Some((epochs, findings)) = found else {
-        return Ok((None, LeftOut::default()));
-    };
-    let mut epochs: Vec<Refused> = serde_json::from_str(&epochs)?;
-    let beside = findings.map(|text| serde_json::from_str::<Beside>(&text));
-    let left_out = beside.transpose()?.unwrap_or_default().left_out;
-    Ok((epochs.pop().and_then(|epoch| epoch.refusal), left_out))
 }
 
 /// Returns the coverage of a compass's samples; empty before the first analysis.
@@ -120,7 +83,7 @@ pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<C
     Ok(serde_json::from_str(&text)?)
 }
 
-/// Returns rows that hold the diagnostics of a range of time, and some before and after it. Each is
+/// Returns the rows with the diagnostics of a range of time, and some before and after it. Each is
 /// a JSON array.
 pub async fn chunks(
     db: &Db,
@@ -143,17 +106,17 @@ pub async fn chunks(
     Ok(found.into_iter().map(|(samples,)| samples).collect())
 }
 
-/// A row of samples, and the time that it is of.
+/// A row of samples, with its period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chunk {
     number: i64,
-    /// Its beginning, which is that of a day.
+    /// Its beginning, which is the beginning of a day.
     pub from: Time,
     /// The instant after its end.
     pub to: Time,
 }
 
-/// The rows that [`chunks`] brings, to be read one by one.
+/// Lists the rows that [`chunks`] returns, to be read one by one.
 pub async fn chunks_between(
     db: &Db,
     vessel: VesselId,
@@ -186,7 +149,7 @@ pub async fn chunks_between(
     found.into_iter().map(chunk).collect()
 }
 
-/// The samples of a row as a JSON array; an empty one if it is there no more.
+/// Returns the samples of a row as a JSON array, empty if the row no longer exists.
 pub async fn chunk(db: &Db, vessel: VesselId, compass: CompassId, chunk: &Chunk) -> Result<String> {
     let found = row!(
         db,
@@ -205,19 +168,18 @@ fn number_of(time: Time) -> i64 {
     time.0.micros().div_euclid(CHUNK_MICROS)
 }
 
-/// Stores what was found in place of what was found before; a new model is the
-/// compass's next version. Answers with an event if there is one, or the card holds
-/// no more.
-pub async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>> {
+/// Stores a result in place of the previous one. A new model becomes the compass's next version.
+/// Returns an event if the model, or the withdrawal of the card, changed.
+pub async fn save(tx: &mut Tx, found: &AnalysisResult, now: Time) -> Result<Option<Event>> {
     let analysis = &found.analysis;
-    let withdrawn_before = models::withdrawn(tx, found.vessel_id, found.compass_id).await?;
+    let withdrawn_before = models::card_withdrawn_in(tx, found.vessel_id, found.compass_id).await?;
     // The prediction of an adjustment holds from its moment on, and through its epoch.
-    let foretold = models::foretold(tx, found.vessel_id, found.compass_id).await?;
-    let foretold = foretold.filter(|model| {
+    let predicted = models::find_prediction(tx, found.vessel_id, found.compass_id).await?;
+    let predicted = predicted.filter(|model| {
         let from = analysis.current_epoch().and_then(|epoch| epoch.from);
         from.map(Time) <= model.epoch_from
     });
-    let withdrawn = match foretold {
+    let withdrawn = match predicted {
         Some(_) => None,
         None => withdrawal(analysis)?,
     };
@@ -251,9 +213,9 @@ pub async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>
     store_disturbances(tx, vessel, compass, &found.findings, now).await?;
     let next = next_model(found, now)?;
     let next = next.filter(|next| {
-        foretold.is_none_or(|known| {
+        predicted.is_none_or(|known| {
             // A model of the vessel before the adjustment says nothing about it now.
-            next.epoch_from >= known.epoch_from && next.knows_more_than(&known)
+            next.epoch_from >= known.epoch_from && next.replaces_prediction(&known)
         })
     });
     let Some(model) = next else {
@@ -290,7 +252,7 @@ fn begun_by(epoch: &Epoch) -> Result<Option<String>> {
     Ok(word.as_str().map(str::to_owned))
 }
 
-async fn save_diagnostics(tx: &mut Tx, found: &Found) -> Result<()> {
+async fn save_diagnostics(tx: &mut Tx, found: &AnalysisResult) -> Result<()> {
     execute!(
         &mut *tx,
         "DELETE FROM diagnostics WHERE vessel_id = $1 AND compass_id = $2",
@@ -318,8 +280,8 @@ async fn save_diagnostics(tx: &mut Tx, found: &Found) -> Result<()> {
     Ok(())
 }
 
-/// The current epoch's model as a row; none when it was refused.
-fn next_model(found: &Found, now: Time) -> Result<Option<StoredModel>> {
+/// Returns the current epoch's model as a row, or `None` if it was refused.
+fn next_model(found: &AnalysisResult, now: Time) -> Result<Option<StoredModel>> {
     let epoch = found.analysis.current_epoch();
     let model = epoch.and_then(|epoch| epoch.model.clone());
     let (Some(epoch), Some(model)) = (epoch, model) else {

@@ -1,8 +1,7 @@
 //! Recent places of a ship, as few as a map of the fleet shows.
 //!
-//! What always holds: a track depends on the samples alone, not on how they came. It
-//! has one place for each twelve hours in which there were samples, the last one there,
-//! of the month before the last sample.
+//! Invariant: a track depends on the samples alone, not on the order of their arrival. It has the
+//! last place of each twelve hours with samples, over the month before the last sample.
 
 use binnacle_compass::result::SampleDiagnostic;
 use serde::{Deserialize, Serialize};
@@ -24,7 +23,7 @@ impl TryFrom<String> for Track {
     }
 }
 
-/// The track of samples that are in order of time.
+/// Returns the track of samples in order of time.
 pub(super) fn track(samples: &[SampleDiagnostic]) -> Track {
     let step = |sample: &SampleDiagnostic| sample.sample.time.micros().div_euclid(STEP_MICROS);
     let Some(last) = samples.last().map(step) else {
@@ -50,7 +49,7 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    /// A sample every three hours, each a quarter of a degree further east.
+    /// Returns a sample every three hours, each a quarter of a degree further east.
     fn passage(samples: u32) -> Vec<SampleDiagnostic> {
         (0..samples)
             .map(|i| {

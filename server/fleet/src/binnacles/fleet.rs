@@ -1,4 +1,4 @@
-//! The binnacles of a fleet, in a line each: who stands in what, and where none is entered.
+//! List of the binnacles of a fleet, one line for each compass, also without a binnacle.
 
 use super::schema::AboardSchema;
 use super::store;
@@ -24,7 +24,7 @@ where
     OpenApiRouter::new().routes(routes!(list_binnacles))
 }
 
-/// A compass of the fleet's, and what it stands in.
+/// A compass of the fleet, with its binnacle.
 #[derive(Debug, Serialize, ToSchema)]
 struct FleetBinnacle {
     /// The vessel's id.
@@ -42,7 +42,7 @@ struct FleetBinnacle {
     binnacle: Option<BinnacleInShort>,
 }
 
-/// The latest revision of a binnacle, in a line.
+/// Summary of a binnacle's latest revision.
 #[derive(Debug, Serialize, ToSchema)]
 struct BinnacleInShort {
     /// Its maker.
@@ -53,7 +53,8 @@ struct BinnacleInShort {
     serial: String,
     /// All correctors on board, those in use included.
     #[schema(value_type = AboardSchema)]
-    aboard: Inventory,
+    #[serde(rename = "aboard")]
+    inventory: Inventory,
     /// Number of measured effects.
     measured_effects: usize,
     /// Counts from 1.
@@ -77,9 +78,9 @@ struct FleetBinnacleList {
     next: Option<String>,
 }
 
-/// List what the fleet's compasses stand in
+/// List the fleet's binnacles
 ///
-/// Every compass of the vessels in service, with its binnacle in short where one is entered.
+/// Every compass of the vessels in service, with a summary of its binnacle where one is entered.
 #[utoipa::path(get, path = "/binnacles", tag = "adjusting", params(Page),
     responses((status = 200, body = FleetBinnacleList), (status = 401, body = Problem)))]
 async fn list_binnacles(
@@ -99,7 +100,7 @@ async fn list_binnacles(
 }
 
 impl FleetBinnacle {
-    fn of(row: store::Standing) -> Result<FleetBinnacle> {
+    fn of(row: store::CompassRow) -> Result<FleetBinnacle> {
         let binnacle = row.revised()?.map(BinnacleInShort::of);
         Ok(FleetBinnacle {
             vessel_id: row.vessel_id,
@@ -113,13 +114,13 @@ impl FleetBinnacle {
 }
 
 impl BinnacleInShort {
-    fn of(written: store::Revised) -> BinnacleInShort {
+    fn of(written: store::StoredRevision) -> BinnacleInShort {
         let binnacle: &Binnacle = &written.binnacle.0;
         BinnacleInShort {
             maker: binnacle.design.maker.clone(),
             model: binnacle.design.model.clone(),
             serial: binnacle.serial.clone(),
-            aboard: binnacle.inventory.clone(),
+            inventory: binnacle.inventory.clone(),
             measured_effects: binnacle.calibration.len(),
             revision: written.revision,
             at: written.at,

@@ -1,20 +1,22 @@
-//! Binnacles: the designs that come with the product, and the one that each compass
-//! stands in, with the correctors on board and how they stand.
+//! Binnacles: built-in designs, and the binnacle of each compass with its correctors and their
+//! setting.
 //!
-//! What always holds: a binnacle that is stored was checked whole, and no revision of
-//! one is ever changed or lost. What is sent in and what is given out are the same form
-//! (docs/binnacle.md), which `plan --binnacle` reads too.
+//! Invariants:
+//!
+//! - A stored binnacle has been checked as a whole. No revision of one is ever changed or deleted.
+//! - Requests and responses have the same form (docs/binnacle.md), which `plan --binnacle` reads
+//!   too.
 
+mod built_in;
 mod design_schema;
 mod fleet;
 mod schema;
-mod shipped;
+mod setting_text;
 mod store;
-mod words;
 
 pub use schema::{BarSchema, BinnacleSchema, BucketSchema, PairSchema, SettingSchema, TraySchema};
-pub use store::{Author, Revised, current, insert};
-pub use words::in_words;
+pub use setting_text::describe_setting;
+pub use store::{Author, StoredRevision, current, insert};
 
 use crate::compasses;
 use crate::vessels;
@@ -36,7 +38,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// A compass's binnacle is about to be written anew.
+/// Announces that a compass's binnacle is about to change.
 pub struct BinnacleAmended {
     /// The vessel.
     pub vessel: VesselId,
@@ -46,21 +48,21 @@ pub struct BinnacleAmended {
 
 impl DomainEvent for BinnacleAmended {}
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
     OpenApiRouter::new()
-        .merge(shipped::router())
+        .merge(built_in::router())
         .merge(fleet::router())
         .routes(routes!(find_binnacle, put_binnacle))
         .routes(routes!(list_revisions))
         .routes(routes!(export_binnacle))
 }
 
-/// A revision of the binnacle that a compass stands in.
+/// A revision of a compass's binnacle.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct BinnacleRevision {
     /// Counts from 1.
@@ -72,7 +74,7 @@ pub struct BinnacleRevision {
     /// Reason, in a few words.
     #[schema(required)]
     pub reason: Option<String>,
-    /// The binnacle, with the correctors on board and how they stand.
+    /// The binnacle, with the correctors on board and their setting.
     #[schema(value_type = BinnacleSchema)]
     pub binnacle: Binnacle,
 }
@@ -90,13 +92,13 @@ struct BinnacleRevisionList {
 /// Reason for a new revision.
 #[derive(Deserialize, Serialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-struct Why {
-    /// In a few words, such as what was bought or measured.
+struct RevisionReason {
+    /// The reason in a few words, such as a purchase or a measurement.
     #[param(max_length = 200)]
     reason: Option<String>,
 }
 
-/// See the binnacle that a compass stands in
+/// See a compass's binnacle
 #[utoipa::path(get, path = "/vessels/{id}/compasses/{compass}/binnacle", tag = "adjusting",
     params(("id" = VesselId, Path), ("compass" = CompassId, Path)),
     responses((status = 200, body = BinnacleRevision), (status = 401, body = Problem),
@@ -108,15 +110,17 @@ async fn find_binnacle(
 ) -> Result<Json<BinnacleRevision>> {
     must_be_of_fleet(&app, reader.operator, vessel, compass).await?;
     let found = store::current(&app.db, vessel, compass).await?;
-    Ok(Json(found.ok_or(Error::NotFound("binnacle"))?.shown()))
+    Ok(Json(
+        found.ok_or(Error::NotFound("binnacle"))?.into_revision(),
+    ))
 }
 
-/// Write the binnacle that a compass stands in
+/// Write a compass's binnacle
 ///
 /// The whole of it: its type, the correctors on board and how they stand. What was
 /// written before stays among its revisions; the same again makes no new one.
 #[utoipa::path(put, path = "/vessels/{id}/compasses/{compass}/binnacle", tag = "adjusting",
-    params(("id" = VesselId, Path), ("compass" = CompassId, Path), Why, Key),
+    params(("id" = VesselId, Path), ("compass" = CompassId, Path), RevisionReason, Key),
     request_body = BinnacleSchema,
     responses((status = 200, body = BinnacleRevision), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
@@ -126,7 +130,7 @@ async fn put_binnacle(
     request: RequestContext,
     writer: Writer,
     Id((vessel, compass)): Id<(VesselId, CompassId)>,
-    Params(why): Params<Why>,
+    Params(why): Params<RevisionReason>,
     key: Key,
     Valid(form): Valid<BinnacleForm>,
 ) -> Result<Json<BinnacleRevision>> {
@@ -136,12 +140,12 @@ async fn put_binnacle(
     let binnacle = Binnacle::try_from(form).map_err(invalid_binnacle)?;
     binnacle.check_tested_moments().map_err(invalid_binnacle)?;
     let now = app.clock.now().into();
-    let wanted = BinnacleId::new();
+    let new_id = BinnacleId::new();
     let mut tx = request.begin().await?;
     let made = key
-        .once(&mut tx, writer.operator, &request_hash, wanted.0, now)
+        .once(&mut tx, writer.operator, &request_hash, new_id.0, now)
         .await?;
-    if made == wanted.0 {
+    if made == new_id.0 {
         tx.publish(&BinnacleAmended { vessel, compass }).await?;
         let author = Author {
             id: writer.user.0,
@@ -149,14 +153,16 @@ async fn put_binnacle(
             at: now,
         };
         let why = reason.as_deref();
-        store::insert(&mut tx, vessel, compass, wanted, &binnacle, why, &author).await?;
+        store::insert(&mut tx, vessel, compass, new_id, &binnacle, why, &author).await?;
         tx.commit().await?;
     }
     let found = store::current(&app.db, vessel, compass).await?;
-    Ok(Json(found.ok_or(Error::NotFound("binnacle"))?.shown()))
+    Ok(Json(
+        found.ok_or(Error::NotFound("binnacle"))?.into_revision(),
+    ))
 }
 
-/// List what was written of a compass's binnacle
+/// List the revisions of a compass's binnacle
 #[utoipa::path(get, path = "/vessels/{id}/compasses/{compass}/binnacle/revisions",
     tag = "adjusting",
     params(("id" = VesselId, Path), ("compass" = CompassId, Path), Page),
@@ -173,7 +179,11 @@ async fn list_revisions(
     let found = store::list(&app.db, vessel, compass, before, page.fetch()).await?;
     let listed = page.cut(found, |revised| revised.revision.to_string());
     Ok(Json(BinnacleRevisionList {
-        items: listed.items.into_iter().map(Revised::shown).collect(),
+        items: listed
+            .items
+            .into_iter()
+            .map(StoredRevision::into_revision)
+            .collect(),
         next: listed.next,
     }))
 }
@@ -211,7 +221,7 @@ async fn must_be_of_fleet(
     Ok(())
 }
 
-/// Refusal of a binnacle that cannot be.
+/// Returns the refusal of an invalid binnacle.
 #[allow(
     clippy::needless_pass_by_value,
     reason = "it is what map_err hands over"

@@ -11,7 +11,7 @@ use uuid::Uuid;
 
 /// A row of `binnacles`.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub struct Revised {
+pub struct StoredRevision {
     /// Counts from 1.
     pub revision: i64,
     /// Time of the revision.
@@ -48,9 +48,9 @@ impl TryFrom<String> for BinnacleJson {
     }
 }
 
-impl Revised {
-    /// As people see it.
-    pub fn shown(self) -> BinnacleRevision {
+impl StoredRevision {
+    /// Returns the revision as the API shows it.
+    pub fn into_revision(self) -> BinnacleRevision {
         BinnacleRevision {
             revision: self.revision,
             at: self.at,
@@ -61,8 +61,12 @@ impl Revised {
     }
 }
 
-/// The binnacle as it is; none where none was ever written.
-pub async fn current(db: &Db, vessel: VesselId, compass: CompassId) -> DbResult<Option<Revised>> {
+/// Returns the latest revision of a compass's binnacle; `None` before the first.
+pub async fn current(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+) -> DbResult<Option<StoredRevision>> {
     Ok(list(db, vessel, compass, None, 1).await?.pop())
 }
 
@@ -73,10 +77,10 @@ pub(super) async fn list(
     compass: CompassId,
     before: Option<i64>,
     limit: i64,
-) -> DbResult<Vec<Revised>> {
+) -> DbResult<Vec<StoredRevision>> {
     rows!(
         db,
-        Revised,
+        StoredRevision,
         "SELECT revision, at, author_name, reason, binnacle FROM binnacles
          WHERE vessel_id = $1 AND compass_id = $2 AND revision < $3
          ORDER BY revision DESC
@@ -88,9 +92,9 @@ pub(super) async fn list(
     )
 }
 
-/// A compass of a fleet's, and the latest of what was written of its binnacle.
+/// A compass of a fleet, with the latest revision of its binnacle.
 #[derive(Debug, sqlx::FromRow)]
-pub(super) struct Standing {
+pub(super) struct CompassRow {
     pub(super) vessel_id: VesselId,
     pub(super) vessel_name: String,
     pub(super) compass_id: CompassId,
@@ -103,15 +107,15 @@ pub(super) struct Standing {
     binnacle: Option<String>,
 }
 
-impl Standing {
-    /// Returns the last revision; none where there is none.
-    pub(super) fn revised(&self) -> Result<Option<Revised>> {
+impl CompassRow {
+    /// Returns the last revision, if there is one.
+    pub(super) fn revised(&self) -> Result<Option<StoredRevision>> {
         let (Some(revision), Some(at), Some(author_name), Some(text)) =
             (self.revision, self.at, &self.author_name, &self.binnacle)
         else {
             return Ok(None);
         };
-        Ok(Some(Revised {
+        Ok(Some(StoredRevision {
             revision,
             at,
             author_name: author_name.clone(),
@@ -121,16 +125,16 @@ impl Standing {
     }
 }
 
-/// The compasses of an operator's vessels in service, from after an id.
+/// Lists the compasses of an operator's vessels in service, beginning after an id.
 pub(super) async fn of_fleet(
     db: &Db,
     operator: OperatorId,
     after: Option<Uuid>,
     limit: i64,
-) -> DbResult<Vec<Standing>> {
+) -> DbResult<Vec<CompassRow>> {
     rows!(
         db,
-        Standing,
+        CompassRow,
         "SELECT v.id AS vessel_id, v.name AS vessel_name, c.id AS compass_id,
                 c.name AS compass_name, c.role, b.revision, b.at, b.author_name, b.reason,
                 b.binnacle
@@ -149,7 +153,7 @@ pub(super) async fn of_fleet(
     )
 }
 
-/// Writes the next revision, unless it says what the last one says.
+/// Writes the next revision, unless it equals the last one.
 pub async fn insert(
     tx: &mut Tx,
     vessel: VesselId,
@@ -159,7 +163,7 @@ pub async fn insert(
     reason: Option<&str>,
     author: &Author,
 ) -> Result<()> {
-    // Whoever writes another revision meanwhile waits.
+    // Concurrent writers of a revision wait.
     execute!(
         &mut *tx,
         "UPDATE compasses SET name = name WHERE vessel_id = $1 AND id = $2",

@@ -5,8 +5,8 @@
 
 use crate::binnacles::SettingSchema;
 use crate::compasses::Compass;
-use crate::deviation::{HandbookSchema, Row, Worst};
-use crate::ingest::CardWithdrawnSchema;
+use crate::deviation::{DeviationRow, HandbookSchema, WorstHeading};
+use crate::models::CardWithdrawnSchema;
 use binnacle_adjustment::binnacle::{Setting, Shape};
 use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_platform::ids::{ModelId, OrderId, VesselId};
@@ -16,11 +16,10 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 /// Returns the statement of a card whose prediction no headings at sea have verified.
-pub(super) fn foretold(adjusted_at: Time, order: OrderId) -> String {
+pub(super) fn predicted_at_berth(adjusted_at: Time, order: OrderId) -> String {
     format!(
-        "Foretold when the compass was adjusted at the berth on {} by work order {order}: \
-         headings at sea have not verified it. Not a certificate of adjustment: no adjuster has \
-         signed it.",
+        "Predicted from the adjustment at the berth on {} by work order {order}. Not yet \
+         verified by headings at sea. Not a certificate of adjustment: no adjuster has signed it.",
         adjusted_at.day()
     )
 }
@@ -30,11 +29,11 @@ pub(super) const PREDICTED: &str = "Predicted from observations under way by a m
      ship's magnetism. Not a certificate of adjustment: no adjuster has signed it.";
 
 /// Returns the statement of a verified card: its verification, and that it is no certificate.
-pub(super) fn verified(by: &VerifiedAtSea) -> String {
+pub(super) fn verified(by: &CardVerification) -> String {
     format!(
-        "Verified at sea: {} headings up to {} agree, to {:.1} degrees, with what was foretold \
-         when the compass was adjusted on {} by work order {}. Not a certificate of adjustment: \
-         no adjuster has signed it.",
+        "Verified at sea: {} headings up to {} agree to {:.1} degrees with the prediction of the \
+         adjustment on {} by work order {}. Not a certificate of adjustment: no adjuster has \
+         signed it.",
         by.headings,
         by.until.to_the_minute(),
         by.rms_deg,
@@ -47,41 +46,41 @@ pub(super) fn verified(by: &VerifiedAtSea) -> String {
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = DeviationCard)]
 pub struct Card {
-    /// Status of the card.
-    pub status: Status,
+    /// CardStatus of the card.
+    pub status: CardStatus,
     /// The status in words, to accompany figures of the card wherever they are shown.
     pub statement: String,
-    /// Its verification; none of a card that is predicted.
+    /// Its verification; none for a predicted card.
     #[schema(required)]
-    pub verified: Option<VerifiedAtSea>,
+    pub verified: Option<CardVerification>,
     /// The work order whose adjustment at the berth the model comes from, while headings at
     /// sea have not verified it.
     #[schema(required)]
     pub unverified_order: Option<OrderId>,
     /// The ship.
-    pub vessel: Ship,
+    pub vessel: CardVessel,
     /// The compass: each magnetic element has a card of its own.
     pub compass: Compass,
-    /// Place and time at which it holds.
-    pub place: Place,
+    /// CardPlace and time at which it holds.
+    pub place: CardPlace,
     /// By compass heading from 0, each 15°.
     pub rows: Vec<CardRow>,
     /// The heading with the greatest deviation.
-    pub worst: Worst,
+    pub worst: WorstHeading,
     /// Half the 95 % band where it is widest, degrees.
     #[schema(example = 0.8)]
     pub widest_band95_deg: f64,
     /// The coefficients there.
-    pub coefficients: Coefficients,
+    pub coefficients: CardCoefficients,
     /// Change that withdrew cards from before the model's epoch; none where there was no change.
     #[schema(required, value_type = Option<CardWithdrawnSchema>)]
     pub replaces: Option<CardWithdrawn>,
     /// The binnacle's correctors as they were last recorded; none where nobody recorded
     /// them.
     #[schema(required)]
-    pub correctors: Option<Correctors>,
+    pub correctors: Option<CardCorrectors>,
     /// Magnetic cargo on board at that date, by the logbook.
-    pub cargo: Vec<CargoAboard>,
+    pub cargo: Vec<MagneticCargo>,
     /// State of the degaussing coils, as recorded of the vessel.
     #[schema(required, example = "no coils fitted")]
     pub degaussing: Option<String>,
@@ -93,27 +92,26 @@ pub struct Card {
     pub adjusted_at: Option<Time>,
     /// Adjuster of that adjustment, by the work order; none where no work order covers it.
     #[schema(required)]
-    pub adjusted_by: Option<AdjustedBy>,
+    pub adjusted_by: Option<CardAdjuster>,
     /// Due date of the next adjustment. None where no adjustment is on record, or where headings at
     /// sea have not verified the last.
     #[schema(required)]
-    pub next_due: Option<NextDue>,
+    pub next_due: Option<CardNextDue>,
     /// Items that belong on a card and are not recorded here: a person must write them.
-    pub not_recorded: Vec<NotRecorded>,
-    /// The model that says so.
-    pub model: Source,
+    pub not_recorded: Vec<CardNotRecorded>,
+    /// The model behind it.
+    pub model: CardModel,
     /// Notes for the reader, a sentence each; the most pressing first.
     pub notes: Vec<String>,
     /// Each 5°, for the curve.
     #[serde(skip)]
-    pub curve: Vec<Row>,
+    pub curve: Vec<DeviationRow>,
 }
 
-/// Status of a card.
+/// CardStatus of a card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-#[schema(as = CardStatus)]
-pub enum Status {
+pub enum CardStatus {
     /// By the model alone.
     Predicted,
     /// Headings at sea agree with the prediction of the adjustment.
@@ -122,8 +120,7 @@ pub enum Status {
 
 /// Verification of a card at sea.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
-#[schema(as = CardVerification)]
-pub struct VerifiedAtSea {
+pub struct CardVerification {
     /// The work order whose adjustment was verified.
     pub order: OrderId,
     /// Time of the adjustment.
@@ -138,25 +135,24 @@ pub struct VerifiedAtSea {
     pub samples: usize,
     /// The time of the last of these.
     pub until: Time,
-    /// Root mean square of what the headings were off, degrees.
+    /// Root mean square of the headings' differences from the prediction, degrees.
     #[schema(example = 0.4)]
     pub rms_deg: f64,
 }
 
-impl Status {
-    /// In a word, as in JSON.
+impl CardStatus {
+    /// Returns the status in a word, as in JSON.
     pub fn word(self) -> &'static str {
         match self {
-            Status::Predicted => "predicted",
-            Status::Verified => "verified",
+            CardStatus::Predicted => "predicted",
+            CardStatus::Verified => "verified",
         }
     }
 }
 
 /// The ship that a card is of.
 #[derive(Clone, Debug, Serialize, ToSchema)]
-#[schema(as = CardVessel)]
-pub struct Ship {
+pub struct CardVessel {
     /// The vessel's id.
     pub id: VesselId,
     /// Its name.
@@ -176,10 +172,9 @@ pub struct Ship {
     pub degaussing: Option<String>,
 }
 
-/// Place and time at which a card holds, and the earth's field there.
+/// CardPlace and time at which a card holds, and the earth's field there.
 #[derive(Clone, Debug, Serialize, ToSchema)]
-#[schema(as = CardPlace)]
-pub struct Place {
+pub struct CardPlace {
     /// Degrees north.
     #[schema(example = 43.4)]
     pub lat: f64,
@@ -191,7 +186,7 @@ pub struct Place {
     /// Variation, degrees, east positive.
     #[schema(example = 0.4)]
     pub variation_deg: f64,
-    /// The model of the earth's field that says so.
+    /// The model of the earth's field behind it.
     #[schema(example = "igrf14")]
     pub variation_source: String,
     /// Horizontal field, nT.
@@ -204,7 +199,6 @@ pub struct Place {
 
 /// A line of a card.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
-#[schema(as = CardRow)]
 pub struct CardRow {
     /// Compass heading.
     #[schema(example = 15.0)]
@@ -226,10 +220,9 @@ pub struct CardRow {
     pub residual_deg: Option<f64>,
 }
 
-/// Coefficients at a card's place, degrees.
+/// CardCoefficients at a card's place, degrees.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
-#[schema(as = CardCoefficients)]
-pub struct Coefficients {
+pub struct CardCoefficients {
     /// The exact ones, × 57.3.
     #[schema(value_type = HandbookSchema)]
     pub exact: CoefficientsInDegrees,
@@ -244,9 +237,8 @@ pub struct Coefficients {
 
 /// Setting of a binnacle's correctors.
 #[derive(Clone, Debug, Serialize, ToSchema)]
-#[schema(as = CardCorrectors)]
-pub struct Correctors {
-    /// The revision of the binnacle that says so.
+pub struct CardCorrectors {
+    /// The revision of the binnacle behind it.
     #[schema(example = 3)]
     pub revision: i64,
     /// Time of the revision.
@@ -264,7 +256,8 @@ pub struct Correctors {
 
 /// Magnetic cargo on board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
-pub struct CargoAboard {
+#[schema(as = CargoAboard)]
+pub struct MagneticCargo {
     /// Time from which it is on board.
     pub since: Time,
     /// Its kind: `steel`, `scrap`, `containers` or `other`; none where the logbook does not say.
@@ -275,8 +268,7 @@ pub struct CargoAboard {
 /// Adjuster of a compass, by the record of the work order. The adjuster has signed that record, and
 /// no card.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
-#[schema(as = CardAdjuster)]
-pub struct AdjustedBy {
+pub struct CardAdjuster {
     /// The work order.
     pub order: OrderId,
     /// The adjuster.
@@ -292,8 +284,7 @@ pub struct AdjustedBy {
 
 /// Due date of a compass's next adjustment, by the schedule's rules.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
-#[schema(as = CardNextDue)]
-pub struct NextDue {
+pub struct CardNextDue {
     /// The day.
     #[schema(format = Date, example = "2028-11-21")]
     pub on: String,
@@ -308,8 +299,7 @@ pub struct NextDue {
 /// Item that belongs on a card and is not recorded here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-#[schema(as = CardNotRecorded)]
-pub enum NotRecorded {
+pub enum CardNotRecorded {
     /// Positions of magnets, spheres and Flinders bar.
     Correctors,
     /// Setting of the degaussing coils.
@@ -324,8 +314,7 @@ pub enum NotRecorded {
 
 /// The model that a card is made from.
 #[derive(Clone, Debug, Serialize, ToSchema)]
-#[schema(as = CardModel)]
-pub struct Source {
+pub struct CardModel {
     /// The model version's id.
     pub id: ModelId,
     /// Counts the compass's models from 1.

@@ -1,7 +1,7 @@
-//! A card as CSV.
+//! Deviation card as CSV.
 //!
-//! What always holds: every line says what it is worth and where it comes from, so
-//! that none can be taken for a certificate's when it is cut out.
+//! Invariant: every line names its status and its source, so that none passes for a certificate
+//! when it is cut out.
 
 use super::contents::Card;
 
@@ -24,7 +24,7 @@ const COLUMNS: [&str; 16] = [
     "verified_headings",
 ];
 
-/// A line for each row of the card.
+/// Writes a line for each row of the card.
 pub(super) fn csv(card: &Card) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(COLUMNS)?;

@@ -3,7 +3,7 @@
 //! Invariant: the date follows from the schedule's rules and the records at the card's date.
 //! Without an adjustment on record there is none.
 
-use super::contents::NextDue;
+use super::contents::CardNextDue;
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_platform::time::Time;
 use binnacle_schedule::needs::{self, Event, Predicted, Side, Terms, due};
@@ -26,12 +26,12 @@ pub(super) struct Facts<'a> {
     pub(super) at: Time,
     /// The greatest deviation on it, degrees, east positive.
     pub(super) worst_deviation_deg: f64,
-    /// The greatest that the vessel's own limits let stand, degrees.
+    /// The greatest within the vessel's own limits, degrees.
     pub(super) own_limit_deg: f64,
 }
 
 /// Returns the due date; none where no adjustment is on record.
-pub(super) fn next_due(facts: &Facts<'_>) -> Option<NextDue> {
+pub(super) fn next_due(facts: &Facts<'_>) -> Option<CardNextDue> {
     let flag = facts.flag.and_then(|flag| letters(flag.trim()));
     let ship = needs::Ship {
         flag: flag.or_else(|| letters(NO_FLAG)),
@@ -56,7 +56,7 @@ pub(super) fn next_due(facts: &Facts<'_>) -> Option<NextDue> {
     };
     let today = facts.at.day().parse().ok()?;
     let found = due(&ship, &compass, built_in_rules(), &Terms::default(), today)?;
-    Some(NextDue {
+    Some(CardNextDue {
         on: found.on.to_string(),
         reason: found.reason,
         flags_own_rules: flag.is_some(),

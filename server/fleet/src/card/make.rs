@@ -1,20 +1,21 @@
-//! From a model to a card, or to the reason why there is none.
+//! Construction of a card from a model, or its refusal.
 //!
-//! What always holds: a card is a function of what is stored and of where and when it
-//! is asked for. The time of asking only decides whether the model is too old.
+//! Invariant: a card is a function of the stored records and of the requested place and time. The
+//! time of the request only decides whether the model is too old.
 
 use super::contents::{
-    AdjustedBy, Card, CardRow, CargoAboard, Coefficients, Correctors, NotRecorded, PREDICTED,
-    Place, Ship, Source, Status, VerifiedAtSea, foretold, verified,
+    Card, CardAdjuster, CardCoefficients, CardCorrectors, CardModel, CardNotRecorded, CardPlace,
+    CardRow, CardStatus, CardVerification, CardVessel, MagneticCargo, PREDICTED,
+    predicted_at_berth, verified,
 };
 use super::due::{self, next_due};
 use super::observed::{Observed, STEP_DEG};
 use super::refusal::{OLDEST_DAYS, Refusal};
 use crate::adjustments::CompletedOrder;
 use crate::alerts::{Effect, OpenAlert};
-use crate::binnacles::Revised;
+use crate::binnacles::StoredRevision;
 use crate::compasses::Compass;
-use crate::deviation::{self, Row};
+use crate::deviation::{self, DeviationRow};
 use crate::models::StoredModel;
 use binnacle_compass::deviation::{Coefficients as Exact, DeviationError};
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
@@ -27,16 +28,16 @@ const CURVE_STEP_DEG: f64 = 5.0;
 /// A band that excludes no heading.
 const NO_BAND_DEG: f64 = 180.0;
 
-/// Everything that a card is made from.
-pub(super) struct Basis {
-    pub(super) vessel: Ship,
+/// Records that a card is made from.
+pub(super) struct CardInput {
+    pub(super) vessel: CardVessel,
     pub(super) compass: Compass,
-    pub(super) place: Place,
+    pub(super) place: CardPlace,
     pub(super) model: StoredModel,
     /// The first and the last sample that it rests on.
     pub(super) data: (Time, Time),
     /// The binnacle as it is recorded.
-    pub(super) binnacle: Option<Revised>,
+    pub(super) binnacle: Option<StoredRevision>,
     /// Entries of the logbook, without withdrawn ones.
     pub(super) logbook: Vec<LogbookEntry>,
     /// Open alerts of this compass.
@@ -47,105 +48,108 @@ pub(super) struct Basis {
     pub(super) observed: [Observed; 24],
     /// The widest half of a band that makes a card, degrees.
     pub(super) limit_deg: f64,
-    /// The greatest deviation that the vessel's own limits let stand, degrees.
+    /// The greatest deviation within the vessel's own limits, degrees.
     pub(super) own_limit_deg: f64,
     /// Time of the request.
     pub(super) now: Time,
 }
 
-/// The card.
-pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
-    let Basis { model, place, .. } = &basis;
-    not_suspected(&basis.alerts)?;
-    not_too_old(model.data_until, place.at.max(basis.now))?;
+/// Makes the card, or returns the reason for refusing it.
+pub(super) fn make(input: CardInput) -> Result<Card, Refusal> {
+    let CardInput { model, place, .. } = &input;
+    not_suspected(&input.alerts)?;
+    not_too_old(model.data_until, place.at.max(input.now))?;
     let earth = EarthField {
         h_nt: place.h_nt,
         z_nt: place.z_nt,
     };
     let ship = &model.model.0;
     let curve = deviation::table(ship, earth, CURVE_STEP_DEG)?;
-    let widest_band95_deg = widest(&curve, basis.limit_deg)?;
+    let widest_band95_deg = widest(&curve, input.limit_deg)?;
     let lines = deviation::table(ship, earth, STEP_DEG)?;
-    let coefficients = Coefficients {
+    let coefficients = CardCoefficients {
         exact: Exact::new(&ship.parameters_over_lambda, earth)?.to_degrees(),
         constant_deg: ship.constant_deg,
         handbook: ship.approximate_coefficients(earth)?,
     };
     let at = place.at;
-    let cargo = cargo_at(&basis.logbook, at);
-    let adjusted_at = last(&basis.logbook, LogbookKind::Adjustment, at);
-    let adjusted_by = adjusted_by(&basis.completed, adjusted_at);
+    let cargo = cargo_at(&input.logbook, at);
+    let adjusted_at = last(&input.logbook, LogbookKind::Adjustment, at);
+    let adjusted_by = adjusted_by(&input.completed, adjusted_at);
     let worst = deviation::worst_of(&curve).ok_or(DeviationError::NotFinite)?;
-    let verified_by = verified_by(model, &basis.completed);
-    let unverified = unverified(model, &basis.completed);
+    let verified_by = verified_by(model, &input.completed);
+    let unverified = unverified(model, &input.completed);
     let next_due = next_due(&due::Facts {
-        flag: basis.vessel.flag.as_deref(),
-        // What nothing at sea supports starts no term.
+        flag: input.vessel.flag.as_deref(),
+        // An adjustment without support at sea starts no period.
         adjusted_at: adjusted_at.filter(|_| unverified.is_none()),
-        logbook: &basis.logbook,
+        logbook: &input.logbook,
         at,
         worst_deviation_deg: worst.deviation_deg,
-        own_limit_deg: basis.own_limit_deg,
+        own_limit_deg: input.own_limit_deg,
     });
     Ok(Card {
-        status: verified_by.map_or(Status::Predicted, |_| Status::Verified),
+        status: verified_by.map_or(CardStatus::Predicted, |_| CardStatus::Verified),
         statement: match (&verified_by, unverified, model.foretold_by) {
             (Some(by), _, _) => verified(by),
-            (None, Some(order), Some(_)) => foretold(order.at, order.order),
+            (None, Some(order), Some(_)) => predicted_at_berth(order.at, order.order),
             (None, _, _) => PREDICTED.to_owned(),
         },
         verified: verified_by,
         unverified_order: unverified.map(|order| order.order),
-        rows: lines.iter().zip(basis.observed).map(line).collect(),
+        rows: lines.iter().zip(input.observed).map(line).collect(),
         worst,
         widest_band95_deg,
         coefficients,
         replaces: model.replaces(),
-        notes: notes(model, &basis.alerts, &cargo),
+        notes: notes(model, &input.alerts, &cargo),
         cargo,
         not_recorded: missing([
-            (NotRecorded::Correctors, basis.binnacle.is_none()),
+            (CardNotRecorded::Correctors, input.binnacle.is_none()),
             (
-                NotRecorded::DegaussingCoils,
-                basis.vessel.degaussing.is_none(),
+                CardNotRecorded::DegaussingCoils,
+                input.vessel.degaussing.is_none(),
             ),
-            (NotRecorded::Adjuster, adjusted_by.is_none()),
-            (NotRecorded::Signature, true),
+            (CardNotRecorded::Adjuster, adjusted_by.is_none()),
+            (CardNotRecorded::Signature, true),
             (
-                NotRecorded::NextDue,
+                CardNotRecorded::NextDue,
                 next_due.is_none() && unverified.is_none(),
             ),
         ]),
-        correctors: basis.binnacle.as_ref().map(correctors),
-        degaussed_at: last(&basis.logbook, LogbookKind::Degaussing, at),
-        degaussing: basis.vessel.degaussing.clone(),
+        correctors: input.binnacle.as_ref().map(correctors),
+        degaussed_at: last(&input.logbook, LogbookKind::Degaussing, at),
+        degaussing: input.vessel.degaussing.clone(),
         adjusted_at,
         adjusted_by,
         next_due,
-        model: Source {
+        model: CardModel {
             id: model.id,
             version: model.version,
             fitted_at: model.created_at,
             foretold_by: model.foretold_by,
-            data_from: basis.data.0,
-            data_until: basis.data.1,
+            data_from: input.data.0,
+            data_until: input.data.1,
             samples_used: ship.samples_used,
             rms_deg: ship.rms_deg,
             estimator: model.estimator.clone(),
             input_hash: model.input_hash.clone(),
         },
         curve,
-        vessel: basis.vessel,
-        compass: basis.compass,
-        place: basis.place,
+        vessel: input.vessel,
+        compass: input.compass,
+        place: input.place,
     })
 }
 
 /// Returns the verification of the adjustment that the model comes from.
-fn verified_by(model: &StoredModel, completed: &[CompletedOrder]) -> Option<VerifiedAtSea> {
-    let by = completed.iter().rev().find(|order| order.bears_on(model))?;
+fn verified_by(model: &StoredModel, completed: &[CompletedOrder]) -> Option<CardVerification> {
+    let by = completed
+        .iter()
+        .rev()
+        .find(|order| order.is_source_of(model))?;
     let at_sea = by.at_sea?;
-    Some(VerifiedAtSea {
+    Some(CardVerification {
         order: by.order,
         adjusted_at: by.at,
         verified_at: at_sea.verified_at,
@@ -156,17 +160,20 @@ fn verified_by(model: &StoredModel, completed: &[CompletedOrder]) -> Option<Veri
     })
 }
 
-/// The adjustment that the model comes from, while nothing at sea has verified it.
+/// Returns the adjustment that the model comes from, while no headings at sea have verified it.
 fn unverified<'a>(
     model: &StoredModel,
     completed: &'a [CompletedOrder],
 ) -> Option<&'a CompletedOrder> {
-    let by = completed.iter().rev().find(|order| order.bears_on(model))?;
+    let by = completed
+        .iter()
+        .rev()
+        .find(|order| order.is_source_of(model))?;
     Some(by).filter(|order| order.at_sea.is_none())
 }
 
-/// A compass that stands still, or has parted from the gyro on board, is not described
-/// by any model.
+/// Fails while an alert blocks the card: no model describes a stuck compass, or one that has parted
+/// from the gyro.
 fn not_suspected(alerts: &[OpenAlert]) -> Result<(), Refusal> {
     let blocks = |alert: &&OpenAlert| alert.cause.effect_on_card() == Effect::Block;
     match alerts.iter().find(blocks) {
@@ -185,10 +192,10 @@ fn not_too_old(data_until: Time, at: Time) -> Result<(), Refusal> {
     Ok(())
 }
 
-fn widest(curve: &[Row], limit_deg: f64) -> Result<f64, Refusal> {
+fn widest(curve: &[DeviationRow], limit_deg: f64) -> Result<f64, Refusal> {
     let (mut widest_deg, mut compass_deg) = (0.0, 0.0);
     for row in curve {
-        // A model without a covariance knows nothing of the band.
+        // Without a covariance the band is unknown.
         let band95_deg = row.band95_deg.unwrap_or(NO_BAND_DEG);
         if band95_deg > widest_deg {
             (widest_deg, compass_deg) = (band95_deg, row.compass_deg);
@@ -204,7 +211,7 @@ fn widest(curve: &[Row], limit_deg: f64) -> Result<f64, Refusal> {
     Ok(widest_deg)
 }
 
-fn line((row, observed): (&Row, Observed)) -> CardRow {
+fn line((row, observed): (&DeviationRow, Observed)) -> CardRow {
     CardRow {
         compass_deg: row.compass_deg,
         magnetic_deg: row.magnetic_deg,
@@ -216,12 +223,12 @@ fn line((row, observed): (&Row, Observed)) -> CardRow {
 }
 
 /// Returns the adjuster of the last adjustment, where it was by a work order.
-fn adjusted_by(completed: &[CompletedOrder], adjusted_at: Option<Time>) -> Option<AdjustedBy> {
+fn adjusted_by(completed: &[CompletedOrder], adjusted_at: Option<Time>) -> Option<CardAdjuster> {
     let by = completed
         .iter()
         .rev()
         .find(|order| Some(order.at) == adjusted_at)?;
-    Some(AdjustedBy {
+    Some(CardAdjuster {
         order: by.order,
         adjuster: by.adjuster_name.clone(),
         licence: by.adjuster_licence.clone(),
@@ -229,15 +236,15 @@ fn adjusted_by(completed: &[CompletedOrder], adjusted_at: Option<Time>) -> Optio
     })
 }
 
-fn missing<const N: usize>(known: [(NotRecorded, bool); N]) -> Vec<NotRecorded> {
-    let wanted = known.into_iter().filter(|(_, is_missing)| *is_missing);
-    wanted.map(|(what, _)| what).collect()
+fn missing<const N: usize>(known: [(CardNotRecorded, bool); N]) -> Vec<CardNotRecorded> {
+    let missing = known.into_iter().filter(|(_, is_missing)| *is_missing);
+    missing.map(|(item, _)| item).collect()
 }
 
-fn correctors(found: &Revised) -> Correctors {
+fn correctors(found: &StoredRevision) -> CardCorrectors {
     let binnacle = &found.binnacle.0;
     let design = &binnacle.design;
-    Correctors {
+    CardCorrectors {
         revision: found.revision,
         at: found.at,
         binnacle: format!("{} {}, no. {}", design.maker, design.model, binnacle.serial),
@@ -249,8 +256,8 @@ fn correctors(found: &Revised) -> Correctors {
     }
 }
 
-fn cargo_at(logbook: &[LogbookEntry], at: Time) -> Vec<CargoAboard> {
-    let aboard = logbook.iter().filter(|entry| {
+fn cargo_at(logbook: &[LogbookEntry], at: Time) -> Vec<MagneticCargo> {
+    let on_board = logbook.iter().filter(|entry| {
         entry.kind == LogbookKind::MagneticCargo
             && entry.from <= at.0
             && entry.to.is_none_or(|to| to >= at.0)
@@ -259,8 +266,8 @@ fn cargo_at(logbook: &[LogbookEntry], at: Time) -> Vec<CargoAboard> {
         let cargo = serde_json::to_value(entry.cargo?).ok()?;
         cargo.as_str().map(str::to_owned)
     };
-    aboard
-        .map(|entry| CargoAboard {
+    on_board
+        .map(|entry| MagneticCargo {
             since: Time(entry.from),
             cargo: words(entry),
         })
@@ -273,7 +280,7 @@ fn last(logbook: &[LogbookEntry], kind: LogbookKind, at: Time) -> Option<Time> {
     before.filter(|time| *time <= at).max()
 }
 
-fn notes(model: &StoredModel, alerts: &[OpenAlert], cargo: &[CargoAboard]) -> Vec<String> {
+fn notes(model: &StoredModel, alerts: &[OpenAlert], cargo: &[MagneticCargo]) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(replaced) = model.replaces() {
         notes.push(sentence(&replaced.of_older_cards()));

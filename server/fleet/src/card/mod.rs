@@ -1,13 +1,11 @@
-//! Deviation cards: what a compass's model says on each heading at a place, with all
-//! that belongs on a card, as PDF, SVG, CSV and JSON.
+//! Deviation cards: a model's deviation on each heading at a place, as PDF, SVG, CSV and JSON.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - A card says whether it is predicted, or verified by headings at sea, and that it is
-//!   no certificate; what nobody has recorded is said to be so, or left blank for a
-//!   person's pen.
+//! - A card states whether it is predicted or verified by headings at sea, and that it is not a
+//!   certificate. Facts that nobody has recorded are marked so, or left blank for a person's pen.
 //! - Each compass has a card of its own.
-//! - Where a card would mislead, there is none: the answer says why.
+//! - A card that would mislead is refused, with the reason.
 //! - The same model, place and date make the same card, to the byte.
 
 mod contents;
@@ -18,7 +16,7 @@ mod make;
 mod observed;
 mod refusal;
 
-pub use contents::{Card, Status};
+pub use contents::{Card, CardStatus};
 pub use refusal::Refusal;
 
 use crate::adjustments;
@@ -26,7 +24,7 @@ use crate::alerts;
 use crate::analysis;
 use crate::binnacles;
 use crate::compasses;
-use crate::deviation;
+use crate::deviation_table;
 use crate::logbook;
 use crate::models::{self, StoredModel};
 use crate::settings::{self, VesselSettings};
@@ -41,15 +39,15 @@ use binnacle_platform::error::{Error, Problem, Result};
 use binnacle_platform::http::{Id, Json, Params, file, file_name, time};
 use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_platform::time::Time;
-use contents::{Place, Ship};
-use make::{Basis, make};
-use observed::{Seen, observed};
+use contents::{CardPlace, CardVessel};
+use make::{CardInput, make};
+use observed::{SampleRole, observed};
 use serde::Deserialize;
 use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -62,37 +60,38 @@ where
         .routes(routes!(card_csv))
 }
 
-/// Of which compass, where and when.
+/// Compass, place and time of a card.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Query {
-    /// A compass of the vessel's; its first one if not said.
+    /// A compass of the vessel; its first one by default.
     compass: Option<CompassId>,
-    /// Degrees north; where the vessel was last if not said.
+    /// Degrees north; the vessel's last position by default.
     #[param(example = 43.4)]
     lat: Option<f64>,
-    /// Degrees east; where the vessel was last if not said.
+    /// Degrees east; the vessel's last position by default.
     #[param(example = -3.1)]
     lon: Option<f64>,
-    /// RFC 3339; the time of the last sample, or of the model, if not said.
+    /// RFC 3339; by default the time of the last sample, or of the model.
     #[param(value_type = Option<String>, format = DateTime)]
     at: Option<String>,
 }
 
 /// See a compass's deviation card
 ///
-/// By the compass's model, at a place and a date. `predicted` until headings at sea have
-/// verified the adjustment that the model comes from: then `verified`, and `verified` says
-/// by which order, when, and by how many headings. A change that ends the adjustment's epoch
-/// ends that too. In no case a certificate. Besides the usual problems: `no-model-yet` (404) where there is no model, also because the
-/// last one holds no more; and 409 where there is one that makes no card:
-/// `model-too-old`, `band-too-wide`, `field-too-weak`, `headings-ambiguous` or
-/// `compass-suspected`.
+/// By the compass's model, at a place and a date. It is `predicted` until headings at sea have
+/// verified the adjustment that the model comes from. Then it is `verified`, and `verified` names
+/// the order, the time and the number of headings. A change that ends the adjustment's epoch ends
+/// that too. It is never a certificate.
+///
+/// Besides the usual problems: `no-model-yet` (404) without a model, also because the last one is
+/// withdrawn. `model-too-old`, `band-too-wide`, `field-too-weak`, `headings-ambiguous` or
+/// `compass-suspected` (409) where the model makes no card.
 #[utoipa::path(get, path = "/vessels/{id}/card.json", tag = "fleet",
     params(("id" = VesselId, Path), Query),
     responses((status = 200, body = Card), (status = 401, body = Problem),
-              (status = 404, description = "Also when there is no model, or it holds no more", body = Problem),
-              (status = 409, description = "The model makes no card: the detail says why", body = Problem),
+              (status = 404, description = "Also when there is no model, or it is withdrawn", body = Problem),
+              (status = 409, description = "The model makes no card, for the reason in the detail", body = Problem),
               (status = 422, body = Problem)))]
 async fn card_json(
     State(app): State<App>,
@@ -105,13 +104,13 @@ async fn card_json(
 
 /// Print a compass's deviation card
 ///
-/// One sheet of A4, upright; refused as `card.json` is.
+/// One sheet of A4 in portrait, refused as `card.json` is.
 #[utoipa::path(get, path = "/vessels/{id}/card.pdf", tag = "fleet",
     params(("id" = VesselId, Path), Query),
     responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
               (status = 401, body = Problem),
-              (status = 404, description = "Also when there is no model, or it holds no more", body = Problem),
-              (status = 409, description = "The model makes no card: the detail says why", body = Problem),
+              (status = 404, description = "Also when there is no model, or it is withdrawn", body = Problem),
+              (status = 409, description = "The model makes no card, for the reason in the detail", body = Problem),
               (status = 422, body = Problem)))]
 async fn card_pdf(
     State(app): State<App>,
@@ -133,8 +132,8 @@ async fn card_pdf(
     params(("id" = VesselId, Path), Query),
     responses((status = 200, content_type = "image/svg+xml", body = String),
               (status = 401, body = Problem),
-              (status = 404, description = "Also when there is no model, or it holds no more", body = Problem),
-              (status = 409, description = "The model makes no card: the detail says why", body = Problem),
+              (status = 404, description = "Also when there is no model, or it is withdrawn", body = Problem),
+              (status = 409, description = "The model makes no card, for the reason in the detail", body = Problem),
               (status = 422, body = Problem)))]
 async fn card_svg(
     State(app): State<App>,
@@ -149,14 +148,14 @@ async fn card_svg(
 
 /// A compass's deviation card as CSV
 ///
-/// A line for each 15° of compass heading; each says whether it is predicted or verified, by
-/// which model, and by which work order. Refused as `card.json` is.
+/// A line for each 15° of compass heading, with its status, model and work order. Refused as
+/// `card.json` is.
 #[utoipa::path(get, path = "/vessels/{id}/card.csv", tag = "fleet",
     params(("id" = VesselId, Path), Query),
     responses((status = 200, content_type = "text/csv", body = String),
               (status = 401, body = Problem),
-              (status = 404, description = "Also when there is no model, or it holds no more", body = Problem),
-              (status = 409, description = "The model makes no card: the detail says why", body = Problem),
+              (status = 404, description = "Also when there is no model, or it is withdrawn", body = Problem),
+              (status = 409, description = "The model makes no card, for the reason in the detail", body = Problem),
               (status = 422, body = Problem)))]
 async fn card_csv(
     State(app): State<App>,
@@ -178,11 +177,11 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     let last = vessel.last_position();
     let last_at = last.map_or(model.place_at, |last| last.at);
     let last = last.map_or((model.lat, model.lon), |last| (last.lat, last.lon));
-    let position = deviation::position(query.lat, query.lon, last)?;
+    let position = deviation_table::position(query.lat, query.lon, last)?;
     let place = place(position, query.at(&model, last_at)?, &settings)?;
     let now = app.clock.now().into();
     let (from, until) = match (model.foretold_by, model.epoch_from) {
-        // Nothing is in it of what was observed since.
+        // A predicted model includes no observation since.
         (Some(_), Some(from)) => (from, now),
         _ => (model.data_from, model.data_until.0.plus_seconds(1.0).into()),
     };
@@ -193,13 +192,13 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     let logbook = logbook::of_compass(db, id, compass.id).await?;
     let alerts = alerts::list_in_force(db, id, compass.id).await?;
     let made = tokio::task::spawn_blocking(move || {
-        let seen = match model.foretold_by {
-            Some(_) => Seen::Predicted(&model.model.0),
-            None => Seen::Fitted,
+        let role = match model.foretold_by {
+            Some(_) => SampleRole::Predicted(&model.model.0),
+            None => SampleRole::Fitted,
         };
-        let basis = Basis {
-            observed: observed(&samples, from, seen)?,
-            vessel: Ship {
+        let input = CardInput {
+            observed: observed(&samples, from, role)?,
+            vessel: CardVessel {
                 id,
                 name: vessel.name,
                 imo_number: vessel.imo_number,
@@ -219,7 +218,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
             own_limit_deg: settings.alerts.deviation_deg,
             now,
         };
-        make(basis).map_err(Error::from)
+        make(input).map_err(Error::from)
     });
     made.await?
 }
@@ -228,12 +227,12 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
 /// those of the model before the adjustment.
 async fn data_of(app: &App, model: &StoredModel) -> Result<(Time, Time)> {
     let from = match model.foretold_by {
-        Some(order) => adjustments::foretold_from(&app.db, model.vessel_id, order).await?,
+        Some(order) => adjustments::predicted_from(&app.db, model.vessel_id, order).await?,
         None => None,
     };
     let behind = match from {
         Some(version) => {
-            models::of_version(&app.db, model.vessel_id, model.compass_id, version).await?
+            models::find_version(&app.db, model.vessel_id, model.compass_id, version).await?
         }
         None => None,
     };
@@ -242,27 +241,27 @@ async fn data_of(app: &App, model: &StoredModel) -> Result<(Time, Time)> {
 }
 
 impl Query {
-    /// Returns the time that the card is for: a model does not hold before its epoch.
+    /// Returns the time that the card is for. A model is not valid before its epoch.
     fn at(&self, model: &StoredModel, last_at: Time) -> Result<Time> {
         let at = time("at", self.at.as_deref())?.map(Time);
         let at = at.unwrap_or(model.place_at.max(last_at));
         if let Some(from) = model.epoch_from.filter(|from| at < *from) {
             return Err(Error::Invalid {
                 field: "at",
-                detail: format!("the model holds from {} on, not before", from.0),
+                detail: format!("the model is valid only from {} on", from.0),
             });
         }
         Ok(at)
     }
 }
 
-fn place(position: Position, at: Time, settings: &VesselSettings) -> Result<Place> {
+fn place(position: Position, at: Time, settings: &VesselSettings) -> Result<CardPlace> {
     let source = settings.analysis.field_model;
     let earth = field(source, position, 0.0, at.0).map_err(|error| Error::Invalid {
         field: "at",
         detail: error.to_string(),
     })?;
-    Ok(Place {
+    Ok(CardPlace {
         lat: position.lat_deg(),
         lon: position.lon_deg(),
         at,

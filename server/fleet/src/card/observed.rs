@@ -24,7 +24,7 @@ pub(super) struct Observed {
 
 /// Relation of the samples to a card's model.
 #[derive(Clone, Copy)]
-pub(super) enum Seen<'a> {
+pub(super) enum SampleRole<'a> {
     /// It was fitted to those that carried weight.
     Fitted,
     /// It was predicted before them: each is compared with its prediction.
@@ -54,7 +54,7 @@ struct Sample {
 pub(super) fn observed(
     chunks: &[String],
     from: Time,
-    seen: Seen<'_>,
+    role: SampleRole<'_>,
 ) -> Result<[Observed; SECTORS]> {
     let mut sums = [(0_u64, 0.0_f64, 0.0_f64); SECTORS];
     for chunk in chunks {
@@ -62,7 +62,7 @@ pub(super) fn observed(
             if sample.time < from {
                 continue;
             }
-            let Some((residual_deg, weighs)) = seen.residual(&sample) else {
+            let Some((residual_deg, weighs)) = role.residual(&sample) else {
                 continue;
             };
             let (samples, weight, sum) = &mut sums[sector(sample.compass_deg)];
@@ -77,12 +77,14 @@ pub(super) fn observed(
     }))
 }
 
-impl Seen<'_> {
-    /// Measured less predicted deviation, and its weight.
+impl SampleRole<'_> {
+    /// Returns measured less predicted deviation, and its weight.
     fn residual(self, sample: &Sample) -> Option<(f64, f64)> {
         match self {
-            Seen::Fitted => Some((sample.residual_deg?, sample.weight)).filter(|_| sample.used),
-            Seen::Predicted(model) => {
+            SampleRole::Fitted => {
+                Some((sample.residual_deg?, sample.weight)).filter(|_| sample.used)
+            }
+            SampleRole::Predicted(model) => {
                 if !matches!(sample.reason, None | Some(SampleReason::NoModel)) {
                     return None;
                 }
@@ -131,7 +133,7 @@ mod tests {
             (7.4, Some(3.0), 1.0, true),
             (7.6, Some(-1.0), 0.5, true),
         ])];
-        let found = observed(&chunks, from("2026-11-01T00:00:00Z"), Seen::Fitted).unwrap();
+        let found = observed(&chunks, from("2026-11-01T00:00:00Z"), SampleRole::Fitted).unwrap();
         assert_eq!((found[0].samples, found[0].residual_deg), (2, Some(2.0)));
         assert_eq!((found[1].samples, found[1].residual_deg), (1, Some(-1.0)));
         assert_eq!(found[2], Observed::default());
@@ -145,9 +147,9 @@ mod tests {
             (90.0, Some(1.0), 1.0, true),
             (90.0, Some(4.0), 0.5, true),
         ])];
-        let found = observed(&chunks, from("2026-11-01T00:00:00Z"), Seen::Fitted).unwrap();
+        let found = observed(&chunks, from("2026-11-01T00:00:00Z"), SampleRole::Fitted).unwrap();
         assert_eq!((found[6].samples, found[6].residual_deg), (2, Some(2.0)));
-        let later = observed(&chunks, from("2026-11-21T07:00:01Z"), Seen::Fitted).unwrap();
+        let later = observed(&chunks, from("2026-11-21T07:00:01Z"), SampleRole::Fitted).unwrap();
         assert_eq!(later[6], Observed::default());
     }
 }

@@ -17,8 +17,8 @@ pub(super) const OLDEST_DAYS: f64 = 90.0;
 pub enum Refusal {
     /// Too long since the last sample.
     #[error(
-        "the model's last sample is of {}, {days:.0} days before the card; a card is made of a \
-         model of up to {OLDEST_DAYS} days: steady courses on several headings renew it",
+        "the model's last sample dates from {}, {days:.0} days before the card; the limit is \
+         {OLDEST_DAYS} days: steer steady courses on several headings to renew the model",
         data_until.to_the_minute()
     )]
     TooOld {
@@ -30,7 +30,7 @@ pub enum Refusal {
     /// Deviation is not known well enough on some heading.
     #[error(
         "on compass heading {} the deviation is known only to ±{band95_deg:.1}°, and this \
-         vessel's limit is ±{limit_deg}°: steady courses near that heading narrow it",
+         vessel's limit is ±{limit_deg}°: steer steady courses near that heading to narrow it",
         heading(*compass_deg)
     )]
     BandTooWide {
@@ -53,7 +53,7 @@ pub enum Refusal {
 }
 
 impl Refusal {
-    /// The last word of the problem's type, and its title.
+    /// Returns the last word of the problem's type, and its title.
     fn kind(&self) -> (&'static str, &'static str) {
         match self {
             Refusal::TooOld { .. } => ("model-too-old", "The model is too old for a card"),

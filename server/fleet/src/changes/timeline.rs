@@ -5,9 +5,10 @@
 
 use super::schema::{CauseProbabilitySchema, CauseSchema, StepSchema};
 use super::store::{Analysed, StoredEpoch, Version};
-use crate::analysis::{FoundChange, RefusalSchema};
-use crate::deviation::{self, Row};
+use crate::analysis::ChangeFinding;
+use crate::deviation::{self, DeviationRow};
 use crate::logbook::LogbookKindSchema;
+use crate::models::RefusalSchema;
 use binnacle_compass::logbook::LogbookKind;
 use binnacle_compass::result::{Cause, CauseProbability, FitError, LastPlace, Step};
 use binnacle_compass::ship::EarthField;
@@ -31,7 +32,7 @@ pub(super) struct Timeline {
     /// Place of the last sample, to which all curves belong; none before the first analysis.
     #[schema(required)]
     place: Option<Place>,
-    /// In order of time, without gaps; the last one goes on.
+    /// In order of time, without gaps; the last one has no end.
     epochs: Vec<Epoch>,
     /// In order of time.
     changes: Vec<ChangeFound>,
@@ -70,7 +71,7 @@ pub(super) struct Epoch {
     /// Its beginning; none for the first epoch.
     #[schema(required)]
     from: Option<Time>,
-    /// Its end; none for the last epoch, which goes on.
+    /// Its end; none for the last epoch.
     #[schema(required)]
     to: Option<Time>,
     /// Kind of the logbook entry that began it; none where none did.
@@ -102,13 +103,13 @@ pub(super) struct Epoch {
     /// Its deviation at `place`, by compass heading from 0 in steps of 10°; none without a
     /// model, or where headings are ambiguous.
     #[schema(required)]
-    curve: Option<Vec<Row>>,
+    curve: Option<Vec<DeviationRow>>,
     /// Reason for which it has no model.
     #[schema(required, value_type = Option<RefusalSchema>)]
     refusal: Option<FitError>,
 }
 
-/// Change of what the compass shows, real or apparent.
+/// Change of the deviation, real or apparent.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Change)]
 pub(super) struct ChangeFound {
@@ -156,7 +157,7 @@ pub(super) struct ChangeFound {
     epoch_ended: Option<usize>,
 }
 
-/// Makes the timeline from what is stored.
+/// Makes the timeline from stored records.
 pub(super) fn timeline(
     compass_id: CompassId,
     analysed: Option<Analysed>,
@@ -246,12 +247,12 @@ fn version(epoch: &StoredEpoch, versions: &[Version]) -> Option<i64> {
 
 /// Tells whether a change is shown. A disturbance too small to be certain by this ship alone is
 /// shown once other ships confirm it.
-fn is_shown(found: &FoundChange) -> bool {
+fn is_shown(found: &ChangeFinding) -> bool {
     !found.change.is_weak_transient()
 }
 
-impl From<FoundChange> for ChangeFound {
-    fn from(found: FoundChange) -> ChangeFound {
+impl From<ChangeFinding> for ChangeFound {
+    fn from(found: ChangeFinding) -> ChangeFound {
         let change = found.change;
         ChangeFound {
             from: change.from.into(),

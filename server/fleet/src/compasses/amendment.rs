@@ -1,4 +1,4 @@
-//! A change of what is written of a compass.
+//! Amendment of a compass's record.
 
 use super::{Compass, Role};
 use binnacle_platform::error::Result;
@@ -39,7 +39,7 @@ pub(super) struct AmendmentSchema {
 }
 
 impl Amendment {
-    /// The compass with what is to be changed.
+    /// Returns the compass with the amendment applied.
     pub(super) fn applied_to(self, compass: Compass) -> Result<Compass> {
         let optional = |field, value: Option<String>| optional_text(field, value.as_deref());
         Ok(Compass {

@@ -1,4 +1,4 @@
-//! A vessel's compasses.
+//! Compasses of a vessel: the record of each magnetic element.
 
 mod amendment;
 mod store;
@@ -23,7 +23,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -52,7 +52,7 @@ pub struct Compass {
     /// Its serial number.
     #[schema(required, example = "34871")]
     pub serial_number: Option<String>,
-    /// The binnacle that it stands in: maker, type and number.
+    /// Its binnacle: maker, type and number.
     #[schema(required)]
     pub binnacle: Option<String>,
     /// Time at which it was entered.
@@ -89,7 +89,7 @@ pub struct NewCompass {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(max_length = 200)]
     pub serial_number: Option<String>,
-    /// The binnacle that it stands in: maker, type and number.
+    /// Its binnacle: maker, type and number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(max_length = 200)]
     pub binnacle: Option<String>,
@@ -109,11 +109,11 @@ pub struct CompassList {
 #[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct WhichCompass {
-    /// A compass of the vessel's; its first one if not said.
+    /// A compass of the vessel; its first one by default.
     pub compass: Option<CompassId>,
 }
 
-/// The compass that was asked for, or the vessel's first.
+/// Finds a compass of the vessel, or its first one by default.
 ///
 /// # Errors
 /// [`Error::NotFound`] when the vessel has no such compass.
@@ -121,7 +121,7 @@ pub async fn find(db: &Db, vessel: VesselId, compass: Option<CompassId>) -> Resu
     of_vessel(db, vessel)
         .await?
         .into_iter()
-        .find(|found| compass.is_none_or(|wanted| found.id == wanted))
+        .find(|found| compass.is_none_or(|id| found.id == id))
         .ok_or(Error::NotFound("compass"))
 }
 
@@ -191,9 +191,9 @@ async fn create_compass(
     Ok((StatusCode::CREATED, Json(compass)))
 }
 
-/// Amend what is written of a compass
+/// Amend a compass
 ///
-/// What is left out stays as it is; null takes a value away.
+/// Absent fields stay as they are; null removes a value.
 #[utoipa::path(patch, path = "/vessels/{id}/compasses/{compass}", tag = "fleet",
     params(("id" = VesselId, Path), ("compass" = CompassId, Path)), request_body = AmendmentSchema,
     responses((status = 200, body = Compass), (status = 401, body = Problem),

@@ -5,7 +5,7 @@ use binnacle_platform::db::{Db, Result, Tx, execute, row, rows};
 use binnacle_platform::ids::{CompassId, OperatorId, VesselId};
 use binnacle_platform::time::Time;
 
-/// A vessel's compasses in the order in which they were entered.
+/// Lists a vessel's compasses in the order of entry.
 pub async fn of_vessel(db: &Db, vessel: VesselId) -> Result<Vec<Compass>> {
     rows!(
         db,
@@ -18,7 +18,7 @@ pub async fn of_vessel(db: &Db, vessel: VesselId) -> Result<Vec<Compass>> {
     )
 }
 
-/// The compasses of an operator's vessels from one id to another.
+/// Lists the compasses of an operator's vessels in a range of ids.
 pub async fn of_fleet(
     db: &Db,
     operator: OperatorId,
@@ -57,7 +57,7 @@ pub(super) async fn insert(tx: &mut Tx, compass: &Compass) -> Result<()> {
     Ok(())
 }
 
-/// The ids of a vessel's compasses, within a transaction.
+/// Lists the ids of a vessel's compasses, within a transaction.
 pub async fn ids(tx: &mut Tx, vessel: VesselId) -> Result<Vec<CompassId>> {
     let found: Vec<(CompassId,)> = rows!(
         in tx,
@@ -68,7 +68,7 @@ pub async fn ids(tx: &mut Tx, vessel: VesselId) -> Result<Vec<CompassId>> {
     Ok(found.into_iter().map(|(id,)| id).collect())
 }
 
-/// The compass that every vessel begins with.
+/// Inserts the standard compass that every vessel begins with.
 pub async fn insert_standard(tx: &mut Tx, vessel: VesselId, now: Time) -> Result<()> {
     let compass = Compass {
         id: CompassId::new(),
@@ -83,7 +83,7 @@ pub async fn insert_standard(tx: &mut Tx, vessel: VesselId, now: Time) -> Result
     insert(tx, &compass).await
 }
 
-/// A compass of the vessel's, to be changed: others who would change it wait.
+/// Locks a compass of the vessel for a change, and returns it.
 pub(super) async fn lock(tx: &mut Tx, vessel: VesselId, id: CompassId) -> Result<Option<Compass>> {
     row!(
         in tx,
@@ -96,7 +96,7 @@ pub(super) async fn lock(tx: &mut Tx, vessel: VesselId, id: CompassId) -> Result
     )
 }
 
-/// Writes what is written of a compass anew.
+/// Overwrites a compass's record.
 pub(super) async fn update(tx: &mut Tx, compass: &Compass) -> Result<()> {
     execute!(
         tx,

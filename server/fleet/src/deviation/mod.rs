@@ -1,135 +1,112 @@
-//! Deviation by a compass's current model, anywhere and at any time.
+//! Deviation that a model predicts on every heading at one place.
 
-mod predict;
-
-pub use predict::{HandbookSchema, Row, Worst, handbook, table, worst, worst_of};
-
-use crate::compasses;
-use crate::models;
-use crate::vessels;
-use axum::extract::{FromRef, State};
-use binnacle_compass::field::{FieldModel, field};
-use binnacle_compass::position::Position;
-use binnacle_compass::time::Timestamp;
-use binnacle_platform::access::Reader;
-use binnacle_platform::app::App;
-use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Params, degrees, time};
-use binnacle_platform::ids::{CompassId, ModelId, VesselId};
-use binnacle_platform::time::Time;
+use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::deviation::CoefficientsInDegrees;
+use binnacle_compass::deviation::DeviationError;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
 use serde::{Deserialize, Serialize};
-use utoipa::{IntoParams, ToSchema};
-use utoipa_axum::router::OpenApiRouter;
-use utoipa_axum::routes;
+use utoipa::ToSchema;
 
-/// The routes of this part.
-pub fn router<S>() -> OpenApiRouter<S>
-where
-    App: FromRef<S>,
-    S: Clone + Send + Sync + 'static,
-{
-    OpenApiRouter::new().routes(routes!(find_deviation))
+/// Deviation on one compass heading.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+pub struct DeviationRow {
+    /// Compass heading.
+    pub compass_deg: f64,
+    /// The magnetic heading then.
+    pub magnetic_deg: f64,
+    /// Deviation, degrees, east positive.
+    pub deviation_deg: f64,
+    /// Half the width of the 95 % band, degrees; none without a covariance.
+    #[schema(required)]
+    pub band95_deg: Option<f64>,
 }
 
-/// Place and time.
-#[derive(Debug, Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
-struct Query {
-    /// Degrees north; the last position's if not said.
-    lat: Option<f64>,
-    /// Degrees east; the last position's if not said.
-    lon: Option<f64>,
-    /// RFC 3339; the last position's time if not said.
-    #[param(value_type = Option<String>, format = DateTime)]
-    at: Option<String>,
-    /// A compass of the vessel's; its first one if not said.
-    compass: Option<CompassId>,
-    /// Degrees of compass heading between rows, 1 to 90; 15 if not said.
-    step_deg: Option<f64>,
+/// The heading with the greatest deviation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct WorstHeading {
+    /// Compass heading.
+    pub compass_deg: f64,
+    /// Deviation, degrees, east positive.
+    pub deviation_deg: f64,
+    /// Half the width of the 95 % band, degrees.
+    #[schema(required)]
+    pub band95_deg: Option<f64>,
 }
 
-/// A deviation table.
-#[derive(Debug, Serialize, ToSchema)]
-pub struct DeviationTable {
-    /// Degrees north.
-    pub lat: f64,
-    /// Degrees east.
-    pub lon: f64,
-    /// Time.
-    pub at: Time,
-    /// The earth's variation there, degrees, east positive (IGRF-14).
-    pub variation_deg: f64,
-    /// Horizontal field there, nT.
-    pub h_nt: f64,
-    /// Vertical field there, nT, down positive.
-    pub z_nt: f64,
-    /// The model that says so.
-    pub model_id: ModelId,
-    /// Its version.
-    pub model_version: i64,
-    /// By compass heading from 0, each `step_deg`.
-    pub rows: Vec<Row>,
+/// Approximate coefficients of the handbooks, degrees, as an adjuster finds them who swings the
+/// ship.
+#[derive(ToSchema)]
+#[schema(as = HandbookCoefficients)]
+#[allow(
+    dead_code,
+    non_snake_case,
+    reason = "describes binnacle_compass::deviation::CoefficientsInDegrees"
+)]
+pub struct HandbookSchema {
+    /// Constant; includes alignment, reference and variation offsets.
+    A: f64,
+    /// Of the sine of the heading.
+    B: f64,
+    /// Of the cosine of the heading.
+    C: f64,
+    /// Of the sine of twice the heading.
+    D: f64,
+    /// Of the cosine of twice the heading.
+    E: f64,
 }
 
-/// Deviation by compass heading, at a place and time
-#[utoipa::path(get, path = "/vessels/{id}/deviation", tag = "fleet",
-    params(("id" = VesselId, Path), Query),
-    responses((status = 200, body = DeviationTable), (status = 401, body = Problem),
-              (status = 404, description = "Also when there is no model yet", body = Problem),
-              (status = 422, body = Problem)))]
-async fn find_deviation(
-    State(app): State<App>,
-    reader: Reader,
-    Id(id): Id<VesselId>,
-    Params(query): Params<Query>,
-) -> Result<Json<DeviationTable>> {
-    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
-    let compass = compasses::find(&app.db, id, query.compass).await?;
-    let model = models::must_have(&app, id, compass.id).await?;
-    let step_deg = degrees("step_deg", query.step_deg.unwrap_or(15.0), 1.0, 90.0)?;
-    let (position, at) = query.place(&model)?;
-    let earth =
-        field(FieldModel::Igrf14, position, 0.0, at).map_err(|error| invalid("at", &error))?;
-    let rows = table(&model.model.0, earth.for_ship(), step_deg)
-        .map_err(|error| invalid("lat", &error))?;
-    Ok(Json(DeviationTable {
-        lat: position.lat_deg(),
-        lon: position.lon_deg(),
-        at: at.into(),
-        variation_deg: earth.declination().degrees_east(),
-        h_nt: earth.h_nt(),
-        z_nt: earth.z_nt,
-        model_id: model.id,
-        model_version: model.version,
-        rows,
-    }))
-}
-
-impl Query {
-    fn place(&self, model: &models::StoredModel) -> Result<(Position, Timestamp)> {
-        let position = position(self.lat, self.lon, (model.lat, model.lon))?;
-        let at = time("at", self.at.as_deref())?.unwrap_or(model.place_at.0);
-        Ok((position, at))
-    }
-}
-
-/// The place of a query, or where the vessel was last, degrees north and east.
+/// Returns the deviation on compass headings from 0, in steps of `step_deg`.
 ///
 /// # Errors
-/// When it is none, or half of one.
-pub fn position(lat: Option<f64>, lon: Option<f64>, last: (f64, f64)) -> Result<Position> {
-    match (lat, lon) {
-        (Some(lat), Some(lon)) => {
-            Position::new(lat, lon).map_err(|error| invalid("lat, lon", &error))
-        }
-        (None, None) => Ok(Position::new(last.0, last.1).map_err(anyhow::Error::from)?),
-        _ => Err(invalid("lat, lon", &"one without the other")),
+/// Fails when the field is too weak for a compass, or headings are ambiguous.
+pub fn table(
+    model: &Model,
+    earth: EarthField,
+    step_deg: f64,
+) -> Result<Vec<DeviationRow>, DeviationError> {
+    if earth.h_nt < WEAKEST_H_NT {
+        return Err(DeviationError::FieldTooWeak {
+            h_nt: earth.h_nt,
+            needed_nt: WEAKEST_H_NT,
+        });
     }
+    // A step that fills the circle but for rounding does not count 360 again.
+    let rows = (360.0 / step_deg - 1e-9).ceil() as usize;
+    (0..rows)
+        .map(|index| row(model, earth, index as f64 * step_deg))
+        .collect()
 }
 
-fn invalid(field: &'static str, detail: &impl std::fmt::Display) -> Error {
-    Error::Invalid {
-        field,
-        detail: detail.to_string(),
-    }
+fn row(model: &Model, earth: EarthField, compass_deg: f64) -> Result<DeviationRow, DeviationError> {
+    let compass = CompassHeading::new(compass_deg).ok_or(DeviationError::NotFinite)?;
+    let predicted = model.deviation(compass, earth)?;
+    Ok(DeviationRow {
+        compass_deg,
+        magnetic_deg: (compass + predicted.deviation).degrees(),
+        deviation_deg: predicted.deviation.degrees_east(),
+        band95_deg: predicted.band95_deg,
+    })
+}
+
+/// Finds the heading with the greatest deviation, to 5°; `None` where headings are ambiguous.
+pub fn worst(model: &Model, earth: EarthField) -> Option<WorstHeading> {
+    worst_of(&table(model, earth, 5.0).ok()?)
+}
+
+/// Finds the row with the greatest deviation.
+pub fn worst_of(rows: &[DeviationRow]) -> Option<WorstHeading> {
+    let worst = rows
+        .iter()
+        .max_by(|x, y| x.deviation_deg.abs().total_cmp(&y.deviation_deg.abs()))?;
+    Some(WorstHeading {
+        compass_deg: worst.compass_deg,
+        deviation_deg: worst.deviation_deg,
+        band95_deg: worst.band95_deg,
+    })
+}
+
+/// Returns the handbook's coefficients; `None` where headings are ambiguous.
+pub fn handbook(model: &Model, earth: EarthField) -> Option<CoefficientsInDegrees> {
+    model.approximate_coefficients(earth).ok()
 }

@@ -1,4 +1,4 @@
-//! A book as CSV.
+//! Deviation book as CSV.
 
 use super::entry::Entry;
 use binnacle_platform::error::{Error, Result};
@@ -27,12 +27,12 @@ const COLUMNS: [&str; 20] = [
     "observer",
 ];
 
-/// The line that names the columns.
+/// Returns the line of column names.
 pub(super) fn head() -> Vec<u8> {
     format!("{}\n", COLUMNS.join(",")).into_bytes()
 }
 
-/// A line for each entry.
+/// Writes a line for each entry.
 pub(super) fn lines(entries: &[Entry]) -> Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for entry in entries {

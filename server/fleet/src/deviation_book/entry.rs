@@ -1,6 +1,6 @@
-//! An entry of a deviation book: what was observed, beside what the card said.
+//! Entry of a deviation book: an observed deviation, beside the card's.
 
-use super::select::{Occasion, choose};
+use super::select::{Occasion, select_entries};
 use crate::adjustments::CompletedOrder;
 use crate::card;
 use crate::models::StoredModel;
@@ -32,7 +32,7 @@ pub(super) struct Entry {
     pub(super) compass_deg: f64,
     /// Reference of the true heading.
     pub(super) reference: Reference,
-    /// The true heading, with what the vessel's settings have corrected.
+    /// The true heading, with the corrections of the vessel's settings.
     #[schema(example = 95.1)]
     pub(super) true_deg: f64,
     /// The gyro's heading, as it gave it.
@@ -44,16 +44,16 @@ pub(super) struct Entry {
     /// Variation there, degrees, east positive.
     #[schema(example = 0.4)]
     pub(super) variation_deg: f64,
-    /// Deviation as it was observed, degrees, east positive.
+    /// Observed deviation, degrees, east positive.
     #[schema(example = 2.3)]
     pub(super) deviation_deg: f64,
-    /// The version of the model that was in force then; none where there was no model yet,
-    /// or it held no more.
+    /// The version of the model that was in force then; none without a model, or after its
+    /// withdrawal.
     #[schema(required, example = 12)]
     pub(super) model_version: Option<i64>,
     /// Status of its card then; none where there was none.
     #[schema(required)]
-    pub(super) card_status: Option<card::Status>,
+    pub(super) card_status: Option<card::CardStatus>,
     /// Deviation by the card of that model, degrees, east positive.
     #[schema(required, example = 2.1)]
     pub(super) card_deviation_deg: Option<f64>,
@@ -100,22 +100,22 @@ pub(super) enum Observer {
 
 /// Times at which cards ended before another model replaced them.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Ends {
-    /// Work on compass or ship that the logbook tells of.
+pub(super) struct CardEnds {
+    /// Work on compass or ship that the logbook reports.
     pub(super) work: Vec<Time>,
     /// Time from which there is no card at all.
     pub(super) withdrawn: Option<Time>,
 }
 
-/// The entries that samples make, with the cards of `models`, in order of version, and
-/// what headings at sea had said of them by then.
+/// Makes the entries of samples, with the cards of `models` in order of version, and their
+/// verification at that time.
 pub(super) fn entries(
     samples: Vec<SampleDiagnostic>,
     models: &[StoredModel],
-    ends: &Ends,
+    ends: &CardEnds,
     completed: &[CompletedOrder],
 ) -> Vec<Entry> {
-    let chosen = choose(samples).into_iter();
+    let chosen = select_entries(samples).into_iter();
     chosen
         .filter_map(|(occasion, sample)| {
             let at = Time(sample.sample.time);
@@ -123,16 +123,16 @@ pub(super) fn entries(
             entry(
                 occasion,
                 &sample,
-                last.filter(|model| ends.leave(model, at)),
+                last.filter(|model| ends.leaves_valid(model, at)),
                 completed,
             )
         })
         .collect()
 }
 
-impl Ends {
+impl CardEnds {
     /// Tells whether a model's card was still valid at a time.
-    fn leave(&self, model: &StoredModel, at: Time) -> bool {
+    fn leaves_valid(&self, model: &StoredModel, at: Time) -> bool {
         let mut work = self.work.iter();
         let worked = work.any(|begun| {
             // The adjustment that a model was predicted for does not end its card.
@@ -142,7 +142,7 @@ impl Ends {
     }
 }
 
-/// None for a sample without a deviation.
+/// Returns `None` for a sample without a deviation.
 fn entry(
     occasion: Occasion,
     found: &SampleDiagnostic,
@@ -184,14 +184,14 @@ fn entry(
 }
 
 /// Returns the status of a model's card at a time.
-fn status(model: &StoredModel, completed: &[CompletedOrder], at: Time) -> card::Status {
-    let mut bearing = completed.iter().filter(|order| order.bears_on(model));
+fn status(model: &StoredModel, completed: &[CompletedOrder], at: Time) -> card::CardStatus {
+    let mut bearing = completed.iter().filter(|order| order.is_source_of(model));
     let was_verified =
         bearing.any(|order| order.at_sea.is_some_and(|at_sea| at_sea.verified_at <= at));
     if was_verified {
-        card::Status::Verified
+        card::CardStatus::Verified
     } else {
-        card::Status::Predicted
+        card::CardStatus::Predicted
     }
 }
 

@@ -1,4 +1,4 @@
-//! A book on sheets of A4, lying.
+//! Layout of a deviation book on sheets of A4 in landscape.
 
 use super::entry::{Entry, Reference};
 use super::select::Occasion;
@@ -41,7 +41,7 @@ pub(super) struct Book {
     pub(super) to: Option<Time>,
 }
 
-/// The book's sheets; one that says so where there is no entry.
+/// Draws the book's sheets. Without an entry, one sheet states that.
 pub(super) fn sheets(book: &Book, entries: &[Entry]) -> Vec<Sheet> {
     let pages: Vec<&[Entry]> = match entries {
         [] => vec![&[]],
@@ -158,16 +158,16 @@ fn remarks(entry: &Entry) -> String {
         Occasion::Alteration => "course altered",
     };
     let card = match entry.card_status {
-        Some(card::Status::Verified) => "card verified",
-        Some(card::Status::Predicted) | None => "",
+        Some(card::CardStatus::Verified) => "card verified",
+        Some(card::CardStatus::Predicted) | None => "",
     };
-    let doubt = entry.reason.map_or("", doubt);
-    let all = [occasion, doubt, card].into_iter();
+    let reason = entry.reason.map_or("", reason_in_words);
+    let all = [occasion, reason, card].into_iter();
     let said = all.filter(|words| !words.is_empty());
     said.collect::<Vec<_>>().join("; ")
 }
 
-fn doubt(reason: SampleReason) -> &'static str {
+fn reason_in_words(reason: SampleReason) -> &'static str {
     match reason {
         SampleReason::NoReference => "no reference",
         SampleReason::ReferenceFailed => "reference failed",
@@ -187,7 +187,7 @@ const MASTER: f32 = RIGHT - 150.0;
 const FOOT: f32 = 7.0;
 
 /// Returns the text at the foot, beside the master's line.
-fn said_at_the_foot() -> Vec<String> {
+fn foot_text() -> Vec<String> {
     let says = "Observed by the agent on board by itself, in settled stretches of heading: one in \
                 each watch that has one, and after alterations of course of 20° or more. A card is \
                 predicted where the remarks do not say that it was verified.";
@@ -197,7 +197,7 @@ fn said_at_the_foot() -> Vec<String> {
 fn foot(sheet: &mut Sheet) {
     let y = HEIGHT - MARGIN;
     let small = Style::plain(FOOT).grey(GREY);
-    for (above, line) in said_at_the_foot().into_iter().rev().enumerate() {
+    for (above, line) in foot_text().into_iter().rev().enumerate() {
         sheet.text((LEFT, y - 8.5 * above as f32), small, line);
     }
     sheet.rule((MASTER, y - 9.0), (RIGHT, y - 9.0), 0.5);
@@ -211,7 +211,7 @@ mod tests {
 
     #[test]
     fn the_foot_leaves_the_masters_line_free() {
-        let lines = said_at_the_foot();
+        let lines = foot_text();
         for line in &lines {
             let end = LEFT + width(line, Face::Regular, FOOT);
             assert!(end < MASTER, "{line} ends at {end}");

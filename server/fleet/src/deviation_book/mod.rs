@@ -1,15 +1,16 @@
-//! The compass deviation book: compass errors as they were observed under way, one in
-//! each watch and one after each large alteration of course, beside what the card of
-//! the time said.
+//! Compass deviation book: compass errors observed under way, beside the card of that time.
 //!
-//! What always holds: the book is what the samples say, and has no entry that nobody
-//! observed; a card counts only for what was observed after it was made.
+//! Invariants:
+//!
+//! - Every entry is an observation: one in each watch, and one after each large alteration of
+//!   course.
+//! - A card counts only for observations after it was made.
 
 mod csv;
 mod entry;
 mod layout;
+mod reader;
 mod select;
-mod source;
 
 use crate::compasses;
 use crate::vessels;
@@ -27,8 +28,8 @@ use binnacle_platform::time::Time;
 use entry::Entry;
 use futures_util::{StreamExt, stream};
 use layout::Book;
+use reader::BookReader;
 use serde::{Deserialize, Serialize};
-use source::Source;
 use tracing::error;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
@@ -37,7 +38,7 @@ use utoipa_axum::routes;
 /// Entries of a printed book: some 150 sheets.
 const MOST_PRINTED: usize = 5_000;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -49,7 +50,7 @@ where
         .routes(routes!(book_pdf))
 }
 
-/// Of which compass, and of when.
+/// Compass and period of a book.
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Range {
@@ -59,7 +60,7 @@ struct Range {
     /// The instant after the last, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime, example = "2026-12-01T00:00:00Z")]
     to: Option<String>,
-    /// A compass of the vessel's; its first one if not said.
+    /// A compass of the vessel; its first one by default.
     compass: Option<CompassId>,
 }
 
@@ -92,12 +93,12 @@ async fn list_book(
     Params(range): Params<Range>,
     page: Page,
 ) -> Result<Json<BookPage>> {
-    let (mut wanted, _) = range.find(&app, reader, id).await?;
+    let (mut selection, _) = range.find(&app, reader, id).await?;
     // No two entries have one time: it is the cursor.
     if let Some(after) = page.after_number()? {
-        wanted.begin_after(after)?;
+        selection.begin_after(after)?;
     }
-    let mut source = wanted.open(&app, id).await?;
+    let mut source = selection.open(&app, id).await?;
     let (found, _) = source.at_most(page.limit() + 1).await?;
     let listed = page.cut(found, |entry| entry.time.0.micros().to_string());
     Ok(Json(BookPage {
@@ -117,8 +118,8 @@ async fn book_csv(
     Id(id): Id<VesselId>,
     Params(range): Params<Range>,
 ) -> Result<Response> {
-    let (wanted, book) = range.find(&app, reader, id).await?;
-    let source = wanted.open(&app, id).await?;
+    let (selection, book) = range.find(&app, reader, id).await?;
+    let source = selection.open(&app, id).await?;
     let head = stream::iter([Ok(Bytes::from(csv::head()))]);
     let rest = stream::try_unfold(source, next_lines);
     let body = Body::from_stream(head.chain(rest));
@@ -127,7 +128,7 @@ async fn book_csv(
 
 /// Print a compass's deviation book
 ///
-/// Sheets of A4, lying; at most 5000 entries.
+/// Sheets of A4 in landscape; at most 5000 entries.
 #[utoipa::path(get, path = "/vessels/{id}/deviation-book.pdf", tag = "fleet",
     params(("id" = VesselId, Path), Range),
     responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
@@ -139,8 +140,12 @@ async fn book_pdf(
     Id(id): Id<VesselId>,
     Params(range): Params<Range>,
 ) -> Result<Response> {
-    let (wanted, book) = range.find(&app, reader, id).await?;
-    let (entries, all) = wanted.open(&app, id).await?.at_most(MOST_PRINTED).await?;
+    let (selection, book) = range.find(&app, reader, id).await?;
+    let (entries, all) = selection
+        .open(&app, id)
+        .await?
+        .at_most(MOST_PRINTED)
+        .await?;
     if !all {
         return Err(Error::Invalid {
             field: "from, to",
@@ -149,7 +154,7 @@ async fn book_pdf(
     }
     let about = About {
         title: format!("Compass deviation book: {}, {}", book.vessel, book.compass),
-        created: entries.last().map_or(wanted.entered, |last| last.time).0,
+        created: entries.last().map_or(selection.entered, |last| last.time).0,
     };
     let name = book.name("pdf");
     let drawn = move || binnacle_drawing::pdf(&layout::sheets(&book, &entries), &about);
@@ -158,7 +163,7 @@ async fn book_pdf(
 }
 
 /// Selection of entries, parsed and checked.
-struct Wanted {
+struct Selection {
     compass: CompassId,
     from: Option<Time>,
     to: Option<Time>,
@@ -167,7 +172,7 @@ struct Wanted {
 }
 
 impl Range {
-    async fn find(&self, app: &App, reader: Reader, id: VesselId) -> Result<(Wanted, Book)> {
+    async fn find(&self, app: &App, reader: Reader, id: VesselId) -> Result<(Selection, Book)> {
         let vessel = vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
         let compass = compasses::find(&app.db, id, self.compass).await?;
         let from = time("from", self.from.as_deref())?.map(Time);
@@ -175,10 +180,10 @@ impl Range {
         if from.zip(to).is_some_and(|(from, to)| to < from) {
             return Err(Error::Invalid {
                 field: "to",
-                detail: "it is before from".to_owned(),
+                detail: "is earlier than from".to_owned(),
             });
         }
-        let wanted = Wanted {
+        let selection = Selection {
             compass: compass.id,
             from,
             to,
@@ -191,16 +196,16 @@ impl Range {
             from,
             to,
         };
-        Ok((wanted, book))
+        Ok((selection, book))
     }
 }
 
-impl Wanted {
-    async fn open(&self, app: &App, vessel: VesselId) -> Result<Source> {
-        Source::open(&app.db, vessel, self.compass, self.from, self.to).await
+impl Selection {
+    async fn open(&self, app: &App, vessel: VesselId) -> Result<BookReader> {
+        BookReader::open(&app.db, vessel, self.compass, self.from, self.to).await
     }
 
-    /// Leaves out what the pages up to an entry's time had.
+    /// Leaves out the entries up to the last one of the page before.
     fn begin_after(&mut self, micros: i64) -> Result<()> {
         let after = Timestamp::from_micros(micros.saturating_add(1))
             .map_err(|_| Error::BadRequest(format!("after: {micros} is no time of an entry")))?;
@@ -215,8 +220,8 @@ impl Book {
     }
 }
 
-/// The next month's lines; what fails half-way is cut off, and logged.
-async fn next_lines(mut source: Source) -> Result<Option<(Bytes, Source)>> {
+/// Returns the next month's lines. A failure ends the file, and is logged.
+async fn next_lines(mut source: BookReader) -> Result<Option<(Bytes, BookReader)>> {
     let lines = async {
         let entries = source.next().await?;
         entries.map(|entries| csv::lines(&entries)).transpose()

@@ -25,8 +25,8 @@ pub(super) enum Occasion {
     Alteration,
 }
 
-/// The entries among samples in order of time, which begin with a watch's first.
-pub(super) fn choose(samples: Vec<SampleDiagnostic>) -> Vec<(Occasion, SampleDiagnostic)> {
+/// Selects entries from samples in order of time, which begin with a watch's first.
+pub(super) fn select_entries(samples: Vec<SampleDiagnostic>) -> Vec<(Occasion, SampleDiagnostic)> {
     let mut chosen: Vec<(Occasion, SampleDiagnostic)> = Vec::new();
     for sample in samples {
         if sample.deviation_deg.is_none() {
@@ -55,7 +55,7 @@ fn occasion(sample: &SampleDiagnostic, last: Option<&SampleDiagnostic>) -> Optio
 mod tests {
     use super::*;
 
-    /// A sample so many minutes after midnight.
+    /// Returns a sample at a number of minutes after midnight.
     fn sample(minute: u32, compass_deg: f64) -> SampleDiagnostic {
         let (hour, minute) = (minute / 60, minute % 60);
         serde_json::from_value(serde_json::json!({
@@ -76,7 +76,7 @@ mod tests {
         let minute = |found: &SampleDiagnostic| {
             (found.sample.time.seconds_since(midnight) / 60.0).round() as u32
         };
-        let entries = choose(all.collect());
+        let entries = select_entries(all.collect());
         entries
             .iter()
             .map(|(occasion, found)| (minute(found), *occasion))
@@ -105,10 +105,10 @@ mod tests {
     fn what_tells_no_deviation_is_no_observation() {
         let mut blind = sample(5, 90.0);
         blind.deviation_deg = None;
-        let entries = choose(vec![blind, sample(15, 90.0)]);
+        let entries = select_entries(vec![blind, sample(15, 90.0)]);
         assert_eq!(entries.len(), 1);
         assert_eq!(entries[0].1.sample.time, sample(15, 90.0).sample.time);
-        assert!(choose(Vec::new()).is_empty());
+        assert!(select_entries(Vec::new()).is_empty());
     }
 
     #[test]

@@ -3,12 +3,11 @@
 //! Invariants: a code works once, before it expires, and opens exactly one installation. Code and
 //! token are stored only as hashes. A revoked token is never accepted again.
 
-mod agent;
 mod store;
 
-pub use agent::Agent;
 pub use store::{open_stream, revoke};
 
+use crate::agent_auth::Agent;
 use crate::compasses;
 use crate::vessels;
 use axum::extract::{FromRef, State};
@@ -31,11 +30,11 @@ use uuid::Uuid;
 
 /// Period of the link statistics, seconds.
 const WEEK_S: f64 = 7.0 * 86_400.0;
-/// Made on a Friday ashore, it can be typed on board after the weekend.
+/// Default validity of a code: from a Friday on shore until after the weekend on board.
 const DEFAULT_VALID_FOR_S: u32 = 3 * 86_400;
 const LONGEST_VALID_FOR_S: u32 = 14 * 86_400;
 
-/// The routes that people use.
+/// Returns the routes for people.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -46,7 +45,7 @@ where
         .routes(routes!(revoke_agent))
 }
 
-/// The routes that agents use.
+/// Returns the routes for agents.
 pub fn agent_router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -78,26 +77,27 @@ pub struct AgentStream {
     /// Time of its last batch.
     #[schema(required)]
     pub last_upload_at: Option<Time>,
-    /// Every batch up to this one is here.
+    /// Every batch up to this one is stored.
     pub contiguous_seq: i64,
     /// Batches here.
     pub batches: i64,
     /// Samples in them.
     pub samples: i64,
     /// Ten-second windows by outcome: `accepted`, or why they were refused; `thinned` are
-    /// those that were accepted and left out for want of room or budget.
+    /// those that were accepted and then left out by thinning.
     pub tally: BTreeMap<String, u64>,
     /// Link statistics of the last week.
     pub last_week: LinkWeek,
     /// State on board as the agent last reported it with a batch; none before.
     #[schema(required)]
-    pub aboard: Option<Aboard>,
+    #[serde(rename = "aboard")]
+    pub on_board: Option<BoardStatus>,
 }
 
 /// State of an agent's spool and budget, reported with a batch.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[schema(as = AgentAboard)]
-pub struct Aboard {
+pub struct BoardStatus {
     /// Batches that waited on board besides the one that was sent.
     pub batches_waiting: i64,
     /// Rest of the link's budget where that is less than a day's, in hundredths of a day's,
@@ -111,10 +111,11 @@ pub struct Aboard {
 /// Statistics of a stream's link in the last seven days.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
 pub struct LinkWeek {
-    /// Batches that came.
+    /// Batches received.
     pub batches: i64,
     /// Bytes in them, without the overhead of the protocols below.
-    pub octets: i64,
+    #[serde(rename = "octets")]
+    pub bytes: i64,
     /// Longest delay of the latest sample of a batch, seconds: time for which it waited for the
     /// link. None without samples.
     #[schema(required)]
@@ -135,7 +136,7 @@ pub struct AgentStreamList {
 #[derive(Default, Deserialize, ToSchema)]
 #[serde(default)]
 pub struct NewCode {
-    /// The compass that the agent will report; the vessel's first if not said.
+    /// The compass that the agent will report; the vessel's first one by default.
     pub compass_id: Option<CompassId>,
     /// Validity of the code, seconds; three days by default.
     #[schema(minimum = 1, maximum = 1_209_600)]
@@ -247,8 +248,8 @@ async fn create_code(
 
 /// Revoke an agent's token
 ///
-/// What it has sent stays. It goes on sampling, and goes on sending when it is enrolled
-/// again. Revoking it again changes nothing.
+/// Its batches are kept. It continues to sample, and sends again once it is enrolled again.
+/// Revoking it again changes nothing.
 #[utoipa::path(delete, path = "/vessels/{id}/agents/{agent}", tag = "fleet",
     params(("id" = VesselId, Path), ("agent" = AgentId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
@@ -288,9 +289,9 @@ async fn enrol(
     }))
 }
 
-/// Make a token that is to take the place of the agent's
+/// Propose a new token for the agent
 ///
-/// It is not valid before it is put in place; nothing is stored of it here.
+/// It is not stored, and not valid until the agent puts it in place.
 #[utoipa::path(post, path = "/agents/token", tag = "agents", security(("token" = [])),
     responses((status = 200, body = NewTokenSchema), (status = 401, body = Problem)))]
 async fn propose_token(agent: Agent) -> Json<NewToken> {
@@ -299,7 +300,7 @@ async fn propose_token(agent: Agent) -> Json<NewToken> {
     })
 }
 
-/// Put another token in place of the one that this request comes with
+/// Replace the token of this request
 #[utoipa::path(put, path = "/agents/token", tag = "agents", security(("token" = [])),
     request_body = NewTokenSchema,
     responses((status = 204), (status = 401, body = Problem), (status = 422, body = Problem)))]
@@ -311,7 +312,7 @@ async fn replace_token(
     if !secret::is_vessel_token(&new.token, agent.vessel_id.0) {
         return Err(Error::Invalid {
             field: "token",
-            detail: "is not one that was made for this agent".to_owned(),
+            detail: "was not made for this agent".to_owned(),
         });
     }
     store::replace_token(&request, agent, &new.token).await?;

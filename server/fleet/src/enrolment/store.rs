@@ -1,7 +1,7 @@
 //! Codes, agents and their streams in the database.
 
-use super::Agent;
-use super::{Aboard, AgentStream, LinkWeek};
+use super::{AgentStream, BoardStatus, LinkWeek};
+use crate::agent_auth::Agent;
 use crate::alerts;
 use crate::compasses::Compass;
 use binnacle_platform::audit::RequestContext;
@@ -76,10 +76,10 @@ pub(super) async fn enrol(
     .ok_or(Error::NotFound("enrolment code"))?;
     if found.expires_at <= now {
         return Err(Error::Gone(
-            "this enrolment code has expired: have a new one made ashore",
+            "this enrolment code has expired: ask the operator for a new one",
         ));
     }
-    // Of two that come at once, the database lets one through.
+    // Of two concurrent requests, the database accepts one.
     let used = execute!(
         &mut tx,
         "UPDATE enrolment_codes SET used_at = $2 WHERE code_hash = $1 AND used_at IS NULL",
@@ -88,7 +88,7 @@ pub(super) async fn enrol(
     )?;
     if used == 0 {
         return Err(Error::Gone(
-            "this enrolment code was used before: have a new one made ashore",
+            "this enrolment code has been used before: ask the operator for a new one",
         ));
     }
     let token = secret::new_vessel_token(found.vessel_id.0);
@@ -136,24 +136,7 @@ pub async fn open_stream(tx: &mut Tx, agent: Agent, now: Time) -> Result<StreamI
     Ok(stream)
 }
 
-/// The agent that a token belongs to.
-pub(super) async fn find_agent(
-    db: &Db,
-    vessel: VesselId,
-    token_hash: &[u8],
-) -> Result<Option<Agent>> {
-    row!(
-        db,
-        Agent,
-        "SELECT vessel_id, id AS agent_id, compass_id FROM agents
-         WHERE vessel_id = $1 AND token_hash = $2 AND revoked_at IS NULL
-         ORDER BY id",
-        vessel,
-        token_hash
-    )
-}
-
-/// From now on the agent is known by this token, and not by the one before.
+/// Replaces the agent's token.
 pub(super) async fn replace_token(
     request: &RequestContext,
     agent: Agent,
@@ -170,7 +153,7 @@ pub(super) async fn replace_token(
     tx.commit().await
 }
 
-/// From now on the agent's token is known no more; to be published.
+/// Revokes the agent's token. Returns an event to publish.
 ///
 /// # Errors
 /// [`Error::NotFound`] when the vessel has no such agent.
@@ -211,7 +194,7 @@ pub(super) struct StreamRow {
     samples: i64,
     tally: String,
     week_batches: i64,
-    week_octets: i64,
+    week_bytes: i64,
     week_wait: Option<i64>,
     batches_waiting: Option<i64>,
     budget_left_percent: Option<i64>,
@@ -220,9 +203,9 @@ pub(super) struct StreamRow {
 
 impl StreamRow {
     pub(super) fn read(self) -> error::Result<AgentStream> {
-        let aboard = self.batches_waiting.zip(self.aboard_at);
+        let on_board = self.batches_waiting.zip(self.aboard_at);
         Ok(AgentStream {
-            aboard: aboard.map(|(batches_waiting, at)| Aboard {
+            on_board: on_board.map(|(batches_waiting, at)| BoardStatus {
                 batches_waiting,
                 budget_left_percent: self.budget_left_percent,
                 at,
@@ -241,7 +224,7 @@ impl StreamRow {
             samples: self.samples,
             last_week: LinkWeek {
                 batches: self.week_batches,
-                octets: self.week_octets,
+                bytes: self.week_bytes,
                 longest_wait_s: self.week_wait.map(|micros| micros.max(0) / 1_000_000),
             },
         })
@@ -260,12 +243,12 @@ pub(super) async fn list_streams(
         StreamRow,
         "SELECT s.id AS stream, s.agent_id, a.revoked_at, s.compass_id, c.name AS compass_name, a.agent_version,
                 s.opened_at, s.last_upload_at, s.contiguous_seq, s.batches, s.samples, s.tally,
-                COALESCE(w.batches, 0) AS week_batches, COALESCE(w.octets, 0) AS week_octets,
+                COALESCE(w.batches, 0) AS week_batches, COALESCE(w.bytes, 0) AS week_bytes,
                 w.wait AS week_wait, s.batches_waiting, s.budget_left_percent, s.aboard_at
          FROM streams s
          JOIN compasses c ON c.vessel_id = s.vessel_id AND c.id = s.compass_id
          JOIN agents a ON a.vessel_id = s.vessel_id AND a.id = s.agent_id
-         LEFT JOIN (SELECT stream, COUNT(*) AS batches, SUM(LENGTH(bytes)) AS octets,
+         LEFT JOIN (SELECT stream, COUNT(*) AS batches, SUM(LENGTH(bytes)) AS bytes,
                            MAX(received_at - last_sample_at) AS wait
                     FROM batches WHERE vessel_id = $1 AND received_at > $3
                     GROUP BY stream) w ON w.stream = s.id

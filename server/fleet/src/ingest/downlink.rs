@@ -1,7 +1,7 @@
-//! Downlink: the acknowledgement and everything that the agent lacks.
+//! Downlink: the acknowledgement, and updates that the agent lacks.
 
-use crate::enrolment::Agent;
-use crate::models::{self, ModelSchema, StoredModel};
+use crate::agent_auth::Agent;
+use crate::models::{self, CardWithdrawnSchema, ModelSchema, StoredModel};
 use crate::settings::{self, AgentSettings};
 use axum::Json;
 use axum::body::Body;
@@ -20,32 +20,32 @@ use uuid::Uuid;
 /// State of the agent, as the request names it.
 #[derive(Clone, Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-pub(super) struct Has {
-    /// The model version it uses; what follows it comes at once.
+pub(super) struct AgentState {
+    /// The model version it uses. Any later one is sent at once.
     model: Option<Uuid>,
-    /// The last eight digits of that model's id; a later model is sent when it matters.
+    /// The last eight digits of that model's id. A later model is sent when the difference matters.
     card: Option<String>,
     /// The settings it uses.
     settings: Option<u32>,
     /// The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent.
     form: Option<u8>,
-    /// With a batch: how many others wait on board; none when `wait` says that it is the last.
+    /// With a batch: number of others that wait on board; absent with `wait`, in the last one.
     pub(super) waits: Option<u32>,
-    /// With a batch: what is left of the link's budget where that is less than a day's, in
-    /// hundredths of it; less than none when overdrawn.
+    /// With a batch: rest of the link's budget where that is less than a day's, in hundredths of
+    /// it; negative when overdrawn.
     pub(super) budget: Option<i32>,
     /// Seconds, at most 55, for which the response to a batch may wait for the analysis of its
     /// samples. The response then includes its results. Sent with the last batch for now.
     pub(super) wait: Option<u16>,
 }
 
-/// An answer in the form that the agent asked for.
-pub(super) struct Answer {
+/// Downlink in the form that the agent requested.
+pub(super) struct DownlinkResponse {
     downlink: Downlink,
     form: Option<u8>,
 }
 
-impl IntoResponse for Answer {
+impl IntoResponse for DownlinkResponse {
     fn into_response(self) -> Response {
         let reads_compact = self.form.is_some_and(|form| form >= FORM);
         let compact = reads_compact.then(|| downlink::encode(&self.downlink));
@@ -93,19 +93,6 @@ pub(super) struct ModelDownlinkSchema {
     model: ModelSchema,
 }
 
-/// Withdrawal of earlier cards.
-#[derive(ToSchema)]
-#[schema(as = CardWithdrawn)]
-#[allow(dead_code, reason = "describes binnacle_wire::messages::CardWithdrawn")]
-pub struct CardWithdrawnSchema {
-    /// Time from which they do not hold.
-    since: Time,
-    /// Change of the ship's magnetism or the compass: a kind of logbook entry, a detected cause, or
-    /// `ship_as_before`.
-    #[schema(example = "adjustment")]
-    reason: String,
-}
-
 /// A stream just opened.
 #[derive(ToSchema)]
 #[schema(as = OpenStreamAnswer)]
@@ -117,7 +104,12 @@ pub(super) struct OpenStreamSchema {
     stream: Uuid,
 }
 
-pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> Result<Answer> {
+pub(super) async fn answer(
+    app: &App,
+    agent: Agent,
+    stream: Uuid,
+    state: AgentState,
+) -> Result<DownlinkResponse> {
     let (contiguous_seq,) = row!(
         &app.db,
         (i64,),
@@ -130,15 +122,15 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
     )?
     .ok_or(Error::NotFound("stream"))?;
     let current = models::current(&app.db, agent.vessel_id, agent.compass_id).await?;
-    let has_card = has.model.is_some() || has.card.is_some();
+    let has_card = state.model.is_some() || state.card.is_some();
     let card_withdrawn = if has_card {
         models::card_withdrawn(&app.db, agent.vessel_id, agent.compass_id).await?
     } else {
         None
     };
     let newer = match current {
-        Some(model) if Some(model.id.0) == has.model => None,
-        Some(model) if !should_send(app, &model, has.card.as_deref()).await? => None,
+        Some(model) if Some(model.id.0) == state.model => None,
+        Some(model) if !should_send(app, &model, state.card.as_deref()).await? => None,
         current => current,
     };
     let settings = settings::find(&app.db, agent.vessel_id).await?.agent;
@@ -157,11 +149,11 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
         }),
         unread: None,
         card_withdrawn,
-        settings: Some(settings).filter(|current| current.version != has.settings.unwrap_or(0)),
+        settings: Some(settings).filter(|current| current.version != state.settings.unwrap_or(0)),
         server_time: app.clock.now(),
     };
-    let form = has.form;
-    Ok(Answer { downlink, form })
+    let form = state.form;
+    Ok(DownlinkResponse { downlink, form })
 }
 
 /// Tells whether an agent should get this model in place of the one that it names.
@@ -172,7 +164,7 @@ async fn should_send(app: &App, model: &StoredModel, card: Option<&str>) -> Resu
     if card == card_tag(model.id.0) {
         return Ok(false);
     }
-    let known = models::lately(&app.db, model.vessel_id, model.compass_id).await?;
+    let known = models::list_recent(&app.db, model.vessel_id, model.compass_id).await?;
     let known = known.iter().find(|known| card == card_tag(known.id.0));
-    Ok(known.is_none_or(|known| model.matters_after(known)))
+    Ok(known.is_none_or(|known| model.is_update_of(known)))
 }

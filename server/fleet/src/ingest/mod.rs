@@ -1,25 +1,24 @@
-//! Ingest: batches in, acknowledgement and downlink out.
+//! Ingest of batches from agents, answered with an acknowledgement and the downlink.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - A batch is acknowledged only when it and the job to analyse it are on disk,
-//!   in one transaction.
-//! - The same batch again changes nothing; other bytes under the same number are
-//!   refused and change nothing.
-//! - An alert of the ship's own is taken in that transaction too, and so is the sign of
-//!   another computer that sends as the same agent.
-//! - `contiguous_seq` covers only batches that are here, all from 1 on.
+//! - A batch is acknowledged only when it and the job to analyse it are on disk, in one
+//!   transaction.
+//! - The same batch again changes nothing. Other bytes under the same number are refused.
+//! - The same transaction records the agent's own alerts, and signs of a second computer that runs
+//!   as the same agent.
+//! - `contiguous_seq` covers only batches that are stored, all from 1 on.
 //! - An agent reaches its own streams and nothing else.
 
-mod bursts;
 mod downlink;
+mod short_burst;
 mod store;
 
-pub use bursts::{Imported, Incomplete, Refused, import};
+pub use short_burst::{ImportResult, IncompleteBatch, RefusedMessage, import_messages};
 
+use crate::agent_auth::Agent;
 use crate::enrolment;
-use crate::enrolment::Agent;
-use crate::{alerts, analysis};
+use crate::{alerts, analysis_queue};
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{DefaultBodyLimit, FromRef, State};
@@ -34,21 +33,20 @@ use binnacle_platform::time::Time;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::codec::MAX_BYTES;
 use binnacle_wire::messages::OpenStreamAnswer;
-pub use downlink::CardWithdrawnSchema;
-use downlink::{Answer, DownlinkSchema, Has, OpenStreamSchema};
+use downlink::{AgentState, DownlinkResponse, DownlinkSchema, OpenStreamSchema};
 use metrics::counter;
 use std::time::Duration;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-/// No batch has this number or a higher one: up to here JSON's numbers are exact,
-/// and one more fits into the database.
+/// Upper bound of batch numbers: JSON's numbers are exact up to here, and the database can hold
+/// one more.
 const SEQ_END: u64 = 1 << 53;
-/// No answer waits longer for an analysis: proxies give up after a minute.
+/// Longest wait of a response for an analysis: proxies give up after a minute.
 const LONGEST_WAIT: Duration = Duration::from_secs(55);
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -78,10 +76,10 @@ async fn open_stream(
 
 /// Send a batch
 ///
-/// Answers when the batch is durable. The same batch again is answered alike.
+/// Responds when the batch is durable. The same batch again gets the same response.
 #[utoipa::path(put, path = "/streams/{stream}/batches/{seq}", tag = "agents",
     security(("token" = [])),
-    params(("stream" = Uuid, Path), ("seq" = u64, Path, minimum = 1), Has),
+    params(("stream" = Uuid, Path), ("seq" = u64, Path, minimum = 1), AgentState),
     request_body(content = Vec<u8>, content_type = "application/octet-stream",
                  description = "The frame, as crates/wire/FORMAT.md has it"),
     responses((status = 200, description = "As JSON, or in the compact form asked for",
@@ -95,51 +93,56 @@ async fn put_batch(
     request: RequestContext,
     agent: Agent,
     Id((stream, seq)): Id<(Uuid, u64)>,
-    Params(has): Params<Has>,
+    Params(state): Params<AgentState>,
     body: std::result::Result<Bytes, BytesRejection>,
-) -> Result<Answer> {
+) -> Result<DownlinkResponse> {
     let bytes = body.map_err(|rejection| too_large(&rejection))?;
-    let batch = read(&bytes, StreamId(stream), seq)?;
+    let batch = decode_batch(&bytes, StreamId(stream), seq)?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
-    let delay_s = match has.wait {
+    let delay_s = match state.wait {
         None => analysis_delay_s(&app, &batch),
-        // No other follows.
+        // It is the last batch for now.
         Some(_) => 0.0,
     };
-    let taken = take(&mut tx, agent, &batch, &bytes, now, delay_s).await?;
-    if let Some(waits) = has.waits.or(has.wait.map(|_| 0)) {
-        store::note_aboard(&mut tx, agent.vessel_id, stream, (waits, has.budget), now).await?;
+    let received = store_batch(&mut tx, agent, &batch, &bytes, now, delay_s).await?;
+    if let Some(waits) = state.waits.or(state.wait.map(|_| 0)) {
+        store::record_board_status(&mut tx, agent.vessel_id, stream, waits, state.budget, now)
+            .await?;
     }
     tx.commit().await?;
-    for event in taken.events_out {
+    for event in received.events_out {
         app.publish(event);
     }
-    let result = if taken.is_new { "stored" } else { "repeated" };
+    let result = if received.is_new {
+        "stored"
+    } else {
+        "repeated"
+    };
     counter!("binnacle_batches_total", "result" => result).increment(1);
-    if let Some(wait_s) = has.wait.filter(|_| !batch.samples.is_empty()) {
+    if let Some(wait_s) = state.wait.filter(|_| !batch.samples.is_empty()) {
         let at_most = Duration::from_secs(wait_s.into()).min(LONGEST_WAIT);
-        analysis::done(&app, agent.vessel_id, at_most).await?;
+        analysis_queue::wait_until_done(&app, agent.vessel_id, at_most).await?;
     }
-    downlink::answer(&app, agent, stream, has).await
+    downlink::answer(&app, agent, stream, state).await
 }
 
 /// Result of a received batch.
-struct Taken {
+struct Received {
     /// True if it was not stored before.
     is_new: bool,
     events_out: Vec<events::Event>,
 }
 
-/// Stores a batch and all that follows from it, whichever way it came.
-async fn take(
+/// Stores a batch with all its consequences, on whichever link it arrived.
+async fn store_batch(
     tx: &mut Tx,
     agent: Agent,
     batch: &Batch,
     bytes: &[u8],
     now: Time,
     delay_s: f64,
-) -> Result<Taken> {
+) -> Result<Received> {
     let is_new = store::insert(tx, agent, batch, bytes, now).await?;
     let mut events_out = Vec::new();
     if is_new {
@@ -150,16 +153,16 @@ async fn take(
             alerts::check_duplicate_agent(tx, agent, batch.stream.0, batch.seq, now).await?,
         );
         if !batch.samples.is_empty() || !batch.alerts.is_empty() {
-            analysis::enqueue(tx, vessel, now, delay_s).await?;
+            analysis_queue::enqueue(tx, vessel, now, delay_s).await?;
         }
         events_out.push(events::insert(tx, vessel, events::Kind::Batch, now).await?);
     }
-    Ok(Taken { is_new, events_out })
+    Ok(Received { is_new, events_out })
 }
 
-/// Fetch what the agent lacks
+/// Fetch the updates that the agent lacks
 #[utoipa::path(get, path = "/streams/{stream}/downlink", tag = "agents", security(("token" = [])),
-    params(("stream" = Uuid, Path), Has),
+    params(("stream" = Uuid, Path), AgentState),
     responses((status = 200, description = "As JSON, or in the compact form asked for",
                content((DownlinkSchema = "application/json"),
                        (Vec<u8> = "application/octet-stream"))),
@@ -168,13 +171,12 @@ async fn downlink(
     State(app): State<App>,
     agent: Agent,
     Id(stream): Id<Uuid>,
-    Params(has): Params<Has>,
-) -> Result<Answer> {
-    downlink::answer(&app, agent, stream, has).await
+    Params(state): Params<AgentState>,
+) -> Result<DownlinkResponse> {
+    downlink::answer(&app, agent, stream, state).await
 }
 
-/// Other batches may follow soon, and are analysed with it; what the ship raised an
-/// alert of is not kept waiting.
+/// Returns the delay in which further batches may arrive; none for a batch with an alert.
 fn analysis_delay_s(app: &App, batch: &Batch) -> f64 {
     if batch.alerts.is_empty() {
         return f64::from(app.config.analysis_delay_s);
@@ -182,14 +184,14 @@ fn analysis_delay_s(app: &App, batch: &Batch) -> f64 {
     0.0
 }
 
-/// Reads a frame and makes sure that it is the one that the path names.
-fn read(bytes: &[u8], stream: StreamId, seq: u64) -> Result<Batch> {
+/// Decodes a frame, and checks that it is the one that the path names.
+fn decode_batch(bytes: &[u8], stream: StreamId, seq: u64) -> Result<Batch> {
     let batch =
         binnacle_wire::decode(bytes).map_err(|error| Error::BadRequest(error.to_string()))?;
     if batch.stream != stream {
         return Err(Error::Invalid {
             field: "stream",
-            detail: format!("the frame is of stream {}", batch.stream),
+            detail: format!("the frame belongs to stream {}", batch.stream),
         });
     }
     if batch.seq >= SEQ_END {
@@ -201,7 +203,7 @@ fn read(bytes: &[u8], stream: StreamId, seq: u64) -> Result<Batch> {
     if batch.seq != seq {
         return Err(Error::Invalid {
             field: "seq",
-            detail: format!("the frame is number {}", batch.seq),
+            detail: format!("the frame has number {}", batch.seq),
         });
     }
     Ok(batch)

@@ -1,6 +1,6 @@
 //! Batches in the database.
 
-use crate::enrolment::Agent;
+use crate::agent_auth::Agent;
 use axum::http::StatusCode;
 use binnacle_compass::sample::Sample;
 use binnacle_platform::db::{Result as DbResult, Tx, execute, row};
@@ -13,11 +13,11 @@ use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use uuid::Uuid;
 
-/// A sample further ahead of the server's clock has a wrong date, and does not say
-/// where the ship was last.
+/// Lead over the server's clock beyond which a sample's date is wrong, seconds. Such a sample
+/// does not give the last position.
 const AHEAD_S: f64 = 86_400.0;
 
-/// Windows that were accepted and whose samples were left out again on board.
+/// Tally of accepted windows whose samples were thinned out on board.
 const THINNED: &str = "thinned";
 
 #[derive(sqlx::FromRow)]
@@ -26,7 +26,7 @@ struct Progress {
     tally: String,
 }
 
-/// Stores a batch; `false` when the same bytes are there already.
+/// Stores a batch. Returns `false` when the same bytes are stored already.
 pub(super) async fn insert(
     tx: &mut Tx,
     agent: Agent,
@@ -34,7 +34,7 @@ pub(super) async fn insert(
     bytes: &[u8],
     now: Time,
 ) -> Result<bool> {
-    // Taking the stream's row first puts batches of one stream in line.
+    // Locking the stream's row first serializes the batches of a stream.
     let progress = row!(
         in &mut *tx,
         Progress,
@@ -82,17 +82,18 @@ pub(super) async fn insert(
         last,
         now
     )?;
-    advance(tx, agent.vessel_id, batch, progress).await?;
-    note_on_vessel(tx, agent.vessel_id, batch, now).await?;
+    update_stream(tx, agent.vessel_id, batch, progress).await?;
+    update_vessel(tx, agent.vessel_id, batch, now).await?;
     Ok(true)
 }
 
-/// Keeps how it is on board: batches that wait, and what is left of the budget.
-pub(super) async fn note_aboard(
+/// Records the agent's state on board: batches that wait, and the rest of the budget.
+pub(super) async fn record_board_status(
     tx: &mut Tx,
     vessel: VesselId,
     stream: Uuid,
-    (waits, budget): (u32, Option<i32>),
+    waits: u32,
+    budget_percent: Option<i32>,
     now: Time,
 ) -> DbResult<()> {
     execute!(
@@ -103,14 +104,19 @@ pub(super) async fn note_aboard(
         vessel,
         stream,
         i64::from(waits),
-        budget.map(i64::from),
+        budget_percent.map(i64::from),
         now
     )?;
     Ok(())
 }
 
-/// Brings the stream's sums up to date with a batch just stored.
-async fn advance(tx: &mut Tx, vessel: VesselId, batch: &Batch, progress: Progress) -> Result<()> {
+/// Adds a stored batch to the stream's totals.
+async fn update_stream(
+    tx: &mut Tx,
+    vessel: VesselId,
+    batch: &Batch,
+    progress: Progress,
+) -> Result<()> {
     let mut tally: BTreeMap<String, u64> = serde_json::from_str(&progress.tally)?;
     for (outcome, windows) in &batch.tally {
         let sum = tally.entry(outcome.clone()).or_default();
@@ -135,7 +141,7 @@ async fn advance(tx: &mut Tx, vessel: VesselId, batch: &Batch, progress: Progres
     Ok(())
 }
 
-/// The last batch before the first gap, given one up to which there is none.
+/// Returns the last batch before the first gap, given one without a gap before it.
 async fn contiguous_seq(tx: &mut Tx, vessel: VesselId, stream: Uuid, known: i64) -> DbResult<i64> {
     let next = row!(
         in &mut *tx,
@@ -165,7 +171,7 @@ async fn contiguous_seq(tx: &mut Tx, vessel: VesselId, stream: Uuid, known: i64)
     Ok(last.map_or(known, |(seq,)| seq))
 }
 
-async fn note_on_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time) -> DbResult<()> {
+async fn update_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time) -> DbResult<()> {
     execute!(
         &mut *tx,
         "UPDATE vessels SET last_upload_at = $2 WHERE id = $1",
@@ -177,7 +183,7 @@ async fn note_on_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time)
     let Some(last) = batch.samples.iter().rev().find(believable) else {
         return Ok(());
     };
-    // A late batch does not move the ship back, unless from a day yet to come.
+    // A late batch does not move the position back, unless the stored one is of the future.
     execute!(
         &mut *tx,
         "UPDATE vessels SET last_sample_at = $2, last_lat = $3, last_lon = $4
@@ -191,7 +197,7 @@ async fn note_on_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time)
     Ok(())
 }
 
-/// Refusal of a batch whose number is taken by other bytes.
+/// Returns the refusal of a batch whose number other bytes have.
 fn forked(seq: u64) -> Error {
     let problem = DomainProblem {
         status: StatusCode::CONFLICT,

@@ -1,9 +1,9 @@
-//! Reports from on board.
+//! Logbook reports that agents send from on board.
 
 use super::entry::{NewEntry, invalid_report};
 use super::schema::{BoardAnswerSchema, BoardReportSchema};
 use super::store::{self, Author, Change};
-use crate::enrolment::Agent;
+use crate::agent_auth::Agent;
 use axum::extract::{FromRef, State};
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -15,7 +15,7 @@ use binnacle_wire::messages::{LogbookAnswer, LogbookReport};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The route that agents use.
+/// Returns the route for agents.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -26,8 +26,8 @@ where
 
 /// Send a report from on board
 ///
-/// Answers when it is durable. The same again, or an older revision, changes
-/// nothing and is answered alike; so does a revision of what was withdrawn ashore.
+/// Responds when it is durable. The same report again, an older revision, or a revision of an
+/// entry withdrawn on shore changes nothing and gets the same response.
 #[utoipa::path(put, path = "/agents/logbook/{id}", tag = "agents", security(("token" = [])),
     params(("id" = EntryId, Path, description = "Made on board")),
     request_body = BoardReportSchema,

@@ -1,4 +1,4 @@
-//! A change of an entry: what is left out stays, null takes a value away.
+//! Amendment of an entry. Absent fields stay as they are; null removes a value.
 
 use super::entry::NewEntry;
 use super::schema::{CargoSchema, KindSchema};
@@ -48,7 +48,7 @@ pub(super) struct AmendmentSchema {
 }
 
 impl Amendment {
-    /// The entry with what is to be changed.
+    /// Returns the entry with the amendment applied.
     pub(super) fn applied_to(self, entry: NewEntry) -> NewEntry {
         let report = entry.report;
         NewEntry {

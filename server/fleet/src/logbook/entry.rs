@@ -1,4 +1,4 @@
-//! An entry of the logbook, as it is asked for, written and shown.
+//! Entries of the logbook, as requests and responses carry them.
 
 use super::schema::{KindSchema, ReportSchema};
 use binnacle_compass::logbook::{Cargo, LogbookKind};
@@ -13,7 +13,7 @@ use utoipa::{IntoParams, ToSchema};
 
 /// An entry to be written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(from = "Written")]
+#[serde(from = "NewEntryForm")]
 pub(super) struct NewEntry {
     /// The event.
     #[serde(flatten)]
@@ -29,7 +29,7 @@ pub(super) struct NewEntry {
 /// read by this.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a logbook entry")]
-struct Written {
+struct NewEntryForm {
     kind: LogbookKind,
     from: Timestamp,
     to: Option<Timestamp>,
@@ -41,8 +41,8 @@ struct Written {
     compass_id: Option<CompassId>,
 }
 
-impl From<Written> for NewEntry {
-    fn from(written: Written) -> NewEntry {
+impl From<NewEntryForm> for NewEntry {
+    fn from(written: NewEntryForm) -> NewEntry {
         NewEntry {
             report: Report {
                 kind: written.kind,
@@ -101,7 +101,7 @@ pub(super) struct LogbookEntry {
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = LogbookAuthor)]
 pub(super) enum AuthorKind {
-    /// Ashore, by one of the operator's people or a program of theirs.
+    /// On shore, by one of the operator's people or programs.
     User,
     /// On board, on the agent's page.
     Agent,
@@ -119,17 +119,17 @@ pub(super) struct LogbookList {
     pub(super) next: Option<String>,
 }
 
-/// An entry as it is, and as it was.
+/// An entry with all its revisions.
 #[derive(Serialize, ToSchema)]
 pub(super) struct RevisedEntry {
-    /// As it is.
+    /// The latest revision.
     #[serde(flatten)]
     pub(super) entry: LogbookEntry,
-    /// As it was written each time, the first time first.
+    /// All revisions, the first one first.
     pub(super) revisions: Vec<Revision>,
 }
 
-/// An entry as it was written once.
+/// A revision of an entry.
 #[derive(Serialize, ToSchema)]
 pub(super) struct Revision {
     /// Counts from 1.
@@ -140,7 +140,7 @@ pub(super) struct Revision {
     pub(super) author: AuthorKind,
     /// Name of its author; empty when a report from on board does not say.
     pub(super) author_name: String,
-    /// The entry as it was then.
+    /// The entry in this revision.
     pub(super) entry: NewEntry,
 }
 
@@ -179,14 +179,14 @@ pub(super) struct CheckedFilter {
 }
 
 impl NewEntry {
-    /// The entry, if it can be one at this time.
+    /// Returns the entry, if it is valid at this time.
     pub(super) fn checked(self, now: Timestamp) -> Result<NewEntry> {
         let report = self.report.checked(now).map_err(invalid_report)?;
         let report = report.ending_within_a_year(now).map_err(invalid_report)?;
         if self.compass_id.is_some() && !may_name_a_compass(report.kind) {
             return Err(Error::Invalid {
                 field: "compass_id",
-                detail: "what is reported concerns the whole ship".to_owned(),
+                detail: "an entry of this kind concerns the whole vessel".to_owned(),
             });
         }
         Ok(NewEntry { report, ..self })
@@ -202,7 +202,7 @@ impl LogbookEntry {
         }
     }
 
-    /// `after` of a page that begins behind it.
+    /// Returns `after` of the page that begins behind it.
     pub(super) fn cursor(&self) -> String {
         format!("{}.{}", self.report.from.micros(), self.id)
     }
@@ -219,7 +219,7 @@ impl Filter {
     }
 }
 
-/// Refusal of a report that cannot be.
+/// Returns the refusal of an invalid report.
 pub(super) fn invalid_report(error: ReportError) -> Error {
     Error::Invalid {
         field: error.field,

@@ -1,13 +1,13 @@
-//! The magnetic logbook: what operators and officers report about a vessel.
+//! Magnetic logbook: reports of operators and officers about a vessel.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - An entry is never removed and no revision of it is lost. One that was wrong is
-//!   withdrawn: it stays in its place, marked, and counts no more.
-//! - Each change is stored together with its revision, a job to analyse the vessel
-//!   anew, and an event for the dashboards, in one transaction.
-//! - A report from on board has the id that it was given there: the same again, or
-//!   an older revision that comes late, changes nothing.
+//! - An entry is never deleted, and every revision of it is kept. A wrong entry is withdrawn: it
+//!   stays in its place, marked, and no longer counts.
+//! - One transaction stores a change with its revision, a job to analyse the vessel, and an event
+//!   for the dashboards.
+//! - A report from on board has the id that it was given there. The same report again, or an older
+//!   revision that arrives late, changes nothing.
 
 mod agent_reports;
 mod amendment;
@@ -17,7 +17,7 @@ mod store;
 
 pub use agent_reports::router as agent_router;
 pub use schema::KindSchema as LogbookKindSchema;
-pub use store::{Adjusted, of_compass, write_adjustment};
+pub use store::{AdjustmentEntry, of_compass, write_adjustment};
 
 use crate::vessels;
 use amendment::{Amendment, AmendmentSchema};
@@ -35,7 +35,7 @@ use store::{Author, Change};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -72,7 +72,7 @@ async fn list_logbook(
     }))
 }
 
-/// Report what bears on a vessel's magnetism
+/// Report an event that affects a vessel's magnetism
 #[utoipa::path(post, path = "/vessels/{id}/logbook", tag = "fleet",
     params(("id" = VesselId, Path), Key), request_body = NewEntry,
     responses((status = 201, body = LogbookEntry), (status = 401, body = Problem),
@@ -90,15 +90,15 @@ async fn report_entry(
     let request_hash = idempotency::request_hash(&format!("logbook entry of {vessel}"), &new)?;
     let now = app.clock.now();
     let new = new.checked(now)?;
-    let wanted = EntryId::new();
+    let new_id = EntryId::new();
     let mut change = Change::begin(&app, &request, vessel, now.into()).await?;
     let tx = change.tx();
     let made = key
-        .once(tx, writer.operator, &request_hash, wanted.0, now.into())
+        .once(tx, writer.operator, &request_hash, new_id.0, now.into())
         .await?;
-    if made == wanted.0 {
+    if made == new_id.0 {
         let author = Author::user(tx, writer.user, now.into()).await?;
-        store::insert(tx, vessel, wanted, &new, &author).await?;
+        store::insert(tx, vessel, new_id, &new, &author).await?;
         change.commit().await?;
     }
     let entry = store::must_find(&app.db, vessel, EntryId(made)).await?;
@@ -124,8 +124,7 @@ async fn find_entry(
 
 /// Amend an entry
 ///
-/// What is left out stays as it is; null takes a value away. The entry as it was
-/// is kept among its revisions.
+/// Absent fields stay as they are; null removes a value. The earlier revision is kept.
 #[utoipa::path(patch, path = "/vessels/{id}/logbook/{entry}", tag = "fleet",
     params(("id" = VesselId, Path), ("entry" = EntryId, Path)), request_body = AmendmentSchema,
     responses((status = 200, body = LogbookEntry), (status = 401, body = Problem),
@@ -157,8 +156,7 @@ async fn amend_entry(
 
 /// Withdraw an entry
 ///
-/// It stays in the logbook, marked, and counts no more. Withdrawing it again
-/// changes nothing.
+/// It stays in the logbook, marked, and no longer counts. Withdrawing it again changes nothing.
 #[utoipa::path(post, path = "/vessels/{id}/logbook/{entry}/withdraw", tag = "fleet",
     params(("id" = VesselId, Path), ("entry" = EntryId, Path)), request_body = Option<Withdrawal>,
     responses((status = 200, body = LogbookEntry), (status = 401, body = Problem),

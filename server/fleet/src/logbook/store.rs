@@ -1,8 +1,8 @@
 //! Logbook entries in the database.
 
 use super::entry::{AuthorKind, CheckedFilter, LogbookEntry, NewEntry, Revision};
-use crate::analysis;
-use crate::enrolment::Agent;
+use crate::agent_auth::Agent;
+use crate::analysis_queue;
 use anyhow::Context;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::RequestContext;
@@ -18,7 +18,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use uuid::Uuid;
 
-/// An entry's columns. Its words are read as JSON reads them.
+/// An entry's columns. Its enumerations are read as JSON reads them.
 #[derive(sqlx::FromRow)]
 struct Row {
     id: EntryId,
@@ -42,14 +42,14 @@ struct Row {
     withdrawal_reason: Option<String>,
 }
 
-/// The entry that a transaction holds.
-pub(super) struct Locked {
+/// The entry that a transaction has locked.
+pub(super) struct LockedEntry {
     vessel_id: VesselId,
     id: EntryId,
     revision: i64,
     /// Its content.
     pub(super) content: NewEntry,
-    /// The latest revision that came from on board; none when it was reported ashore.
+    /// The latest revision from on board; none for an entry reported on shore.
     pub(super) board_revision: Option<u32>,
     /// Time of withdrawal.
     pub(super) withdrawn_at: Option<Time>,
@@ -61,11 +61,11 @@ pub(super) struct Author {
     id: Uuid,
     name: String,
     at: Time,
-    /// The revision that it is on board, for what comes from there.
+    /// The revision's number on board, if it comes from there.
     board_revision: Option<u32>,
 }
 
-/// A change of a vessel's logbook on its way into the database.
+/// A transaction that changes a vessel's logbook.
 pub(super) struct Change<'a> {
     app: &'a App,
     vessel: VesselId,
@@ -93,9 +93,9 @@ impl<'a> Change<'a> {
         &mut self.tx
     }
 
-    /// Makes it durable, has the vessel analysed anew, and tells the dashboards.
+    /// Commits the change, enqueues an analysis of the vessel, and notifies dashboards.
     pub(super) async fn commit(mut self) -> Result<()> {
-        analysis::enqueue(&mut self.tx, self.vessel, self.now, 0.0).await?;
+        analysis_queue::enqueue(&mut self.tx, self.vessel, self.now, 0.0).await?;
         let event = events::insert(&mut self.tx, self.vessel, Kind::Logbook, self.now).await?;
         self.tx.commit().await?;
         self.app.publish(event);
@@ -128,7 +128,7 @@ impl Author {
 
 /// An adjustment as a work order writes it.
 #[allow(missing_docs, reason = "they are an entry's parts")]
-pub struct Adjusted<'a> {
+pub struct AdjustmentEntry<'a> {
     pub id: EntryId,
     pub vessel: VesselId,
     pub compass: CompassId,
@@ -140,8 +140,8 @@ pub struct Adjusted<'a> {
     pub now: Time,
 }
 
-/// Writes an adjustment at its moment, and has the vessel analysed anew.
-pub async fn write_adjustment(tx: &mut Tx, adjusted: &Adjusted<'_>) -> Result<()> {
+/// Writes an adjustment at its time, and enqueues an analysis of the vessel.
+pub async fn write_adjustment(tx: &mut Tx, adjusted: &AdjustmentEntry<'_>) -> Result<()> {
     let entry = NewEntry {
         report: Report {
             kind: binnacle_compass::logbook::LogbookKind::Adjustment,
@@ -164,7 +164,7 @@ pub async fn write_adjustment(tx: &mut Tx, adjusted: &Adjusted<'_>) -> Result<()
         board_revision: None,
     };
     insert(tx, adjusted.vessel, adjusted.id, &entry, &author).await?;
-    analysis::enqueue(tx, adjusted.vessel, adjusted.now, 0.0).await?;
+    analysis_queue::enqueue(tx, adjusted.vessel, adjusted.now, 0.0).await?;
     Ok(())
 }
 
@@ -205,7 +205,7 @@ pub(super) async fn list(
     found.into_iter().map(Row::read).collect()
 }
 
-/// An entry of the vessel's.
+/// Finds an entry of the vessel.
 ///
 /// # Errors
 /// [`Error::NotFound`] when it has no such entry.
@@ -227,7 +227,7 @@ pub(super) async fn must_find(db: &Db, vessel: VesselId, id: EntryId) -> Result<
 }
 
 /// Locks an entry for an update; concurrent updates wait.
-pub(super) async fn lock(tx: &mut Tx, vessel_id: VesselId, id: EntryId) -> Result<Locked> {
+pub(super) async fn lock(tx: &mut Tx, vessel_id: VesselId, id: EntryId) -> Result<LockedEntry> {
     let found = row!(
         in tx,
         Row,
@@ -242,7 +242,7 @@ pub(super) async fn lock(tx: &mut Tx, vessel_id: VesselId, id: EntryId) -> Resul
     .ok_or(Error::NotFound("logbook entry"))?;
     let board_revision = found.board_revision.map(u32::try_from).transpose();
     let (revision, withdrawn_at) = (found.revision, found.withdrawn_at);
-    Ok(Locked {
+    Ok(LockedEntry {
         vessel_id,
         id,
         revision,
@@ -252,7 +252,7 @@ pub(super) async fn lock(tx: &mut Tx, vessel_id: VesselId, id: EntryId) -> Resul
     })
 }
 
-/// Writes an entry; `false` when one of this id is there.
+/// Writes an entry. Returns `false` when one with this id exists.
 pub(super) async fn insert(
     tx: &mut Tx,
     vessel: VesselId,
@@ -287,14 +287,14 @@ pub(super) async fn insert(
     if inserted == 0 {
         return Ok(false);
     }
-    keep(tx, vessel, id, 1, new, author).await?;
+    insert_revision(tx, vessel, id, 1, new, author).await?;
     Ok(true)
 }
 
-/// Writes an entry anew.
+/// Writes a revision of an entry.
 pub(super) async fn revise(
     tx: &mut Tx,
-    locked: &Locked,
+    locked: &LockedEntry,
     amended: &NewEntry,
     author: &Author,
 ) -> Result<()> {
@@ -323,13 +323,13 @@ pub(super) async fn revise(
         author.name.as_str(),
         author.board_revision.map(i64::from)
     )?;
-    keep(tx, vessel, locked.id, locked.revision + 1, amended, author).await
+    insert_revision(tx, vessel, locked.id, locked.revision + 1, amended, author).await
 }
 
 /// Marks an entry as withdrawn.
 pub(super) async fn withdraw(
     tx: &mut Tx,
-    locked: &Locked,
+    locked: &LockedEntry,
     reason: Option<&str>,
     author: &Author,
 ) -> Result<()> {
@@ -349,7 +349,7 @@ pub(super) async fn withdraw(
     Ok(())
 }
 
-/// Each revision of an entry, the first one first.
+/// Lists the revisions of an entry, the first one first.
 pub(super) async fn revisions(db: &Db, vessel: VesselId, id: EntryId) -> Result<Vec<Revision>> {
     let found = rows!(
         db,
@@ -396,8 +396,8 @@ pub async fn of_compass(
     found.into_iter().map(entry).collect()
 }
 
-/// Keeps what an entry says for good.
-async fn keep(
+/// Inserts a revision, which is kept for good.
+async fn insert_revision(
     tx: &mut Tx,
     vessel: VesselId,
     id: EntryId,
@@ -474,7 +474,7 @@ impl Row {
     }
 }
 
-/// A word as it stands in JSON.
+/// Returns a word as it stands in JSON.
 fn word(value: &impl Serialize) -> Result<String> {
     match serde_json::to_value(value)? {
         Value::String(word) => Ok(word),

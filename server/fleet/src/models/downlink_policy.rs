@@ -1,5 +1,5 @@
-//! Policy that decides whether an agent gets a newer model: a model costs more bytes than the
-//! samples that it was made from.
+//! Policy that decides whether an agent gets a newer model. A model costs more bytes than the
+//! samples that it was fitted to.
 //!
 //! Invariants: a model of another epoch is sent. So is one whose difference shows on board, or one
 //! three days younger than the agent's.
@@ -8,16 +8,16 @@ use super::StoredModel;
 use binnacle_compass::angle::CompassHeading;
 use binnacle_compass::model::Model;
 
-/// A card is read to half a degree, a heading to a tenth.
+/// Difference that shows on board, degrees: a card is read to half a degree, a heading to a tenth.
 const LEAST_DEG: f64 = 0.1;
-/// Part of the known band within which a difference does not matter.
+/// Fraction of the known band within which a difference does not matter.
 const OF_BAND: f64 = 0.25;
-/// The bridge says how old its model is.
+/// Age beyond an agent's model at which a newer one is sent, seconds: the bridge shows the age.
 const OLDER_S: f64 = 3.0 * 86_400.0;
 const STEP_DEG: u32 = 10;
 /// Age beyond which a predicted model is replaced, whatever its certainty, seconds.
-const FORETOLD_FOR_S: f64 = 60.0 * 86_400.0;
-/// Of bx and by, in [`DRIFT_S`].
+const PREDICTION_VALID_S: f64 = 60.0 * 86_400.0;
+/// Usual drift of bx and by in [`DRIFT_S`], nT.
 const USUAL_DRIFT_NT: f64 = 60.0;
 const DRIFT_S: f64 = 30.0 * 86_400.0;
 /// Indices of bx and by among the parameters.
@@ -26,7 +26,7 @@ const PERMANENT: [usize; 2] = [0, 2];
 impl StoredModel {
     /// Tells whether an agent with an earlier model needs this one. It compares deviation and band
     /// on all headings at the last place, epoch, and age.
-    pub fn matters_after(&self, known: &StoredModel) -> bool {
+    pub fn is_update_of(&self, known: &StoredModel) -> bool {
         let older_s = self.data_until.0.seconds_since(known.data_until.0);
         self.replaces() != known.replaces()
             || self.version < known.version
@@ -39,12 +39,12 @@ impl StoredModel {
 
     /// Tells whether it replaces a predicted model. It does when it is more certain on its least
     /// certain heading, or when the prediction is too old to plan from.
-    pub fn knows_more_than(&self, foretold: &StoredModel) -> bool {
-        let age_s = self.data_until.0.seconds_since(foretold.data_until.0);
-        if age_s > FORETOLD_FOR_S {
+    pub fn replaces_prediction(&self, predicted: &StoredModel) -> bool {
+        let age_s = self.data_until.0.seconds_since(predicted.data_until.0);
+        if age_s > PREDICTION_VALID_S {
             return true;
         }
-        let known = drifted(&foretold.model.0, age_s.max(0.0));
+        let known = drifted(&predicted.model.0, age_s.max(0.0));
         let widest = |model: &Model| {
             let headings = (0..360 / STEP_DEG).filter_map(|index| {
                 let compass = CompassHeading::new(f64::from(index * STEP_DEG))?;
@@ -72,8 +72,8 @@ impl StoredModel {
     }
 }
 
-/// A model whose permanent field has wandered for so long as is usual (docs/science.md,
-/// table of (9)): nothing that was observed since is in it.
+/// Returns a model whose permanent field has drifted for the usual time (docs/science.md, table of
+/// (9)), without later observations.
 fn drifted(model: &Model, seconds: f64) -> Model {
     let mut drifted = model.clone();
     let variance = USUAL_DRIFT_NT.powi(2) * seconds / DRIFT_S;
@@ -94,7 +94,7 @@ mod tests {
     use binnacle_platform::time::Time;
     use serde_json::json;
 
-    /// A model of half a month of data, with a band of a degree.
+    /// Returns a model of half a month of data, with a band of a degree.
     fn model(bx_nt: f64, constant_variance: f64) -> StoredModel {
         let mut covariance = [[0.0; 8]; 8];
         covariance[7][7] = constant_variance;
@@ -131,60 +131,60 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_that_hardly_moved_is_no_news_and_one_that_moved_is() {
+    fn only_a_curve_that_changed_enough_is_an_update() {
         let known = model(2_000.0, 0.25);
         // 70 nT in 20,000 are 0.20 degrees athwart, the band is 0.98.
-        assert!(!model(2_070.0, 0.25).matters_after(&known));
-        assert!(model(2_100.0, 0.25).matters_after(&known));
+        assert!(!model(2_070.0, 0.25).is_update_of(&known));
+        assert!(model(2_100.0, 0.25).is_update_of(&known));
         let known = model(2_000.0, 0.000_1);
-        assert!(!model(2_020.0, 0.000_1).matters_after(&known));
-        assert!(model(2_050.0, 0.000_1).matters_after(&known));
+        assert!(!model(2_020.0, 0.000_1).is_update_of(&known));
+        assert!(model(2_050.0, 0.000_1).is_update_of(&known));
     }
 
     #[test]
-    fn a_band_that_grew_or_shrank_is_news() {
+    fn a_band_that_grew_or_shrank_is_an_update() {
         let known = model(2_000.0, 0.25);
-        assert!(!model(2_000.0, 0.36).matters_after(&known));
-        assert!(model(2_000.0, 0.42).matters_after(&known));
-        assert!(model(2_000.0, 0.13).matters_after(&known));
+        assert!(!model(2_000.0, 0.36).is_update_of(&known));
+        assert!(model(2_000.0, 0.42).is_update_of(&known));
+        assert!(model(2_000.0, 0.13).is_update_of(&known));
     }
 
     #[test]
-    fn another_epoch_is_news_though_the_curve_is_the_same() {
+    fn another_epoch_is_an_update_even_with_the_same_curve() {
         let known = model(2_000.0, 0.25);
         let mut after = known.clone();
         after.epoch_from = Some(known.data_from);
         after.epoch_begun_by = Some("lightning_or_shock".to_owned());
-        assert!(after.matters_after(&known));
+        assert!(after.is_update_of(&known));
     }
 
     #[test]
-    fn a_model_three_days_younger_is_news() {
+    fn a_model_three_days_younger_is_an_update() {
         let known = model(2_000.0, 0.25);
         let mut later = known.clone();
         later.version = 4;
         later.data_until = Time(known.data_until.0.plus_seconds(OLDER_S - 600.0));
-        assert!(!later.matters_after(&known));
+        assert!(!later.is_update_of(&known));
         later.data_until = Time(known.data_until.0.plus_seconds(OLDER_S));
-        assert!(later.matters_after(&known));
-        assert!(known.matters_after(&later), "after a restored backup");
+        assert!(later.is_update_of(&known));
+        assert!(known.is_update_of(&later), "after a restored backup");
     }
 
     #[test]
-    fn what_was_foretold_grows_less_sure_by_the_day_and_has_its_time() {
-        let foretold = model(2_000.0, 0.09);
+    fn a_prediction_grows_less_certain_by_the_day_and_expires() {
+        let predicted = model(2_000.0, 0.09);
         let mut fit = model(2_000.0, 0.1);
-        assert!(!fit.knows_more_than(&foretold));
-        let later = |days: f64| Time(foretold.data_until.0.plus_seconds(86_400.0 * days));
+        assert!(!fit.replaces_prediction(&predicted));
+        let later = |days: f64| Time(predicted.data_until.0.plus_seconds(86_400.0 * days));
         // A drift of 60 nT in 30 days is 0.17 degrees here.
         fit.data_until = later(6.0);
-        assert!(!fit.knows_more_than(&foretold));
+        assert!(!fit.replaces_prediction(&predicted));
         fit.data_until = later(20.0);
-        assert!(fit.knows_more_than(&foretold));
+        assert!(fit.replaces_prediction(&predicted));
         let mut poor = model(2_000.0, 1.0);
         poor.data_until = later(59.0);
-        assert!(!poor.knows_more_than(&foretold));
+        assert!(!poor.replaces_prediction(&predicted));
         poor.data_until = later(61.0);
-        assert!(poor.knows_more_than(&foretold));
+        assert!(poor.replaces_prediction(&predicted));
     }
 }

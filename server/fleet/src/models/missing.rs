@@ -1,12 +1,15 @@
-//! Reason for which a compass has no model, and the withdrawal of its last one.
+//! Reason for which a compass has no model.
 
-use crate::analysis::{LeftOut, RefusalSchema};
-use crate::ingest::CardWithdrawnSchema;
+use super::left_out::LeftOut;
+use super::refusal::RefusalSchema;
+use super::schema::CardWithdrawnSchema;
 use axum::http::StatusCode;
 use binnacle_compass::result::FitError;
-use binnacle_platform::error::{DomainProblem, Error};
+use binnacle_platform::db::{Db, row};
+use binnacle_platform::error::{DomainProblem, Error, Result};
+use binnacle_platform::ids::{CompassId, VesselId};
 use binnacle_wire::messages::CardWithdrawn;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use utoipa::ToSchema;
 
@@ -69,4 +72,37 @@ impl From<NoModel> for Error {
         };
         problem.with(&fields).into()
     }
+}
+
+/// Returns the reason for which the current epoch has no model, and the samples that the logbook
+/// leaves out. The reason is none before the first analysis.
+pub(super) async fn find_refusal(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<(Option<FitError>, LeftOut)> {
+    #[derive(Deserialize)]
+    struct Refused {
+        refusal: Option<FitError>,
+    }
+    #[derive(Default, Deserialize)]
+    struct Beside {
+        #[serde(default)]
+        left_out: LeftOut,
+    }
+    let found = row!(
+        db,
+        (String, Option<String>),
+        "SELECT epochs, findings FROM analyses WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY compass_id",
+        vessel,
+        compass
+    )?;
+    let Some((epochs, findings)) = found else {
+        return Ok((None, LeftOut::default()));
+    };
+    let mut epochs: Vec<Refused> = serde_json::from_str(&epochs)?;
+    let beside = findings.map(|text| serde_json::from_str::<Beside>(&text));
+    let left_out = beside.transpose()?.unwrap_or_default().left_out;
+    Ok((epochs.pop().and_then(|epoch| epoch.refusal), left_out))
 }

@@ -1,21 +1,29 @@
-//! The models of a vessel's compasses: every version is kept, the highest is current,
-//! but while a change has ended its epoch and no other model has taken its place.
+//! Models of a vessel's compasses.
+//!
+//! Invariants: every version is kept, and the highest is current. A compass has no current model
+//! after a change has ended its epoch, until the next model.
 
 mod downlink_policy;
+mod left_out;
 mod missing;
+mod refusal;
 mod schema;
 mod store;
 
+pub use left_out::LeftOut;
 pub use missing::{NoModel, NoModelFields};
-pub use schema::{IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema};
+pub use refusal::RefusalSchema;
+pub use schema::{
+    CardWithdrawnSchema, IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema,
+};
 pub use store::{
-    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, foretold, in_force,
-    insert, lately, of_version, withdrawn,
+    StoredModel, card_withdrawn, card_withdrawn_in, current, current_of_fleet, current_of_vessel,
+    find_prediction, find_version, insert, list_in_force, list_recent,
 };
 
 use crate::compasses::{self, WhichCompass};
-use crate::deviation::{HandbookSchema, Worst};
-use crate::{analysis, vessels};
+use crate::deviation::{HandbookSchema, WorstHeading};
+use crate::vessels;
 use axum::extract::{FromRef, State};
 use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_compass::ship::EarthField;
@@ -31,7 +39,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -42,7 +50,7 @@ where
         .routes(routes!(list_models))
 }
 
-/// A model in a line.
+/// Summary of a model.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 pub struct ModelSummary {
     /// The model version's id.
@@ -62,7 +70,7 @@ pub struct ModelSummary {
     pub samples_used: u64,
 }
 
-/// A model version, whole.
+/// A whole model version.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct ModelVersion {
     /// The model version's id.
@@ -74,7 +82,7 @@ pub struct ModelVersion {
     /// Time from which it holds; none means without limit.
     #[schema(required)]
     pub epoch_from: Option<Time>,
-    /// Until when it holds; none goes on.
+    /// Time until which it holds; none means without limit.
     #[schema(required)]
     pub epoch_to: Option<Time>,
     /// The time of the first sample in it.
@@ -130,7 +138,7 @@ async fn current_model(
     vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
     let compass = compasses::find(&app.db, id, which.compass).await?;
     let model = must_have(&app, id, compass.id).await?;
-    Ok(Json(model.version()))
+    Ok(Json(model.into_version()))
 }
 
 /// List a compass's model versions
@@ -151,20 +159,24 @@ async fn list_models(
     let found = store::list(&app.db, id, compass.id, before, page.fetch()).await?;
     let listed = page.cut(found, |model| model.version.to_string());
     Ok(Json(ModelVersionList {
-        items: listed.items.into_iter().map(StoredModel::version).collect(),
+        items: listed
+            .items
+            .into_iter()
+            .map(StoredModel::into_version)
+            .collect(),
         next: listed.next,
     }))
 }
 
-/// The current model, or why there is none.
+/// Returns the current model.
 ///
 /// # Errors
-/// [`NoModel`] with what is missing.
+/// [`NoModel`], with the reason, when there is none.
 pub async fn must_have(app: &App, vessel: VesselId, compass: CompassId) -> Result<StoredModel> {
     if let Some(model) = current(&app.db, vessel, compass).await? {
         return Ok(model);
     }
-    let (refusal, left_out) = analysis::refusal(&app.db, vessel, compass).await?;
+    let (refusal, left_out) = missing::find_refusal(&app.db, vessel, compass).await?;
     Err(NoModel {
         refusal,
         left_out,
@@ -174,7 +186,7 @@ pub async fn must_have(app: &App, vessel: VesselId, compass: CompassId) -> Resul
 }
 
 impl StoredModel {
-    /// The model in a line.
+    /// Summarizes the model in a line.
     pub fn summary(&self) -> ModelSummary {
         ModelSummary {
             id: self.id,
@@ -187,8 +199,8 @@ impl StoredModel {
         }
     }
 
-    /// The heading with the greatest deviation, at the last sample's place.
-    pub fn worst(&self) -> Option<Worst> {
+    /// Finds the heading with the greatest deviation, at the last sample's place.
+    pub fn worst(&self) -> Option<WorstHeading> {
         crate::deviation::worst(&self.model.0, self.earth())
     }
 
@@ -207,8 +219,8 @@ impl StoredModel {
         }
     }
 
-    /// The version, whole.
-    pub fn version(self) -> ModelVersion {
+    /// Returns the whole version, as the API shows it.
+    pub fn into_version(self) -> ModelVersion {
         ModelVersion {
             handbook: crate::deviation::handbook(&self.model.0, self.earth()),
             id: self.id,

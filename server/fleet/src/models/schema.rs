@@ -148,3 +148,16 @@ pub struct IdentifiableSchema {
     chi21: bool,
     constant_deg: bool,
 }
+
+/// Withdrawal of earlier cards.
+#[derive(ToSchema)]
+#[schema(as = CardWithdrawn)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::CardWithdrawn")]
+pub struct CardWithdrawnSchema {
+    /// Time from which they do not hold.
+    since: Time,
+    /// Change of the ship's magnetism or the compass: a kind of logbook entry, a detected cause, or
+    /// `ship_as_before`.
+    #[schema(example = "adjustment")]
+    reason: String,
+}

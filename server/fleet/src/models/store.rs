@@ -33,7 +33,7 @@ pub struct StoredModel {
     pub foretold_by: Option<OrderId>,
 }
 
-/// The current model of a compass; none while its card is withdrawn.
+/// Returns the current model of a compass; `None` while its card is withdrawn.
 pub async fn current(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Option<StoredModel>> {
     row!(
         db,
@@ -50,7 +50,7 @@ pub async fn current(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Op
     )
 }
 
-/// The current models of a vessel's compasses.
+/// Lists the current models of a vessel's compasses.
 pub async fn current_of_vessel(db: &Db, vessel: VesselId) -> Result<Vec<StoredModel>> {
     rows!(
         db,
@@ -67,7 +67,7 @@ pub async fn current_of_vessel(db: &Db, vessel: VesselId) -> Result<Vec<StoredMo
     )
 }
 
-/// The current models of an operator's vessels from one id to another.
+/// Lists the current models of an operator's vessels in a range of ids.
 pub async fn current_of_fleet(
     db: &Db,
     operator: OperatorId,
@@ -92,7 +92,7 @@ pub async fn current_of_fleet(
     )
 }
 
-/// A compass's models, the newest first, from before a version.
+/// Lists a compass's models before a version, the newest first.
 pub(super) async fn list(
     db: &Db,
     vessel: VesselId,
@@ -114,15 +114,19 @@ pub(super) async fn list(
     )
 }
 
-/// A compass's last models, as many as a ship that calls now and then may be behind.
-pub async fn lately(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Vec<StoredModel>> {
-    const LATELY: i64 = 32;
-    list(db, vessel, compass, None, LATELY).await
+/// Lists a compass's last models, as many as an agent that rarely calls may be behind.
+pub async fn list_recent(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Vec<StoredModel>> {
+    const RECENT: i64 = 32;
+    list(db, vessel, compass, None, RECENT).await
 }
 
-/// The models of a compass that were current at some time between two instants, the
-/// oldest first: those made between them, and the last one made before.
-pub async fn in_force(
+/// Lists the models of a compass that were current at some time between two instants, the oldest
+/// first: those made between them, and the last one made before.
+pub async fn list_in_force(
     db: &Db,
     vessel: VesselId,
     compass: CompassId,
@@ -145,8 +149,8 @@ pub async fn in_force(
     )
 }
 
-/// One model of a compass by its version.
-pub async fn of_version(
+/// Finds a model of a compass by its version.
+pub async fn find_version(
     db: &Db,
     vessel: VesselId,
     compass: CompassId,
@@ -183,7 +187,7 @@ pub async fn card_withdrawn(
 }
 
 /// Does what [`card_withdrawn`] does, within a transaction.
-pub async fn withdrawn(
+pub async fn card_withdrawn_in(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
@@ -209,7 +213,7 @@ fn read_withdrawn((since, reason): (Option<Time>, Option<String>)) -> Option<Car
 
 /// Returns the compass's highest model if an adjustment predicted it and no heading at sea
 /// contradicts it.
-pub async fn foretold(
+pub async fn find_prediction(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
@@ -229,7 +233,7 @@ pub async fn foretold(
     )
 }
 
-/// Stores a model as the compass's next version, whatever its `version` says.
+/// Stores a model as the compass's next version. Ignores its `version`.
 pub async fn insert(tx: &mut Tx, model: &StoredModel) -> Result<()> {
     let text = serde_json::to_string(&model.model)
         .map_err(|error| sqlx::Error::Encode(Box::new(error)))?;

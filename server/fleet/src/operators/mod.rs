@@ -1,6 +1,6 @@
-//! Companies with a fleet: the tenants that see vessels.
+//! Operators: companies with a fleet, each a tenant.
 //!
-//! What always holds: only a platform admin sees that there are others.
+//! Invariant: only a platform admin sees that there are others.
 
 mod store;
 
@@ -21,7 +21,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -97,17 +97,17 @@ async fn create_operator(
     key: Key,
     Valid(new): Valid<NewCompany>,
 ) -> Result<(StatusCode, Json<Operator>)> {
-    let admin = admin.who_may_write()?;
+    let admin = admin.must_be_writer()?;
     let request_hash = idempotency::request_hash("operator", &new)?;
     let name = text("name", &new.name)?;
     let now = app.clock.now().into();
-    let wanted = OperatorId::new();
+    let new_id = OperatorId::new();
     let mut tx = request.begin().await?;
     let made = key
-        .once(&mut tx, admin, &request_hash, wanted.0, now)
+        .once(&mut tx, admin, &request_hash, new_id.0, now)
         .await?;
-    if made == wanted.0 {
-        store::insert(&mut tx, wanted, &name, now).await?;
+    if made == new_id.0 {
+        store::insert(&mut tx, new_id, &name, now).await?;
     }
     tx.commit().await?;
     Ok((StatusCode::CREATED, found(&app, OperatorId(made)).await?))

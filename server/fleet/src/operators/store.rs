@@ -35,7 +35,7 @@ pub async fn exists(tx: &mut Tx, id: OperatorId) -> Result<bool> {
     Ok(found.is_some())
 }
 
-/// All there are.
+/// Lists all operators.
 pub async fn all(db: &Db) -> Result<Vec<OperatorId>> {
     let found = rows!(db, (OperatorId,), "SELECT id FROM operators ORDER BY id")?;
     Ok(found.into_iter().map(|(id,)| id).collect())

@@ -1,14 +1,13 @@
-//! The fleet at a glance: every vessel in one answer, for a map and a table side by side.
+//! Overview of a fleet: every vessel in one response, for a map and a table side by side.
 //!
-//! What always holds: it is one operator's whole fleet, or the one vessel of it that was
-//! asked for, in the order in which they were entered. It says nothing that the vessel's
-//! own pages do not say; it says it in few words, because a slow link carries them.
+//! Invariants: it is one operator's whole fleet, or the one vessel requested, in the order of
+//! entry. It repeats facts of the vessels' own pages in short, because a slow link carries them.
 
 mod store;
 
 use crate::alerts::{Cause, State};
 use crate::analysis::Track;
-use crate::deviation::{self, Worst};
+use crate::deviation::{self, WorstHeading};
 use crate::models::StoredModel;
 use crate::vessels::LastPosition;
 use axum::extract;
@@ -24,15 +23,15 @@ use binnacle_platform::time::Time;
 use binnacle_schedule::ports::{self, PortCode};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use store::{Call, Row, WorstAlert};
+use store::{NextPortCall, VesselRow, WorstAlert};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// Of more vessels than this an answer has no tracks.
+/// Number of vessels above which a response has no tracks.
 const MOST_WITH_TRACKS: usize = 200;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -45,7 +44,7 @@ where
 #[derive(Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 struct Which {
-    /// The only one, for a page that has the others already.
+    /// Only this vessel, for a page that has the others already.
     vessel: Option<VesselId>,
 }
 
@@ -85,7 +84,7 @@ pub struct FleetVessel {
     pub model: Option<FleetModel>,
     /// The heading with the greatest deviation by that model, where it was made.
     #[schema(required)]
-    pub worst: Option<Worst>,
+    pub worst: Option<WorstHeading>,
     /// Alerts that nobody has acknowledged.
     pub open_alerts: u32,
     /// Its first port call that is not over.
@@ -107,11 +106,11 @@ pub struct FleetModel {
     pub rms_deg: Option<f64>,
     /// The time of the last sample in it.
     pub data_until: Time,
-    /// For how many reasons it should not be trusted everywhere.
+    /// Number of reasons for which it should not be trusted everywhere.
     pub cautions: usize,
 }
 
-/// A port call, in short, and what awaits the compass there.
+/// A port call in short, with the worst heading there.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct NextCall {
     /// Its UN/LOCODE.
@@ -124,7 +123,7 @@ pub struct NextCall {
     pub etd: Time,
     /// The heading with the greatest deviation there and then, by its model.
     #[schema(required)]
-    pub worst: Option<Worst>,
+    pub worst: Option<WorstHeading>,
 }
 
 /// An alert, in short.
@@ -152,12 +151,12 @@ async fn find_fleet(
 ) -> Result<Json<Fleet>> {
     let now = app.clock.now().into();
     let found = store::find(&app.db, reader.operator, which.vessel, now).await?;
-    // A thousand models on every heading: not for a thread that others wait for.
+    // A thousand models on every heading take too long for an async thread.
     let fleet = tokio::task::spawn_blocking(move || assemble(found));
     Ok(Json(fleet.await.map_err(anyhow::Error::from)?))
 }
 
-fn assemble(found: store::Found) -> Fleet {
+fn assemble(found: store::FleetRecords) -> Fleet {
     let mut alerts: HashMap<VesselId, Vec<WorstAlert>> = HashMap::new();
     for alert in found.alerts {
         alerts.entry(alert.vessel_id).or_default().push(alert);
@@ -172,17 +171,17 @@ fn assemble(found: store::Found) -> Fleet {
     let vessels = found.vessels.into_iter().map(|row| {
         let model = models.remove(&row.id);
         let track = tracks.remove(&row.id).map(|stored| stored.track);
-        let hers = alerts.remove(&row.id).unwrap_or_default();
+        let alerts = alerts.remove(&row.id).unwrap_or_default();
         let call = calls.remove(&row.id);
         let call = call.map(|call| NextCall::of(call, model.as_ref()));
-        row.with(model.as_ref(), track.unwrap_or_default(), call, hers)
+        row.with(model.as_ref(), track.unwrap_or_default(), call, alerts)
     });
     Fleet {
         vessels: vessels.collect(),
     }
 }
 
-/// The first of each vessel's.
+/// Returns the first item of each vessel.
 fn by_vessel<T>(items: Vec<T>, vessel: impl Fn(&T) -> VesselId) -> HashMap<VesselId, T> {
     let mut found = HashMap::with_capacity(items.len());
     for item in items {
@@ -191,7 +190,7 @@ fn by_vessel<T>(items: Vec<T>, vessel: impl Fn(&T) -> VesselId) -> HashMap<Vesse
     found
 }
 
-impl Row {
+impl VesselRow {
     fn with(
         self,
         model: Option<&StoredModel>,
@@ -208,7 +207,7 @@ impl Row {
             last_upload_at: self.last_upload_at,
             track,
             next_call,
-            worst: model.and_then(StoredModel::worst).map(in_short),
+            worst: model.and_then(StoredModel::worst).map(rounded),
             model: model.map(FleetModel::of),
             open_alerts: alerts.iter().filter(|alert| alert.is_raised()).count() as u32,
             alert: alerts
@@ -220,7 +219,7 @@ impl Row {
 }
 
 impl NextCall {
-    fn of(call: Call, model: Option<&StoredModel>) -> NextCall {
+    fn of(call: NextPortCall, model: Option<&StoredModel>) -> NextCall {
         let port = PortCode::parse(&call.port).ok().and_then(ports::find);
         let worst = port.zip(model).and_then(|(port, model)| {
             let earth = field(FieldModel::Igrf14, port.position, 0.0, call.eta.0).ok()?;
@@ -231,14 +230,14 @@ impl NextCall {
             port_name: port.map_or("", |port| port.name),
             eta: call.eta,
             etd: call.etd,
-            worst: worst.map(in_short),
+            worst: worst.map(rounded),
         }
     }
 }
 
-/// Without the digits that nobody reads and every link carries.
-fn in_short(worst: Worst) -> Worst {
-    Worst {
+/// Rounds figures to a thousandth, to save a slow link bytes.
+fn rounded(worst: WorstHeading) -> WorstHeading {
+    WorstHeading {
         compass_deg: worst.compass_deg,
         deviation_deg: thousandth(worst.deviation_deg),
         band95_deg: worst.band95_deg.map(thousandth),

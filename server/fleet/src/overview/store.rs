@@ -11,21 +11,21 @@ use binnacle_platform::time::Time;
 use uuid::Uuid;
 
 /// Records for the overview.
-pub(super) struct Found {
-    pub(super) vessels: Vec<Row>,
-    /// The current ones, a vessel's first compass first.
+pub(super) struct FleetRecords {
+    pub(super) vessels: Vec<VesselRow>,
+    /// Current models, a vessel's first compass first.
     pub(super) models: Vec<StoredModel>,
-    /// In the same order.
+    /// Tracks, in the same order.
     pub(super) tracks: Vec<StoredTrack>,
-    /// Those that are not cleared.
+    /// Alerts that are not cleared.
     pub(super) alerts: Vec<WorstAlert>,
-    /// Each vessel's first that is not over.
-    pub(super) calls: Vec<Call>,
+    /// Each vessel's first port call that is not over.
+    pub(super) calls: Vec<NextPortCall>,
 }
 
 /// A vessel's own columns.
 #[derive(sqlx::FromRow)]
-pub(super) struct Row {
+pub(super) struct VesselRow {
     pub(super) id: VesselId,
     pub(super) name: String,
     pub(super) imo_number: Option<String>,
@@ -57,14 +57,14 @@ pub(super) struct WorstAlert {
 
 /// A port call, in short.
 #[derive(sqlx::FromRow)]
-pub(super) struct Call {
+pub(super) struct NextPortCall {
     pub(super) vessel_id: VesselId,
     pub(super) port: String,
     pub(super) eta: Time,
     pub(super) etd: Time,
 }
 
-impl Row {
+impl VesselRow {
     pub(super) fn position(&self) -> Option<LastPosition> {
         Some(LastPosition {
             lat: self.last_lat?,
@@ -79,22 +79,22 @@ impl WorstAlert {
         self.state == State::Raised
     }
 
-    /// The greatest comes first.
+    /// Returns the key by which the most urgent alert is the greatest.
     pub(super) fn urgency(&self) -> (Severity, bool, AlertId) {
         (self.severity, self.is_raised(), self.id)
     }
 }
 
-/// An operator's vessels, or the one that is named.
+/// Reads the records of an operator's vessels, or of one of them.
 pub(super) async fn find(
     db: &Db,
     operator: OperatorId,
     only: Option<VesselId>,
     now: Time,
-) -> Result<Found> {
+) -> Result<FleetRecords> {
     let first = only.unwrap_or(VesselId(Uuid::nil()));
     let last = only.unwrap_or(VesselId(Uuid::max()));
-    Ok(Found {
+    Ok(FleetRecords {
         vessels: vessels(db, operator, first, last).await?,
         models: models::current_of_fleet(db, operator, first, last).await?,
         tracks: tracks(db, operator, first, last).await?,
@@ -108,10 +108,10 @@ async fn vessels(
     operator: OperatorId,
     first: VesselId,
     last: VesselId,
-) -> Result<Vec<Row>> {
+) -> Result<Vec<VesselRow>> {
     rows!(
         db,
-        Row,
+        VesselRow,
         "SELECT id, name, imo_number, call_sign, last_upload_at, last_sample_at, last_lat, last_lon
          FROM vessels
          WHERE operator_id = $1 AND id BETWEEN $2 AND $3
@@ -169,10 +169,10 @@ async fn next_calls(
     first: VesselId,
     last: VesselId,
     now: Time,
-) -> Result<Vec<Call>> {
+) -> Result<Vec<NextPortCall>> {
     rows!(
         db,
-        Call,
+        NextPortCall,
         "SELECT c.vessel_id, c.port, c.eta, c.etd
          FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id

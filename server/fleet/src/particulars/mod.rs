@@ -1,4 +1,4 @@
-//! `/vessels/{id}/particulars`: facts about a vessel that rules on adjusting use.
+//! Particulars of a vessel: facts that the rules on adjusting use.
 //!
 //! Invariant: an unknown fact counts as if it bound the vessel. So no fact is required, and each
 //! known fact can only give more time.
@@ -22,7 +22,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// Nobody plans more of them.
+/// Largest number of planned transits.
 const MOST_TRANSITS: usize = 50;
 const MOST_TONNAGE: u32 = 1_000_000;
 
@@ -36,7 +36,7 @@ pub struct ParticularsChanged {
 
 impl DomainEvent for ParticularsChanged {}
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -115,7 +115,7 @@ struct TransitSchema {
     on: NaiveDate,
 }
 
-/// See what rules on adjusting ask about a vessel
+/// See a vessel's particulars for the rules on adjusting
 #[utoipa::path(get, path = "/vessels/{id}/particulars", tag = "adjusting",
     params(("id" = VesselId, Path)),
     responses((status = 200, body = Particulars), (status = 401, body = Problem),
@@ -129,7 +129,7 @@ async fn find_particulars(
     Ok(Json(find(&app.db, vessel).await?))
 }
 
-/// Set the facts that rules on adjusting use
+/// Set a vessel's particulars for the rules on adjusting
 ///
 /// A fact that is left out or null is unknown, and binds the vessel: to adjust too early costs a
 /// fee, to adjust too late a detention.
@@ -173,11 +173,11 @@ async fn find(db: &Db, vessel: VesselId) -> Result<Particulars> {
     )?)
 }
 
-/// Returns a vessel's flag, and the licence that its operator asks an adjuster to hold.
+/// Returns a vessel's flag, and the adjuster's licence that its operator requires.
 ///
 /// # Errors
 /// When the database fails.
-pub async fn asked_of_adjusters(
+pub async fn adjuster_requirements(
     tx: &mut Tx,
     vessel: VesselId,
 ) -> Result<(Option<Flag>, Option<String>)> {
@@ -249,14 +249,14 @@ impl Particulars {
     }
 }
 
-/// The field of a canal is that of its middle, degrees north and east.
+/// Returns the middle of a canal, degrees north and east. Its field stands for the whole canal.
 pub fn place_of(canal: Canal) -> (f64, f64) {
     match canal {
         Canal::Panama => (9.1, -79.7),
     }
 }
 
-/// A flag as people write it: two letters, or the name of one of the great registers.
+/// Parses a flag as people write it: two letters, or the name of one of the great registers.
 fn flag_of(text: &str) -> Option<Flag> {
     const NAMES: [(&str, &str); 16] = [
         ("panama", "PA"),

@@ -1,4 +1,4 @@
-//! Samples as files.
+//! Samples of a compass as CSV or NDJSON.
 
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};

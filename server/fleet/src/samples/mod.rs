@@ -1,4 +1,4 @@
-//! A compass's samples and what became of each in the last analysis.
+//! Samples of a compass, each with its outcome in the last analysis.
 
 mod coverage;
 mod export;
@@ -22,7 +22,7 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -46,7 +46,7 @@ struct Range {
     /// The instant after the last, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime)]
     to: Option<String>,
-    /// A compass of the vessel's; its first one if not said.
+    /// A compass of the vessel; its first one by default.
     compass: Option<CompassId>,
 }
 

@@ -1,6 +1,6 @@
-//! A compass's samples as a picture shows them: dots, and means over time.
+//! Summary of a compass's samples for a chart: dots, and means over time.
 //!
-//! What always holds: the means and counts are of all samples; only the dots are picked.
+//! Invariant: means and counts cover all samples; only the dots are a selection.
 
 use binnacle_compass::result::SampleDiagnostic;
 use binnacle_compass::time::Timestamp;
@@ -71,7 +71,7 @@ pub(super) struct SampleDots {
     used: Vec<bool>,
 }
 
-/// The picture of samples that are in order of time.
+/// Summarizes samples in order of time.
 pub(super) fn picture(samples: &[SampleDiagnostic]) -> SamplePicture {
     let measured: Vec<&SampleDiagnostic> = samples
         .iter()
@@ -171,8 +171,8 @@ mod tests {
 
     const DAY_S: f64 = 86_400.0;
 
-    /// A sample so long after the beginning of 12 October; one without a residual is of an
-    /// epoch without a model.
+    /// Returns a sample at a time after the beginning of 12 October. One without a residual is of
+    /// an epoch without a model.
     fn sample(after_s: f64, residual_deg: Option<f64>, used: bool) -> SampleDiagnostic {
         let begin = Timestamp::parse("2026-10-12T00:00:00Z").unwrap();
         let diagnostic = json!({
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_has_no_more_dots_than_can_be_told_apart() {
+    fn a_picture_has_no_more_dots_than_the_eye_distinguishes() {
         let many: Vec<SampleDiagnostic> = (0..3_000)
             .map(|i| sample(600.0 * f64::from(i), Some(0.1), true))
             .collect();

@@ -1,15 +1,16 @@
 //! Settings of a vessel: sampling and sending of its agents, analysis of its samples, limits of its
 //! alerts.
 //!
-//! Invariants: a change makes a new version, which agents get with their next downlink, and a new
-//! analysis. Without a row the defaults hold, version 0.
+//! Invariants: a change makes a new version, which agents get with their next downlink, and
+//! enqueues an analysis. Without a row the defaults apply, as version 0.
 
+mod alert_limits;
 mod store;
 
+pub use alert_limits::AlertLimits;
 pub use store::find;
 
-use crate::alerts::AlertLimits;
-use crate::analysis;
+use crate::analysis_queue;
 use crate::vessels;
 use axum::extract::{FromRef, State};
 use binnacle_compass::settings::AnalysisSettings;
@@ -25,7 +26,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Returns the routes.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -137,23 +138,23 @@ async fn change_settings(
     request: RequestContext,
     writer: Writer,
     Id(id): Id<VesselId>,
-    Valid(wanted): Valid<VesselSettings>,
+    Valid(new): Valid<VesselSettings>,
 ) -> Result<Json<VesselSettings>> {
     vessels::must_be_in_fleet(&app.db, writer.operator, id).await?;
-    if !(0.0..=10.0).contains(&wanted.analysis.reference_constant_sd_deg) {
+    if !(0.0..=10.0).contains(&new.analysis.reference_constant_sd_deg) {
         return Err(Error::Invalid {
             field: "analysis.reference_constant_sd_deg",
             detail: format!(
                 "{} is outside 0 to 10",
-                wanted.analysis.reference_constant_sd_deg
+                new.analysis.reference_constant_sd_deg
             ),
         });
     }
-    wanted.alerts.checked()?;
+    new.alerts.checked()?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
-    store::change(&mut tx, id, &wanted, now).await?;
-    analysis::enqueue(&mut tx, id, now, 0.0).await?;
+    store::change(&mut tx, id, &new, now).await?;
+    analysis_queue::enqueue(&mut tx, id, now, 0.0).await?;
     tx.commit().await?;
     app.work.notify_one();
     Ok(Json(find(&app.db, id).await?))

@@ -1,7 +1,6 @@
 //! Settings in the database.
 
-use super::VesselSettings;
-use crate::alerts::AlertLimits;
+use super::{AlertLimits, VesselSettings};
 use binnacle_compass::settings::AnalysisSettings;
 use binnacle_platform::db::{Db, Tx, execute, row};
 use binnacle_platform::error::Result;
@@ -9,7 +8,7 @@ use binnacle_platform::ids::VesselId;
 use binnacle_platform::time::Time;
 use binnacle_wire::messages::Settings;
 
-/// The vessel's settings, or the defaults.
+/// Returns the vessel's settings, or the defaults.
 pub async fn find(db: &Db, vessel: VesselId) -> Result<VesselSettings> {
     let stored = row!(
         db,

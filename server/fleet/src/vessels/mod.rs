@@ -1,92 +1,22 @@
-//! The fleet.
+//! Vessels of a fleet: identity, last position, and whether they are in service.
 //!
-//! What always holds: a vessel is found only together with the operator who asks. One out of
-//! service is found by its id, with all that is stored of it; the fleet's lists are without it.
+//! Invariants:
+//!
+//! - A vessel is found only together with its operator.
+//! - A vessel out of service is found by its id, with all its records. The fleet's lists leave it
+//!   out.
 
-mod amendment;
 mod imo;
-mod service;
 mod store;
 
-pub use service::ServiceChanged;
-pub use store::{find_row, is_in_service, must_be_in_fleet, names};
+pub use store::{VesselRow, find_row, is_in_service, must_be_in_fleet, names};
+pub(crate) use store::{insert, list, lock, set_out_of_service, update};
 
-use crate::alerts::{self, OpenCount};
-use crate::compasses::{self, Compass};
-use crate::deviation::Worst;
-use crate::models::{self, ModelSummary, StoredModel};
-use amendment::{Amendment, AmendmentSchema};
-use axum::extract::{FromRef, State};
-use axum::http::StatusCode;
-use binnacle_platform::access::{Reader, Writer};
-use binnacle_platform::app::App;
-use binnacle_platform::audit::RequestContext;
-use binnacle_platform::error::{Error, Problem, Result};
-use binnacle_platform::http::{Id, Json, Page, Params, Valid, optional_text, text};
-use binnacle_platform::idempotency::{self, Key};
-use binnacle_platform::ids::{OperatorId, VesselId};
-use binnacle_platform::severity::Severity;
+use binnacle_platform::error::{Error, Result};
+use binnacle_platform::http::{optional_text, text};
 use binnacle_platform::time::Time;
 use serde::{Deserialize, Serialize};
-use utoipa::{IntoParams, ToSchema};
-use utoipa_axum::router::OpenApiRouter;
-use utoipa_axum::routes;
-
-/// The routes of this part.
-pub fn router<S>() -> OpenApiRouter<S>
-where
-    App: FromRef<S>,
-    S: Clone + Send + Sync + 'static,
-{
-    OpenApiRouter::new()
-        .routes(routes!(list_vessels, create_vessel))
-        .routes(routes!(find_vessel, amend_vessel))
-}
-
-/// A vessel, and how its compass stands.
-#[derive(Debug, Serialize, ToSchema)]
-pub struct Vessel {
-    /// The vessel's id.
-    pub id: VesselId,
-    /// Its name.
-    pub name: String,
-    /// Its IMO number, seven digits.
-    #[schema(required)]
-    pub imo_number: Option<String>,
-    /// Its call sign.
-    #[schema(required)]
-    pub call_sign: Option<String>,
-    /// Its flag state.
-    #[schema(required)]
-    pub flag: Option<String>,
-    /// State of its degaussing coils, in words.
-    #[schema(required)]
-    pub degaussing: Option<String>,
-    /// Time at which it was entered.
-    pub created_at: Time,
-    /// Time from which it is out of service.
-    #[schema(required)]
-    pub out_of_service_at: Option<Time>,
-    /// Time of its last batch.
-    #[schema(required)]
-    pub last_upload_at: Option<Time>,
-    /// Place of its latest sample.
-    #[schema(required)]
-    pub last_position: Option<LastPosition>,
-    /// Its compasses, in the order in which they were entered.
-    pub compasses: Vec<Compass>,
-    /// The current model of its first compass that has one.
-    #[schema(required)]
-    pub model: Option<ModelSummary>,
-    /// The heading with the greatest deviation by that model, at the last position.
-    #[schema(required)]
-    pub worst: Option<Worst>,
-    /// Alerts that nobody has acknowledged.
-    pub open_alerts: u32,
-    /// Its worst alert that is not cleared.
-    #[schema(required)]
-    pub worst_alert: Option<Severity>,
-}
+use utoipa::ToSchema;
 
 /// Last known position of a vessel.
 #[derive(Clone, Copy, Debug, Serialize, ToSchema)]
@@ -118,152 +48,21 @@ pub struct NewVessel {
     pub degaussing: Option<String>,
 }
 
-/// A page of vessels.
-#[derive(Serialize, ToSchema)]
-pub struct VesselList {
-    /// In the order in which they were entered.
-    pub items: Vec<Vessel>,
-    /// `after` of the next page.
-    #[schema(required)]
-    pub next: Option<String>,
-}
-
-/// Selection of vessels.
-#[derive(Deserialize, IntoParams)]
-#[into_params(parameter_in = Query)]
-struct Which {
-    /// Those in service, or those out of it; those in service if not said.
-    in_service: Option<bool>,
-}
-
-/// List the fleet
-#[utoipa::path(get, path = "/vessels", tag = "fleet", params(Which, Page),
-    responses((status = 200, body = VesselList), (status = 401, body = Problem)))]
-async fn list_vessels(
-    State(app): State<App>,
-    reader: Reader,
-    Params(which): Params<Which>,
-    page: Page,
-) -> Result<Json<VesselList>> {
-    let (in_service, after) = (which.in_service.unwrap_or(true), page.after_id()?);
-    let found = store::list(&app.db, reader.operator, in_service, after, page.fetch()).await?;
-    let listed = page.cut(found, |row| row.id.to_string());
-    let (Some(first), Some(last)) = (listed.items.first(), listed.items.last()) else {
-        return Ok(Json(VesselList {
-            items: Vec::new(),
-            next: None,
-        }));
-    };
-    let (operator, first, last) = (reader.operator, first.id, last.id);
-    let compasses = compasses::of_fleet(&app.db, operator, first, last).await?;
-    let models = models::current_of_fleet(&app.db, operator, first, last).await?;
-    let standing = alerts::count_open(&app.db, operator, first, last).await?;
-    let items = listed
-        .items
-        .into_iter()
-        .map(|row| row.with(&compasses, &models, &standing))
-        .collect();
-    Ok(Json(VesselList {
-        items,
-        next: listed.next,
-    }))
-}
-
-/// Enter a vessel
-///
-/// It comes with one compass, its standard compass.
-#[utoipa::path(post, path = "/vessels", tag = "fleet", params(Key), request_body = NewVessel,
-    responses((status = 201, body = Vessel), (status = 401, body = Problem),
-              (status = 403, body = Problem), (status = 422, body = Problem)))]
-async fn create_vessel(
-    State(app): State<App>,
-    request: RequestContext,
-    writer: Writer,
-    key: Key,
-    Valid(new): Valid<NewVessel>,
-) -> Result<(StatusCode, Json<Vessel>)> {
-    let request_hash = idempotency::request_hash("vessel", &new)?;
-    let new = new.checked()?;
-    let now = app.clock.now().into();
-    let mut tx = request.begin().await?;
-    let wanted = VesselId::new();
-    let id = key
-        .once(&mut tx, writer.operator, &request_hash, wanted.0, now)
-        .await?;
-    if id == wanted.0 {
-        request.concerns_vessel(wanted, None);
-        store::insert(&mut tx, writer.operator, wanted, &new, now).await?;
-        compasses::insert_standard(&mut tx, wanted, now).await?;
-    }
-    tx.commit().await?;
-    let vessel = assemble(&app, writer.operator, VesselId(id)).await?;
-    Ok((StatusCode::CREATED, Json(vessel)))
-}
-
-/// Find a vessel
-#[utoipa::path(get, path = "/vessels/{id}", tag = "fleet", params(("id" = VesselId, Path)),
-    responses((status = 200, body = Vessel), (status = 401, body = Problem),
-              (status = 404, body = Problem)))]
-async fn find_vessel(
-    State(app): State<App>,
-    reader: Reader,
-    Id(id): Id<VesselId>,
-) -> Result<Json<Vessel>> {
-    Ok(Json(assemble(&app, reader.operator, id).await?))
-}
-
-/// Amend what is written of a vessel
-///
-/// What is left out stays as it is; null takes a value away. Out of service goes only a vessel
-/// none of whose work orders is under way.
-#[utoipa::path(patch, path = "/vessels/{id}", tag = "fleet", params(("id" = VesselId, Path)),
-    request_body = AmendmentSchema,
-    responses((status = 200, body = Vessel), (status = 401, body = Problem),
-              (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "A work order of hers is under way", body = Problem),
-              (status = 422, body = Problem)))]
-async fn amend_vessel(
-    State(app): State<App>,
-    request: RequestContext,
-    writer: Writer,
-    Id(id): Id<VesselId>,
-    Valid(amendment): Valid<Amendment>,
-) -> Result<Json<Vessel>> {
-    let now = app.clock.now().into();
-    let mut tx = request.begin().await?;
-    let vessel = store::lock(&mut tx, writer.operator, id).await?;
-    let events_out = match amendment.in_service {
-        Some(in_service) => {
-            service::set(&mut tx, writer.operator, &vessel, in_service, now).await?
-        }
-        None => Vec::new(),
-    };
-    store::update(&mut tx, id, &amendment.applied_to(vessel)?).await?;
-    tx.commit().await?;
-    app.work.notify_one();
-    for event in events_out {
-        app.publish(event);
-    }
-    Ok(Json(assemble(&app, writer.operator, id).await?))
-}
-
-async fn assemble(app: &App, operator: OperatorId, id: VesselId) -> Result<Vessel> {
-    let row = must_be_in_fleet(&app.db, operator, id).await?;
-    let compasses = compasses::of_vessel(&app.db, id).await?;
-    let models = models::current_of_vessel(&app.db, id).await?;
-    let standing = alerts::count_open(&app.db, operator, id, id).await?;
-    Ok(row.with(&compasses, &models, &standing))
-}
-
 impl NewVessel {
-    fn checked(self) -> Result<NewVessel> {
+    /// Returns the vessel with its texts trimmed.
+    ///
+    /// # Errors
+    /// Fails when a text is empty or too long, or the IMO number is wrong.
+    pub(crate) fn checked(self) -> Result<NewVessel> {
         let imo_number = optional_text("imo_number", self.imo_number.as_deref())?;
         if let Some(number) = &imo_number
             && !imo::is_valid(number)
         {
             return Err(Error::Invalid {
                 field: "imo_number",
-                detail: format!("{number} is not an IMO number: seven digits, the last a check"),
+                detail: format!(
+                    "{number} is not an IMO number: seven digits, the last one a check digit"
+                ),
             });
         }
         Ok(NewVessel {
@@ -273,41 +72,5 @@ impl NewVessel {
             flag: optional_text("flag", self.flag.as_deref())?,
             degaussing: optional_text("degaussing", self.degaussing.as_deref())?,
         })
-    }
-}
-
-impl store::Row {
-    /// Puts a vessel together from all compasses, current models and counts of
-    /// alerts at hand.
-    fn with(self, compasses: &[Compass], models: &[StoredModel], standing: &[OpenCount]) -> Vessel {
-        let hers = standing.iter().filter(|alerts| alerts.vessel_id == self.id);
-        let (open_alerts, worst_alert) = alerts::summarize(hers);
-        let compasses: Vec<Compass> = compasses
-            .iter()
-            .filter(|compass| compass.vessel_id == self.id)
-            .cloned()
-            .collect();
-        let model = compasses.iter().find_map(|compass| {
-            models
-                .iter()
-                .find(|model| model.vessel_id == self.id && model.compass_id == compass.id)
-        });
-        Vessel {
-            last_position: self.last_position(),
-            id: self.id,
-            name: self.name,
-            imo_number: self.imo_number,
-            call_sign: self.call_sign,
-            flag: self.flag,
-            degaussing: self.degaussing,
-            created_at: self.created_at,
-            out_of_service_at: self.out_of_service_at,
-            last_upload_at: self.last_upload_at,
-            model: model.map(StoredModel::summary),
-            worst: model.and_then(StoredModel::worst),
-            compasses,
-            open_alerts,
-            worst_alert,
-        }
     }
 }

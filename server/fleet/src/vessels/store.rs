@@ -9,7 +9,7 @@ use uuid::Uuid;
 
 /// A vessel's own columns.
 #[derive(Clone, Debug, sqlx::FromRow)]
-pub struct Row {
+pub struct VesselRow {
     /// The vessel's id.
     pub id: VesselId,
     /// Its name.
@@ -36,7 +36,7 @@ pub struct Row {
     pub out_of_service_at: Option<Time>,
 }
 
-impl Row {
+impl VesselRow {
     /// Returns the place and time of its latest sample.
     pub fn last_position(&self) -> Option<LastPosition> {
         Some(LastPosition {
@@ -47,16 +47,16 @@ impl Row {
     }
 }
 
-pub(super) async fn list(
+pub(crate) async fn list(
     db: &Db,
     operator: OperatorId,
     in_service: bool,
     after: Option<Uuid>,
     limit: i64,
-) -> Result<Vec<Row>> {
+) -> Result<Vec<VesselRow>> {
     rows!(
         db,
-        Row,
+        VesselRow,
         "SELECT id, name, imo_number, call_sign, flag, degaussing, created_at,
                 last_upload_at, last_sample_at, last_lat, last_lon, out_of_service_at
          FROM vessels
@@ -70,11 +70,11 @@ pub(super) async fn list(
     )
 }
 
-/// A vessel of the operator's; of nobody else's.
-pub async fn find_row(db: &Db, operator: OperatorId, id: VesselId) -> Result<Option<Row>> {
+/// Finds a vessel of the operator.
+pub async fn find_row(db: &Db, operator: OperatorId, id: VesselId) -> Result<Option<VesselRow>> {
     row!(
         db,
-        Row,
+        VesselRow,
         "SELECT id, name, imo_number, call_sign, flag, degaussing, created_at,
                 last_upload_at, last_sample_at, last_lat, last_lon, out_of_service_at
          FROM vessels
@@ -89,13 +89,17 @@ pub async fn find_row(db: &Db, operator: OperatorId, id: VesselId) -> Result<Opt
 ///
 /// # Errors
 /// [`Error::NotFound`] when it does not exist or is another operator's.
-pub async fn must_be_in_fleet(db: &Db, operator: OperatorId, id: VesselId) -> error::Result<Row> {
+pub async fn must_be_in_fleet(
+    db: &Db,
+    operator: OperatorId,
+    id: VesselId,
+) -> error::Result<VesselRow> {
     find_row(db, operator, id)
         .await?
         .ok_or(Error::NotFound("vessel"))
 }
 
-/// The fleet's vessels, with their names and IMO numbers.
+/// Lists the fleet's vessels, with their names and IMO numbers.
 pub async fn names(
     db: &Db,
     operator: OperatorId,
@@ -108,7 +112,7 @@ pub async fn names(
     )
 }
 
-pub(super) async fn insert(
+pub(crate) async fn insert(
     tx: &mut Tx,
     operator: OperatorId,
     id: VesselId,
@@ -132,14 +136,18 @@ pub(super) async fn insert(
     Ok(())
 }
 
-/// The vessel, to be changed: others who would change it wait.
+/// Locks a vessel for a change, and returns it.
 ///
 /// # Errors
 /// [`Error::NotFound`] when it does not exist or is another operator's.
-pub(super) async fn lock(tx: &mut Tx, operator: OperatorId, id: VesselId) -> error::Result<Row> {
+pub(crate) async fn lock(
+    tx: &mut Tx,
+    operator: OperatorId,
+    id: VesselId,
+) -> error::Result<VesselRow> {
     let found = row!(
         in tx,
-        Row,
+        VesselRow,
         "UPDATE vessels SET name = name
          WHERE id = $2 AND operator_id = $1
          RETURNING id, name, imo_number, call_sign, flag, degaussing, created_at,
@@ -150,8 +158,8 @@ pub(super) async fn lock(tx: &mut Tx, operator: OperatorId, id: VesselId) -> err
     found.ok_or(Error::NotFound("vessel"))
 }
 
-/// Writes a vessel's particulars anew.
-pub(super) async fn update(tx: &mut Tx, id: VesselId, amended: &NewVessel) -> Result<()> {
+/// Overwrites a vessel's particulars.
+pub(crate) async fn update(tx: &mut Tx, id: VesselId, amended: &NewVessel) -> Result<()> {
     execute!(
         tx,
         "UPDATE vessels SET name = $2, imo_number = $3, call_sign = $4, flag = $5, degaussing = $6
@@ -167,7 +175,7 @@ pub(super) async fn update(tx: &mut Tx, id: VesselId, amended: &NewVessel) -> Re
 }
 
 /// Sets or clears the time from which a vessel is out of service.
-pub(super) async fn set_out_of_service(
+pub(crate) async fn set_out_of_service(
     tx: &mut Tx,
     id: VesselId,
     since: Option<Time>,

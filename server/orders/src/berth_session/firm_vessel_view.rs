@@ -40,7 +40,7 @@ async fn find_model(
 ) -> Result<Json<ModelVersion>> {
     let summary = open(&app, &reader, id, "model").await?;
     let model = models::must_have(&app, summary.vessel_id, summary.compass_id).await?;
-    Ok(Json(model.version()))
+    Ok(Json(model.into_version()))
 }
 
 /// See the binnacle of a work order's compass
@@ -57,7 +57,9 @@ async fn find_order_binnacle(
 ) -> Result<Json<BinnacleRevision>> {
     let summary = open(&app, &reader, id, "binnacle").await?;
     let found = binnacles::current(&app.db, summary.vessel_id, summary.compass_id).await?;
-    Ok(Json(found.ok_or(Error::NotFound("binnacle"))?.shown()))
+    Ok(Json(
+        found.ok_or(Error::NotFound("binnacle"))?.into_revision(),
+    ))
 }
 
 /// Returns the order, if the reader may read this of its compass now.

@@ -173,7 +173,7 @@ pub(crate) async fn write_logbook(
 ) -> Result<()> {
     let summary = &change.stored.summary;
     let note = format!("work order {}", summary.id);
-    let written = logbook::Adjusted {
+    let written = logbook::AdjustmentEntry {
         id,
         vessel: summary.vessel_id,
         compass: summary.compass_id,

@@ -168,7 +168,7 @@ async fn require_suitable_firm(
     if let Some(why) = terms.closed_at(visit.at, named_port(visit.port)) {
         return wrong(why, "time");
     }
-    let (flag, licence) = particulars::asked_of_adjusters(tx, visit.vessel).await?;
+    let (flag, licence) = particulars::adjuster_requirements(tx, visit.vessel).await?;
     match terms.not_accepted(flag, licence.as_deref()) {
         Some(why) => wrong(why, "firm"),
         None => Ok(()),

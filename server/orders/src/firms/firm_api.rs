@@ -67,7 +67,7 @@ async fn create_firm(
     key: Key,
     Valid(new): Valid<NewCompany>,
 ) -> Result<(StatusCode, Json<Firm>)> {
-    let admin = admin.who_may_write()?;
+    let admin = admin.must_be_writer()?;
     let request_hash = idempotency::request_hash("firm", &new)?;
     let name = text("name", &new.name)?;
     let now = app.clock.now().into();
@@ -114,7 +114,7 @@ async fn engage_firm(
     admin: Platform,
     Id((operator, firm)): Id<(OperatorId, FirmId)>,
 ) -> Result<StatusCode> {
-    admin.who_may_write()?;
+    admin.must_be_writer()?;
     let mut tx = request.begin().await?;
     if !operators::exists(&mut tx, operator).await? {
         return Err(Error::NotFound("operator"));
@@ -141,7 +141,7 @@ async fn dismiss_firm(
     admin: Platform,
     Id((operator, firm)): Id<(OperatorId, FirmId)>,
 ) -> Result<StatusCode> {
-    admin.who_may_write()?;
+    admin.must_be_writer()?;
     let mut tx = request.begin().await?;
     let orders = store::count_open_orders(&mut tx, operator, firm).await?;
     if !store::dismiss(&mut tx, operator, firm).await? {

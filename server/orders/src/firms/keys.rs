@@ -81,8 +81,8 @@ impl NewFirmKey {
     fn checked(self, firm: FirmId) -> Result<NewFirmKey> {
         let key = ed25519::key(&self.public_key)?;
         let said = format!("binnacle firm key {firm}");
-        let proof = ("proof", self.proof.as_str());
-        ed25519::must_be_signed(&key, proof, said.as_bytes(), &format!("{said:?}"))?;
+        let called = format!("{said:?}");
+        ed25519::must_be_signed(&key, "proof", &self.proof, said.as_bytes(), &called)?;
         Ok(NewFirmKey {
             name: text("name", &self.name)?,
             public_key: self.public_key.to_ascii_lowercase(),

@@ -76,8 +76,8 @@ pub(crate) async fn publish_changes(
         at: now,
     };
     tx.publish(&published).await?;
-    let order = (summary.vessel_id, summary.id);
-    let mut live = vec![events::insert_of_order(tx, order, None, now).await?];
+    let (vessel, order) = (summary.vessel_id, summary.id);
+    let mut live = vec![events::insert_of_order(tx, vessel, order, None, now).await?];
     // In the order of their ids, so that no two transactions wait for each other.
     for firm in firms(&before.offers, &offers) {
         let offer_before = before.offer_state(firm);
@@ -99,7 +99,7 @@ pub(crate) async fn publish_changes(
             at: now,
         };
         tx.publish(&published).await?;
-        live.push(events::insert_of_order(tx, order, Some(firm), now).await?);
+        live.push(events::insert_of_order(tx, vessel, order, Some(firm), now).await?);
     }
     Ok(live)
 }

@@ -3,7 +3,7 @@
 use crate::work_orders::store;
 use binnacle_fleet::binnacles::BinnacleAmended;
 use binnacle_fleet::compasses;
-use binnacle_fleet::vessels::ServiceChanged;
+use binnacle_fleet::vessel_api::ServiceChanged;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::{Error, Result};
 use futures_util::future::BoxFuture;

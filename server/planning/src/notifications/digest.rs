@@ -2,7 +2,7 @@
 
 use super::Notification;
 use binnacle_platform::error::Result;
-use binnacle_platform::mail::{Letter, Told, header, one_line, wrapped};
+use binnacle_platform::mail::{Letter, LetterItem, header, one_line, wrapped};
 
 /// Notifications that a letter gives in full; further ones get a line each up to `MOST_LISTED`,
 /// and the rest are only counted.
@@ -16,9 +16,9 @@ pub(super) fn letter_of(told: &[Notification]) -> Option<Result<String>> {
         [one] => Letter {
             subject: header(&one.subject),
             text: one.text.clone(),
-            told: Vec::new(),
+            items: Vec::new(),
             path: one.path.clone(),
-            report: None,
+            files: None,
             about: one.alert_id.map(|id| id.0).or(one.order_id.map(|id| id.0)),
         },
         all => together(all),
@@ -33,7 +33,7 @@ fn together(all: &[Notification]) -> Letter {
         format!("{subject} ({})", one.created_at.to_the_minute())
     };
     let last_first = || all.iter().rev();
-    let told = last_first().take(MOST_IN_FULL).map(|one| Told {
+    let told = last_first().take(MOST_IN_FULL).map(|one| LetterItem {
         head: head(one),
         text: one.text.clone(),
         path: one.path.clone(),
@@ -53,9 +53,9 @@ fn together(all: &[Notification]) -> Letter {
     Letter {
         subject: format!("{first}{} notifications from Binnacle", all.len()),
         text: lines.join("\n"),
-        told: told.collect(),
+        items: told.collect(),
         path: "/notifications".to_owned(),
         about: None,
-        report: None,
+        files: None,
     }
 }

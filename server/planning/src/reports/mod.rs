@@ -6,10 +6,12 @@
 mod csv;
 mod gather;
 mod layout;
+mod mailing_list;
 mod monthly;
 mod report;
 mod settings;
 
+pub use mailing_list::MAILING_LIST;
 pub use monthly::{look, watch};
 
 use axum::extract::{FromRef, State};

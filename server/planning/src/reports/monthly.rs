@@ -5,6 +5,7 @@
 //! last month's when it is back.
 
 use super::gather::gather;
+use super::mailing_list;
 use super::report::Report;
 use super::{Table, csv};
 use binnacle_compass::time::Timestamp;
@@ -12,7 +13,6 @@ use binnacle_platform::app::App;
 use binnacle_platform::db::{Tx, execute, row, rows};
 use binnacle_platform::error::Result;
 use binnacle_platform::ids::{DeliveryId, OperatorId, RecipientId};
-use binnacle_platform::mail;
 use binnacle_platform::outbox::{self, Kind, Message};
 use binnacle_platform::time::Time;
 use chrono::{DateTime, Datelike, Days, NaiveDate, NaiveTime, Timelike, Utc};
@@ -74,7 +74,7 @@ async fn make(app: &App, operator: OperatorId, month: NaiveDate, ended: Time) ->
     let last = month_after(month) - Days::new(1);
     let before = last_made(app, operator, month).await?;
     let report = gather(app, operator, (month, last), before).await?;
-    let letter = mail::monthly_letter(&report.words(), operator, &name(month));
+    let letter = mailing_list::letter(&report.words(), operator, &name(month));
     let tables = [Table::Due, Table::Deviation, Table::Jobs];
     let [due, deviation, jobs] = tables.map(|table| csv::table(&report, table));
     let (due, deviation, jobs) = (due?, deviation?, jobs?);

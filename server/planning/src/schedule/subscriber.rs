@@ -2,7 +2,7 @@
 
 use super::store;
 use binnacle_fleet::particulars::ParticularsChanged;
-use binnacle_fleet::vessels::ServiceChanged;
+use binnacle_fleet::vessel_api::ServiceChanged;
 use binnacle_orders::firms::TermsChanged;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;

@@ -42,7 +42,7 @@ pub async fn log_request(State(app): State<App>, request: Request, next: Next) -
     let request = Request::from_parts(parts, body);
     let mut response = next.run(request).instrument(span).await;
     match trail.finish(&app.db, response.status()).await {
-        // A response over a satellite link carries no header that it does not need.
+        // Responses over a satellite link carry no unnecessary header.
         Ok(true) if !trail.is_of_agent() => {
             if let Ok(id) = HeaderValue::try_from(trail.id.to_string()) {
                 response.headers_mut().insert(REQUEST_ID, id);

@@ -12,16 +12,14 @@
 //!
 //! Batches of samples are excluded: they are a log themselves.
 
-mod csv;
 mod middleware;
-mod query;
 mod request;
 mod store;
 mod trail;
 
 pub use middleware::{leave_out, log_request};
-pub use query::router;
 pub use request::RequestContext;
+pub(crate) use store::{Selection, list};
 pub use trail::{Actor, FindVessel};
 
 use crate::app::App;
@@ -39,9 +37,9 @@ const FORGET_EVERY: Duration = Duration::from_hours(1);
 /// Action that was done or tried.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 #[schema(as = AuditLine)]
-struct Line {
+pub(crate) struct Line {
     /// Request id, as returned in `X-Request-Id`.
-    id: Uuid,
+    pub(crate) id: Uuid,
     /// Time of the request.
     at: Time,
     /// Kind of actor.
@@ -84,7 +82,7 @@ struct Line {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
-enum ActorKind {
+pub(crate) enum ActorKind {
     /// Person who had signed in.
     User,
     /// Program with a person's API token.
@@ -98,21 +96,21 @@ enum ActorKind {
 /// Filter of audit lines.
 #[derive(Clone, Debug, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-struct Filter {
+pub(crate) struct Filter {
     /// Id of a user or an agent.
-    actor: Option<Uuid>,
+    pub(crate) actor: Option<Uuid>,
     /// Id of a vessel.
-    vessel: Option<VesselId>,
+    pub(crate) vessel: Option<VesselId>,
     /// Id of a work order.
-    order: Option<OrderId>,
+    pub(crate) order: Option<OrderId>,
     /// Route, like `/api/v1/work-orders/{id}/model`.
-    route: Option<String>,
+    pub(crate) route: Option<String>,
     /// First instant, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime)]
-    from: Option<String>,
+    pub(crate) from: Option<String>,
     /// Instant after the last, RFC 3339.
     #[param(value_type = Option<String>, format = DateTime)]
-    to: Option<String>,
+    pub(crate) to: Option<String>,
 }
 
 /// Removes expired lines and returns their number.

@@ -7,12 +7,12 @@ use crate::time::Time;
 use uuid::Uuid;
 
 /// Filter and tenant of the lines to list; all tenants if that is `None`.
-pub(super) struct Selection {
-    pub(super) operator: Option<OperatorId>,
-    pub(super) firm: Option<FirmId>,
-    pub(super) filter: Filter,
-    pub(super) from: Option<Time>,
-    pub(super) to: Option<Time>,
+pub(crate) struct Selection {
+    pub(crate) operator: Option<OperatorId>,
+    pub(crate) firm: Option<FirmId>,
+    pub(crate) filter: Filter,
+    pub(crate) from: Option<Time>,
+    pub(crate) to: Option<Time>,
 }
 
 pub(super) async fn insert(tx: &mut Tx, line: &Line) -> Result<()> {
@@ -42,7 +42,7 @@ pub(super) async fn insert(tx: &mut Tx, line: &Line) -> Result<()> {
 }
 
 /// Records the response status of a request whose line exists.
-pub(super) async fn answered(db: &Db, id: Uuid, status: i64) -> Result<()> {
+pub(super) async fn set_status(db: &Db, id: Uuid, status: i64) -> Result<()> {
     let mut tx = db.begin().await?;
     execute!(
         &mut tx,
@@ -54,7 +54,7 @@ pub(super) async fn answered(db: &Db, id: Uuid, status: i64) -> Result<()> {
 }
 
 /// Lists lines newest first, from before an id.
-pub(super) async fn list(
+pub(crate) async fn list(
     db: &Db,
     selection: &Selection,
     before: Option<Uuid>,

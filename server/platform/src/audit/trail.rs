@@ -143,7 +143,7 @@ impl AuditTrail {
         let code = i64::from(status.as_u16());
         if facts.is_written {
             // The line and the change are stored, so the response stands.
-            if let Err(cause) = store::answered(db, self.id, code).await {
+            if let Err(cause) = store::set_status(db, self.id, code).await {
                 error!(error = ?cause, id = %self.id, "a status is missing in the audit log");
             }
             return Ok(true);

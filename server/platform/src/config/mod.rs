@@ -1,7 +1,7 @@
 //! Server settings: flags, or `BINNACLE_*` variables.
 
+use crate::outbound::Reach;
 use crate::tls::Certificate;
-use crate::webhooks::Reach;
 use clap::Args;
 use sha2::{Digest, Sha256};
 use std::net::SocketAddr;
@@ -101,7 +101,7 @@ fn metrics_token(text: &str) -> Result<MetricsToken, String> {
         return Ok(MetricsToken(text.to_owned()));
     }
     Err(format!(
-        "has {SHORTEST_TOKEN} letters, digits and signs of ASCII at least, and no blanks"
+        "must have at least {SHORTEST_TOKEN} printable ASCII characters and no blanks"
     ))
 }
 
@@ -220,7 +220,8 @@ impl Oidc {
     }
 }
 
-/// Parses the provider's address: its responses must not be altered on the way.
+/// Parses the provider's address. It must be https, so that responses cannot be altered in
+/// transit.
 fn issuer(text: &str) -> Result<String, String> {
     let url = reqwest::Url::parse(text).map_err(|error| error.to_string())?;
     let host = url.host_str().unwrap_or_default();
@@ -228,6 +229,6 @@ fn issuer(text: &str) -> Result<String, String> {
     match url.scheme() {
         "https" => Ok(text.to_owned()),
         "http" if is_here => Ok(text.to_owned()),
-        _ => Err("must be https, unless it is this machine".to_owned()),
+        _ => Err("must be https, unless it is on this machine".to_owned()),
     }
 }

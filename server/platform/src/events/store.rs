@@ -1,6 +1,5 @@
 //! Events in the database, kept for a day.
 
-use super::live::CHANNEL;
 use super::{Event, EventStored, Kind};
 use crate::db::{Connection, Db, Result, Tx, execute, row, rows};
 use crate::error;
@@ -8,14 +7,16 @@ use crate::ids::{EventId, FirmId, OperatorId, OrderId, VesselId};
 use crate::tenants::Tenant;
 use crate::time::Time;
 
+/// Channel of PostgreSQL's NOTIFY.
+pub(crate) const CHANNEL: &str = "binnacle_events";
 const KEPT_FOR_S: f64 = 86_400.0;
-/// Each process has its own clock, and a transaction may be seen late: how far to
-/// look back before the last event seen.
+/// Overlap before the last event seen, seconds: each process has its own clock, and a
+/// transaction may become visible late.
 const OVERLAP_S: f64 = 10.0;
 /// Maximum number of events sent after a pause; beyond that, a dashboard should reload its data.
-const MOST_MISSED: i64 = 1000;
+const MAX_MISSED: i64 = 1000;
 
-/// Stores an event, to be made known with the transaction's commit.
+/// Stores an event, which is announced when the transaction commits.
 pub async fn insert(
     tx: &mut Tx,
     vessel_id: VesselId,
@@ -28,7 +29,8 @@ pub async fn insert(
 /// Stores an event of a work order, for its operator or for one firm.
 pub async fn insert_of_order(
     tx: &mut Tx,
-    (vessel_id, order): (VesselId, OrderId),
+    vessel_id: VesselId,
+    order: OrderId,
     firm: Option<FirmId>,
     now: Time,
 ) -> error::Result<Event> {
@@ -83,7 +85,7 @@ async fn write(
 
 /// Returns the events since the given one. If that event is already deleted, returns all
 /// events that are left.
-pub(super) async fn since(db: &Db, tenant: Tenant, last: EventId) -> Result<Vec<Event>> {
+pub(crate) async fn since(db: &Db, tenant: Tenant, last: EventId) -> Result<Vec<Event>> {
     rows!(
         db,
         Event,
@@ -98,12 +100,12 @@ pub(super) async fn since(db: &Db, tenant: Tenant, last: EventId) -> Result<Vec<
         tenant.firm(),
         last,
         (OVERLAP_S * 1e6) as i64,
-        MOST_MISSED
+        MAX_MISSED
     )
 }
 
 /// Returns the events of all tenants since a time, with a short overlap before it.
-pub(super) async fn all_since(db: &Db, from: Time) -> Result<Vec<Event>> {
+pub(crate) async fn all_since(db: &Db, from: Time) -> Result<Vec<Event>> {
     rows!(
         db,
         Event,
@@ -112,11 +114,11 @@ pub(super) async fn all_since(db: &Db, from: Time) -> Result<Vec<Event>> {
          ORDER BY id
          LIMIT $2",
         Time(from.0.plus_seconds(-OVERLAP_S)),
-        MOST_MISSED
+        MAX_MISSED
     )
 }
 
-/// Forgets what nobody will ask for any more.
+/// Deletes expired events.
 pub async fn prune(db: &Db, now: Time) -> Result<()> {
     let mut tx = db.begin().await?;
     execute!(

@@ -1,19 +1,19 @@
-//! A value in a request to change something: left as it is, set, or taken away.
+//! Optional value in a change request: kept, set or removed.
 
 use serde::{Deserialize, Deserializer};
 
-/// A change to one value: an omitted field keeps it, null removes it.
+/// Change to one value: an omitted field keeps it, null removes it.
 #[derive(Debug, Default)]
 pub enum Amended<T> {
-    /// As it is.
+    /// Kept.
     #[default]
     Left,
-    /// To this, or to none.
+    /// Set to this value, or removed.
     Set(Option<T>),
 }
 
 impl<T> Amended<T> {
-    /// The value, over what it was.
+    /// Returns the new value, given the old one.
     pub fn over(self, was: Option<T>) -> Option<T> {
         match self {
             Amended::Left => was,
@@ -22,10 +22,10 @@ impl<T> Amended<T> {
     }
 }
 
-/// Reads a value that can be changed and not taken away: null is refused.
+/// Deserializes a value that can be changed but not removed: null is rejected.
 ///
 /// # Errors
-/// When it is no such value.
+/// When the value is null or invalid.
 pub fn never_null<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {

@@ -1,8 +1,9 @@
-//! Refuses changes that another site's page asks a browser for.
+//! Protection against cross-site requests: changes requested by pages of other sites are
+//! refused.
 //!
-//! Invariants: no change is made for a request that says that it comes from another
-//! site, whatever cookie it carries. That is besides the cookie's own `SameSite=Strict` and
-//! the header that only a page of ours sends. Programs say neither, and bring a token.
+//! Invariants: a request that declares another site as its origin changes nothing, whatever
+//! cookie it carries. This is in addition to the cookie's `SameSite=Strict` and the header that
+//! only our own pages send. Programs declare no origin, and authenticate with a token.
 
 use crate::app::App;
 use crate::error::Error;
@@ -15,13 +16,13 @@ use axum::response::{IntoResponse, Response};
 /// Header in which a browser states the origin of a request (Fetch Metadata).
 const FETCH_SITE: &str = "sec-fetch-site";
 
-/// Refuses a change that another site asks for.
+/// Refuses a change that another site requests.
 pub async fn refuse(State(app): State<App>, request: Request, next: Next) -> Response {
     let public_url = app.config.mail.public_url.as_deref();
     if request.method().is_safe() || is_of_our_own(request.headers(), public_url) {
         return next.run(request).await;
     }
-    Error::Forbidden("a change cannot be asked for from another site's page").into_response()
+    Error::Forbidden("a change cannot be requested from another site's page").into_response()
 }
 
 /// Checks that a request comes from one of our own pages, or from no page at all.

@@ -1,10 +1,10 @@
-//! Files that are made for people, and their names.
+//! File responses, and safe file names.
 
 use axum::body::Body;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
 
-/// A file that a browser shows, and saves under the name given.
+/// Returns a response with a file that a browser shows, and saves under the given name.
 pub fn file(kind: &'static str, name: &str, body: impl Into<Body>) -> Response {
     let headers = [
         (CONTENT_TYPE, kind.to_owned()),
@@ -13,8 +13,8 @@ pub fn file(kind: &'static str, name: &str, body: impl Into<Body>) -> Response {
     (headers, body.into()).into_response()
 }
 
-/// A name of words in small letters and figures with hyphens between: safe in a header
-/// and on any disk. What a word has beyond ASCII is left out.
+/// Returns a file name of lower-case ASCII letters and digits, joined by hyphens. It is safe in
+/// a header and on any disk. Other characters are dropped.
 pub fn file_name(words: &[&str], ending: &str) -> String {
     let small = words.join(" ").to_ascii_lowercase();
     let parts: Vec<&str> = small

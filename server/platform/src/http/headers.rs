@@ -1,4 +1,4 @@
-//! The headers that tell a browser what a page of ours may do.
+//! Security headers of responses to browsers.
 
 use axum::extract::Request;
 use axum::http::header::{
@@ -8,17 +8,17 @@ use axum::http::header::{
 use axum::middleware::Next;
 use axum::response::Response;
 
-/// Nothing but from ourselves, and of that only what a page of ours is made of; charts
-/// bring styles with their elements.
+/// Content security policy: only our own resources, of the kinds that our pages use. Charts
+/// need inline styles.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
     img-src 'self' data: blob:; font-src 'self'; connect-src 'self'; manifest-src 'self'; \
     worker-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
-/// Nothing of the machine that a compass's page needs.
+/// Permissions policy: no page needs a device of the machine.
 const PERMISSIONS: &str = "camera=(), geolocation=(), microphone=(), payment=(), usb=()";
-/// For a year a browser asks this host by https only (RFC 6797).
+/// Strict transport security (RFC 6797): for a year, a browser uses only https for this host.
 const HTTPS_ONLY: &str = "max-age=31536000";
 
-/// Adds, besides, that only https will do.
+/// Adds the header that restricts browsers to https.
 pub async fn add_https_only(request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let value = HeaderValue::from_static(HTTPS_ONLY);
@@ -28,7 +28,7 @@ pub async fn add_https_only(request: Request, next: Next) -> Response {
     response
 }
 
-/// Adds them to a response that does not say otherwise.
+/// Adds the security headers that a response does not set itself.
 pub async fn add(request: Request, next: Next) -> Response {
     let is_api = request.uri().path().starts_with("/api/");
     let mut response = next.run(request).await;

@@ -1,4 +1,4 @@
-//! Reading a request so that whatever is wrong with it becomes one of our errors.
+//! Extractors that turn every malformed request into an error of the API.
 
 use crate::error::{Error, Result};
 use axum::body::{Body, Bytes};
@@ -10,15 +10,15 @@ use serde::de::DeserializeOwned;
 
 pub use axum::Json;
 
-/// Longest name or note that is taken, in characters.
+/// Longest accepted name or note, characters.
 const MAX_TEXT: usize = 200;
 
-/// A JSON body.
+/// JSON body.
 #[derive(FromRequest)]
 #[from_request(via(axum::Json), rejection(Error))]
 pub struct Valid<T>(pub T);
 
-/// A JSON body that may be left out, for the default.
+/// JSON body that may be omitted, which gives the default.
 pub struct ValidOrNone<T>(pub T);
 
 impl<S: Send + Sync, T: DeserializeOwned + Default> FromRequest<S> for ValidOrNone<T> {
@@ -33,13 +33,13 @@ impl<S: Send + Sync, T: DeserializeOwned + Default> FromRequest<S> for ValidOrNo
         if bytes.is_empty() {
             return Ok(ValidOrNone(T::default()));
         }
-        let again = Request::from_parts(parts, Body::from(bytes));
-        let Valid(value) = Valid::<Option<T>>::from_request(again, state).await?;
+        let request = Request::from_parts(parts, Body::from(bytes));
+        let Valid(value) = Valid::<Option<T>>::from_request(request, state).await?;
         Ok(ValidOrNone(value.unwrap_or_default()))
     }
 }
 
-/// The query string.
+/// Query string.
 pub struct Params<T>(pub T);
 
 impl<S: Send + Sync, T: DeserializeOwned> FromRequestParts<S> for Params<T> {
@@ -51,7 +51,7 @@ impl<S: Send + Sync, T: DeserializeOwned> FromRequestParts<S> for Params<T> {
     }
 }
 
-/// The ids in a path. One that does not parse names nothing that exists.
+/// Ids in a path. An id that does not parse gives 404: nothing has it.
 pub struct Id<T>(pub T);
 
 impl<S: Send + Sync, T: DeserializeOwned + Send> FromRequestParts<S> for Id<T> {
@@ -63,10 +63,10 @@ impl<S: Send + Sync, T: DeserializeOwned + Send> FromRequestParts<S> for Id<T> {
     }
 }
 
-/// A name, trimmed: neither empty nor long, and on one line.
+/// Returns a name, trimmed.
 ///
 /// # Errors
-/// When it is not.
+/// When it is empty, too long or not on one line.
 pub fn text(field: &'static str, value: &str) -> Result<String> {
     let value = value.trim();
     let detail = if value.is_empty() {
@@ -74,7 +74,7 @@ pub fn text(field: &'static str, value: &str) -> Result<String> {
     } else if value.chars().count() > MAX_TEXT {
         "is longer than 200 characters"
     } else if value.chars().any(is_control) {
-        "has control characters, or such as turn the direction of writing"
+        "has control characters, or characters that change the direction of writing"
     } else {
         return Ok(value.to_owned());
     };
@@ -102,7 +102,7 @@ pub fn optional_text(field: &'static str, value: Option<&str>) -> Result<Option<
     given.map(|value| text(field, value)).transpose()
 }
 
-/// A time in a query string.
+/// Parses a time of a query string.
 ///
 /// # Errors
 /// When it is not RFC 3339.
@@ -117,10 +117,10 @@ pub fn time(field: &'static str, value: Option<&str>) -> Result<Option<Timestamp
         .transpose()
 }
 
-/// A number of a query string within its range; NaN is in none.
+/// Returns a number of a query string if it is within its range; NaN never is.
 ///
 /// # Errors
-/// When it is outside.
+/// When it is outside the range.
 pub fn degrees(field: &'static str, value: f64, low: f64, high: f64) -> Result<f64> {
     if (low..=high).contains(&value) {
         return Ok(value);

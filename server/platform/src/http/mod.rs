@@ -6,6 +6,7 @@ mod file;
 pub mod headers;
 mod json;
 mod page;
+mod rejections;
 
 pub use amended::{Amended, never_null};
 pub use file::{file, file_name};

@@ -1,4 +1,4 @@
-//! Lists in pages: `?limit=&after=`, where `after` is the `next` of the page before.
+//! Pages of lists: `?limit=&after=`, where `after` is the `next` of the previous page.
 
 use crate::error::{Error, Result};
 use axum::extract::FromRequestParts;
@@ -7,22 +7,22 @@ use serde::Deserialize;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
-/// The requested part of a list.
+/// Requested part of a list.
 #[derive(Clone, Debug, Default, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct Page {
     /// Maximum number of items; 100 by default.
     #[param(minimum = 1, maximum = 10_000)]
     limit: Option<u32>,
-    /// `next` of the page before.
+    /// `next` of the previous page.
     after: Option<String>,
 }
 
-/// A page that was cut from what was found.
+/// Page of a list.
 pub struct Listed<T> {
-    /// The items on this page.
+    /// Items on this page.
     pub items: Vec<T>,
-    /// `after` of the next page.
+    /// Value of `after` for the next page.
     pub next: Option<String>,
 }
 
@@ -30,10 +30,10 @@ const DEFAULT_LIMIT: u32 = 100;
 const MAX_LIMIT: u32 = 10_000;
 
 impl Page {
-    /// The id after which the page begins.
+    /// Returns the id after which the page begins.
     ///
     /// # Errors
-    /// When the cursor is not one of ours.
+    /// When the cursor is not of this list.
     pub fn after_id(&self) -> Result<Option<Uuid>> {
         let Some(after) = &self.after else {
             return Ok(None);
@@ -42,10 +42,10 @@ impl Page {
         Ok(Some(id))
     }
 
-    /// The number after which the page begins.
+    /// Returns the number after which the page begins.
     ///
     /// # Errors
-    /// When the cursor is not one of ours.
+    /// When the cursor is not of this list.
     pub fn after_number(&self) -> Result<Option<i64>> {
         let Some(after) = &self.after else {
             return Ok(None);
@@ -54,11 +54,11 @@ impl Page {
         Ok(Some(number))
     }
 
-    /// The cursor of a list by a number that several items may share: the number,
-    /// and how many of those that have it were listed.
+    /// Returns the cursor of a list that is sorted by a number which several items may share. It
+    /// consists of the number and the count of listed items with that number.
     ///
     /// # Errors
-    /// When the cursor is none of this list's.
+    /// When the cursor is not of this list.
     pub fn after_shared(&self) -> Result<Option<(i64, usize)>> {
         let Some(after) = &self.after else {
             return Ok(None);
@@ -69,10 +69,10 @@ impl Page {
         read.map(Some).ok_or_else(|| bad_cursor(after))
     }
 
-    /// The cursor of a list by time: an item's time and its id.
+    /// Returns the cursor of a list that is sorted by time: an item's time and its id.
     ///
     /// # Errors
-    /// When the cursor is none of this list's.
+    /// When the cursor is not of this list.
     pub fn after_time(&self) -> Result<Option<(i64, Uuid)>> {
         let Some(after) = &self.after else {
             return Ok(None);
@@ -92,7 +92,7 @@ impl Page {
         self.limit() as i64 + 1
     }
 
-    /// Cuts what [`Page::fetch`] brought down to a page.
+    /// Cuts the fetched items to a page, see [`Page::fetch`].
     pub fn cut<T>(&self, mut items: Vec<T>, cursor: impl Fn(&T) -> String) -> Listed<T> {
         let more = items.len() > self.limit();
         items.truncate(self.limit());

@@ -1,4 +1,4 @@
-//! Letters about topics that rise and fall in severity, and who gets which.
+//! Letters about topics whose severity rises and falls, and their recipients.
 
 use super::letter::Letter;
 use super::store;
@@ -10,31 +10,31 @@ use crate::severity::Severity;
 use crate::time::Time;
 use uuid::Uuid;
 
-/// Something new about a topic, for those who get mail from some severity on.
+/// Announcement about a topic, for recipients with a minimum severity.
 #[derive(Clone, Debug)]
 pub struct Announcement {
-    /// The delivery's id.
+    /// Id of the delivery.
     pub id: DeliveryId,
-    /// Kind of announcement: the topic begins, continues or ends.
+    /// Kind of announcement: start, update or end of the topic.
     pub kind: Kind,
-    /// The topic: each recipient is written to when it gets worse, and when it ends.
+    /// Topic: each recipient gets a letter when it gets worse, and when it ends.
     pub topic: Uuid,
-    /// Name of what topics that follow one another have in common.
+    /// Name that successive topics have in common.
     pub series: String,
     /// Severity of the topic now.
     pub severity: Severity,
-    /// The letter.
+    /// Letter to send.
     pub letter: Letter,
 }
 
-/// Queues letters for those of an operator's recipients who want them.
+/// Queues letters for the recipients of an operator whose minimum severity is reached.
 pub async fn announce(
     tx: &mut Tx,
     operator: OperatorId,
     all: &[Announcement],
     now: Time,
 ) -> Result<()> {
-    for (recipient, least) in store::wishes(tx, operator).await? {
+    for (recipient, least) in store::list_recipients(tx, operator).await? {
         for announcement in all {
             let is_due = note(tx, recipient, least, announcement).await?;
             if is_due && !is_replaced(announcement, least, all) {
@@ -62,7 +62,7 @@ fn is_replaced(announcement: &Announcement, least: Severity, all: &[Announcement
     announcement.kind == Kind::AlertCleared && all.iter().any(is_next)
 }
 
-/// Notes what a recipient is written of a topic. Returns whether a letter is due.
+/// Notes the severity last sent to a recipient. Returns true if a letter is due.
 async fn note(
     tx: &mut Tx,
     recipient: RecipientId,
@@ -75,7 +75,7 @@ async fn note(
         Kind::AlertRaised | Kind::AlertUpdated => {
             let severity = announcement.severity;
             if severity < least {
-                // For this recipient that is its end.
+                // For this recipient the topic has ended.
                 store::forget(tx, recipient, topic).await?;
                 return Ok(written.is_some());
             }
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn an_end_is_told_where_the_alert_that_follows_it_is_not() {
+    fn an_end_is_announced_where_the_alert_that_follows_it_is_not() {
         let over = announced(Kind::AlertCleared, "one", Severity::Critical);
         let next = announced(Kind::AlertRaised, "one", Severity::Notice);
         let all = [over.clone(), next];

@@ -1,45 +1,45 @@
-//! The content of a letter: plain text, so that every mail program shows it the same.
+//! Content of a letter: plain text, which every mail program shows alike.
 
-use crate::ids::OperatorId;
+use super::mailing_list::{FileReference, MailingList};
 use crate::severity::Severity;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-/// Columns that text is wrapped to.
+/// Width of wrapped text, columns.
 const WIDTH: usize = 72;
 
-/// A letter as it waits to be sent.
+/// Letter in the outbox.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Letter {
     /// Subject line.
     pub subject: String,
     /// The text.
     pub text: String,
-    /// The single items of a letter about several things, in order.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub told: Vec<Told>,
-    /// The page to look at, below the dashboard's address.
+    /// Items of a letter about several things, in order.
+    #[serde(rename = "told", default, skip_serializing_if = "Vec::is_empty")]
+    pub items: Vec<LetterItem>,
+    /// Page of the dashboard to link to.
     pub path: String,
-    /// The alert or the order that it is about: mail programs show its letters together.
+    /// Alert or order concerned: mail programs group the letters about it.
     #[serde(alias = "alert")]
     pub about: Option<Uuid>,
-    /// The report that goes with it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub report: Option<Attached>,
+    /// Files to attach.
+    #[serde(rename = "report", default, skip_serializing_if = "Option::is_none")]
+    pub files: Option<FileReference>,
 }
 
-/// One of the things of which a letter tells.
+/// Item of a letter about several things.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Told {
-    /// In a line.
+pub struct LetterItem {
+    /// Heading, one line.
     pub head: String,
     /// The text.
     pub text: String,
-    /// The page to look at, below the dashboard's address.
+    /// Page of the dashboard to link to.
     pub path: String,
 }
 
-impl Told {
+impl LetterItem {
     fn text(&self, public_url: &str) -> String {
         let indented = |line: &str| format!("  {line}\n").trim_end().to_owned() + "\n";
         let lines: String = self.text.lines().map(indented).collect();
@@ -48,39 +48,32 @@ impl Told {
     }
 }
 
-/// A monthly report that goes with a letter.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Attached {
-    pub operator: OperatorId,
-    pub month: String,
-}
-
 /// Reason for which a recipient gets a letter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Why {
-    /// Someone is on the company's list for alerts from a severity on.
+    /// The recipient is on the company's list for alerts of a minimum severity.
     Listed(Severity),
-    /// Someone with an account chose this notification.
+    /// The recipient has an account and chose this notification.
     Person,
-    /// Someone is on the company's list for monthly reports.
-    Reports,
+    /// The recipient is on another list of the company.
+    MailingList(MailingList),
 }
 
 impl Letter {
     /// Returns the letter for a requested test.
     pub(super) fn test() -> Letter {
         Letter {
-            subject: "A test of Binnacle's mail".to_owned(),
+            subject: "Test mail from Binnacle".to_owned(),
             text: "This is a test: alerts of your fleet's compasses reach this address.\n"
                 .to_owned(),
-            told: Vec::new(),
+            items: Vec::new(),
             path: "/mail".to_owned(),
             about: None,
-            report: None,
+            files: None,
         }
     }
 
-    /// The whole text, with where to look and why the recipient gets it.
+    /// Returns the whole text, with a link and the reason why the recipient gets it.
     pub(super) fn text_for(&self, address: &str, why: Why, public_url: &str) -> String {
         let (why, page) = match why {
             Why::Listed(least) => (
@@ -91,20 +84,27 @@ impl Letter {
                 "/mail",
             ),
             Why::Person => (
-                format!("You get this because of what {address} is to be told of. You choose it:"),
+                format!(
+                    "You get this because of the notification settings of {address}. Change them:"
+                ),
                 "/settings",
             ),
-            Why::Reports => (
+            Why::MailingList(list) => (
                 format!(
-                    "You get this because {address} is on your company's list for monthly reports. \
-                     An administrator takes it off:"
+                    "You get this because {address} is on your company's list for {}. \
+                     An administrator takes it off:",
+                    list.subject
                 ),
-                "/reports",
+                list.page,
             ),
         };
-        let told: String = self.told.iter().map(|one| one.text(public_url)).collect();
+        let items: String = self
+            .items
+            .iter()
+            .map(|item| item.text(public_url))
+            .collect();
         format!(
-            "{told}{}\n{public_url}{}\n\n{}\n{public_url}{page}\n",
+            "{items}{}\n{public_url}{}\n\n{}\n{public_url}{page}\n",
             self.text,
             self.path,
             wrapped("", &why)
@@ -112,13 +112,13 @@ impl Letter {
     }
 }
 
-/// A subject as it goes into a header: a name that looks like an encoded word (RFC 2047,
-/// section 2) is none.
+/// Returns a subject for a header: text that looks like an encoded word (RFC 2047, section 2)
+/// is broken up.
 pub fn header(subject: &str) -> String {
     one_line(subject).replace("=?", "= ?")
 }
 
-/// Without anything that could end a line.
+/// Returns the text with every character that could end a line replaced by a blank.
 pub fn one_line(text: &str) -> String {
     let shown = |c: char| {
         if c.is_control() || "\u{2028}\u{2029}".contains(c) {
@@ -130,8 +130,8 @@ pub fn one_line(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// Lines of at most 72 columns, the first after `lead`, the others indented
-/// alike.
+/// Wraps text to 72 columns. The first line begins with `lead`, the others are indented to
+/// match.
 pub fn wrapped(lead: &str, text: &str) -> String {
     let mut lines = Vec::new();
     let mut line = lead.to_owned();

@@ -1,25 +1,25 @@
-//! Mail: telling people of alerts, wherever they are.
+//! Mail: letters about alerts to the recipients of an operator.
 //!
 //! Invariants:
 //!
-//! - Letters wait and are sent as [`crate::outbox`] says. One that the relay took is
-//!   not sent again; one whose answer was lost comes again under the same message id.
-//! - Of an alert a recipient gets a letter when it reaches the recipient's severity,
-//!   when it gets worse than the last letter said, and when it is over or sinks below
-//!   that severity, whichever comes first; not when it only says something new.
-//! - No text of others makes a header: names are encoded, line breaks are taken out.
+//! - Letters are queued and sent by [`crate::outbox`]. A letter that the relay accepted is not
+//!   sent again. A letter whose response was lost is sent again with the same message id.
+//! - A recipient gets a letter when an alert reaches the recipient's severity and when it gets
+//!   worse than in the last letter. A last letter follows when the alert is over or sinks below
+//!   that severity. New details alone cause no letter.
+//! - Text of users cannot form a header: names are encoded, and line breaks are removed.
 
 mod announce;
 mod letter;
-mod monthly;
+mod mailing_list;
 mod recipient;
 mod relay;
 mod send;
 mod store;
 
 pub use announce::{Announcement, announce};
-pub use letter::{Letter, Told, header, one_line, wrapped};
-pub use monthly::monthly_letter;
+pub use letter::{Letter, LetterItem, header, one_line, wrapped};
+pub use mailing_list::{Content, File, FileReference, Files, FindAddress, LoadFiles, MailingList};
 pub use recipient::address;
 pub use relay::Relay;
 pub use send::Mailer;
@@ -38,7 +38,7 @@ use recipient::{ChangedRecipient, NewRecipient, Recipient, RecipientList};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Routes of mail recipients.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -52,7 +52,7 @@ where
         .routes(routes!(send_letter_again))
 }
 
-/// List who gets mail
+/// List the mail recipients
 #[utoipa::path(get, path = "/mail-recipients", tag = "alerts", params(Page),
     responses((status = 200, body = RecipientList), (status = 401, body = Problem)))]
 async fn list_recipients(
@@ -69,14 +69,14 @@ async fn list_recipients(
     }))
 }
 
-/// Have someone get mail
+/// Add a mail recipient
 ///
-/// From the next alert on that is as bad as `severity`, or gets so.
+/// The recipient gets mail from the next alert that has or reaches `severity`.
 #[utoipa::path(post, path = "/mail-recipients", tag = "alerts", params(Key),
     request_body = NewRecipient,
     responses((status = 201, body = Recipient), (status = 401, body = Problem),
               (status = 403, body = Problem),
-              (status = 409, description = "The server was not told how to send mail", body = Problem),
+              (status = 409, description = "Mail is not set up on this server", body = Problem),
               (status = 422, body = Problem)))]
 async fn create_recipient(
     State(app): State<App>,
@@ -102,7 +102,7 @@ async fn create_recipient(
     Ok((StatusCode::CREATED, Json(recipient)))
 }
 
-/// See someone who gets mail
+/// Show a mail recipient
 #[utoipa::path(get, path = "/mail-recipients/{id}", tag = "alerts",
     params(("id" = RecipientId, Path)),
     responses((status = 200, body = Recipient), (status = 401, body = Problem),
@@ -115,7 +115,7 @@ async fn find_recipient(
     Ok(Json(store::must_find(&app.db, reader.operator, id).await?))
 }
 
-/// Change from when on someone gets mail
+/// Change a mail recipient's minimum severity
 #[utoipa::path(put, path = "/mail-recipients/{id}", tag = "alerts",
     params(("id" = RecipientId, Path)), request_body = ChangedRecipient,
     responses((status = 200, body = Recipient), (status = 401, body = Problem),
@@ -134,9 +134,9 @@ async fn change_recipient(
     Ok(Json(store::must_find(&app.db, writer.operator, id).await?))
 }
 
-/// Send someone no more mail
+/// Remove a mail recipient
 ///
-/// What was still to be sent is forgotten.
+/// Pending letters are deleted.
 #[utoipa::path(delete, path = "/mail-recipients/{id}", tag = "alerts",
     params(("id" = RecipientId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
@@ -152,14 +152,14 @@ async fn delete_recipient(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// Send someone a test
+/// Send a test letter
 ///
 /// It is queued like any other letter.
 #[utoipa::path(post, path = "/mail-recipients/{id}/test", tag = "alerts",
     params(("id" = RecipientId, Path)),
     responses((status = 202, body = Delivery), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "The server was not told how to send mail", body = Problem)))]
+              (status = 409, description = "Mail is not set up on this server", body = Problem)))]
 async fn test_recipient(
     State(app): State<App>,
     request: RequestContext,
@@ -178,10 +178,9 @@ async fn test_recipient(
     Ok((StatusCode::ACCEPTED, Json(queued)))
 }
 
-/// List someone's letters
+/// List a recipient's letters
 ///
-/// With `state=dead`, those that were given up. What is done with is kept for 30
-/// days.
+/// With `state=dead`, the letters that were given up. Finished deliveries are kept for 30 days.
 #[utoipa::path(get, path = "/mail-recipients/{id}/deliveries", tag = "alerts",
     params(("id" = RecipientId, Path), Filter, Page),
     responses((status = 200, body = DeliveryList), (status = 401, body = Problem),
@@ -199,7 +198,8 @@ async fn list_letters(
 
 /// Send a letter again
 ///
-/// At once and, if need be, for another day, with the same message id.
+/// The letter is sent at once, with the same message id. It is retried for another day if
+/// necessary.
 #[utoipa::path(post, path = "/mail-recipients/{id}/deliveries/{delivery}/resend", tag = "alerts",
     params(("id" = RecipientId, Path), ("delivery" = DeliveryId, Path)),
     responses((status = 202, body = Delivery), (status = 401, body = Problem),
@@ -223,6 +223,6 @@ pub fn must_be_set_up(app: &App) -> Result<()> {
         return Ok(());
     }
     Err(Error::NotSetUp(
-        "this server was not told how to send mail (--smtp-url)",
+        "mail is not set up on this server (--smtp-url)",
     ))
 }

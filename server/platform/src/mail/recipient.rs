@@ -11,7 +11,7 @@ use utoipa::ToSchema;
 /// Longest address (RFC 5321, section 4.5.3.1.3, without the brackets).
 const MAX_ADDRESS: usize = 254;
 
-/// Someone who is to get mail.
+/// Mail recipient to be added.
 #[derive(Clone, Debug, Deserialize, Serialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = NewMailRecipient)]
@@ -19,7 +19,7 @@ pub(super) struct NewRecipient {
     /// E-mail address of the recipient.
     #[schema(max_length = 254, example = "superintendent@example.com")]
     pub(super) address: String,
-    /// Of alerts as bad as this or worse; `warning` if not said.
+    /// Minimum severity of the alerts sent; `warning` by default.
     #[serde(default = "warning")]
     pub(super) severity: Severity,
 }
@@ -28,16 +28,16 @@ fn warning() -> Severity {
     Severity::Warning
 }
 
-/// A new minimum severity for a recipient.
+/// New minimum severity of a recipient.
 #[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = ChangedMailRecipient)]
 pub(super) struct ChangedRecipient {
-    /// Of alerts as bad as this or worse.
+    /// Minimum severity of the alerts sent.
     pub(super) severity: Severity,
 }
 
-/// Someone who gets mail.
+/// Mail recipient.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 #[schema(as = MailRecipient)]
 pub(super) struct Recipient {
@@ -46,23 +46,23 @@ pub(super) struct Recipient {
     /// E-mail address of the recipient.
     #[schema(example = "superintendent@example.com")]
     pub(super) address: String,
-    /// Of alerts as bad as this or worse.
+    /// Minimum severity of the alerts sent.
     pub(super) severity: Severity,
     /// Time at which the recipient was added.
     pub(super) created_at: Time,
-    /// Letters that wait.
+    /// Number of pending letters.
     pub(super) pending: i64,
-    /// Letters that were given up.
+    /// Number of letters that were given up.
     pub(super) dead: i64,
 }
 
-/// A page of those who get mail.
+/// Page of mail recipients.
 #[derive(Serialize, ToSchema)]
 #[schema(as = MailRecipientList)]
 pub(super) struct RecipientList {
-    /// In the order in which they were added.
+    /// Recipients in the order in which they were added.
     pub(super) items: Vec<Recipient>,
-    /// `after` of the next page.
+    /// Value of `after` for the next page.
     #[schema(required)]
     pub(super) next: Option<String>,
     /// True if mail is set up on this server.
@@ -73,7 +73,7 @@ impl NewRecipient {
     /// Returns the recipient if mail can be sent to the address.
     ///
     /// # Errors
-    /// When it cannot.
+    /// When mail cannot be sent there.
     pub(super) fn checked(self) -> Result<NewRecipient> {
         Ok(NewRecipient {
             address: address("address", &self.address)?,
@@ -82,10 +82,10 @@ impl NewRecipient {
     }
 }
 
-/// An address that mail can go to, its domain in small letters.
+/// Returns an address with its domain in lower case.
 ///
 /// # Errors
-/// When mail cannot go there.
+/// When mail cannot be sent there.
 pub fn address(field: &'static str, given: &str) -> Result<String> {
     let invalid = |detail: &str| {
         Err(Error::Invalid {
@@ -96,9 +96,9 @@ pub fn address(field: &'static str, given: &str) -> Result<String> {
     if given.len() > MAX_ADDRESS {
         return invalid("is longer than 254 characters");
     }
-    // Beyond ASCII an address asks every relay on its way for SMTPUTF8.
+    // A non-ASCII address requires SMTPUTF8 of every relay on the way.
     if !given.is_ascii() {
-        return invalid("has letters beyond ASCII");
+        return invalid("has non-ASCII characters");
     }
     let Ok(address) = given.trim().parse::<Address>() else {
         return invalid("is not an address like name@example.com");

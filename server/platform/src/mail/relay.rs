@@ -1,11 +1,10 @@
-//! The mail relay: what the settings say of it, and a conversation with it.
+//! Mail relay: its settings, and the SMTP session with it.
 //!
-//! Invariants: a name and a password go only over TLS with a certificate that
-//! was checked; a relay without TLS is spoken to only within one's own network. No
-//! error names the password.
+//! Invariants: user and password are sent only over TLS with a checked certificate. A relay
+//! without TLS is used only within the local network. No error contains the password.
 
-use crate::outbox::Tried;
-use crate::webhooks::is_public;
+use crate::outbound::is_public;
+use crate::outbox::Attempt;
 use anyhow::{Context, Result, bail};
 use lettre::address::Envelope;
 use lettre::transport::smtp::authentication::{Credentials, Mechanism};
@@ -17,47 +16,47 @@ use std::net::SocketAddr;
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// A relay that has not taken a letter by then is tried again; shorter than the
-/// lease on a delivery.
+/// Time limit for handing over a letter, after which it is retried; shorter than the lease of a
+/// delivery.
 pub(super) const PATIENCE: Duration = Duration::from_mins(1);
-/// Taking leave after a letter was taken or refused.
+/// Time limit for the QUIT command after a letter was accepted or refused.
 const QUIT_PATIENCE: Duration = Duration::from_secs(2);
 
-/// The mail relay that takes letters, and the way to reach it.
+/// Mail relay that accepts letters, and the way to reach it.
 #[derive(Clone)]
 pub struct Relay {
     host: String,
     port: u16,
     security: Security,
     credentials: Option<Credentials>,
-    /// Our own name in the SMTP greeting.
+    /// Name of this server in the SMTP greeting.
     name: ClientId,
     patience: Duration,
 }
 
 #[derive(Clone)]
 enum Security {
-    /// From the first byte (RFC 8314, section 3.3).
+    /// TLS from the first byte (RFC 8314, section 3.3).
     Tls(TlsParameters),
-    /// By STARTTLS, without which nothing is said (RFC 3207).
+    /// STARTTLS, without which no mail is sent (RFC 3207).
     StartTls(TlsParameters),
-    /// None.
+    /// No TLS.
     Nothing,
 }
 
 impl Relay {
-    /// Reads `smtps://USER:PASSWORD@HOST`, `smtp://…` for STARTTLS, or
-    /// `smtp://HOST?tls=none`. `authority` is PEM of one more authority that the
-    /// relay's certificate may be of, `name` what we call ourselves.
+    /// Parses `smtps://USER:PASSWORD@HOST`, `smtp://…` for STARTTLS, or `smtp://HOST?tls=none`.
+    /// `authority` is the PEM of an additional trusted authority, and `name` is the name of this
+    /// server in the greeting.
     ///
     /// # Errors
-    /// When the URL says something else; the error does not repeat it.
+    /// When the URL has another form; the error does not contain it.
     pub fn new(url: &str, authority: Option<&[u8]>, name: &str) -> Result<Relay> {
         let url = Url::parse(url).context("is not a URL")?;
         let host = url.host_str().filter(|host| !host.is_empty());
         let host = host.context("names no host")?.to_owned();
         if !matches!(url.path(), "" | "/") || url.fragment().is_some() {
-            bail!("has more in it than user, password, host, port and tls=none");
+            bail!("may only have user, password, host, port and tls=none");
         }
         let tls = || tls_parameters(&host, authority);
         let (security, port) = match (url.scheme(), url.query()) {
@@ -71,7 +70,7 @@ impl Relay {
         };
         let credentials = credentials(&url)?;
         if credentials.is_some() && matches!(security, Security::Nothing) {
-            bail!("has a password that would go without TLS");
+            bail!("has a password that would be sent without TLS");
         }
         Ok(Relay {
             port: url.port().unwrap_or(port),
@@ -92,27 +91,26 @@ impl Relay {
     /// Hands a letter over.
     ///
     /// # Errors
-    /// When there was no answer, or none to this letter: whoever runs the relay may
-    /// yet mend it.
-    pub(super) async fn hand_over(&self, envelope: &Envelope, letter: &[u8]) -> Result<Tried> {
+    /// When the relay gave no response to the letter: the fault may be temporary.
+    pub(super) async fn hand_over(&self, envelope: &Envelope, letter: &[u8]) -> Result<Attempt> {
         let talk = async {
             let mut relay = self.connect().await?;
             let answer = relay.send(envelope, letter).await;
             anyhow::Ok((relay, answer))
         };
         let talked = timeout(self.patience, talk).await;
-        let (mut relay, answer) = talked.context("the relay does not answer")??;
+        let (mut relay, answer) = talked.context("the relay does not respond")??;
         match answer {
             Ok(response) => {
-                // It has the letter, whatever it does from now on.
+                // The relay has the letter, whatever happens from now on.
                 let _ = timeout(QUIT_PATIENCE, relay.quit()).await;
-                Ok(Tried::Taken(response.code().into()))
+                Ok(Attempt::Accepted(response.code().into()))
             }
             Err(error) => match error.status() {
                 Some(code) if error.is_permanent() => {
-                    Ok(Tried::Refused(code.into(), plain(&error)))
+                    Ok(Attempt::Refused(code.into(), plain(&error)))
                 }
-                Some(code) => Ok(Tried::Later(code.into(), plain(&error))),
+                Some(code) => Ok(Attempt::Deferred(code.into(), plain(&error))),
                 None => Err(error.into()),
             },
         }
@@ -120,10 +118,12 @@ impl Relay {
 
     async fn connect(&self) -> Result<AsyncSmtpConnection> {
         let found = tokio::net::lookup_host((self.host.as_str(), self.port)).await;
-        let addresses: Vec<SocketAddr> = found.context("the relay's name means nothing")?.collect();
+        let addresses: Vec<SocketAddr> = found
+            .context("the relay's name cannot be resolved")?
+            .collect();
         let without_tls = matches!(self.security, Security::Nothing);
         if without_tls && addresses.iter().any(|address| is_public(address.ip())) {
-            bail!("the relay is not within the network, and is to be spoken to without TLS");
+            bail!("the relay is not within the network, so TLS is required");
         }
         let from_the_start = match &self.security {
             Security::Tls(tls) => Some(tls.clone()),
@@ -152,7 +152,8 @@ impl Relay {
 fn tls_parameters(host: &str, authority: Option<&[u8]>) -> Result<TlsParameters> {
     let mut parameters = TlsParameters::builder(host.to_owned());
     if let Some(authority) = authority {
-        let certificate = Certificate::from_pem(authority).context("the authority is not PEM")?;
+        let certificate =
+            Certificate::from_pem(authority).context("the certificate authority is not PEM")?;
         parameters = parameters.add_root_certificate(certificate);
     }
     Ok(parameters.build_rustls()?)

@@ -1,12 +1,13 @@
-//! A letter as it goes over the wire (RFC 5322), and its carrier.
+//! Letters as messages (RFC 5322), and their carrier.
 
 use super::letter::{Letter, Why};
-use super::monthly::{self, Files};
+use super::mailing_list::{Content, Files, MailingList};
 use super::relay::Relay;
 use super::store;
 use crate::app::App;
 use crate::config;
-use crate::outbox::{Carrier, Channel, Claimed, Tried};
+use crate::db::{self, Db};
+use crate::outbox::{Attempt, Carrier, Channel, Claimed};
 use anyhow::{Context, Result};
 use lettre::address::Envelope;
 use lettre::message::header::{ContentType, HeaderName, HeaderValue};
@@ -14,6 +15,7 @@ use lettre::message::{Attachment, Mailbox, Message, MultiPart, SinglePart};
 use reqwest::Url;
 use std::fs;
 use std::time::{Duration, UNIX_EPOCH};
+use uuid::Uuid;
 
 /// Sender of mail.
 #[derive(Clone)]
@@ -22,13 +24,21 @@ pub struct Mailer {
     from: Mailbox,
     /// Public URL of the dashboard, without a trailing slash.
     public_url: String,
+    /// Mailing list of another capability.
+    list: Option<MailingList>,
+}
+
+/// Recipient of a letter, with the reason for it.
+struct Addressee {
+    address: String,
+    why: Why,
 }
 
 impl Mailer {
-    /// As the settings say; none if they say nothing of mail.
+    /// Creates the sender from the settings; `None` if mail is not set up.
     ///
     /// # Errors
-    /// When they make no sense; names the setting, and no password.
+    /// When a setting is not valid. The error names the setting, but no password.
     pub fn new(config: &config::Mail) -> Result<Option<Mailer>> {
         let (Some(relay), Some(from), Some(public_url)) =
             (&config.smtp_url, &config.mail_from, &config.public_url)
@@ -45,7 +55,17 @@ impl Mailer {
             relay,
             from,
             public_url: public_url.trim_end_matches('/').to_owned(),
+            list: None,
         }))
+    }
+
+    /// Returns the sender with a mailing list of another capability.
+    #[must_use]
+    pub fn with_list(self, list: MailingList) -> Mailer {
+        Mailer {
+            list: Some(list),
+            ..self
+        }
     }
 
     /// Returns the sender with a relay timeout other than the default.
@@ -57,21 +77,39 @@ impl Mailer {
         }
     }
 
+    /// Finds the addressee of a receiver's letters; `None` if removed or disabled.
+    async fn find_addressee(&self, db: &Db, receiver: Uuid) -> db::Result<Option<Addressee>> {
+        if let Some((address, least)) = store::find_listed(db, receiver).await? {
+            let why = Why::Listed(least);
+            return Ok(Some(Addressee { address, why }));
+        }
+        if let Some(list) = self.list
+            && let Some(address) = (list.find_address)(db, receiver).await?
+        {
+            let why = Why::MailingList(list);
+            return Ok(Some(Addressee { address, why }));
+        }
+        // A person is a receiver under their own id.
+        let person = store::find_person(db, receiver).await?;
+        let why = Why::Person;
+        Ok(person.map(|address| Addressee { address, why }))
+    }
+
     fn message(
         &self,
         claimed: &Claimed,
         letter: &Letter,
-        (address, why): (&str, Why),
+        to: &Addressee,
         files: Option<Files>,
     ) -> Result<Message> {
         let domain = self.from.email.domain();
         let written = u64::try_from(claimed.created_at.0.micros())?;
         let mut builder = Message::builder()
             .from(self.from.clone())
-            .to(Mailbox::new(None, address.parse()?))
+            .to(Mailbox::new(None, to.address.parse()?))
             .subject(letter.subject.as_str())
             .date(UNIX_EPOCH + Duration::from_micros(written))
-            // The id is the same at every try, so that a mailbox can detect a second copy.
+            // The id is the same at every attempt, so that a mailbox can detect a second copy.
             .message_id(Some(format!(
                 "<{}.{}@{domain}>",
                 claimed.id,
@@ -80,10 +118,10 @@ impl Mailer {
         if let Some(about) = letter.about {
             builder = builder.references(format!("<{about}@{domain}>"));
         }
-        let text = letter.text_for(address, why, &self.public_url);
-        let mut message = match files.zip(letter.report.as_ref()) {
+        let text = letter.text_for(&to.address, to.why, &self.public_url);
+        let mut message = match files {
             None => builder.header(ContentType::TEXT_PLAIN).body(text)?,
-            Some((files, report)) => builder.multipart(with_files(text, files, &report.month))?,
+            Some(files) => builder.multipart(with_files(text, files)?)?,
         };
         // Automatic replies, such as holiday notices, are suppressed (RFC 3834, section 5).
         message.headers_mut().insert_raw(HeaderValue::new(
@@ -94,37 +132,33 @@ impl Mailer {
     }
 }
 
-/// A text and a report's files.
-fn with_files(text: String, files: Files, month: &str) -> MultiPart {
-    let pdf = ContentType::parse("application/pdf").expect("it is a media type");
-    let csv = ContentType::parse("text/csv; charset=utf-8").expect("it is a media type");
-    let name = |what: &str, ending: &str| format!("compass-{what}-{month}.{ending}");
-    let mut letter = MultiPart::mixed()
-        .singlepart(SinglePart::plain(text))
-        .singlepart(Attachment::new(name("report", "pdf")).body(files.pdf, pdf));
-    for (what, table) in [
-        ("due", files.due_csv),
-        ("deviation", files.deviation_csv),
-        ("jobs", files.jobs_csv),
-    ] {
-        letter = letter.singlepart(Attachment::new(name(what, "csv")).body(table, csv.clone()));
+/// Builds the body of a letter with files.
+fn with_files(text: String, files: Files) -> Result<MultiPart> {
+    let mut body = MultiPart::mixed().singlepart(SinglePart::plain(text));
+    for file in files {
+        let media_type = ContentType::parse(file.media_type)?;
+        let attachment = Attachment::new(file.name);
+        body = body.singlepart(match file.content {
+            Content::Text(text) => attachment.body(text, media_type),
+            Content::Binary(bytes) => attachment.body(bytes, media_type),
+        });
     }
-    letter
+    Ok(body)
 }
 
 impl Carrier for Mailer {
     const CHANNEL: Channel = Channel::Mail;
 
-    async fn carry(&self, app: &App, claimed: &Claimed) -> Result<Tried> {
-        let found = store::address(&app.db, claimed.receiver_id).await?;
-        let (address, why) = found.context("the recipient was removed or is shut out")?;
+    async fn carry(&self, app: &App, claimed: &Claimed) -> Result<Attempt> {
+        let found = self.find_addressee(&app.db, claimed.receiver_id).await?;
+        let to = found.context("the recipient was removed or disabled")?;
         let letter: Letter = serde_json::from_str(&claimed.body)?;
-        let files = match &letter.report {
-            Some(report) => monthly::files(&app.db, report).await?,
-            None => None,
+        let files = match (&letter.files, self.list) {
+            (Some(of), Some(list)) => (list.load_files)(&app.db, of).await?,
+            _ => None,
         };
-        let message = self.message(claimed, &letter, (&address, why), files)?;
-        let envelope = Envelope::new(Some(self.from.email.clone()), vec![address.parse()?])?;
+        let message = self.message(claimed, &letter, &to, files)?;
+        let envelope = Envelope::new(Some(self.from.email.clone()), vec![to.address.parse()?])?;
         self.relay.hand_over(&envelope, &message.formatted()).await
     }
 }

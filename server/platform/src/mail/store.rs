@@ -1,6 +1,5 @@
 //! Mail recipients in the database.
 
-use super::letter::Why;
 use super::recipient::{NewRecipient, Recipient};
 use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use crate::error::{Error, Result};
@@ -34,10 +33,10 @@ pub(super) async fn list(
     )
 }
 
-/// Someone who gets mail of the operator's.
+/// Returns a mail recipient of the operator.
 ///
 /// # Errors
-/// [`Error::NotFound`] when there is no such person.
+/// [`Error::NotFound`] when there is no such recipient.
 pub(super) async fn must_find(db: &Db, operator: OperatorId, id: RecipientId) -> Result<Recipient> {
     row!(
         db,
@@ -80,7 +79,7 @@ pub(super) async fn insert(
     if inserted == 0 {
         return Err(Error::Invalid {
             field: "address",
-            detail: "is on the list already".to_owned(),
+            detail: "is already on the list".to_owned(),
         });
     }
     Ok(())
@@ -107,38 +106,29 @@ pub(super) async fn change(
     Ok(())
 }
 
-/// Returns a receiver's address and the reason for its mail; none if removed or disabled.
-pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, Why)>> {
-    let listed = row!(
+/// Returns the address and the minimum severity of a recipient of alerts.
+pub(super) async fn find_listed(db: &Db, id: Uuid) -> DbResult<Option<(String, Severity)>> {
+    row!(
         db,
         (String, Severity),
         "SELECT address, severity FROM mail_recipients WHERE id = $1 ORDER BY id",
         id
-    )?;
-    if let Some((address, least)) = listed {
-        return Ok(Some((address, Why::Listed(least))));
-    }
-    let report = row!(
-        db,
-        (String,),
-        "SELECT address FROM report_recipients WHERE id = $1 ORDER BY id",
-        id
-    )?;
-    if let Some((address,)) = report {
-        return Ok(Some((address, Why::Reports)));
-    }
-    // A person is a receiver under their own id.
+    )
+}
+
+/// Returns the address of a user who may sign in.
+pub(super) async fn find_person(db: &Db, id: Uuid) -> DbResult<Option<String>> {
     let person = row!(
         db,
         (String,),
         "SELECT email FROM users WHERE id = $1 AND disabled_at IS NULL ORDER BY id",
         id
     )?;
-    Ok(person.map(|(email,)| (email, Why::Person)))
+    Ok(person.map(|(email,)| email))
 }
 
 /// Returns the recipients of an operator's alerts, each with its minimum severity.
-pub(super) async fn wishes(
+pub(super) async fn list_recipients(
     tx: &mut Tx,
     operator: OperatorId,
 ) -> DbResult<Vec<(RecipientId, Severity)>> {
@@ -150,7 +140,7 @@ pub(super) async fn wishes(
     )
 }
 
-/// Returns the worst severity that a recipient was written of a topic.
+/// Returns the worst severity of a topic that was sent to a recipient.
 pub(super) async fn last_severity(
     tx: &mut Tx,
     recipient: RecipientId,
@@ -167,7 +157,7 @@ pub(super) async fn last_severity(
     Ok(found.map(|(severity,)| severity))
 }
 
-/// Notes the severity that a recipient is written of a topic.
+/// Notes the severity of a topic that is sent to a recipient.
 pub(super) async fn note_severity(
     tx: &mut Tx,
     recipient: RecipientId,
@@ -185,7 +175,7 @@ pub(super) async fn note_severity(
     Ok(())
 }
 
-/// Forgets a topic that is over, or is so for the recipient.
+/// Forgets a topic that has ended for the recipient.
 pub(super) async fn forget(tx: &mut Tx, recipient: RecipientId, topic: Uuid) -> DbResult<()> {
     execute!(
         tx,

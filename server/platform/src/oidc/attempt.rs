@@ -1,7 +1,7 @@
-//! A sign-in under way: what the browser keeps while its person is at the provider's.
+//! Sign-in attempt: the state that the browser keeps while the user is at the provider.
 //!
-//! Invariants: the cookie is the only secret. The values given to the provider do not
-//! reveal it. So nothing is stored for a sign-in before it comes back.
+//! Invariants: the cookie is the only secret. The values sent to the provider do not reveal it.
+//! So the server stores nothing for a sign-in before the user returns.
 
 use crate::app::App;
 use crate::config::Serve;
@@ -15,7 +15,7 @@ pub(super) const LASTS_S: i64 = 600;
 const PLAIN: &str = "binnacle_provider";
 const SECURE: &str = "__Host-binnacle_provider";
 
-/// The state of a sign-in that the browser keeps.
+/// State of a sign-in that the browser keeps.
 pub(super) struct Attempt {
     begun_s: i64,
     cookie: String,
@@ -30,10 +30,10 @@ impl Attempt {
         }
     }
 
-    /// The one that a request's cookie brings, if it is not too old.
+    /// Reads the attempt from a request's cookie, if it is not too old.
     pub(super) fn of(app: &App, headers: &HeaderMap) -> Option<Attempt> {
         let cookie = cookie::value(headers, name(&app.config))?;
-        // A time other than the one it was made at gives another state.
+        // The time is authentic: another time would give another state.
         let begun_s: i64 = cookie.split_once('.')?.0.parse().ok()?;
         let attempt = Attempt {
             begun_s,
@@ -44,7 +44,7 @@ impl Attempt {
             .then_some(attempt)
     }
 
-    /// Returns the `state` value, which comes back with the provider's answer.
+    /// Returns the `state` value, which the provider's redirect repeats.
     pub(super) fn state(&self) -> String {
         secret::derived("state", &self.cookie)
     }
@@ -59,26 +59,26 @@ impl Attempt {
         secret::derived("verifier", &self.cookie)
     }
 
-    /// Under what it is stored that it came back.
+    /// Returns the hash under which the return of the attempt is stored.
     pub(super) fn state_hash(&self) -> Vec<u8> {
         secret::hash(&self.state())
     }
 
-    /// Seconds since 1970 at which it can end no more.
+    /// Returns the expiry time, seconds since 1970.
     pub(super) fn ends_s(&self) -> i64 {
         self.begun_s + LASTS_S
     }
 
-    /// The header that gives it to the browser. The answer comes from another site, so that
-    /// the cookie must come along with a link.
-    pub(super) fn kept(&self, config: &Serve) -> HeaderValue {
+    /// Returns the header that sets the cookie. The redirect comes from another site, so the
+    /// cookie must be sent when a link is followed.
+    pub(super) fn set_cookie(&self, config: &Serve) -> HeaderValue {
         let lasts_s = LASTS_S.unsigned_abs();
         cookie::header(config, name(config), &self.cookie, lasts_s, SameSite::Lax)
     }
 }
 
-/// The header that takes it away.
-pub(super) fn forgotten(config: &Serve) -> HeaderValue {
+/// Returns the header that deletes the cookie.
+pub(super) fn clear_cookie(config: &Serve) -> HeaderValue {
     cookie::header(config, name(config), "", 0, SameSite::Lax)
 }
 

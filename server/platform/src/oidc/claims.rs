@@ -1,16 +1,15 @@
-//! From the code that the browser brings to who the person is: what the provider says,
-//! and that it is the provider who says it.
+//! Claims of the provider about a person: redeems the code from the browser and verifies the
+//! identity token.
 //!
-//! Invariants: the token bears a signature by one of the provider's keys, never
-//! none and never one by a shared secret; it is for us, of this sign-in, and not over
-//! (OpenID Connect Core 1.0, section 3.1.3.7).
+//! Invariants: the token is signed by one of the provider's keys. A missing signature, or one
+//! by a shared secret, is rejected. The token is issued to this server, for this sign-in, and
+//! has not expired (OpenID Connect Core 1.0, section 3.1.3.7).
 
 use super::attempt::Attempt;
-use super::provider::{self, Found, NEW_KEYS_AFTER_S};
 use super::refusal::Refusal;
-use super::sign_in::redirect_url;
 use crate::app::App;
-use crate::config::Oidc;
+use crate::config::{Oidc, Serve};
+use crate::identity_provider::Discovery;
 use chrono::{DateTime, Utc};
 use openidconnect::core::{
     CoreAuthenticationFlow, CoreClient, CoreClientAuthMethod, CoreIdToken, CoreIdTokenClaims,
@@ -19,13 +18,17 @@ use openidconnect::core::{
 use openidconnect::{
     AccessToken, AuthType, AuthorizationCode, ClaimsVerificationError, ClientId, ClientSecret,
     CsrfToken, EndpointMaybeSet, EndpointNotSet, EndpointSet, Nonce, OAuth2TokenResponse,
-    PkceCodeChallenge, PkceCodeVerifier, RequestTokenError, Scope, SignatureVerificationError,
-    TokenResponse,
+    PkceCodeChallenge, PkceCodeVerifier, RedirectUrl, RequestTokenError, Scope,
+    SignatureVerificationError, TokenResponse,
 };
 use reqwest::Url;
+use std::sync::Arc;
 use tracing::{info, warn};
 
-/// By which a provider may sign: with a key that only it has.
+/// Path to which the provider redirects people.
+const CALLBACK: &str = "/api/v1/session/provider/callback";
+
+/// Accepted signature algorithms: those with a private key of the provider.
 const SIGNATURES: [CoreJwsSigningAlgorithm; 9] = [
     CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha256,
     CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha384,
@@ -47,14 +50,30 @@ type Client = CoreClient<
     EndpointMaybeSet,
 >;
 
-/// The person named by the provider, with the e-mail address it claims.
+/// Person named by the provider, with the claimed e-mail address.
 pub(super) struct Identity {
     pub(super) subject: String,
     email: Option<String>,
     access: AccessToken,
 }
 
-fn client(app: &App, found: &Found) -> Result<Client, Refusal> {
+/// Returns the configured issuer; empty if no provider is set up.
+pub(super) fn issuer(app: &App) -> &str {
+    app.config.oidc.oidc_issuer.as_deref().unwrap_or_default()
+}
+
+/// Returns the provider's metadata.
+pub(super) async fn current(app: &App) -> Result<Arc<Discovery>, Refusal> {
+    Ok(app.provider.current(issuer(app), &app.clock).await?)
+}
+
+/// Returns the public address of [`CALLBACK`].
+fn redirect_url(config: &Serve) -> Option<RedirectUrl> {
+    let public = config.mail.public_url.as_deref()?.trim_end_matches('/');
+    RedirectUrl::new(format!("{public}{CALLBACK}")).ok()
+}
+
+fn client(app: &App, found: &Discovery) -> Result<Client, Refusal> {
     let config: &Oidc = &app.config.oidc;
     let id = config.oidc_client_id.clone().unwrap_or_default();
     let secret = config.oidc_client_secret.clone().map(ClientSecret::new);
@@ -72,7 +91,7 @@ fn client(app: &App, found: &Found) -> Result<Client, Refusal> {
 }
 
 /// Returns the provider's address at which a person signs in.
-pub(super) fn address(app: &App, found: &Found, attempt: &Attempt) -> Result<Url, Refusal> {
+pub(super) fn address(app: &App, found: &Discovery, attempt: &Attempt) -> Result<Url, Refusal> {
     let client = client(app, found)?;
     let (state, nonce) = (attempt.state(), attempt.nonce());
     let verifier = PkceCodeVerifier::new(attempt.verifier());
@@ -88,32 +107,35 @@ pub(super) fn address(app: &App, found: &Found, attempt: &Attempt) -> Result<Url
     Ok(address)
 }
 
-/// Redeems a code: who it stands for.
+/// Redeems a code for the identity of the person.
 pub(super) async fn redeem(
     app: &App,
     attempt: &Attempt,
     code: String,
 ) -> Result<Identity, Refusal> {
-    let found = provider::current(app).await?;
+    let found = current(app).await?;
     let client = client(app, &found)?;
     let request = client
         .exchange_code(AuthorizationCode::new(code))
         .map_err(|_| Refusal::Untrusted)?
         .set_pkce_verifier(PkceCodeVerifier::new(attempt.verifier()));
-    let answer: Result<CoreTokenResponse, _> = request.request_async(&found.http).await;
-    let tokens = answer.map_err(|error| match error {
+    let response: Result<CoreTokenResponse, _> = request.request_async(&found.http).await;
+    let tokens = response.map_err(|error| match error {
         RequestTokenError::Request(cause) => {
             let error = cause.to_string();
-            warn!(error, "the sign-in provider did not take a code");
+            warn!(
+                error,
+                "the sign-in provider cannot be reached to redeem a code"
+            );
             Refusal::Unreachable
         }
-        RequestTokenError::ServerResponse(said) => {
-            // Only the kind of the provider's error is kept: its text may hold what was sent.
-            info!(error = %said.error().as_ref(), "the sign-in provider refused a code");
+        RequestTokenError::ServerResponse(error_response) => {
+            // Only the kind of the provider's error is logged: its text may contain the request.
+            info!(error = %error_response.error().as_ref(), "the sign-in provider refused a code");
             Refusal::Untrusted
         }
         RequestTokenError::Parse(..) | RequestTokenError::Other(_) => {
-            warn!("the sign-in provider's answer to a code cannot be read");
+            warn!("the sign-in provider's response to a code cannot be read");
             Refusal::Untrusted
         }
     })?;
@@ -124,7 +146,7 @@ pub(super) async fn redeem(
     if let Err(error) = &read
         && may_be_by_a_new_key(error)
     {
-        let found = provider::find(app, NEW_KEYS_AFTER_S).await?;
+        let found = app.provider.with_new_keys(issuer(app), &app.clock).await?;
         let client = self::client(app, &found)?;
         read = self::read(app, &client, token, &nonce);
     }
@@ -139,20 +161,20 @@ pub(super) async fn redeem(
     })
 }
 
-/// The e-mail, which the provider says is verified.
+/// Returns the e-mail address that the provider has verified.
 pub(super) async fn verified_email(app: &App, identity: &Identity) -> Result<String, Refusal> {
     if let Some(email) = &identity.email {
         return Ok(email.clone());
     }
-    // Some tell it only to who asks besides (section 5.4).
-    let found = provider::current(app).await?;
+    // Some providers give the address only in a separate request (section 5.4).
+    let found = current(app).await?;
     let client = client(app, &found)?;
     let subject = openidconnect::SubjectIdentifier::new(identity.subject.clone());
     let Ok(request) = client.user_info(identity.access.clone(), Some(subject)) else {
         return Err(Refusal::Unverified);
     };
-    let answer: Result<CoreUserInfoClaims, _> = request.request_async(&found.http).await;
-    let claims = answer.map_err(|_| Refusal::Unverified)?;
+    let response: Result<CoreUserInfoClaims, _> = request.request_async(&found.http).await;
+    let claims = response.map_err(|_| Refusal::Unverified)?;
     let is_verified = claims.email_verified() == Some(true);
     let email = claims.email().filter(|_| is_verified);
     email
@@ -192,14 +214,14 @@ fn may_be_by_a_new_key(error: &ClaimsVerificationError) -> bool {
     )
 }
 
-/// Without what the token says.
+/// Returns the reason of a refusal, without any content of the token.
 fn reason(error: &ClaimsVerificationError) -> &'static str {
     match error {
-        ClaimsVerificationError::Expired(_) => "it is over",
-        ClaimsVerificationError::InvalidAudience(_) => "it is for another",
-        ClaimsVerificationError::InvalidIssuer(_) => "it is by another",
-        ClaimsVerificationError::InvalidNonce(_) => "it is of another sign-in",
-        ClaimsVerificationError::SignatureVerification(_) => "its signature does not hold",
+        ClaimsVerificationError::Expired(_) => "it has expired",
+        ClaimsVerificationError::InvalidAudience(_) => "it is for another client",
+        ClaimsVerificationError::InvalidIssuer(_) => "it is by another issuer",
+        ClaimsVerificationError::InvalidNonce(_) => "it belongs to another sign-in",
+        ClaimsVerificationError::SignatureVerification(_) => "its signature is not valid",
         _ => "it cannot be read",
     }
 }

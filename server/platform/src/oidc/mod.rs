@@ -1,24 +1,20 @@
-//! Signing in by the word of an OpenID Connect provider, for those who set one up.
+//! Sign-in through an OpenID Connect provider, if one is configured.
 //!
 //! Invariants:
 //!
-//! - Nobody is made a user here: a person of the provider's is let in who was one before,
-//!   found the first time by an e-mail that the provider has verified, and from then on by
-//!   the name that the provider gives them for good. An e-mail that goes over to someone
-//!   else lets nobody else in.
-//! - A sign-in ends in the browser that began it, within ten minutes, once.
-//! - Whoever has a second factor here is asked for it here.
-//! - The provider is asked for nothing before someone wants to sign in by it; while it
-//!   cannot be reached, everything else goes on.
+//! - No user is created here: only an existing user can sign in. The first time, the user is
+//!   found by an e-mail address that the provider has verified. From then on, the provider's
+//!   permanent subject identifies the user. An address that is reassigned admits nobody else.
+//! - A sign-in is completed in the browser that began it, within ten minutes, and once only.
+//! - A user with a second factor has to enter its code here.
+//! - The provider is contacted only when someone signs in through it. While it cannot be
+//!   reached, everything else works.
 
 mod attempt;
 mod claims;
-mod http;
-mod provider;
 mod refusal;
 mod sign_in;
 mod store;
 
-pub use provider::Provider;
-pub use sign_in::{CALLBACK, router};
+pub use sign_in::router;
 pub use store::forget;

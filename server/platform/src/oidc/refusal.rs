@@ -1,33 +1,34 @@
-//! Reasons for which a sign-in through the provider fails.
+//! Reasons why a sign-in through the provider fails.
 
 use crate::error::Error;
+use crate::identity_provider::Unreachable;
 use tracing::error;
 
 /// Reason shown on the sign-in page.
 #[derive(Debug)]
 pub(super) enum Refusal {
-    /// The person did not want to, or the provider does not let them.
+    /// The person cancelled, or the provider refused.
     Cancelled,
-    /// It was begun in another browser or too long ago, or came back before.
+    /// The sign-in was begun in another browser or too long ago, or was already completed.
     Over,
     /// The provider cannot be reached.
     Unreachable,
     /// The provider's claims failed verification.
     Untrusted,
-    /// The provider does not vouch for an e-mail.
+    /// The provider has not verified an e-mail address.
     Unverified,
-    /// Nobody here has the e-mail, or may sign in.
+    /// No active user has the e-mail address.
     Unknown,
-    /// Another person of the provider's is who has the e-mail here.
+    /// The user with this e-mail address is bound to another person of the provider.
     Taken,
     /// Too many attempts from this address.
     Throttled,
-    /// A fault of ours; it was logged.
+    /// Internal failure, which was logged.
     Failed,
 }
 
 impl Refusal {
-    /// The word for it in the sign-in page's address.
+    /// Returns the word for the reason in the sign-in page's address.
     pub(super) fn word(&self) -> &'static str {
         match self {
             Refusal::Cancelled => "cancelled",
@@ -56,6 +57,12 @@ impl From<Error> for Refusal {
         }
         error!(error = ?cause, "a sign-in by the provider failed");
         Refusal::Failed
+    }
+}
+
+impl From<Unreachable> for Refusal {
+    fn from(_: Unreachable) -> Refusal {
+        Refusal::Unreachable
     }
 }
 

@@ -1,14 +1,12 @@
-//! The way to the provider, back from it, and through the second factor.
+//! Routes to the provider, back from it, and through the second factor.
 
 use super::attempt::{self, Attempt};
 use super::claims::{self, Identity};
-use super::provider;
 use super::refusal::Refusal;
 use super::store::{self, Known};
 use crate::app::App;
 use crate::audit::RequestContext;
 use crate::client_address::Origin;
-use crate::config::Serve;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Params, Valid};
 use crate::session::throttle::{self, Subjects};
@@ -19,19 +17,16 @@ use axum::extract::{FromRef, State};
 use axum::http::header::{LOCATION, SET_COOKIE};
 use axum::http::{HeaderMap, HeaderValue, StatusCode};
 use binnacle_compass::time::Timestamp;
-use openidconnect::RedirectUrl;
 use serde::{Deserialize, Serialize};
 use tracing::info;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// Path to which the provider redirects people.
-pub const CALLBACK: &str = "/api/v1/session/provider/callback";
 /// Address of the sign-in page, to which the outcome is appended.
 const SIGN_IN_PAGE: &str = "/?sign-in=";
 
-/// The routes of this part.
+/// Routes of the sign-in through a provider.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -44,7 +39,7 @@ where
         .routes(routes!(send_code))
 }
 
-/// By whose word one may sign in.
+/// Provider through which users may sign in.
 #[derive(Serialize, ToSchema)]
 #[schema(as = SignInProvider, example = json!({ "name": "Example Lines" }))]
 struct Named {
@@ -56,21 +51,21 @@ struct Named {
 /// Query parameters of the provider's redirect.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-struct Answer {
-    /// Stands for who signed in; we redeem it.
+struct CallbackQuery {
+    /// Code that stands for the signed-in person.
     code: Option<String>,
-    /// As we gave it.
+    /// State value, as it was sent.
     state: Option<String>,
     /// Error code, if nobody signed in.
     error: Option<String>,
 }
 
-/// A code from the app.
+/// Code of a second factor.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = ProviderCode, example = json!({ "code": "287082" }))]
 struct Code {
-    /// Of the authenticator app, or a recovery code.
+    /// Code of the authenticator app, or a recovery code.
     code: String,
 }
 
@@ -87,48 +82,48 @@ async fn find_provider(State(app): State<App>) -> Json<Named> {
 
 /// Go to the provider to sign in
 ///
-/// For browsers: they come back to `/session/provider/callback`. While the provider cannot
-/// be reached they come to the sign-in page at once, which says so.
+/// For browsers. The provider redirects them to `/session/provider/callback`. While the
+/// provider cannot be reached, they are redirected to the sign-in page, which shows the reason.
 #[utoipa::path(get, path = "/session/provider/start", tag = "session", security(()),
     responses((status = 303, description = "To the provider, or to the sign-in page"),
-              (status = 409, description = "There is no provider", body = Problem)))]
+              (status = 409, description = "No provider is set up", body = Problem)))]
 async fn go_to_provider(State(app): State<App>) -> Result<(StatusCode, HeaderMap)> {
     must_be_set_up(&app)?;
     let attempt = Attempt::new(&app);
-    let address = match provider::current(&app).await {
+    let address = match claims::current(&app).await {
         Ok(found) => claims::address(&app, &found, &attempt),
         Err(refusal) => Err(refusal),
     };
     Ok(match address {
-        Ok(address) => redirect(address.as_str(), [attempt.kept(&app.config)]),
-        Err(refusal) => sent_away(&app, &refusal),
+        Ok(address) => redirect(address.as_str(), [attempt.set_cookie(&app.config)]),
+        Err(refusal) => redirect_to_sign_in_page(&app, &refusal),
     })
 }
 
-/// Come back from the provider
+/// Return from the provider
 ///
-/// With a session the browser goes on to the dashboard; with a second factor, or a reason
-/// why nobody was signed in, to the sign-in page.
-#[utoipa::path(get, path = "/session/provider/callback", tag = "session", params(Answer),
+/// A signed-in browser is redirected to the dashboard. Otherwise it is redirected to the
+/// sign-in page, which asks for the second factor or shows the reason.
+#[utoipa::path(get, path = "/session/provider/callback", tag = "session", params(CallbackQuery),
     security(()),
     responses((status = 303, description = "To the dashboard, or to the sign-in page"),
-              (status = 409, description = "There is no provider", body = Problem)))]
+              (status = 409, description = "No provider is set up", body = Problem)))]
 async fn return_from_provider(
     State(app): State<App>,
     request: RequestContext,
     from: Origin,
     headers: HeaderMap,
-    Params(answer): Params<Answer>,
+    Params(query): Params<CallbackQuery>,
 ) -> Result<(StatusCode, HeaderMap)> {
-    // Whoever comes back from the provider signs in.
+    // A return from the provider signs somebody in.
     request.log_as_change();
     must_be_set_up(&app)?;
     Ok(
-        match conclude(&app, &request, &from, &headers, answer).await {
+        match conclude(&app, &request, &from, &headers, query).await {
             Ok(done) => done,
             Err(refusal) => {
                 info!(why = refusal.word(), "nobody was signed in by the provider");
-                sent_away(&app, &refusal)
+                redirect_to_sign_in_page(&app, &refusal)
             }
         },
     )
@@ -136,7 +131,7 @@ async fn return_from_provider(
 
 /// Send the second factor's code after the provider
 ///
-/// For who has a second factor here, in the browser that came back from the provider.
+/// For users with a second factor, in the browser that returned from the provider.
 #[utoipa::path(post, path = "/session/provider/code", tag = "session", security(()),
     request_body = Code,
     responses((status = 200, body = User), (status = 401, body = Problem),
@@ -149,15 +144,15 @@ async fn send_code(
     headers: HeaderMap,
     Valid(sent): Valid<Code>,
 ) -> Result<(HeaderMap, Json<User>)> {
-    const OVER: Error = Error::Gone("this sign-in took too long; begin it again");
+    const OVER: Error = Error::Gone("this sign-in took too long; start again");
     let attempt = Attempt::of(&app, &headers).ok_or(OVER)?;
     let (state, now) = (attempt.state_hash(), app.clock.now());
     let user = store::awaited(&app.db, &state, now.into()).await?;
     let user = user.ok_or(OVER)?;
     request.record_actor(&user);
     let subjects = Subjects::person(&user.email, &from);
-    // As with passwords, guesses sent at once do not outrun the count.
-    let _place = password::place(&app).await?;
+    // As with passwords, simultaneous guesses must not escape the count.
+    let _permit = password::acquire_permit(&app).await?;
     throttle::check(&app.db, &subjects, now).await?;
     if !second_factor::use_code(&request, user.user_id, &sent.code, now).await? {
         throttle::note_failure(&request, &subjects, now).await?;
@@ -167,7 +162,7 @@ async fn send_code(
         return Err(OVER);
     }
     let mut cookies = open(&app, &request, &from, &user).await?;
-    cookies.append(SET_COOKIE, attempt::forgotten(&app.config));
+    cookies.append(SET_COOKIE, attempt::clear_cookie(&app.config));
     Ok((cookies, Json(user)))
 }
 
@@ -175,27 +170,23 @@ fn must_be_set_up(app: &App) -> Result<()> {
     if app.config.oidc.is_set_up() {
         return Ok(());
     }
-    Err(Error::NotSetUp("this server was told of no provider"))
+    Err(Error::NotSetUp(
+        "no sign-in provider is set up on this server",
+    ))
 }
 
-/// The address of [`CALLBACK`], as the provider knows it.
-pub(super) fn redirect_url(config: &Serve) -> Option<RedirectUrl> {
-    let public = config.mail.public_url.as_deref()?.trim_end_matches('/');
-    RedirectUrl::new(format!("{public}{CALLBACK}")).ok()
-}
-
-type Done = std::result::Result<(StatusCode, HeaderMap), Refusal>;
+type Concluded = std::result::Result<(StatusCode, HeaderMap), Refusal>;
 
 async fn conclude(
     app: &App,
     request: &RequestContext,
     from: &Origin,
     headers: &HeaderMap,
-    answer: Answer,
-) -> Done {
+    query: CallbackQuery,
+) -> Concluded {
     let attempt = Attempt::of(app, headers).ok_or(Refusal::Over)?;
     // Hashes are compared, so that the timing does not reveal how much is right.
-    let state = answer.state.unwrap_or_default();
+    let state = query.state.unwrap_or_default();
     if secret::hash(&state) != attempt.state_hash() {
         return Err(Refusal::Over);
     }
@@ -206,10 +197,10 @@ async fn conclude(
     if !store::note_return(request, &attempt.state_hash(), now.into(), until.into()).await? {
         return Err(Refusal::Over);
     }
-    let (None, Some(code)) = (answer.error, answer.code) else {
+    let (None, Some(code)) = (query.error, query.code) else {
         return Err(Refusal::Cancelled);
     };
-    let user = match who(app, request, &attempt, code).await {
+    let user = match identify(app, request, &attempt, code).await {
         Ok(user) => user,
         Err(refusal) => {
             if refusal.counts() {
@@ -223,19 +214,19 @@ async fn conclude(
         return Ok(redirect(&format!("{SIGN_IN_PAGE}code"), []));
     }
     let mut cookies = open(app, request, from, &user).await?;
-    cookies.append(SET_COOKIE, attempt::forgotten(&app.config));
+    cookies.append(SET_COOKIE, attempt::clear_cookie(&app.config));
     cookies.insert(LOCATION, HeaderValue::from_static("/"));
     Ok((StatusCode::SEE_OTHER, cookies))
 }
 
-/// The user whom the provider means.
-async fn who(
+/// Returns the user whom the provider identifies.
+async fn identify(
     app: &App,
     request: &RequestContext,
     attempt: &Attempt,
     code: String,
 ) -> std::result::Result<User, Refusal> {
-    let issuer = app.config.oidc.oidc_issuer.as_deref().unwrap_or_default();
+    let issuer = claims::issuer(app);
     let identity = claims::redeem(app, attempt, code).await?;
     let subject = identity.subject.as_str();
     // PostgreSQL accepts no NUL in a text, and no provider uses one in a name.
@@ -245,21 +236,21 @@ async fn who(
     let user = match store::find_known(&app.db, issuer, subject).await? {
         Some(Known::User(user)) => *user,
         Some(Known::Disabled) => return Err(Refusal::Unknown),
-        None => return bound(app, request, issuer, &identity).await,
+        None => return bind_first_sign_in(app, request, issuer, &identity).await,
     };
     request.record_actor(&user);
     Ok(user)
 }
 
-/// The user with the e-mail of someone who comes for the first time.
-async fn bound(
+/// Binds a person who signs in for the first time to the user with the same e-mail address.
+async fn bind_first_sign_in(
     app: &App,
     request: &RequestContext,
     issuer: &str,
     identity: &Identity,
 ) -> std::result::Result<User, Refusal> {
     let email = claims::verified_email(app, identity).await?;
-    // Nobody here has another; and what is alike in lower case is not the same.
+    // No user has a non-ASCII address, and lower-casing could make different addresses alike.
     if !email.is_ascii() || email.chars().any(char::is_control) {
         return Err(Refusal::Unknown);
     }
@@ -273,7 +264,7 @@ async fn bound(
         return Ok(user);
     }
     drop(tx);
-    // The same person may have come through two windows at once.
+    // The same person may have signed in through two windows at once.
     match store::find_known(&app.db, issuer, subject).await? {
         Some(Known::User(known)) if known.user_id == user.user_id => {
             request.record_actor(&user);
@@ -292,10 +283,10 @@ async fn open(
     session::open(app, request, from, user, Some(&app.config.oidc.oidc_name)).await
 }
 
-/// To the sign-in page, which says why.
-fn sent_away(app: &App, refusal: &Refusal) -> (StatusCode, HeaderMap) {
+/// Redirects to the sign-in page, which shows the reason.
+fn redirect_to_sign_in_page(app: &App, refusal: &Refusal) -> (StatusCode, HeaderMap) {
     let page = format!("{SIGN_IN_PAGE}{}", refusal.word());
-    redirect(&page, [attempt::forgotten(&app.config)])
+    redirect(&page, [attempt::clear_cookie(&app.config)])
 }
 
 fn redirect<const N: usize>(to: &str, cookies: [HeaderValue; N]) -> (StatusCode, HeaderMap) {

@@ -1,4 +1,4 @@
-//! Users known to the provider, and the sign-ins that have come back from it.
+//! Users bound to the provider, and returns from it, in the database.
 
 use crate::audit::RequestContext;
 use crate::db::{Db, Result, Tx, execute, row};
@@ -6,7 +6,7 @@ use crate::ids::UserId;
 use crate::session::{User, user_sql};
 use crate::time::Time;
 
-/// The user whom the provider names so, if they may sign in.
+/// Returns the user who is bound to a subject of the provider.
 pub(super) async fn find_known(db: &Db, issuer: &str, subject: &str) -> Result<Option<Known>> {
     let known = row!(
         db,
@@ -24,11 +24,11 @@ pub(super) async fn find_known(db: &Db, issuer: &str, subject: &str) -> Result<O
     }))
 }
 
-/// Someone whom the provider has named before.
+/// User who is bound to a subject of the provider.
 pub(super) enum Known {
-    /// A user who may sign in.
+    /// User who may sign in.
     User(Box<User>),
-    /// A user who is disabled.
+    /// User who is disabled.
     Disabled,
 }
 
@@ -44,7 +44,7 @@ async fn find_user(db: &Db, id: UserId) -> Result<Option<User>> {
     )
 }
 
-/// The user with an e-mail, if they may sign in.
+/// Returns the active user with an e-mail address.
 pub(super) async fn find_by_email(db: &Db, email: &str) -> Result<Option<User>> {
     row!(
         db,
@@ -57,7 +57,7 @@ pub(super) async fn find_by_email(db: &Db, email: &str) -> Result<Option<User>> 
     )
 }
 
-/// Notes whom the provider means by a name; false when that person or that user is taken.
+/// Binds a user to a subject of the provider; false when either is already bound.
 pub(super) async fn bind(
     tx: &mut Tx,
     issuer: &str,
@@ -78,12 +78,12 @@ pub(super) async fn bind(
     Ok(bound > 0)
 }
 
-/// Forgets whom the provider means by a user.
+/// Removes the binding of a user.
 pub async fn forget(tx: &mut Tx, user: UserId) -> Result<()> {
     execute!(tx, "DELETE FROM identities WHERE user_id = $1", user).map(drop)
 }
 
-/// Notes that a sign-in came back; false when it did before.
+/// Notes the return of a sign-in; false when it returned before.
 pub(super) async fn note_return(
     request: &RequestContext,
     state_hash: &[u8],
@@ -107,7 +107,7 @@ pub(super) async fn note_return(
     Ok(noted > 0)
 }
 
-/// Notes whose code a sign-in waits for.
+/// Notes the user whose code a sign-in is waiting for.
 pub(super) async fn await_code(
     request: &RequestContext,
     state_hash: &[u8],
@@ -139,7 +139,7 @@ pub(super) async fn awaited(db: &Db, state_hash: &[u8], now: Time) -> Result<Opt
     }
 }
 
-/// Notes that a sign-in waits no more; false when it did not.
+/// Notes that a sign-in no longer waits for a code; false when it did not wait.
 pub(super) async fn take_awaited(request: &RequestContext, state_hash: &[u8]) -> Result<bool> {
     let mut tx = request.begin().await?;
     let taken = execute!(

@@ -1,4 +1,4 @@
-//! Messages, and deliveries as they are shown.
+//! Messages, and deliveries as the API shows them.
 
 use crate::ids::{DeliveryId, OrderId};
 use crate::time::Time;
@@ -10,9 +10,9 @@ use utoipa::{IntoParams, ToSchema};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, sqlx::Type)]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 pub enum Channel {
-    /// HTTP, to a program.
+    /// HTTP request to a program.
     Webhook,
-    /// SMTP, to a person.
+    /// Mail to a person.
     Mail,
 }
 
@@ -27,7 +27,7 @@ pub enum Kind {
     #[serde(rename = "alert.raised")]
     #[sqlx(rename = "alert.raised")]
     AlertRaised,
-    /// An alert is worse or less bad than it was.
+    /// The severity of an alert changed.
     #[serde(rename = "alert.updated")]
     #[sqlx(rename = "alert.updated")]
     AlertUpdated,
@@ -39,19 +39,19 @@ pub enum Kind {
     #[serde(rename = "alert.cleared")]
     #[sqlx(rename = "alert.cleared")]
     AlertCleared,
-    /// A firm is asked to do an order.
+    /// A work order is offered to a firm.
     #[serde(rename = "order.offered")]
     #[sqlx(rename = "order.offered")]
     OrderOffered,
-    /// A firm or an operator said yes or no, or proposed other terms.
+    /// A firm or an operator accepted, declined, or proposed other terms.
     #[serde(rename = "order.answered")]
     #[sqlx(rename = "order.answered")]
     OrderAnswered,
-    /// There was no answer in time.
+    /// An offer was not answered in time.
     #[serde(rename = "order.lapsed")]
     #[sqlx(rename = "order.lapsed")]
     OrderLapsed,
-    /// An offer is taken back: another firm has the order, or it is cancelled.
+    /// An offer is withdrawn: another firm has the order, or it is cancelled.
     #[serde(rename = "order.withdrawn")]
     #[sqlx(rename = "order.withdrawn")]
     OrderWithdrawn,
@@ -59,47 +59,47 @@ pub enum Kind {
     #[serde(rename = "order.message")]
     #[sqlx(rename = "order.message")]
     OrderMessage,
-    /// The operator asks the firm that has an order for another time.
+    /// The operator proposes another time to the firm that has an order.
     #[serde(rename = "order.retime_proposed")]
     #[sqlx(rename = "order.retime_proposed")]
     OrderRetimeProposed,
-    /// The port call of an order has moved, or is withdrawn.
+    /// The port call of an order was moved or withdrawn.
     #[serde(rename = "order.call_moved")]
     #[sqlx(rename = "order.call_moved")]
     OrderCallMoved,
-    /// Something was done at the berth, or added.
+    /// The berth session of an order has progressed, or documents were added.
     #[serde(rename = "order.updated")]
     #[sqlx(rename = "order.updated")]
     OrderUpdated,
-    /// The adjuster has finished and signed.
+    /// The adjuster has completed and signed the order.
     #[serde(rename = "order.completed")]
     #[sqlx(rename = "order.completed")]
     OrderCompleted,
-    /// Headings at sea agree with the prediction.
+    /// Deviations at sea agree with the prediction.
     #[serde(rename = "order.verified")]
     #[sqlx(rename = "order.verified")]
     OrderVerified,
-    /// A heading at sea does not.
+    /// A deviation at sea disagrees with the prediction.
     #[serde(rename = "order.failed")]
     #[sqlx(rename = "order.failed")]
     OrderFailed,
-    /// The order is done with.
+    /// The order is closed.
     #[serde(rename = "order.closed")]
     #[sqlx(rename = "order.closed")]
     OrderClosed,
-    /// It is not to be done, or no further.
+    /// The order is cancelled.
     #[serde(rename = "order.cancelled")]
     #[sqlx(rename = "order.cancelled")]
     OrderCancelled,
-    /// Notification mail to a person: one notification, or several together.
+    /// Notification mail to a user: one notification, or a digest of several.
     #[serde(rename = "notification")]
     #[sqlx(rename = "notification")]
     Notification,
-    /// A monthly report by mail.
+    /// Monthly report by mail.
     #[serde(rename = "report")]
     #[sqlx(rename = "report")]
     Report,
-    /// Someone asked for a test.
+    /// A user requested a test.
     #[serde(rename = "test")]
     #[sqlx(rename = "test")]
     Test,
@@ -121,16 +121,16 @@ impl Kind {
     }
 }
 
-/// A message to be delivered.
+/// Message to be delivered.
 #[derive(Clone, Debug)]
 pub struct Message {
-    /// The event's id.
+    /// Id of the event.
     pub id: DeliveryId,
     /// Subject of the message.
     pub kind: Kind,
-    /// The work order that it is of, if it is of one.
+    /// Work order concerned, if any.
     pub order: Option<OrderId>,
-    /// JSON.
+    /// Body, JSON.
     pub body: String,
 }
 
@@ -139,18 +139,18 @@ pub struct Message {
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 pub enum DeliveryState {
-    /// It waits for its turn or its next try.
+    /// Waiting for its turn or its next attempt.
     Pending,
-    /// The receiver took it.
+    /// Accepted by the receiver.
     Delivered,
-    /// It was refused for good, or tried for a day in vain.
+    /// Refused permanently, or given up after a day of attempts.
     Dead,
 }
 
-/// A message and what became of it.
+/// Message and its delivery.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Delivery {
-    /// The event's id, which a webhook's body names too.
+    /// Id of the event, which the body of a webhook contains too.
     pub id: DeliveryId,
     /// Subject of the message.
     pub kind: Kind,
@@ -163,7 +163,7 @@ pub struct Delivery {
     /// Time of the next attempt, while the delivery is pending.
     #[schema(required)]
     pub next_attempt_at: Option<Time>,
-    /// The last answer's HTTP status or SMTP reply code.
+    /// HTTP status or SMTP reply code of the last response.
     #[schema(required, example = 503)]
     pub last_status: Option<i64>,
     /// Error of the last failed attempt.
@@ -177,12 +177,12 @@ pub struct Delivery {
     pub body: Box<RawValue>,
 }
 
-/// A page of deliveries.
+/// Page of deliveries.
 #[derive(Serialize, ToSchema)]
 pub struct DeliveryList {
-    /// The newest first.
+    /// Deliveries, newest first.
     pub items: Vec<Delivery>,
-    /// `after` of the next page.
+    /// Value of `after` for the next page.
     #[schema(required)]
     pub next: Option<String>,
 }
@@ -191,6 +191,6 @@ pub struct DeliveryList {
 #[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub struct Filter {
-    /// Only those that stand so; `dead` are the dead letters.
+    /// State of the deliveries to list; `dead` are the dead letters.
     pub state: Option<DeliveryState>,
 }

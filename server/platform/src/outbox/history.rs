@@ -1,4 +1,4 @@
-//! The history of a receiver's messages.
+//! History of a receiver's messages.
 
 use super::delivery::{Delivery, DeliveryList, DeliveryState, Filter, Kind, Message};
 use super::queue::queue;
@@ -26,7 +26,7 @@ struct Row {
     body: String,
 }
 
-/// A page of a receiver's deliveries, the newest first.
+/// Returns a page of a receiver's deliveries, newest first.
 pub async fn list(db: &Db, receiver: Uuid, filter: Filter, page: &Page) -> Result<DeliveryList> {
     let found = rows!(
         db,
@@ -50,10 +50,10 @@ pub async fn list(db: &Db, receiver: Uuid, filter: Filter, page: &Page) -> Resul
     })
 }
 
-/// A receiver's delivery.
+/// Returns a delivery of a receiver.
 ///
 /// # Errors
-/// [`Error::NotFound`] when it has none of that id.
+/// [`Error::NotFound`] when it has none with that id.
 async fn must_find(db: &Db, receiver: Uuid, id: DeliveryId) -> Result<Delivery> {
     let found = row!(
         db,
@@ -69,7 +69,7 @@ async fn must_find(db: &Db, receiver: Uuid, id: DeliveryId) -> Result<Delivery> 
     found.ok_or(Error::NotFound("delivery"))?.read()
 }
 
-/// Queues one message by itself; the delivery that it makes.
+/// Queues a single message and returns its delivery.
 ///
 /// # Errors
 /// [`Error::NotFound`] when the receiver was removed meanwhile.
@@ -85,10 +85,10 @@ pub async fn queue_one(
     must_find(request.db(), receiver, message.id).await
 }
 
-/// Has a delivery tried again at once, and for another day; one that waits too.
+/// Queues a delivery again, pending or not: it is tried at once, and for another day.
 ///
 /// # Errors
-/// [`Error::NotFound`] when the receiver has none of that id.
+/// [`Error::NotFound`] when the receiver has none with that id.
 pub async fn send_again(
     request: &RequestContext,
     receiver: Uuid,

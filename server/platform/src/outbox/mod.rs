@@ -1,13 +1,13 @@
-//! Messages on their way out, whatever carries them: a queue for each receiver.
+//! Outbox: outgoing messages of every channel, in one queue per receiver.
 //!
 //! Invariants:
 //!
-//! - A message is queued in the transaction that makes it true, and sent at least
-//!   once; its id tells a receiver that it had it before.
-//! - Each receiver gets the messages of a work order in order, and those that are of
-//!   none: the next is not sent before this one was delivered, refused for good, or
-//!   given up after a day of tries. What holds up one order holds up no other.
-//! - What waits survives a restart, and any server process may send it.
+//! - A message is queued in the transaction that makes it true, and sent at least once. By its
+//!   id a receiver recognises a repeated message.
+//! - Each receiver gets the messages of a work order in sequence, and likewise those of no
+//!   order. The next one is sent only after this one was delivered, refused permanently, or
+//!   given up after a day. A delay of one order does not delay the others.
+//! - Pending messages survive a restart, and any server process may send them.
 
 mod delivery;
 mod history;
@@ -19,4 +19,4 @@ pub use delivery::{Channel, Delivery, DeliveryList, Filter, Kind, Message};
 pub use history::{list, queue_one, send_again};
 pub use queue::{Claimed, queue};
 pub use receivers::{delete, enable, ensure, forget, insert};
-pub use worker::{Carrier, Sent, Tried, run, step};
+pub use worker::{Attempt, Carrier, Sent, run, step};

@@ -1,10 +1,10 @@
-//! The queues in the database, one for each receiver.
+//! Queues in the database, one per receiver.
 //!
-//! Invariants: a receiver's deliveries are numbered in the order in which
-//! their transactions commit, and of each work order's, and of those of none, only the
-//! first that waits is due. One worker at a time has it, the one that holds its lease, and no
-//! other calls upon the same receiver. Webhooks are always taken before mail recipients, and
-//! each in the order of their ids, so that no two transactions wait for each other.
+//! Invariants: a receiver's deliveries are numbered in the order in which their transactions
+//! commit. Of each work order only the first pending delivery is due, and likewise of those of
+//! no order. Only the worker that holds the lease sends it, and no other worker serves the same
+//! receiver meanwhile. A transaction locks webhooks before mail recipients, each in the order
+//! of their ids, so that no two transactions wait for each other.
 
 use super::delivery::{Channel, DeliveryState, Message};
 use crate::db::{Connection, Db, Result, Tx, execute, row, rows};
@@ -17,7 +17,7 @@ use uuid::Uuid;
 const LEASE_S: f64 = 90.0;
 /// Maximum number of a tenant's receivers served at once, so that slow receivers do not delay
 /// those of other tenants.
-const MOST_OF_TENANT: i64 = 2;
+const MAX_OF_TENANT: i64 = 2;
 const FIRST_RETRY_S: f64 = 10.0;
 const LONGEST_RETRY_S: f64 = 3600.0;
 /// Time after which an undelivered message is given up, seconds.
@@ -25,28 +25,28 @@ const GIVEN_UP_AFTER_S: f64 = 86_400.0;
 /// Time after which a finished delivery is deleted, seconds.
 const KEPT_FOR_S: f64 = 30.0 * 86_400.0;
 
-/// A delivery that a worker has claimed.
+/// Delivery that a worker has claimed.
 #[derive(Clone, Debug, sqlx::FromRow)]
 pub struct Claimed {
-    /// The receiver of the message.
+    /// Receiver of the message.
     pub receiver_id: Uuid,
-    /// Its place in the receiver's queue.
+    /// Number in the receiver's queue.
     pub number: i64,
-    /// The event's id.
+    /// Id of the event.
     pub id: DeliveryId,
-    /// This one included; tells this lease from later ones.
+    /// Number of attempts, this one included; distinguishes this lease from later ones.
     pub attempts: i64,
     /// Creation time of the message.
     pub created_at: Time,
     /// Time at which it was last queued.
     pub tries_since: Time,
-    /// The message, JSON.
+    /// Body of the message, JSON.
     pub body: String,
 }
 
-/// Queues a message for a receiver; for one that was removed meanwhile, nothing.
+/// Queues a message for a receiver; does nothing if the receiver was removed meanwhile.
 pub async fn queue(tx: &mut Tx, receiver: Uuid, message: &Message, now: Time) -> Result<()> {
-    // Taking the receiver's row puts transactions in line until they commit.
+    // Updating the receiver's row serialises the transactions until they commit.
     let number = row!(
         in &mut *tx,
         (i64,),
@@ -107,9 +107,9 @@ macro_rules! claim_sql {
     };
 }
 
-/// Takes the delivery of a channel that has been due for longest.
+/// Claims the delivery of a channel that has been due for longest.
 pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option<Claimed>> {
-    // Asking first keeps an idle worker from taking SQLite's write lock.
+    // Reading first keeps an idle worker from taking SQLite's write lock.
     let due = rows!(
         db,
         (i64,),
@@ -132,7 +132,7 @@ pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option
          LIMIT 1",
         now,
         channel,
-        MOST_OF_TENANT
+        MAX_OF_TENANT
     )?;
     if due.is_empty() {
         return Ok(None);
@@ -145,17 +145,17 @@ pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option
                 .bind(now)
                 .bind(lease_until)
                 .bind(channel)
-                .bind(MOST_OF_TENANT)
+                .bind(MAX_OF_TENANT)
                 .fetch_optional(&mut **tx)
                 .await?
         }
-        // Workers of other processes take other receivers rather than wait.
+        // Workers of other processes claim other receivers instead of waiting.
         Connection::Postgres(tx) => {
             sqlx::query_as(claim_sql!(" FOR UPDATE OF d SKIP LOCKED"))
                 .bind(now)
                 .bind(lease_until)
                 .bind(channel)
-                .bind(MOST_OF_TENANT)
+                .bind(MAX_OF_TENANT)
                 .fetch_optional(&mut **tx)
                 .await?
         }
@@ -183,11 +183,11 @@ pub(super) async fn succeed(db: &Db, claimed: &Claimed, status: u16, now: Time) 
 }
 
 /// Checks whether the retry period of a delivery is over.
-pub(super) fn is_tried_enough(claimed: &Claimed, now: Time) -> bool {
+pub(super) fn is_given_up(claimed: &Claimed, now: Time) -> bool {
     now.0.seconds_since(claimed.tries_since.0) >= GIVEN_UP_AFTER_S
 }
 
-/// Puts a delivery back for later, or gives it up.
+/// Schedules the next attempt of a delivery, or gives it up.
 pub(super) async fn fail(
     db: &Db,
     claimed: &Claimed,
@@ -218,9 +218,9 @@ pub(super) async fn fail(
     tx.commit().await
 }
 
-/// Seconds until the next try: twice as long each time, up to an hour, and within a
-/// quarter more that the delivery's id decides, so that receivers that were away
-/// are not called upon by everyone at once.
+/// Returns the seconds until the next attempt: exponential backoff up to an hour, plus up to a
+/// quarter as jitter. The jitter follows from the delivery's id, so that a receiver that
+/// returns does not get all retries at once.
 fn retry_s(id: DeliveryId, attempts: i64) -> f64 {
     let doubled_s = FIRST_RETRY_S * 2_f64.powi(attempts.clamp(1, 20) as i32 - 1);
     let digest = Sha256::digest(format!("{id} {attempts}"));

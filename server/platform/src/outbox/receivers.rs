@@ -1,5 +1,5 @@
-//! The common part of webhooks and mail recipients: each has a row in the queue's table of
-//! receivers, under the same id.
+//! Receivers: the common part of webhooks and mail recipients. Each has a row in the queue's
+//! table of receivers, with the same id.
 
 use super::delivery::Channel;
 use crate::db::{Result as DbResult, Tx, execute};
@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::tenants::Tenant;
 use uuid::Uuid;
 
-/// Makes a receiver; what it is besides is its channel's business.
+/// Creates a receiver; its channel stores the rest.
 pub async fn insert(
     tx: &mut Tx,
     tenant: impl Into<Tenant>,
@@ -29,7 +29,7 @@ pub async fn insert(
     Ok(())
 }
 
-/// Makes a receiver that is enabled, unless there is one under the id.
+/// Creates an enabled receiver, unless one with the id exists.
 pub async fn ensure(tx: &mut Tx, tenant: Tenant, id: Uuid, channel: Channel) -> DbResult<()> {
     execute!(
         tx,
@@ -44,13 +44,13 @@ pub async fn ensure(tx: &mut Tx, tenant: Tenant, id: Uuid, channel: Channel) -> 
     Ok(())
 }
 
-/// Removes a receiver that there may be, with its deliveries.
+/// Removes a receiver, if it exists, with its deliveries.
 pub async fn forget(tx: &mut Tx, id: Uuid) -> DbResult<()> {
     execute!(tx, "DELETE FROM receivers WHERE id = $1", id)?;
     Ok(())
 }
 
-/// Has messages sent to a receiver, or kept waiting.
+/// Enables or pauses the messages to a receiver.
 pub async fn enable(
     tx: &mut Tx,
     tenant: impl Into<Tenant>,
@@ -70,7 +70,7 @@ pub async fn enable(
     Ok(())
 }
 
-/// Removes a receiver with its deliveries and what its channel knows of it.
+/// Removes a receiver with its deliveries and its channel's data.
 ///
 /// # Errors
 /// [`Error::NotFound`] when the tenant has no such receiver on the channel.

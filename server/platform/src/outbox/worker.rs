@@ -1,4 +1,4 @@
-//! Sends what is due, one delivery after the other.
+//! Outbox worker: sends the due deliveries, one after the other.
 
 use super::delivery::Channel;
 use super::queue::{self, Claimed};
@@ -10,44 +10,44 @@ use tracing::{error, info, warn};
 
 /// Interval at which the worker looks for deliveries without a notification.
 const LOOK_EVERY: Duration = Duration::from_secs(2);
-/// Longest text that is kept of an error, characters.
+/// Longest stored text of an error, characters.
 const MAX_ERROR: usize = 300;
 
 /// Carrier of messages to the receivers of one channel.
 pub trait Carrier: Send + Sync {
-    /// The channel served.
+    /// Channel served.
     const CHANNEL: Channel;
 
-    /// Tries a delivery once.
+    /// Makes one attempt at a delivery.
     ///
     /// # Errors
-    /// When there was no answer; it will be tried again.
+    /// When there was no response; the delivery is retried.
     fn carry(
         &self,
         app: &App,
         claimed: &Claimed,
-    ) -> impl Future<Output = anyhow::Result<Tried>> + Send;
+    ) -> impl Future<Output = anyhow::Result<Attempt>> + Send;
 }
 
-/// A receiver's answer to an attempt, with its status.
+/// Response of a receiver to an attempt, with its status.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Tried {
-    /// It took the message.
-    Taken(u16),
-    /// Not now, for this reason.
-    Later(u16, String),
-    /// Never, for this reason.
+pub enum Attempt {
+    /// The message was accepted.
+    Accepted(u16),
+    /// The message was refused temporarily, with the reason.
+    Deferred(u16, String),
+    /// The message was refused permanently, with the reason.
     Refused(u16, String),
 }
 
 /// Outcome of one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sent {
-    /// The receiver has it.
+    /// The receiver has the message.
     Delivered,
-    /// It will be tried again.
+    /// The attempt failed and is retried.
     Failed,
-    /// It was given up.
+    /// The delivery was given up.
     Dead,
 }
 
@@ -78,8 +78,8 @@ pub async fn step<C: Carrier>(app: &App, carrier: &C) -> anyhow::Result<Option<S
     let Some(claimed) = queue::claim(&app.db, C::CHANNEL, now).await? else {
         return Ok(None);
     };
-    let tried = carrier.carry(app, &claimed).await;
-    let sent = note(app, &claimed, tried).await?;
+    let attempt = carrier.carry(app, &claimed).await;
+    let sent = note(app, &claimed, attempt).await?;
     let result = match sent {
         Sent::Delivered => "delivered",
         Sent::Failed => "failed",
@@ -91,21 +91,25 @@ pub async fn step<C: Carrier>(app: &App, carrier: &C) -> anyhow::Result<Option<S
     Ok(Some(sent))
 }
 
-async fn note(app: &App, claimed: &Claimed, tried: anyhow::Result<Tried>) -> anyhow::Result<Sent> {
+async fn note(
+    app: &App,
+    claimed: &Claimed,
+    attempt: anyhow::Result<Attempt>,
+) -> anyhow::Result<Sent> {
     let now = app.clock.now().into();
     let receiver = claimed.receiver_id;
-    let (status, problem, for_good) = match tried {
-        Ok(Tried::Taken(status)) => {
+    let (status, problem, for_good) = match attempt {
+        Ok(Attempt::Accepted(status)) => {
             queue::succeed(&app.db, claimed, status, now).await?;
             info!(%receiver, event = %claimed.id, "a message was delivered");
             return Ok(Sent::Delivered);
         }
-        Ok(Tried::Later(status, problem)) => (Some(status), problem, false),
-        Ok(Tried::Refused(status, problem)) => (Some(status), problem, true),
+        Ok(Attempt::Deferred(status, problem)) => (Some(status), problem, false),
+        Ok(Attempt::Refused(status, problem)) => (Some(status), problem, true),
         Err(error) => (None, format!("{error:#}"), false),
     };
     let problem: String = problem.chars().take(MAX_ERROR).collect();
-    let dead = for_good || queue::is_tried_enough(claimed, now);
+    let dead = for_good || queue::is_given_up(claimed, now);
     queue::fail(&app.db, claimed, status, &problem, dead, now).await?;
     if dead {
         warn!(%receiver, event = %claimed.id, problem, "a message was given up");

@@ -1,6 +1,6 @@
-//! Words that guesses begin with, in small letters.
+//! Common parts of passwords, in lower case.
 
-/// The commonest parts of leaked passwords, and the walks over a keyboard.
+/// Most common parts of leaked passwords, and rows of keys on a keyboard.
 pub(super) const WORDS: &[&str] = &[
     "password",
     "passwort",

@@ -9,29 +9,29 @@ use crate::error::{Error, Result};
 use crate::secret;
 use tokio::sync::OwnedSemaphorePermit;
 
-/// Fewest characters.
-pub const LEAST: usize = 12;
-/// Argon2 takes any length; nobody types more.
-pub const MOST_BYTES: usize = 1024;
+/// Minimum length, characters.
+pub const MIN_LENGTH: usize = 12;
+/// Maximum length, bytes: Argon2 accepts any length, but nobody types more.
+pub const MAX_BYTES: usize = 1024;
 /// Minimum number of characters left after all easily guessed parts are removed.
-const LEAST_LEFT: usize = 6;
+const MIN_UNGUESSED: usize = 6;
 /// Minimum length of a word that counts as easily guessed.
-const LEAST_WORD: usize = 4;
+const MIN_WORD: usize = 4;
 
-/// Refuses a password that is short or easily guessed; `about` is what is known of
-/// whose it is: e-mail, name, company.
+/// Refuses a password that is short or easily guessed. `about` is known of the user: e-mail,
+/// name, company.
 ///
 /// # Errors
-/// Naming `field`, with what is wrong.
+/// [`Error::Invalid`] with `field`.
 pub fn check(field: &'static str, password: &str, about: &[&str]) -> Result<()> {
     let wrong = |detail: String| Err(Error::Invalid { field, detail });
-    if password.chars().count() < LEAST {
-        return wrong(format!("has fewer than {LEAST} characters"));
+    if password.chars().count() < MIN_LENGTH {
+        return wrong(format!("has fewer than {MIN_LENGTH} characters"));
     }
-    if password.len() > MOST_BYTES {
-        return wrong(format!("is longer than {MOST_BYTES} bytes"));
+    if password.len() > MAX_BYTES {
+        return wrong(format!("is longer than {MAX_BYTES} bytes"));
     }
-    if left_over(password, about) < LEAST_LEFT {
+    if count_unguessed(password, about) < MIN_UNGUESSED {
         return wrong(
             "is easily guessed: it is little more than a common word, a row of keys, \
              or the e-mail, name or company"
@@ -41,9 +41,9 @@ pub fn check(field: &'static str, password: &str, about: &[&str]) -> Result<()> 
     Ok(())
 }
 
-/// The characters that a guesser who knows common words, rows of letters and these
-/// names has still to find.
-fn left_over(password: &str, about: &[&str]) -> usize {
+/// Returns the number of characters that remain for an attacker who knows common words, rows of
+/// letters and these names.
+fn count_unguessed(password: &str, about: &[&str]) -> usize {
     let mut rest = password.to_lowercase();
     let about: Vec<String> = about.iter().map(|text| text.to_lowercase()).collect();
     let squeezed: Vec<String> = about.iter().map(|text| text.replace(' ', "")).collect();
@@ -55,7 +55,7 @@ fn left_over(password: &str, about: &[&str]) -> usize {
         .chain(parts)
         .chain(common::WORDS.iter().copied())
         .collect();
-    words.retain(|word| word.chars().count() >= LEAST_WORD);
+    words.retain(|word| word.chars().count() >= MIN_WORD);
     words.sort_by_key(|word| std::cmp::Reverse(word.len()));
     for word in words {
         rest = rest.replace(word, " ");
@@ -69,40 +69,40 @@ fn left_over(password: &str, about: &[&str]) -> usize {
     letters.len() - rows
 }
 
-/// A place among those that are hashing: each takes 19 MB and a core.
+/// Acquires a permit for hashing: each hash takes 19 MB and a core.
 ///
 /// # Errors
 /// When the server is stopping.
-pub async fn place(app: &App) -> Result<OwnedSemaphorePermit> {
-    let place = app.hashing.clone().acquire_owned().await;
-    Ok(place.map_err(anyhow::Error::from)?)
+pub async fn acquire_permit(app: &App) -> Result<OwnedSemaphorePermit> {
+    let permit = app.hashing.clone().acquire_owned().await;
+    Ok(permit.map_err(anyhow::Error::from)?)
 }
 
-/// Checks a password. The permit moves into the task, so that it stays taken for as long as
-/// the hashing lasts, even if nobody waits for the answer any more.
+/// Checks a password. The permit moves into the task, so that it is held while the hashing
+/// lasts, even if nobody waits for the result any more.
 ///
 /// # Errors
 /// When the server is stopping.
 pub async fn matches(
-    place: OwnedSemaphorePermit,
+    permit: OwnedSemaphorePermit,
     password: String,
     stored: Option<String>,
 ) -> Result<(bool, OwnedSemaphorePermit)> {
     let matches = tokio::task::spawn_blocking(move || {
         let matches = secret::password_matches(&password, stored.as_deref());
-        (matches, place)
+        (matches, permit)
     });
     Ok(matches.await?)
 }
 
-/// A password's hash, as it is stored.
+/// Returns the hash of a password, as it is stored.
 ///
 /// # Errors
 /// When there is too little memory.
-pub async fn hash(place: OwnedSemaphorePermit, password: String) -> Result<String> {
+pub async fn hash(permit: OwnedSemaphorePermit, password: String) -> Result<String> {
     let hashed = tokio::task::spawn_blocking(move || {
         let hashed = secret::hash_password(&password);
-        drop(place);
+        drop(permit);
         hashed
     });
     Ok(hashed.await??)

@@ -8,7 +8,7 @@ use crate::secret;
 use crate::time::Time;
 use binnacle_compass::time::Timestamp;
 
-/// Before every step there is.
+/// Step before all others.
 const NEVER: i64 = -1;
 
 #[derive(sqlx::FromRow)]
@@ -17,9 +17,9 @@ struct Factor {
     last_step: i64,
 }
 
-/// Keeps a secret that is yet to be confirmed, in place of one that never was; false
-/// when there is a confirmed one.
-pub(super) async fn begin(
+/// Stores an unconfirmed secret in place of any other unconfirmed one; false when a confirmed
+/// one exists.
+pub(crate) async fn begin(
     request: &RequestContext,
     user: UserId,
     secret: &[u8],
@@ -42,8 +42,8 @@ pub(super) async fn begin(
     Ok(kept > 0)
 }
 
-/// Confirms the secret that was begun, by its first code.
-pub(super) async fn confirm(tx: &mut Tx, user: UserId, code: &str, now: Timestamp) -> Result<bool> {
+/// Confirms the stored secret by its first code.
+pub(crate) async fn confirm(tx: &mut Tx, user: UserId, code: &str, now: Timestamp) -> Result<bool> {
     if !use_code(tx, user, code, now).await? {
         return Ok(false);
     }
@@ -57,7 +57,7 @@ pub(super) async fn confirm(tx: &mut Tx, user: UserId, code: &str, now: Timestam
     Ok(confirmed > 0)
 }
 
-/// Uses a code of the moment, which works once, also when it comes twice at once.
+/// Uses a current code. It works once, even if it is sent twice at the same time.
 pub(super) async fn use_code(
     tx: &mut Tx,
     user: UserId,
@@ -94,8 +94,8 @@ pub(super) async fn use_recovery_code(tx: &mut Tx, user: UserId, code: &str) -> 
     Ok(used > 0)
 }
 
-/// Puts these recovery codes in place of those there were.
-pub(super) async fn set_recovery_codes(tx: &mut Tx, user: UserId, codes: &[String]) -> Result<()> {
+/// Replaces the recovery codes.
+pub(crate) async fn set_recovery_codes(tx: &mut Tx, user: UserId, codes: &[String]) -> Result<()> {
     execute!(
         &mut *tx,
         "DELETE FROM recovery_codes WHERE user_id = $1",
@@ -112,7 +112,7 @@ pub(super) async fn set_recovery_codes(tx: &mut Tx, user: UserId, codes: &[Strin
     Ok(())
 }
 
-/// Takes the second factor away; false when there was none.
+/// Removes the second factor; false when there was none.
 pub(super) async fn remove(tx: &mut Tx, user: UserId) -> Result<bool> {
     execute!(
         &mut *tx,

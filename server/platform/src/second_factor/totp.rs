@@ -1,25 +1,25 @@
-//! Codes from the time, RFC 6238 on RFC 4226: SHA-1, six digits, thirty seconds, which
-//! is what every authenticator app takes.
+//! Time-based codes (RFC 6238 with RFC 4226): SHA-1, six digits, thirty seconds, which every
+//! authenticator app supports.
 //!
-//! Invariants: a code is of one step of time, and whoever asks says after which
-//! step it must be, so that a code that was seen once is worth nothing.
+//! Invariants: a code belongs to one time step. The caller names the last used step, and only
+//! later steps are accepted, so a code that was seen once is worthless.
 
 use binnacle_compass::time::Timestamp;
 use ring::hmac;
 
 /// Length of a secret in bytes, equal to the hash's (RFC 4226, section 4, requirement 6).
-pub(super) const SECRET_BYTES: usize = 20;
+pub(crate) const SECRET_BYTES: usize = 20;
 const STEP_S: i64 = 30;
 const CODES: u32 = 1_000_000;
-/// Steps that a telephone's clock may be off (RFC 6238, section 5.2).
+/// Steps that a phone's clock may be off (RFC 6238, section 5.2).
 const OFF_BY: i64 = 1;
 
-/// The step of time that an instant is in (RFC 6238, section 4.2).
+/// Returns the time step of an instant (RFC 6238, section 4.2).
 pub(super) fn step_at(now: Timestamp) -> i64 {
     now.micros().div_euclid(1_000_000 * STEP_S)
 }
 
-/// The step after `after` whose code this is, if it is one of now.
+/// Returns the step of a code, if it is a current one later than `after`.
 pub(super) fn step_of(secret: &[u8], code: &str, after: i64, now: Timestamp) -> Option<i64> {
     let typed: String = code.chars().filter(|letter| *letter != ' ').collect();
     let now = step_at(now);
@@ -28,7 +28,7 @@ pub(super) fn step_of(secret: &[u8], code: &str, after: i64, now: Timestamp) -> 
         .find(|step| same(&code_at(secret, *step), &typed))
 }
 
-/// A step's code (RFC 4226, section 5.3).
+/// Returns the code of a step (RFC 4226, section 5.3).
 pub(super) fn code_at(secret: &[u8], step: i64) -> String {
     let key = hmac::Key::new(hmac::HMAC_SHA1_FOR_LEGACY_USE_ONLY, secret);
     let hash = hmac::sign(&key, &step.to_be_bytes());
@@ -39,7 +39,7 @@ pub(super) fn code_at(secret: &[u8], step: i64) -> String {
     format!("{:06}", number % CODES)
 }
 
-/// Takes as long whatever differs.
+/// Compares two texts in constant time.
 fn same(one: &str, other: &str) -> bool {
     one.len() == other.len()
         && one
@@ -49,8 +49,8 @@ fn same(one: &str, other: &str) -> bool {
             == 0
 }
 
-/// RFC 4648, section 6, without padding: how secrets are typed.
-pub(super) fn base32(bytes: &[u8]) -> String {
+/// Encodes bytes in base 32 (RFC 4648, section 6) without padding, as people type secrets.
+pub(crate) fn base32(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 32] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZ234567";
     let mut text = String::with_capacity(bytes.len() * 8 / 5 + 1);
     for chunk in bytes.chunks(5) {

@@ -1,18 +1,18 @@
-//! The session's cookie, and what every cookie of ours is like.
+//! Session cookie, and the attributes of all cookies of this server.
 //!
-//! Invariants: scripts cannot read it, other sites' requests do not carry the
-//! session's, and where it is for https alone its name begins with `__Host-`, so that no other
-//! host of the domain can plant one (RFC 6265bis, section 4.1.3.2).
+//! Invariants: scripts cannot read a cookie. Requests from other sites do not carry the session
+//! cookie. A cookie that is limited to https has a name with the prefix `__Host-`, so that no
+//! other host of the domain can plant one (RFC 6265bis, section 4.1.3.2).
 
 use crate::config::Serve;
 use axum::http::header::{COOKIE, HeaderValue, SET_COOKIE};
 use axum::http::{HeaderMap, request::Parts};
 
-/// The name without https.
+/// Name of the session cookie without https.
 pub const PLAIN: &str = "binnacle_session";
 const SECURE: &str = "__Host-binnacle_session";
 
-/// The name under which this server gives and takes it.
+/// Returns the name of the session cookie on this server.
 pub fn name(config: &Serve) -> &'static str {
     if config.has_secure_cookies() {
         SECURE
@@ -21,12 +21,12 @@ pub fn name(config: &Serve) -> &'static str {
     }
 }
 
-/// The token in a request's cookie.
+/// Returns the token in a request's session cookie.
 pub fn token<'a>(parts: &'a Parts, config: &Serve) -> Option<&'a str> {
     value(&parts.headers, name(config))
 }
 
-/// The value of a request's cookie.
+/// Returns the value of a cookie in a request.
 pub fn value<'a>(headers: &'a HeaderMap, wanted: &str) -> Option<&'a str> {
     let values = headers.get_all(COOKIE).iter();
     values
@@ -36,22 +36,22 @@ pub fn value<'a>(headers: &'a HeaderMap, wanted: &str) -> Option<&'a str> {
         .find_map(|(name, value)| (name == wanted).then_some(value))
 }
 
-/// The header that gives a browser its cookie; an empty token takes it away.
-pub(super) fn set(config: &Serve, token: &str, max_age_s: u64) -> HeaderMap {
+/// Returns the header that sets the session cookie; an empty token deletes it.
+pub(crate) fn set(config: &Serve, token: &str, max_age_s: u64) -> HeaderMap {
     let header = header(config, name(config), token, max_age_s, SameSite::Strict);
     HeaderMap::from_iter([(SET_COOKIE, header)])
 }
 
-/// The cross-site requests that carry a cookie.
+/// Cross-site requests that carry a cookie.
 #[derive(Clone, Copy, Debug)]
 pub enum SameSite {
-    /// Following a link does.
+    /// Only those that follow a link.
     Lax,
-    /// None does.
+    /// None.
     Strict,
 }
 
-/// The value of the header that gives a browser a cookie, or, when empty, takes it away.
+/// Returns the header value that sets a cookie; an empty value deletes it.
 #[allow(clippy::missing_panics_doc, reason = "it cannot: see the message")]
 pub fn header(
     config: &Serve,

@@ -1,6 +1,5 @@
 //! Users and sessions in the database.
 
-use super::own::Session;
 use super::user::{Role, User, normal_email, user_sql};
 use crate::audit::RequestContext;
 use crate::client_address::Origin;
@@ -10,6 +9,8 @@ use crate::ids::{SessionId, UserId};
 use crate::secret;
 use crate::tenants::Tenant;
 use crate::time::Time;
+use serde::Serialize;
+use utoipa::ToSchema;
 
 /// Minimum age of `last_seen_at` before it is updated, seconds: most requests write nothing.
 const SEEN_NOTED_EVERY_S: f64 = 600.0;
@@ -29,7 +30,7 @@ struct Holder {
     last_seen_at: Time,
 }
 
-/// The user whose session this is, if it has not ended and was not idle for so long.
+/// Returns the user of a session that has neither expired nor been idle for `idle_s`.
 pub async fn find_user(
     db: &Db,
     token_hash: &[u8],
@@ -66,11 +67,11 @@ pub async fn find_user(
     Ok(Some((holder.user, holder.session_id)))
 }
 
-/// Checks whether a session that was valid still is.
+/// Checks whether a session is still valid.
 ///
 /// # Errors
-/// When the database does.
-pub async fn lasts(db: &Db, id: SessionId, now: Time) -> Result<bool> {
+/// When the database fails.
+pub async fn is_valid(db: &Db, id: SessionId, now: Time) -> Result<bool> {
     let found = row!(
         db,
         (SessionId,),
@@ -84,7 +85,7 @@ pub async fn lasts(db: &Db, id: SessionId, now: Time) -> Result<bool> {
     Ok(found.is_some())
 }
 
-/// A user's name.
+/// Returns the name of a user.
 ///
 /// # Errors
 /// When there is no such user.
@@ -113,16 +114,39 @@ pub(super) async fn find_by_email(db: &Db, email: &str) -> Result<Option<(User, 
     Ok(stored.map(|stored| (stored.user, stored.password_hash)))
 }
 
-/// A session to be opened.
+/// Session of the signed-in user.
+#[derive(Serialize, ToSchema, sqlx::FromRow)]
+pub(crate) struct Session {
+    /// The session's id.
+    pub(crate) id: SessionId,
+    /// Time of the sign-in.
+    created_at: Time,
+    /// Time of the last request, to ten minutes.
+    last_seen_at: Time,
+    /// Latest end of the session.
+    expires_at: Time,
+    /// Network address of the sign-in; empty if unknown.
+    #[schema(example = "198.51.100.7")]
+    address: String,
+    /// Name that the browser gives itself (`User-Agent`).
+    user_agent: String,
+    /// Provider of the sign-in; none for a sign-in by password.
+    #[schema(required, example = json!(null))]
+    provider: Option<String>,
+    /// True for the session of this request.
+    pub(crate) current: bool,
+}
+
+/// Session to be opened.
 pub(super) struct NewSession<'a> {
     pub(super) token: &'a str,
-    /// By whose word; none: by a password.
+    /// Provider of the sign-in; none for a sign-in by password.
     pub(super) provider: Option<&'a str>,
     pub(super) now: Time,
     pub(super) expires_at: Time,
 }
 
-/// Opens a session; clears away those that ended, and the e-mail's failures.
+/// Opens a session. Deletes expired sessions and the failed attempts of the e-mail address.
 pub(super) async fn open(
     request: &RequestContext,
     user: &User,
@@ -154,7 +178,7 @@ pub(super) async fn open(
     tx.commit().await
 }
 
-pub(super) async fn list(
+pub(crate) async fn list(
     db: &Db,
     user: UserId,
     now: Time,
@@ -179,8 +203,8 @@ pub(super) async fn list(
     )
 }
 
-/// Ends one of a user's sessions; false when it is none of theirs.
-pub(super) async fn end(request: &RequestContext, user: UserId, id: SessionId) -> Result<bool> {
+/// Ends one of a user's sessions; false when the user has no such session.
+pub(crate) async fn end(request: &RequestContext, user: UserId, id: SessionId) -> Result<bool> {
     let mut tx = request.begin().await?;
     let ended = execute!(
         &mut tx,
@@ -192,17 +216,18 @@ pub(super) async fn end(request: &RequestContext, user: UserId, id: SessionId) -
     Ok(ended > 0)
 }
 
-/// Ends all of a user's sessions but the one to be kept.
-pub(super) async fn end_all(tx: &mut Tx, user: UserId, kept: Option<SessionId>) -> Result<u64> {
+/// Ends all sessions of a user except the one to be kept.
+pub async fn end_all(tx: &mut Tx, user: UserId, kept: Option<SessionId>) -> Result<()> {
     execute!(
         tx,
         "DELETE FROM sessions WHERE user_id = $1 AND id <> $2",
         user,
         kept.map_or(uuid::Uuid::nil(), |kept| kept.0)
-    )
+    )?;
+    Ok(())
 }
 
-/// Puts another password in place.
+/// Replaces the password.
 pub async fn set_password(tx: &mut Tx, user: UserId, password_hash: &str) -> Result<()> {
     execute!(
         tx,
@@ -213,7 +238,7 @@ pub async fn set_password(tx: &mut Tx, user: UserId, password_hash: &str) -> Res
     Ok(())
 }
 
-/// Stores a new user of a tenant, or of none; the e-mail must be new.
+/// Stores a new user of a tenant, or of none. The e-mail address must be new.
 pub async fn create_user(
     tx: &mut Tx,
     tenant: Option<Tenant>,

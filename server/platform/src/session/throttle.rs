@@ -1,8 +1,8 @@
-//! Slows down those who guess passwords and codes.
+//! Rate limit of sign-ins: failed attempts delay further ones.
 //!
-//! Invariants: an e-mail that nobody has is throttled like any other, so
-//! that the answer does not tell which exist. Failures count for the e-mail, and, so
-//! that one password is not tried on every e-mail, for the address they come from.
+//! Invariants: an unknown e-mail address is throttled like any other, so that the response does
+//! not reveal which exist. Failures count for the e-mail address. They also count for the
+//! network address, so that one password cannot be tried on every user.
 
 use crate::audit::RequestContext;
 use crate::client_address::Origin;
@@ -12,31 +12,31 @@ use crate::secret;
 use crate::time::Time;
 use binnacle_compass::time::Timestamp;
 
-/// Wrong passwords that cost an e-mail nothing.
+/// Failed attempts for an e-mail address that cause no delay.
 const FREE_FOR_EMAIL: i64 = 5;
-/// And an address: a whole office may be behind it.
+/// Failed attempts from a network address that cause no delay: a whole office may share it.
 const FREE_FOR_ADDRESS: i64 = 50;
-/// The longest wait between two attempts.
+/// Longest wait between two attempts, seconds.
 const LONGEST_WAIT_S: i64 = 900;
-/// After so long without a failure all is forgotten.
+/// Time without a failure after which all failures are forgotten, seconds.
 const FORGET_AFTER_S: f64 = 86_400.0;
 
-/// The subjects whose failures are counted.
+/// Subjects for which failures are counted.
 pub struct Subjects<'a> {
-    /// The e-mail that is tried, as it is stored; none where nobody says it.
+    /// E-mail address tried, as it is stored; none if the attempt names none.
     email: Option<&'a str>,
-    /// From where.
+    /// Origin of the attempt.
     from: &'a Origin,
 }
 
 impl<'a> Subjects<'a> {
-    /// An e-mail, and where the attempt comes from.
+    /// Returns the subjects of an attempt that names an e-mail address.
     pub fn person(email: &'a str, from: &'a Origin) -> Subjects<'a> {
         let email = Some(email);
         Subjects { email, from }
     }
 
-    /// Only where the attempt comes from.
+    /// Returns the subjects of an attempt that names no e-mail address.
     pub fn address(from: &'a Origin) -> Subjects<'a> {
         Subjects { email: None, from }
     }
@@ -51,10 +51,10 @@ impl<'a> Subjects<'a> {
     }
 }
 
-/// Refuses an attempt that comes too soon after failed ones.
+/// Refuses an attempt that follows failed ones too soon.
 ///
 /// # Errors
-/// Saying how long to wait.
+/// [`Error::Throttled`] with the time to wait.
 pub async fn check(db: &Db, subjects: &Subjects<'_>, now: Timestamp) -> Result<()> {
     let hashes = subjects.hashes();
     let (first, last) = (hashes.first(), hashes.last());
@@ -113,7 +113,7 @@ pub async fn note_failure(
     Ok(())
 }
 
-/// Nothing at first, then twice as long each time.
+/// Returns the wait after failures beyond the free ones: it doubles each time.
 fn wait_s(beyond_free: i64) -> i64 {
     match beyond_free {
         ..0 => 0,

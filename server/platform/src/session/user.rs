@@ -1,4 +1,4 @@
-//! The signed-in user.
+//! Users and their roles.
 
 use crate::audit::Actor;
 use crate::ids::{FirmId, OperatorId, UserId};
@@ -6,7 +6,7 @@ use crate::tenants::Tenant;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// A user, as `/me` shows it.
+/// User, as `/me` shows it.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 #[schema(as = Me)]
 pub struct User {
@@ -18,13 +18,13 @@ pub struct User {
     pub name: String,
     /// Role of the user.
     pub role: Role,
-    /// The operator whose fleet the user sees, if any.
+    /// Operator whose fleet the user sees, if any.
     #[schema(required)]
     pub operator_id: Option<OperatorId>,
     /// Name of the operator.
     #[schema(required)]
     pub operator_name: Option<String>,
-    /// The firm that the user adjusts compasses for, if any.
+    /// Firm for which the user adjusts compasses, if any.
     #[schema(required)]
     pub firm_id: Option<FirmId>,
     /// Name of the firm.
@@ -55,7 +55,7 @@ impl From<&User> for Actor {
     }
 }
 
-/// The columns of a [`User`], and the tables they come from, with `more` columns.
+/// SQL that selects the columns of a [`User`], and `more` columns.
 macro_rules! user_sql {
     ($more:literal) => {
         concat!(
@@ -78,13 +78,13 @@ pub(crate) use user_sql;
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 pub enum Role {
-    /// See and change the operator's fleet.
+    /// Sees and changes the operator's fleet.
     Admin,
-    /// See the operator's fleet.
+    /// Sees the operator's fleet.
     Viewer,
-    /// Adjust compasses for a firm.
+    /// Adjusts compasses for a firm.
     Adjuster,
-    /// Manage operators and firms.
+    /// Manages operators and firms.
     PlatformAdmin,
 }
 
@@ -94,13 +94,13 @@ impl Role {
         self == Role::Admin
     }
 
-    /// Checks whether the role allows progress on work orders.
-    pub fn may_bring_orders_on(self) -> bool {
+    /// Checks whether the role allows actions on work orders.
+    pub fn may_act_on_orders(self) -> bool {
         matches!(self, Role::Admin | Role::Adjuster)
     }
 }
 
-/// An e-mail as it is stored and compared.
+/// Returns an e-mail address as it is stored and compared.
 pub fn normal_email(email: &str) -> String {
     email.trim().to_lowercase()
 }

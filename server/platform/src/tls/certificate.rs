@@ -1,4 +1,4 @@
-//! The server's certificate and key, from two PEM files.
+//! Certificate and key of the server, from two PEM files.
 
 use anyhow::{Context, Result, ensure};
 use rustls::ServerConfig;
@@ -15,14 +15,14 @@ const SESSIONS: usize = 32_768;
 #[derive(Clone, Debug)]
 pub struct Configs {
     usual: Arc<ServerConfig>,
-    /// Without a ticket, for clients that do not return while it holds.
+    /// Configuration without tickets, for clients that do not return while one is valid.
     once: Arc<ServerConfig>,
     /// Application protocol (ALPN) by which a client of one request identifies itself.
     one_request: &'static [u8],
 }
 
 impl Configs {
-    /// The one for who says this hello.
+    /// Returns the configuration for the client that sent a hello.
     pub fn for_hello(&self, hello: &ClientHello<'_>) -> Arc<ServerConfig> {
         let mut protocols = hello.alpn().into_iter().flatten();
         if protocols.any(|protocol| protocol == self.one_request) {
@@ -36,9 +36,9 @@ impl Configs {
 /// Location of the certificate.
 #[derive(Clone, Debug)]
 pub struct Certificate {
-    /// PEM: the server's certificate first, then those up to the authority's.
+    /// PEM file: the server's certificate first, then those up to the authority's.
     pub chain: PathBuf,
-    /// PEM: its private key.
+    /// PEM file: its private key.
     pub key: PathBuf,
     /// Application protocol (ALPN) of clients that make one request and resume no session.
     pub one_request: &'static [u8],
@@ -48,21 +48,21 @@ impl Certificate {
     /// Reads both files.
     ///
     /// # Errors
-    /// When one cannot be read, holds no certificate or key, or they do not belong
-    /// together; the message names the file.
+    /// When a file cannot be read or holds no certificate or key, or when the two do not
+    /// match. The message names the file.
     pub fn load(&self) -> Result<Configs> {
         let name = self.chain.display();
         let chain: Vec<CertificateDer<'static>> = CertificateDer::pem_file_iter(&self.chain)
             .and_then(Iterator::collect)
             .with_context(|| format!("{name}: cannot read the TLS certificate"))?;
-        ensure!(!chain.is_empty(), "{name}: there is no certificate in it");
+        ensure!(!chain.is_empty(), "{name}: contains no certificate");
         let name = self.key.display();
         let key = PrivateKeyDer::from_pem_file(&self.key)
             .with_context(|| format!("{name}: cannot read the TLS key"))?;
         let mut config = ServerConfig::builder()
             .with_no_client_auth()
             .with_single_cert(chain, key)
-            .with_context(|| format!("{name}: not the certificate's key"))?;
+            .with_context(|| format!("{name}: is not the certificate's key"))?;
         let mut once = config.clone();
         once.send_tls13_tickets = 0;
         config.alpn_protocols = vec![b"h2".to_vec(), b"http/1.1".to_vec()];

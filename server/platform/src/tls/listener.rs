@@ -1,7 +1,7 @@
-//! A listener whose connections have shaken hands already.
+//! TLS listener: it accepts connections whose handshake is done.
 
 use super::certificate::{Certificate, Configs};
-use super::line::{Line, Tcp};
+use super::connection::{Tcp, TlsConnection};
 use anyhow::Result;
 use axum::serve::Listener;
 use rustls::server::Acceptor;
@@ -17,14 +17,15 @@ use tokio::time::timeout;
 use tokio_rustls::LazyConfigAcceptor;
 use tracing::{debug, error, info};
 
-/// Over a satellite that loses packets a handshake takes up to half a minute.
+/// Time limit of a handshake: over a satellite link that loses packets it takes up to half a
+/// minute.
 const HANDSHAKE: Duration = Duration::from_mins(1);
 /// Maximum number of concurrent handshakes; further connections wait in the system's queue.
 const HANDSHAKES: usize = 1024;
 
-type Connection = (Line, SocketAddr);
+type Connection = (TlsConnection, SocketAddr);
 
-/// Takes TLS connections on a TCP listener. SIGHUP reloads the certificate.
+/// Listener for TLS connections on a TCP listener. SIGHUP reloads the certificate.
 #[derive(Debug)]
 pub struct TlsListener {
     ready: mpsc::Receiver<Connection>,
@@ -33,10 +34,10 @@ pub struct TlsListener {
 }
 
 impl TlsListener {
-    /// Begins to take connections.
+    /// Begins to accept connections.
     ///
     /// # Errors
-    /// When the certificate cannot be used, or signals cannot be had.
+    /// When the certificate cannot be used, or signals cannot be received.
     pub fn new(listener: TcpListener, certificate: Certificate) -> Result<TlsListener> {
         let address = listener.local_addr()?;
         let (config, in_use) = watch::channel(certificate.load()?);
@@ -46,11 +47,11 @@ impl TlsListener {
                 match certificate.load() {
                     Ok(new) => {
                         config.send_replace(new);
-                        info!("the TLS certificate was read anew");
+                        info!("the TLS certificate was reloaded");
                     }
                     Err(error) => {
                         let error = format!("{error:#}");
-                        error!(error, "the TLS certificate before stays in use");
+                        error!(error, "the previous TLS certificate stays in use");
                     }
                 }
             }
@@ -74,7 +75,7 @@ impl Drop for TlsListener {
 }
 
 impl Listener for TlsListener {
-    type Io = Line;
+    type Io = TlsConnection;
     type Addr = SocketAddr;
 
     async fn accept(&mut self) -> Connection {
@@ -96,23 +97,23 @@ async fn accept(
     done: mpsc::Sender<Connection>,
 ) {
     let free = Arc::new(Semaphore::new(HANDSHAKES));
-    while let Ok(place) = free.clone().acquire_owned().await {
+    while let Ok(permit) = free.clone().acquire_owned().await {
         let (stream, peer) = Listener::accept(&mut listener).await;
         let configs = in_use.borrow().clone();
         let done = done.clone();
         tokio::spawn(async move {
-            match timeout(HANDSHAKE, shake_hands(stream, configs)).await {
-                Ok(Ok(line)) => drop(done.send((line, peer)).await),
-                Ok(Err(error)) => debug!(%peer, %error, "no TLS"),
+            match timeout(HANDSHAKE, handshake(stream, configs)).await {
+                Ok(Ok(connection)) => drop(done.send((connection, peer)).await),
+                Ok(Err(error)) => debug!(%peer, %error, "the TLS handshake failed"),
                 Err(_) => debug!(%peer, "the TLS handshake took too long"),
             }
-            drop(place);
+            drop(permit);
         });
     }
 }
 
-async fn shake_hands(stream: TcpStream, configs: Configs) -> io::Result<Line> {
+async fn handshake(stream: TcpStream, configs: Configs) -> io::Result<TlsConnection> {
     let hello = LazyConfigAcceptor::new(Acceptor::default(), Tcp::new(stream)).await?;
     let config = configs.for_hello(&hello.client_hello());
-    Ok(Line::new(hello.into_stream(config).await?))
+    Ok(TlsConnection::new(hello.into_stream(config).await?))
 }

@@ -1,13 +1,13 @@
-//! TLS on the server's own listener, for a server without a proxy before it.
+//! TLS on the server's own listener, for a server without a proxy in front of it.
 //!
-//! Invariants: a handshake, however slow, keeps nobody else waiting; a
-//! certificate that cannot be read is refused at the start, and later leaves the
-//! one before in use.
+//! Invariants: a slow handshake delays no other connection. A certificate that cannot be
+//! read is refused at the start; on a reload it leaves the previous one in use.
 
 mod certificate;
-mod line;
+mod connection;
+
 mod listener;
 
 pub use certificate::Certificate;
-pub use line::Line;
+pub use connection::TlsConnection;
 pub use listener::TlsListener;

@@ -1,7 +1,6 @@
 //! API tokens in the database.
 
 use super::{PREFIX, Scope, Token};
-use crate::access::Caller;
 use crate::audit::RequestContext;
 use crate::db::{Db, Result, Tx, execute, row, rows};
 use crate::ids::{TokenId, UserId};
@@ -12,17 +11,18 @@ use crate::time::Time;
 /// Minimum age of `last_used_at` before it is updated, seconds: most requests write nothing.
 const USE_NOTED_EVERY_S: f64 = 3600.0;
 
+/// User for whom a token acts.
 #[derive(sqlx::FromRow)]
-struct Holder {
+pub(crate) struct Holder {
     #[sqlx(flatten)]
-    user: User,
-    token_id: TokenId,
-    scope: Scope,
+    pub(crate) user: User,
+    pub(crate) token_id: TokenId,
+    pub(crate) scope: Scope,
     last_used_at: Option<Time>,
 }
 
-/// The user that a valid token stands for.
-pub async fn caller(db: &Db, token: &str, now: Time) -> Result<Option<Caller>> {
+/// Returns the user for whom a valid token acts, and notes its use.
+pub(crate) async fn find_holder(db: &Db, token: &str, now: Time) -> Result<Option<Holder>> {
     if !token.starts_with(PREFIX) {
         return Ok(None);
     }
@@ -47,19 +47,14 @@ pub async fn caller(db: &Db, token: &str, now: Time) -> Result<Option<Caller>> {
     if !noted {
         note_use(db, holder.token_id, now).await?;
     }
-    Ok(Some(Caller {
-        user: holder.user,
-        read_only: holder.scope == Scope::Read,
-        session: None,
-        token: Some(holder.token_id),
-    }))
+    Ok(Some(holder))
 }
 
-/// Checks whether a token that was valid still is.
+/// Checks whether a token is still valid.
 ///
 /// # Errors
-/// When the database does.
-pub async fn lasts(db: &Db, id: TokenId, now: Time) -> Result<bool> {
+/// When the database fails.
+pub async fn is_valid(db: &Db, id: TokenId, now: Time) -> Result<bool> {
     let found = row!(
         db,
         (TokenId,),
@@ -84,7 +79,7 @@ async fn note_use(db: &Db, id: TokenId, now: Time) -> Result<()> {
     tx.commit().await
 }
 
-pub(super) async fn list(
+pub(crate) async fn list(
     db: &Db,
     user: UserId,
     after: Option<uuid::Uuid>,
@@ -104,7 +99,7 @@ pub(super) async fn list(
     )
 }
 
-pub(super) async fn insert(
+pub(crate) async fn insert(
     request: &RequestContext,
     user: UserId,
     token: &Token,
@@ -126,7 +121,7 @@ pub(super) async fn insert(
     tx.commit().await
 }
 
-pub(super) async fn delete(request: &RequestContext, user: UserId, id: TokenId) -> Result<bool> {
+pub(crate) async fn delete(request: &RequestContext, user: UserId, id: TokenId) -> Result<bool> {
     let mut tx = request.begin().await?;
     let deleted = execute!(
         &mut tx,
@@ -141,7 +136,7 @@ pub(super) async fn delete(request: &RequestContext, user: UserId, id: TokenId) 
 /// Revokes all of a user's tokens.
 ///
 /// # Errors
-/// When the database does.
+/// When the database fails.
 pub async fn delete_all(tx: &mut Tx, user: UserId) -> Result<u64> {
     execute!(tx, "DELETE FROM api_tokens WHERE user_id = $1", user)
 }

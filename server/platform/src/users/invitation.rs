@@ -1,9 +1,9 @@
-//! One-time codes with which people set a password of their own.
+//! One-time codes with which users set their password.
 //!
-//! Invariants: a code is stored as a hash, works once and for a week; whoever
-//! uses it gets a password and nothing else, and signs in with that.
+//! Invariants: a code is stored as a hash and works once, for a week. Its user sets a password
+//! and gets no other access; the sign-in follows with the password.
 
-use crate::access::Custodian;
+use crate::access::AdminWriter;
 use crate::app::App;
 use crate::audit::{Actor, RequestContext};
 use crate::db::{Db, DomainEvent, Tx, execute, row};
@@ -32,7 +32,7 @@ where
         .routes(routes!(accept_invitation))
 }
 
-/// With this someone sets a password.
+/// Invitation to set a password.
 #[derive(Serialize, ToSchema)]
 #[schema(example = json!({
     "code": "7QWM-0V3N-KX2D-9RTA",
@@ -40,31 +40,31 @@ where
     "expires_at": "2026-11-28T07:00:00Z"
 }))]
 pub(super) struct Invitation {
-    /// Works once and is never shown again.
+    /// One-time code; never shown again.
     code: String,
-    /// Link for its use, if the server knows its public address. The part after the # is sent to
-    /// no server and appears in no log.
+    /// Link to the page that uses the code, if the server knows its public address. The part
+    /// after the # is sent to no server and appears in no log.
     #[schema(required)]
     link: Option<String>,
     /// Expiry time.
     expires_at: Time,
 }
 
-/// A code, and the password to be set with it.
+/// Code, and the password to be set with it.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "code": "7QWM-0V3N-KX2D-9RTA", "password": "seven gulls over the quay"
 }))]
 struct Acceptance {
-    /// As it was given; without regard to case and hyphens.
+    /// Code; case and hyphens do not matter.
     code: String,
-    /// At least 12 characters; neither common nor easily guessed of you.
+    /// New password: at least 12 characters, neither common nor easily guessed.
     #[schema(format = Password)]
     password: String,
 }
 
-/// The user who can now sign in.
+/// User who can now sign in.
 #[derive(Serialize, ToSchema)]
 struct Accepted {
     /// E-mail address to sign in with.
@@ -88,24 +88,24 @@ struct Invited {
 
 /// Give a user another one-time code
 ///
-/// For who let the first one lapse, or forgot the password: it goes on working until
-/// the code is used. Codes given before work no more.
+/// For a user whose code expired or who forgot the password. The password stays valid until the
+/// code is used. Earlier codes stop working.
 #[utoipa::path(post, path = "/users/{id}/invitation", tag = "people",
     params(("id" = UserId, Path)),
     responses((status = 201, body = Invitation), (status = 401, body = Problem),
               (status = 404, body = Problem),
-              (status = 409, description = "The user is shut out", body = Problem)))]
+              (status = 409, description = "The user is disabled", body = Problem)))]
 async fn invite_again(
     State(app): State<App>,
     request: RequestContext,
-    custodian: Custodian,
+    admin: AdminWriter,
     Id(id): Id<UserId>,
 ) -> Result<(StatusCode, Json<Invitation>)> {
     let mut tx = request.begin().await?;
-    let user = super::store::find(&mut tx, custodian.operator, id).await?;
+    let user = super::store::find(&mut tx, admin.operator, id).await?;
     let user = user.ok_or(Error::NotFound("user"))?;
-    if user.state == super::Standing::Disabled {
-        return Err(Error::WrongState("the user is shut out".to_owned()));
+    if user.state == super::AccountState::Disabled {
+        return Err(Error::WrongState("the user is disabled".to_owned()));
     }
     let invitation = make(&mut tx, &app, id).await?;
     tx.commit().await?;
@@ -114,14 +114,13 @@ async fn invite_again(
 
 /// Set a password with a one-time code
 ///
-/// Sessions, tokens and calendars there were end, and whom a sign-in provider means is
-/// forgotten: whoever needs a code may have lost more than the password. A second factor
-/// stays.
+/// All sessions, tokens and calendar feeds of the user end, and the binding to a sign-in
+/// provider is removed: more than the password may have been lost. A second factor stays.
 #[utoipa::path(post, path = "/invitations/accept", tag = "people", security(()),
     request_body = Acceptance,
     responses((status = 200, body = Accepted),
               (status = 404, description = "There is no such code", body = Problem),
-              (status = 410, description = "The code has lapsed", body = Problem)))]
+              (status = 410, description = "The code has expired", body = Problem)))]
 async fn accept_invitation(
     State(app): State<App>,
     request: RequestContext,
@@ -133,12 +132,12 @@ async fn accept_invitation(
         .await?
         .ok_or(Error::NotFound("code"))?;
     if invited.expires_at.0 <= now {
-        return Err(Error::Gone("this code has lapsed; ask for another"));
+        return Err(Error::Gone("this code has expired; ask for another"));
     }
     let company = invited.company.as_deref().unwrap_or_default();
     let about = [invited.email.as_str(), &invited.name, company];
     password::check("password", &acceptance.password, &about)?;
-    let hash = password::hash(password::place(&app).await?, acceptance.password).await?;
+    let hash = password::hash(password::acquire_permit(&app).await?, acceptance.password).await?;
     let mut tx = request.begin().await?;
     let used = execute!(
         &mut tx,
@@ -161,7 +160,7 @@ async fn accept_invitation(
     }))
 }
 
-/// Makes a code for a user, in place of any there was.
+/// Creates a code for a user, in place of any earlier one.
 pub(super) async fn make(tx: &mut Tx, app: &App, user: UserId) -> Result<Invitation> {
     let now = app.clock.now();
     let (code, expires_at) = insert(tx, user, now.into()).await?;
@@ -174,12 +173,12 @@ pub(super) async fn make(tx: &mut Tx, app: &App, user: UserId) -> Result<Invitat
     })
 }
 
-/// Begins a user anew: password, second factor, sessions, tokens, calendars and whom a
-/// sign-in provider means are gone, and the code sets another password; none when nobody
-/// has the e-mail.
+/// Resets a user: removes password, second factor, sessions, tokens, calendar feeds and the
+/// binding to a sign-in provider. Returns the code that sets a new password; `None` when no
+/// user has the e-mail address.
 ///
 /// # Errors
-/// When the database does.
+/// When the database fails.
 pub async fn reset(
     request: &RequestContext,
     email: &str,
@@ -207,15 +206,15 @@ pub async fn reset(
     Ok(Some(made))
 }
 
-/// All access of a user ends, also that of whoever stole it.
+/// End of all access of a user, also of a stolen one.
 pub struct AccessEnded {
-    /// The user.
+    /// User concerned.
     pub user: UserId,
 }
 
 impl DomainEvent for AccessEnded {}
 
-/// Ends all access of a user, also that of whoever stole it.
+/// Ends all access of a user, also a stolen one.
 async fn end_access(tx: &mut Tx, user: UserId) -> Result<()> {
     session::end_all(tx, user, None).await?;
     tokens::delete_all(tx, user).await?;

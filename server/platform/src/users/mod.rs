@@ -1,16 +1,15 @@
-//! An operator's users and their roles.
+//! Users of an operator, and their roles.
 //!
-//! Invariants: an operator keeps at least one admin who can sign in; nobody
-//! learns another's password, for an admin gives a one-time code and the person sets
-//! the password; who is disabled is signed out at once, and so are their tokens; a token
-//! changes none of this.
+//! Invariants: an operator always has at least one admin who can sign in. Nobody learns
+//! another's password: an admin passes on a one-time code, and the user sets the password.
+//! Disabling a user ends all sessions and tokens at once. A token may change none of this.
 
 mod invitation;
 mod store;
 
 pub use invitation::{AccessEnded, reset};
 
-use crate::access::{Custodian, Overseer};
+use crate::access::{AdminReader, AdminWriter};
 use crate::app::App;
 use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
@@ -28,7 +27,7 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The routes of this part.
+/// Routes of the users of an operator.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -42,7 +41,7 @@ where
         .merge(invitation::router())
 }
 
-/// One of the operator's people.
+/// User of the operator.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 #[schema(as = User)]
 struct Person {
@@ -57,7 +56,7 @@ struct Person {
     /// Role of the user.
     role: Role,
     /// State of the account.
-    state: Standing,
+    state: AccountState,
     /// True if the user has a second factor.
     second_factor: bool,
     /// Creation time of the user.
@@ -75,26 +74,26 @@ struct Person {
 #[serde(rename_all = "snake_case")]
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = UserState)]
-enum Standing {
-    /// Has set no password yet.
+enum AccountState {
+    /// The user has not set a password yet.
     Invited,
-    /// Can sign in.
+    /// The user can sign in.
     Active,
-    /// Was shut out by an admin.
+    /// The user was disabled by an admin.
     Disabled,
 }
 
-/// A page of users.
+/// Page of users.
 #[derive(Serialize, ToSchema)]
 struct UserList {
-    /// In the order in which they were invited.
+    /// Users in the order in which they were invited.
     items: Vec<Person>,
-    /// `after` of the next page.
+    /// Value of `after` for the next page.
     #[schema(required)]
     next: Option<String>,
 }
 
-/// Someone to be invited.
+/// User to be invited.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({ "email": "ada@example.com", "name": "Ada Lovelace", "role": "viewer" }))]
@@ -113,9 +112,9 @@ struct NewUser {
 #[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 enum FleetRole {
-    /// See and change the operator's fleet.
+    /// Sees and changes the operator's fleet.
     Admin,
-    /// See the operator's fleet.
+    /// Sees the operator's fleet.
     Viewer,
 }
 
@@ -128,12 +127,12 @@ impl From<FleetRole> for Role {
     }
 }
 
-/// A user who was invited, and how.
+/// Invited user, with the invitation.
 #[derive(Serialize, ToSchema)]
 struct InvitedUser {
     /// The user.
     user: Person,
-    /// The invitation to pass on.
+    /// Invitation to pass on.
     invitation: Invitation,
 }
 
@@ -151,7 +150,7 @@ struct ChangedUser {
     disabled: Option<bool>,
 }
 
-/// An operator's rules for signing in.
+/// Sign-in rules of an operator.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, ToSchema, sqlx::FromRow)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({ "second_factor_required": true }))]
@@ -166,62 +165,57 @@ struct SignInRules {
     responses((status = 200, body = UserList), (status = 401, body = Problem)))]
 async fn list_users(
     State(app): State<App>,
-    overseer: Overseer,
+    admin: AdminReader,
     page: Page,
 ) -> Result<Json<UserList>> {
     let after = page.after_id()?;
-    let found = store::list(&app.db, overseer.operator, after, page.fetch()).await?;
+    let found = store::list(&app.db, admin.operator, after, page.fetch()).await?;
     let Listed { items, next } = page.cut(found, |user| user.id.to_string());
     Ok(Json(UserList { items, next }))
 }
 
 /// Invite a user
 ///
-/// Give them the link or the code: with it they set a password of their own. It works
-/// once, for a week.
+/// Pass the link or the code on to the user, who sets a password with it. It works once, for a
+/// week.
 #[utoipa::path(post, path = "/users", tag = "people", request_body = NewUser,
     responses((status = 201, body = InvitedUser), (status = 401, body = Problem),
-              (status = 409, description = "The e-mail has an account", body = Problem)))]
+              (status = 409, description = "The e-mail address already has an account", body = Problem)))]
 async fn invite_user(
     State(app): State<App>,
     request: RequestContext,
-    custodian: Custodian,
+    admin: AdminWriter,
     Valid(new): Valid<NewUser>,
 ) -> Result<(StatusCode, Json<InvitedUser>)> {
     let email = checked_email(&new.email)?;
     let name = text("name", &new.name)?;
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
-    let created = store::insert(
-        &mut tx,
-        custodian.operator,
-        &email,
-        &name,
-        new.role.into(),
-        now,
-    );
+    let created = store::insert(&mut tx, admin.operator, &email, &name, new.role.into(), now);
     let id = created.await?.ok_or_else(|| {
-        Error::WrongState(format!("{email} has an account already, here or elsewhere"))
+        Error::WrongState(format!(
+            "{email} already has an account, with this company or another"
+        ))
     })?;
     let invitation = invitation::make(&mut tx, &app, id).await?;
-    let user = store::find(&mut tx, custodian.operator, id).await?;
+    let user = store::find(&mut tx, admin.operator, id).await?;
     tx.commit().await?;
     let user = user.ok_or(Error::NotFound("user"))?;
     Ok((StatusCode::CREATED, Json(InvitedUser { user, invitation })))
 }
 
-/// Change a user's name or role, or shut them out
+/// Change a user's name or role, or disable the user
 ///
-/// Who is shut out is signed out at once. The last admin stays one.
+/// A disabled user is signed out at once. The last admin cannot be disabled or demoted.
 #[utoipa::path(patch, path = "/users/{id}", tag = "people", params(("id" = UserId, Path)),
     request_body = ChangedUser,
     responses((status = 200, body = Person), (status = 401, body = Problem),
               (status = 404, body = Problem),
-              (status = 409, description = "It is the last admin", body = Problem)))]
+              (status = 409, description = "The user is the last admin", body = Problem)))]
 async fn change_user(
     State(app): State<App>,
     request: RequestContext,
-    custodian: Custodian,
+    admin: AdminWriter,
     Id(id): Id<UserId>,
     Valid(change): Valid<ChangedUser>,
 ) -> Result<Json<Person>> {
@@ -233,8 +227,8 @@ async fn change_user(
     let role = change.role.map(Role::from);
     let now = app.clock.now().into();
     let mut tx = request.begin().await?;
-    store::lock(&mut tx, custodian.operator).await?;
-    let before = store::find(&mut tx, custodian.operator, id).await?;
+    store::lock(&mut tx, admin.operator).await?;
+    let before = store::find(&mut tx, admin.operator, id).await?;
     before.ok_or(Error::NotFound("user"))?;
     store::update(&mut tx, id, name.as_deref(), role).await?;
     match change.disabled {
@@ -242,85 +236,85 @@ async fn change_user(
         Some(false) => store::enable(&mut tx, id).await?,
         None => {}
     }
-    store::must_have_admin(&mut tx, custodian.operator).await?;
-    let after = store::find(&mut tx, custodian.operator, id).await?;
+    store::must_have_admin(&mut tx, admin.operator).await?;
+    let after = store::find(&mut tx, admin.operator, id).await?;
     tx.commit().await?;
     Ok(Json(after.ok_or(Error::NotFound("user"))?))
 }
 
 /// Remove a user
 ///
-/// With their sessions and tokens. What they wrote keeps their name.
+/// Sessions and tokens are removed too. Entries by the user keep the name.
 #[utoipa::path(delete, path = "/users/{id}", tag = "people", params(("id" = UserId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "It is the last admin", body = Problem)))]
+              (status = 409, description = "The user is the last admin", body = Problem)))]
 async fn remove_user(
     request: RequestContext,
-    custodian: Custodian,
+    admin: AdminWriter,
     Id(id): Id<UserId>,
 ) -> Result<StatusCode> {
     let mut tx = request.begin().await?;
-    store::lock(&mut tx, custodian.operator).await?;
-    if !store::delete(&mut tx, custodian.operator, id).await? {
+    store::lock(&mut tx, admin.operator).await?;
+    if !store::delete(&mut tx, admin.operator, id).await? {
         return Err(Error::NotFound("user"));
     }
-    store::must_have_admin(&mut tx, custodian.operator).await?;
+    store::must_have_admin(&mut tx, admin.operator).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
 /// Remove a user's second factor
 ///
-/// For who lost telephone and recovery codes.
+/// For a user who lost the phone and the recovery codes.
 #[utoipa::path(delete, path = "/users/{id}/second-factor", tag = "people",
     params(("id" = UserId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 404, body = Problem)))]
 async fn reset_second_factor(
     request: RequestContext,
-    custodian: Custodian,
+    admin: AdminWriter,
     Id(id): Id<UserId>,
 ) -> Result<StatusCode> {
     let mut tx = request.begin().await?;
-    let user = store::find(&mut tx, custodian.operator, id).await?;
+    let user = store::find(&mut tx, admin.operator, id).await?;
     user.ok_or(Error::NotFound("user"))?;
     second_factor::remove(&mut tx, id).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// See what your operator asks of its people when they sign in
+/// Show your operator's sign-in rules
 #[utoipa::path(get, path = "/sign-in-rules", tag = "people",
     responses((status = 200, body = SignInRules), (status = 401, body = Problem)))]
 async fn find_sign_in_rules(
     State(app): State<App>,
-    overseer: Overseer,
+    admin: AdminReader,
 ) -> Result<Json<SignInRules>> {
-    Ok(Json(store::rules(&app.db, overseer.operator).await?))
+    Ok(Json(store::rules(&app.db, admin.operator).await?))
 }
 
-/// Change what your operator asks of its people when they sign in
+/// Change your operator's sign-in rules
 ///
-/// Whoever wants a second factor of others has one.
+/// Only an admin with a second factor may require one of others.
 #[utoipa::path(put, path = "/sign-in-rules", tag = "people", request_body = SignInRules,
     responses((status = 200, body = SignInRules), (status = 401, body = Problem),
               (status = 409, description = "You have no second factor yourself", body = Problem)))]
 async fn change_sign_in_rules(
     request: RequestContext,
-    custodian: Custodian,
+    admin: AdminWriter,
     Valid(rules): Valid<SignInRules>,
 ) -> Result<Json<SignInRules>> {
     let mut tx = request.begin().await?;
-    let asking = store::find(&mut tx, custodian.operator, custodian.user).await?;
+    let asking = store::find(&mut tx, admin.operator, admin.user).await?;
     if rules.second_factor_required && !asking.is_some_and(|user| user.second_factor) {
         let first = "set up a second factor of your own first";
         return Err(Error::WrongState(first.to_owned()));
     }
-    store::set_rules(&mut tx, custodian.operator, rules).await?;
+    store::set_rules(&mut tx, admin.operator, rules).await?;
     tx.commit().await?;
     Ok(Json(rules))
 }
 
-/// An e-mail as it is stored, if mail can go there.
+/// Returns an e-mail address as it is stored, if it is a valid address.
 fn checked_email(email: &str) -> Result<String> {
     let email = normal_email(&text("email", email)?);
     if !email.is_ascii() || email.parse::<Address>().is_err() {

@@ -1,4 +1,4 @@
-//! An operator's people in the database.
+//! Users of an operator in the database.
 
 use super::{Person, SignInRules};
 use crate::db::{self, Db, Tx, execute, row, rows};
@@ -9,7 +9,7 @@ use crate::session::{self, Role};
 use crate::time::Time;
 use uuid::Uuid;
 
-/// The columns of a [`Person`], and the tables they come from.
+/// SQL that selects the columns of a [`Person`].
 macro_rules! person_sql {
     () => {
         "SELECT u.id, u.email, u.name, u.role,
@@ -60,7 +60,7 @@ pub(super) async fn find(
     )
 }
 
-/// Stores someone who has no password yet; none when the e-mail has an account.
+/// Stores a user without a password; `None` when the e-mail address has an account.
 pub(super) async fn insert(
     tx: &mut Tx,
     operator: OperatorId,
@@ -75,8 +75,8 @@ pub(super) async fn insert(
     }
 }
 
-/// Lets changes to an operator's people come one after the other, so that two admins do
-/// not remove each other at once.
+/// Serialises changes to an operator's users, so that two admins cannot remove each other at
+/// the same time.
 pub(super) async fn lock(tx: &mut Tx, operator: OperatorId) -> db::Result<()> {
     execute!(
         tx,
@@ -97,7 +97,7 @@ pub(super) async fn must_have_admin(tx: &mut Tx, operator: OperatorId) -> Result
         operator
     )?;
     if left.is_none_or(|(admins,)| admins == 0) {
-        let last = "nobody would be left who is an admin and has a password";
+        let last = "no admin with a password would be left";
         return Err(Error::WrongState(last.to_owned()));
     }
     Ok(())

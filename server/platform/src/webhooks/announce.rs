@@ -1,4 +1,4 @@
-//! Queues messages for the webhooks that want them.
+//! Messages for webhooks.
 
 use super::store;
 use crate::db::Tx;
@@ -7,12 +7,12 @@ use crate::outbox::{self, Message};
 use crate::tenants::Tenant;
 use crate::time::Time;
 
-/// Queues messages for those of a tenant's webhooks that want them.
+/// Queues messages for the webhooks of a tenant that subscribe to their kinds.
 pub async fn announce(tx: &mut Tx, tenant: Tenant, messages: &[Message], now: Time) -> Result<()> {
     if messages.is_empty() {
         return Ok(());
     }
-    for (webhook, kinds) in store::wishes(tx, tenant).await? {
+    for (webhook, kinds) in store::list_subscriptions(tx, tenant).await? {
         for message in messages
             .iter()
             .filter(|message| kinds.0.contains(&message.kind))

@@ -1,21 +1,19 @@
-//! Webhooks: telling an operator's or a firm's programs of what happened.
+//! Webhooks: messages to the programs of an operator or a firm.
 //!
 //! Invariants:
 //!
-//! - Messages wait and are sent as [`crate::outbox`] says.
-//! - Each try is signed with the webhook's secret over its time and its body.
+//! - Messages are queued and sent by [`crate::outbox`].
+//! - Each attempt is signed with the webhook's secret over its time and body.
 //! - Nothing is sent to an address outside the public internet, unless the server is
 //!   configured to allow it.
 
-mod address;
 mod announce;
 mod send;
 mod store;
 mod webhook;
 
-pub use address::is_public;
 pub use announce::announce;
-pub use send::{Reach, SIGNATURE_HEADER, Sender, check_url, client};
+pub use send::{SIGNATURE_HEADER, Sender};
 
 use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
@@ -36,7 +34,7 @@ use webhook::{MadeWebhook, NewWebhook, Webhook, WebhookList};
 /// Prefix of a webhook's secret.
 const SECRET_PREFIX: &str = "bns_";
 
-/// The routes of this part.
+/// Routes of webhooks.
 pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
@@ -66,10 +64,10 @@ async fn list_webhooks(
     }))
 }
 
-/// Make a webhook
+/// Create a webhook
 ///
-/// The answer shows, this once, the secret that its messages are signed with:
-/// `Binnacle-Signature: t=SECONDS,v1=HEX`, HMAC-SHA-256 over `SECONDS.BODY`.
+/// The response contains the signing secret, which is never shown again. Messages are signed
+/// with it: `Binnacle-Signature: t=SECONDS,v1=HEX`, HMAC-SHA-256 over `SECONDS.BODY`.
 #[utoipa::path(post, path = "/webhooks", tag = "alerts", params(Key), request_body = NewWebhook,
     responses((status = 201, body = MadeWebhook), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 422, body = Problem)))]
@@ -99,7 +97,7 @@ async fn create_webhook(
     Ok((StatusCode::CREATED, Json(MadeWebhook { about, secret })))
 }
 
-/// See a webhook
+/// Show a webhook
 #[utoipa::path(get, path = "/webhooks/{id}", tag = "alerts", params(("id" = WebhookId, Path)),
     responses((status = 200, body = Webhook), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
@@ -113,8 +111,7 @@ async fn find_webhook(
 
 /// Change a webhook
 ///
-/// Its secret stays. While it is not enabled nothing is queued, and what waits goes
-/// on waiting.
+/// Its secret stays. While it is disabled nothing is queued, and pending messages wait.
 #[utoipa::path(put, path = "/webhooks/{id}", tag = "alerts", params(("id" = WebhookId, Path)),
     request_body = NewWebhook,
     responses((status = 200, body = Webhook), (status = 401, body = Problem),
@@ -152,7 +149,7 @@ async fn delete_webhook(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// Send a webhook a test
+/// Send a test message to a webhook
 ///
 /// It is queued like any other message.
 #[utoipa::path(post, path = "/webhooks/{id}/test", tag = "alerts",
@@ -181,7 +178,7 @@ async fn test_webhook(
 
 /// List a webhook's deliveries
 ///
-/// With `state=dead`, the dead letters. What is done with is kept for 30 days.
+/// With `state=dead`, the dead letters. Finished deliveries are kept for 30 days.
 #[utoipa::path(get, path = "/webhooks/{id}/deliveries", tag = "alerts",
     params(("id" = WebhookId, Path), Filter, Page),
     responses((status = 200, body = DeliveryList), (status = 401, body = Problem),
@@ -199,7 +196,7 @@ async fn list_deliveries(
 
 /// Send a delivery again
 ///
-/// At once and, if need be, for another day, with the same id and body.
+/// It is sent at once, with the same id and body, and retried for another day if necessary.
 #[utoipa::path(post, path = "/webhooks/{id}/deliveries/{delivery}/resend", tag = "alerts",
     params(("id" = WebhookId, Path), ("delivery" = DeliveryId, Path)),
     responses((status = 202, body = Delivery), (status = 401, body = Problem),

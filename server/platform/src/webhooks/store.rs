@@ -35,7 +35,7 @@ pub(super) async fn list(
     )
 }
 
-/// A webhook of the tenant's.
+/// Returns a webhook of the tenant.
 ///
 /// # Errors
 /// [`Error::NotFound`] when there is none.
@@ -83,7 +83,7 @@ pub(super) async fn insert(
     Ok(())
 }
 
-/// A webhook's secret, for the one answer that shows it.
+/// Returns the secret of a webhook, for the one response that shows it.
 pub(super) async fn secret(tx: &mut Tx, tenant: Tenant, id: WebhookId) -> Result<String> {
     let found = row!(
         in tx,
@@ -137,7 +137,7 @@ pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, Strin
 }
 
 /// Returns a tenant's enabled webhooks, each with the kinds of messages it receives.
-pub(super) async fn wishes(tx: &mut Tx, tenant: Tenant) -> Result<Vec<(Uuid, Kinds)>> {
+pub(super) async fn list_subscriptions(tx: &mut Tx, tenant: Tenant) -> Result<Vec<(Uuid, Kinds)>> {
     let found = rows!(
         in tx,
         (Uuid, String),

@@ -1,9 +1,9 @@
-//! Webhooks as they are made and shown.
+//! Webhooks, as requested and as shown.
 
-use super::send::{Reach, check_url};
 use crate::error::{Error, Result};
 use crate::http::is_control;
 use crate::ids::WebhookId;
+use crate::outbound::{Reach, check_url};
 use crate::outbox::Kind;
 use crate::tenants::Tenant;
 use crate::time::Time;
@@ -23,7 +23,7 @@ impl TryFrom<String> for Kinds {
     }
 }
 
-/// A webhook to be made, or as it is to be.
+/// Webhook to be created or changed.
 #[derive(Clone, Debug, Deserialize, Serialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct NewWebhook {
@@ -42,7 +42,7 @@ fn enabled() -> bool {
     true
 }
 
-/// A webhook, without its secret.
+/// Webhook, without its secret.
 #[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
 pub(super) struct Webhook {
     /// The webhook's id.
@@ -58,13 +58,13 @@ pub(super) struct Webhook {
     pub(super) enabled: bool,
     /// Creation time.
     pub(super) created_at: Time,
-    /// Deliveries that wait.
+    /// Number of pending deliveries.
     pub(super) pending: i64,
-    /// Deliveries that were given up.
+    /// Number of deliveries that were given up.
     pub(super) dead: i64,
 }
 
-/// A webhook just made.
+/// Newly created webhook.
 #[derive(Serialize, ToSchema)]
 pub(super) struct MadeWebhook {
     #[serde(flatten)]
@@ -74,12 +74,12 @@ pub(super) struct MadeWebhook {
     pub(super) secret: String,
 }
 
-/// A page of webhooks.
+/// Page of webhooks.
 #[derive(Serialize, ToSchema)]
 pub(super) struct WebhookList {
-    /// In the order in which they were made.
+    /// Webhooks in the order in which they were created.
     pub(super) items: Vec<Webhook>,
-    /// `after` of the next page.
+    /// Value of `after` for the next page.
     #[schema(required)]
     pub(super) next: Option<String>,
 }
@@ -88,7 +88,7 @@ impl NewWebhook {
     /// Returns the webhook with its kinds in order, if messages can be sent to it.
     ///
     /// # Errors
-    /// When it cannot, or would never be.
+    /// When messages cannot be sent to it, or it subscribes to none.
     pub(super) fn checked(mut self, tenant: Tenant, reach: Reach) -> Result<NewWebhook> {
         let invalid = |field, detail| Err(Error::Invalid { field, detail });
         // Blanks at the ends come from copying. A blank inside might be skipped by a URL parser,
@@ -105,7 +105,10 @@ impl NewWebhook {
         self.kinds
             .retain(|kind| !matches!(kind, Kind::Test | Kind::Notification | Kind::Report));
         if tenant.firm().is_some() && !self.kinds.iter().all(|kind| kind.is_of_order()) {
-            return invalid("kinds", "a firm is told of work orders only".to_owned());
+            return invalid(
+                "kinds",
+                "a firm can only receive messages about work orders".to_owned(),
+            );
         }
         if self.kinds.is_empty() {
             return invalid("kinds", "is empty".to_owned());

@@ -226,5 +226,5 @@ fn admin_creates_a_firm_and_its_adjusters() {
     let refused = create(&[&["adjuster", "--firm", operator], &other[..]].concat());
     assert_refused(&refused, &["--firm", "does not exist"]);
     let refused = create(&[&["adjuster", "--firm", firm], &person[..]].concat());
-    assert_refused(&refused, &["--email", "account already"]);
+    assert_refused(&refused, &["--email", "already has an account"]);
 }

@@ -69,7 +69,7 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
     );
     let statement = card["statement"].as_str().unwrap();
     assert!(
-        statement.starts_with("Foretold when the compass was adjusted"),
+        statement.starts_with("Predicted from the adjustment at the berth"),
         "{statement}"
     );
     assert!(statement.contains(&job.order), "{statement}");

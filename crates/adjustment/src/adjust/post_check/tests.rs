@@ -95,7 +95,7 @@ impl Adjusted {
 }
 
 #[test]
-fn what_is_read_as_foretold_confirms_the_plan_and_its_band() {
+fn a_reading_as_predicted_confirms_the_plan_and_its_band() {
     for magnetic_deg in [10.0, 100.0, 200.0, 290.0] {
         let adjusted = Adjusted::new(magnetic_deg);
         let again = adjusted.read(&adjusted.plan.setting, [0.0; 3]);

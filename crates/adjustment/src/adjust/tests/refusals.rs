@@ -233,7 +233,7 @@ fn nearly_nil() -> Case {
 }
 
 #[test]
-fn all_mistakes_that_explain_a_reading_are_told_the_heading_first() {
+fn all_mistakes_that_explain_a_reading_are_listed_with_the_heading_first() {
     let case = nearly_nil();
     let found = find_misreadings(
         &case.model,

@@ -4,7 +4,7 @@ use super::super::*;
 use super::*;
 
 #[test]
-fn after_the_last_step_the_ship_is_as_foretold_and_the_compass_as_each_step_says() {
+fn after_the_last_step_the_ship_is_as_predicted_and_the_compass_as_each_step_says() {
     for magnetic_deg in [10.0, 100.0, 200.0, 290.0] {
         let case = case(magnetic_deg);
         let outcome = case.plan();

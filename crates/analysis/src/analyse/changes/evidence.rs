@@ -163,14 +163,14 @@ mod tests {
     use super::{drifted, lasted};
 
     #[test]
-    fn what_one_sample_shows_is_not_told_as_no_hours() {
+    fn a_change_seen_in_one_sample_is_not_reported_as_no_hours() {
         assert_eq!(lasted(0.0), "it lasted a few minutes");
         assert_eq!(lasted(600.0), "it lasted 0.2 hours");
         assert_eq!(lasted(19_000.0), "it lasted 5.3 hours");
     }
 
     #[test]
-    fn a_drift_that_has_come_back_is_not_told_as_one_of_no_degrees() {
+    fn a_drift_that_has_come_back_is_not_reported_as_one_of_no_degrees() {
         assert!(!drifted(0.02).contains("0.0 degrees"));
         assert!(drifted(0.02).contains("within 0.1 degrees"));
         assert!(drifted(0.26).contains("up to 0.3 degrees so far"));

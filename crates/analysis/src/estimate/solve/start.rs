@@ -6,6 +6,7 @@ use crate::estimate::rows::{
     LinearisationPoint, Row, RowFrame, UNKNOWNS, USUAL_REFERENCE_SHARE, Unknowns, row,
 };
 use crate::observation::Observation;
+use crate::robust_scale::robust_sd;
 use nalgebra::{SMatrix, SVector};
 
 /// Greatest number of iterations: enough for any vessel whose headings are not ambiguous.
@@ -14,8 +15,6 @@ const ITERATIONS: u32 = 30;
 const SETTLED: f64 = 3e-3;
 /// Number of rows beyond which the start gets no better.
 const ENOUGH: usize = 4000;
-/// Median of |x| of a Gaussian, as a part of its standard deviation.
-const MEDIAN_TO_SD: f64 = 0.674_489_8;
 /// Residual, in standard deviations, beyond which its pull is constant.
 const HUBER: f64 = 2.5;
 /// Least standard deviation: no instrument is better, and perfect data do not divide by
@@ -43,7 +42,9 @@ pub(crate) fn start(
             .zip(&frames)
             .map(|(o, s)| row(o, s, &point))
             .collect();
-        sd = robust_sd(rows.iter().map(|r| r.residual));
+        // The spread of the bulk of the residuals about zero.
+        let spread = robust_sd(rows.iter().map(|r| r.residual), 0.0);
+        sd = spread.unwrap_or_default().max(LEAST_SD_DEG);
         let mut information = Products::new();
         let mut score = prior_information * (SVector::from(*prior_mean) - SVector::from(unknowns));
         for (r, s) in rows.iter().zip(&frames) {
@@ -70,12 +71,4 @@ pub(crate) fn start(
 /// Returns 1 up to [`HUBER`] standard deviations, and a weight falling as 1/|z| beyond.
 fn huber_weight(z: f64) -> f64 {
     (HUBER / z.abs()).min(1.0)
-}
-
-/// Returns the standard deviation of the bulk of the residuals about zero.
-fn robust_sd(residuals: impl Iterator<Item = f64>) -> f64 {
-    let mut sizes: Vec<f64> = residuals.map(f64::abs).collect();
-    let middle = sizes.len() / 2;
-    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-    (*median / MEDIAN_TO_SD).max(LEAST_SD_DEG)
 }

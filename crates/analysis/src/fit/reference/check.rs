@@ -1,6 +1,7 @@
 //! Comparison of gyro and satellite compass, and their common heading.
 
 use super::reading::{HeadingReading, Trust};
+use crate::robust_scale::{median, robust_sd};
 use binnacle_compass::angle::{TrueHeading, wrap_180};
 use binnacle_compass::result::{MAX_FAILURE_THRESHOLD_DEG, ReferenceCheck};
 
@@ -19,8 +20,6 @@ const SOUND_SHARE: f64 = 0.25;
 /// and within these limits.
 const FAILED_SD: f64 = 6.0;
 const FAILED_DEG: (f64, f64) = (2.0, MAX_FAILURE_THRESHOLD_DEG);
-/// Median of |x| of a Gaussian, as a part of its standard deviation.
-const MEDIAN_TO_SD: f64 = 0.674_489_8;
 
 /// True heading by the references that were read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,7 +85,10 @@ pub(super) fn check_sound_differences(sound: &[f64], one_constant_sd_deg: f64) -
     if sound.len() < NEEDED_PAIRS {
         return check;
     }
-    let Some((offset, spread)) = median(sound.to_vec()).zip(robust_sd(sound)) else {
+    let Some(offset) = median(sound.to_vec()) else {
+        return check;
+    };
+    let Some(spread) = robust_sd(sound.iter().copied(), offset) else {
         return check;
     };
     check.offset_deg = Some(offset);
@@ -159,21 +161,4 @@ pub(super) fn count_dropped(
         check.gyro_dropped += u64::from(reading.gyro.is_some() && !trust.gyro);
         check.satellite_dropped += u64::from(reading.satellite.is_some() && !trust.satellite);
     }
-}
-
-/// Returns the median; none of no numbers.
-pub(super) fn median(mut numbers: Vec<f64>) -> Option<f64> {
-    let middle = numbers.len() / 2;
-    if numbers.is_empty() {
-        return None;
-    }
-    Some(*numbers.select_nth_unstable_by(middle, f64::total_cmp).1)
-}
-
-/// Returns the standard deviation of a Gaussian with the same median distance from the
-/// median; none of no numbers.
-pub(super) fn robust_sd(numbers: &[f64]) -> Option<f64> {
-    let middle = median(numbers.to_vec())?;
-    let off = numbers.iter().map(|x| (x - middle).abs());
-    Some(median(off.collect())? / MEDIAN_TO_SD)
 }

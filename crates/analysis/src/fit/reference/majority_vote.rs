@@ -1,11 +1,12 @@
 //! Majority vote on which of two references has failed: the magnetic compass has the third
 //! vote.
 
-use super::check::{has_failed, median, without_usual_difference};
+use super::check::{has_failed, without_usual_difference};
 use super::observe::{differences, observe};
 use super::reading::{HeadingReading, Trust};
 use crate::fit::{RobustFit, RobustOptions, fit_robust};
 use crate::observation::Observation;
+use crate::robust_scale::median;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::deviation::Coefficients;
 use binnacle_compass::result::ReferenceCheck;

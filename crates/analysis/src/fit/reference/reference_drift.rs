@@ -4,8 +4,9 @@
 //! The usual difference is that of the days before, not of the many days that a fault may
 //! have lasted since. Readings without times have no stretches.
 
-use super::check::{difference_deg, median, robust_sd};
+use super::check::difference_deg;
 use super::reading::HeadingReading;
+use crate::robust_scale::{median, robust_sd};
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::time::Timestamp;
 use std::ops::Range;
@@ -164,7 +165,8 @@ fn wander_deg(days: &[Day]) -> Option<f64> {
         .windows(2)
         .map(|two| wrap_180(two[1].deg - two[0].deg))
         .collect();
-    Some(robust_sd(&steps)? / DAY_TO_DAY_SHARE)
+    let middle = median(steps.clone())?;
+    Some(robust_sd(steps.into_iter(), middle)? / DAY_TO_DAY_SHARE)
 }
 
 fn is_near(a: f64, b: f64) -> bool {

@@ -6,7 +6,7 @@ use crate::alerts::cause::Cause;
 use crate::alerts::desired::EventWindow;
 use binnacle_platform::severity::Severity;
 
-/// Open as long as the work order stands failed.
+/// Failed verification, as long as the work order is in that state.
 pub(super) const ADJUSTMENT_NOT_CONFIRMED: CauseRow = CauseRow {
     cause: Cause::AdjustmentNotConfirmed,
     title: "adjustment not confirmed at sea",
@@ -23,7 +23,7 @@ pub(super) const ADJUSTMENT_NOT_CONFIRMED: CauseRow = CauseRow {
     is_redated: false,
 };
 
-/// An ETA moved past the due date, a port call was cancelled, the firm has fewer teams.
+/// Agreed job that no longer fits: an ETA after the due date, a cancelled port call, fewer teams.
 pub(super) const AGREED_JOB_AT_RISK: CauseRow = CauseRow {
     cause: Cause::AgreedJobAtRisk,
     title: "agreed adjustment no longer fits",

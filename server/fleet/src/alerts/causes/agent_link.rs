@@ -1,18 +1,18 @@
-//! Agents that fall silent, or that two computers send as.
+//! Silent agents, and agents that two computers run.
 
 use super::facts::{Silence, StreamConflict};
 use super::row::{CauseRow, Condition, Effect, Ending, Finder};
 use crate::alerts::cause::Cause;
 use binnacle_platform::severity::Severity;
 
-/// Time after which a second sender that has not shown itself is gone, seconds: both may send
-/// once in three days only.
+/// Time without a batch after which a second sender counts as gone, seconds. Both may send only
+/// once in three days.
 const SHOWN_FOR_S: f64 = 7.0 * 86_400.0;
 
 /// No upload for the days of the vessel's limit.
 pub(super) const SILENT_AGENT: CauseRow = CauseRow {
     cause: Cause::SilentAgent,
-    title: "no word from the vessel",
+    title: "no data from the vessel",
     finders: &[Finder::Clock(silent)],
     severity: |_| Severity::Notice,
     advice: |_| {

@@ -1,7 +1,7 @@
-//! The alert of the ship's own agent: compass and gyro have parted.
+//! Alert that the ship's own agent reports: compass and gyro have parted.
 //!
-//! Invariant: reports that follow each other within [`QUIET_S`] are one alert. It is over when
-//! they have not parted for so long, by the ship's samples or the clock.
+//! Invariant: reports within [`QUIET_S`] of each other are one alert. It is over after that time
+//! without a further report, by the ship's samples or the clock.
 
 use super::facts::AgentReports;
 use super::row::{Case, CauseRow, Condition, Effect, Ending, Finder, Size};
@@ -34,7 +34,7 @@ pub(super) const REPORTED_BY_AGENT: CauseRow = CauseRow {
     is_redated: false,
 };
 
-/// The condition that the agent's reports make, the latest first.
+/// Returns the condition that the agent's reports make; the latest comes first.
 fn reported(facts: &AgentReports<'_>) -> Option<Condition> {
     let last = facts.reports.first()?;
     let condition = if last.state == ShipAlertState::Open {
@@ -113,7 +113,7 @@ fn parted(report: &ShipAlert) -> Condition {
     }
 }
 
-/// The condition of an alert that is open, although the agent's is no longer.
+/// Returns the condition of an open alert after the agent closed its own.
 fn quiet(last: &ShipAlert, known: &KnownAlert) -> Condition {
     let since = Time(last.at).to_the_minute();
     let (state, case) = match last.state {

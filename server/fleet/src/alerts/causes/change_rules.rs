@@ -1,18 +1,18 @@
-//! Rules that all causes have in common which the change detector finds.
+//! Rules common to all causes that the change detector finds.
 //!
 //! Invariants:
 //!
-//! - A change of the ship calls for an alert for a week, and longer until the model is as
-//!   certain again as the vessel's limit asks, unless the change is over.
-//! - A disturbance or a reference's fault calls for one while it lasts.
-//! - Work on correctors, compass or ship that the logbook reports calls for none.
+//! - A change of the ship is an alert for a week, and until the model is as certain as the vessel's
+//!   limit requires, unless the change is over.
+//! - A disturbance or a reference's fault is an alert while it lasts.
+//! - Work on correctors, compass or ship that the logbook reports is no alert.
 
 use super::facts::{DetectedChange, Stage};
 use super::hysteresis::hysteresis_deg;
 use super::row::{Case, Condition, Size};
 use crate::alerts::cause::Cause;
 use crate::alerts::desired::EventWindow;
-use crate::analysis::{Findings, FoundChange};
+use crate::analysis::{ChangeFinding, Findings};
 use binnacle_compass::result;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::severity::Severity;
@@ -49,7 +49,7 @@ pub(super) fn outcome(cause: Cause, since: Time, findings: &Findings) -> Option<
         .filter(|found| window(found, findings).includes(since));
     let (own, others): (Vec<_>, Vec<_>) =
         at_that_time.partition(|found| alert_cause(found.change.cause) == cause);
-    let stays = |found: &&&FoundChange| {
+    let stays = |found: &&&ChangeFinding| {
         let change = &found.change;
         change.confirmed && !change.withdrawn && change.ended.is_none()
     };
@@ -78,7 +78,7 @@ pub(super) fn alert_cause(cause: result::Cause) -> Cause {
         result::Cause::LocalAnomaly => Cause::LocalAnomaly,
         result::Cause::MagneticStorm => Cause::MagneticStorm,
         result::Cause::BerthSteel => Cause::BerthSteel,
-        // Work that nobody reported is not known to be work.
+        // Unreported work cannot be distinguished from other changes.
         result::Cause::AdjustmentOrRepair | result::Cause::Unknown => Cause::UnknownChange,
     }
 }
@@ -161,7 +161,7 @@ fn holds(detected: &DetectedChange<'_>, stage: Stage) -> bool {
 /// Later samples date a change better, by days if they fill a gap, and may name another cause.
 /// An alert was about the change nearest to its date, among those of the ship, those of its
 /// references, or the others.
-fn window(found: &FoundChange, findings: &Findings) -> EventWindow {
+fn window(found: &ChangeFinding, findings: &Findings) -> EventWindow {
     let at = found.change.from;
     let kind = |cause: result::Cause| {
         (
@@ -193,8 +193,8 @@ fn size(detected: &DetectedChange<'_>, stage: Stage) -> Size {
         limit_deg: detected.limits.deviation_deg,
         was: detected.was,
         ceiling: match stage {
-            // An unconfirmed change may be none. With a new model the compass can be relied on
-            // again, and a disturbance spoils no model.
+            // An unconfirmed change may be no change. With a new model the compass is reliable
+            // again, and a disturbance affects no model.
             Stage::Unconfirmed | Stage::Learned | Stage::NotTheShips => Severity::Warning,
             Stage::NoModel | Stage::Interim => Severity::Critical,
         },
@@ -224,13 +224,13 @@ fn name(cause: result::Cause) -> &'static str {
     }
 }
 
-/// Returns the size on the waters ahead, where it is worth a mention beside that here.
-fn ahead_deg(found: &FoundChange) -> Option<f64> {
+/// Returns the size on the waters ahead, where it exceeds that here enough to mention.
+fn ahead_deg(found: &ChangeFinding) -> Option<f64> {
     let (here, ahead) = found.size_deg.zip(found.size_ahead_deg)?;
     (ahead > here + MENTION_DEG).then_some(ahead)
 }
 
-fn summary(found: &FoundChange, stage: Stage) -> String {
+fn summary(found: &ChangeFinding, stage: Stage) -> String {
     let change = &found.change;
     let since = Time(change.from).to_the_minute();
     let cause = name(change.cause);
@@ -259,7 +259,7 @@ fn summary(found: &FoundChange, stage: Stage) -> String {
     }
 }
 
-/// Advises by what the model knows of a change.
+/// Returns advice according to the state of the model after a change.
 pub(super) fn advice(case: Case) -> &'static str {
     match case {
         Case::Change(Stage::Unconfirmed) => {

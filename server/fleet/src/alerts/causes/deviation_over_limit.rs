@@ -18,7 +18,7 @@ pub(super) const DEVIATION_OVER_LIMIT: CauseRow = CauseRow {
          watch, and have the compass adjusted."
     },
     on_card: Effect::Note,
-    // An adjustment is for this.
+    // An adjustment removes its cause.
     on_plan: Effect::None,
     ending: Ending::NotMeasured(|findings| findings.worst.is_some()),
     ends_with_adjustment: true,

@@ -1,4 +1,4 @@
-//! Disturbances from outside the ship: they pass, and spoil neither card nor plan.
+//! Disturbances from outside the ship. They pass, and affect neither card nor plan.
 
 use super::change_rules::{advice, by_size, condition};
 use super::row::{CauseRow, Effect, Ending, Finder};

@@ -9,8 +9,8 @@ use super::table::CAUSES;
 use crate::alerts::cause::Cause;
 use crate::alerts::clearing::{LEARNED, NOT_KNOWN, OVER, RENAMED, WITHDRAWN};
 use crate::alerts::desired::DesiredAlert;
-use crate::alerts::limits::AlertLimits;
 use crate::analysis::Findings;
+use crate::settings::AlertLimits;
 use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
 

@@ -1,10 +1,10 @@
-//! Facts that the predicates of causes read: one type for each kind of finder.
+//! Facts that the predicates of the table read: one type for each kind of finder.
 
 use super::hysteresis::SLACK_DEG;
 use crate::alerts::alert::KnownAlert;
 use crate::alerts::cause::Cause;
-use crate::alerts::limits::AlertLimits;
-use crate::analysis::{Findings, FoundChange};
+use crate::analysis::{ChangeFinding, Findings};
+use crate::settings::AlertLimits;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::ids::OrderId;
 use binnacle_platform::severity::Severity;
@@ -51,7 +51,7 @@ pub(in crate::alerts) struct Situation<'a> {
 #[derive(Clone, Copy)]
 pub(in crate::alerts) struct DetectedChange<'a> {
     /// The change.
-    pub found: &'a FoundChange,
+    pub found: &'a ChangeFinding,
     /// All findings.
     pub findings: &'a Findings,
     /// The vessel's limits.
@@ -67,9 +67,9 @@ pub(in crate::alerts) enum Stage {
     Unconfirmed,
     /// No card holds.
     NoModel,
-    /// The model since is of less than a day, or less certain than the limit asks.
+    /// The model since covers less than a day, or is less certain than the limit requires.
     Interim,
-    /// The model since is as certain as the limit asks.
+    /// The model since is as certain as the limit requires.
     Learned,
     /// The change is not of the ship's magnetism.
     NotTheShips,

@@ -1,7 +1,7 @@
-//! Hysteresis of figures about a limit.
+//! Hysteresis at a limit.
 //!
-//! Invariant: a limit that was passed is left only [`SLACK_DEG`] below it. An alert does not
-//! come and go with every batch, nor rise and sink.
+//! Invariant: a limit that was exceeded is left only [`SLACK_DEG`] below it, so that an alert does
+//! not open and close, nor change its severity, with every batch.
 
 use binnacle_platform::severity::Severity;
 

@@ -1,5 +1,4 @@
-//! The table of causes: what finds each, its severity, title and advice, what it does to a
-//! card and to a plan, and how it ends.
+//! Table of causes: predicates, severity, title, advice, effect on card and plan, and ending.
 //!
 //! Invariant: every cause has exactly one row. The files below hold the rows by kind.
 

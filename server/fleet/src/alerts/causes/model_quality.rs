@@ -1,4 +1,4 @@
-//! Models that are missing, or less certain than the vessel's limit asks.
+//! Models that are missing, or less certain than the vessel's limit requires.
 
 use super::facts::Situation;
 use super::hysteresis::compare;
@@ -8,7 +8,7 @@ use binnacle_compass::time::Timestamp;
 use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
 
-/// Time in which a ship makes the headings that a model asks for, seconds.
+/// Time in which a ship steers the headings that a model needs, seconds.
 const PATIENCE_S: f64 = 7.0 * 86_400.0;
 
 /// No model after a week of samples.
@@ -28,7 +28,7 @@ pub(super) const NO_MODEL: CauseRow = CauseRow {
     is_redated: false,
 };
 
-/// A wide band after a week of samples, unless an alert about a change says so already.
+/// A wide band after a week of samples, unless an alert about a change covers it.
 pub(super) const WIDE_BAND: CauseRow = CauseRow {
     cause: Cause::WideBand,
     title: "the model is too uncertain",

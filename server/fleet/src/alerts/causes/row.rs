@@ -18,7 +18,7 @@ pub(in crate::alerts) struct CauseRow {
     pub cause: Cause,
     /// The cause in a few words.
     pub title: &'static str,
-    /// Predicates that find it; the first that does has the word. All are of one source.
+    /// Predicates that find it; the first match counts. All are of one source.
     pub finders: &'static [Finder],
     /// Rule for its severity.
     pub severity: fn(&Size) -> Severity,
@@ -32,7 +32,7 @@ pub(in crate::alerts) struct CauseRow {
     pub ending: Ending,
     /// True if an adjustment ends it that came after its beginning.
     pub ends_with_adjustment: bool,
-    /// True if later samples date it anew: it is an event rather than a state.
+    /// True if later samples change its date: it is an event rather than a state.
     pub is_redated: bool,
 }
 
@@ -85,11 +85,11 @@ pub enum Effect {
 pub(in crate::alerts) enum Ending {
     /// Its source no longer finds it.
     NotFound,
-    /// Its source no longer finds it. Without the figure nobody knows whether it is over.
+    /// Its source no longer finds it. Without the figure, its end is unknown.
     NotMeasured(fn(&Findings) -> bool),
     /// The change that it is about is over, withdrawn, learned by the model, or renamed.
     WithChange,
-    /// Nothing has shown it for so long.
+    /// Nothing has shown it for a time.
     Quiet {
         /// Seconds.
         seconds: f64,
@@ -132,7 +132,7 @@ pub(in crate::alerts) struct Size {
 pub(in crate::alerts) enum Case {
     /// The only one.
     Only,
-    /// A change, by what the model knows of it.
+    /// A change, by the state of the model after it.
     Change(Stage),
     /// A reference's fault that may as well be the compass's.
     CompassOrReference,
@@ -196,7 +196,7 @@ impl Finder {
 }
 
 impl Condition {
-    /// Makes a condition that goes on, of a cause with one severity and one case.
+    /// Makes a lasting condition, of a cause with one severity and one case.
     pub(super) fn new(since: Time, summary: String) -> Condition {
         Condition {
             since,

@@ -1,6 +1,6 @@
 //! Changes of the ship's magnetism, or of the compass's zero.
 //!
-//! Invariant: each lasts until the model has learned it; none is over by itself but cargo.
+//! Invariant: each lasts until the model includes it. Only cargo ends by itself.
 
 use super::change_rules::{advice, by_size, condition};
 use super::facts::Stage;
@@ -34,7 +34,7 @@ pub(super) const MAGNETIC_CARGO: CauseRow = CauseRow {
     ..SHIP_CHANGE
 };
 
-/// Drift.
+/// Slow drift.
 pub(super) const DRIFT: CauseRow = CauseRow {
     cause: Cause::Drift,
     title: "drift of the ship's magnetism",
@@ -54,7 +54,7 @@ pub(super) const ALIGNMENT: CauseRow = CauseRow {
     ..SHIP_CHANGE
 };
 
-/// A change without a likely cause. Work that nobody reported is not known to be work.
+/// A change without a likely cause. Unreported work is one too.
 pub(super) const UNKNOWN_CHANGE: CauseRow = CauseRow {
     cause: Cause::UnknownChange,
     title: "a change of unknown cause",

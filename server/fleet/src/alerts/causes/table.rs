@@ -1,4 +1,4 @@
-//! The table itself.
+//! Rows of all causes, and access to the row of one.
 
 use super::row::{CauseRow, Effect};
 use super::{
@@ -30,7 +30,7 @@ pub(in crate::alerts) static CAUSES: [CauseRow; 18] = [
 ];
 
 impl Cause {
-    /// Returns its row.
+    /// Returns the row of the cause.
     pub(in crate::alerts) fn row(self) -> &'static CauseRow {
         let row = CAUSES.iter().find(|row| row.cause == self);
         row.expect("a test finds a row for every cause")

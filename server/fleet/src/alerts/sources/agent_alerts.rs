@@ -1,15 +1,16 @@
-//! Alerts that the ship's agent raises itself: compass and gyro have parted.
+//! Source of alerts: reports of the ship's agent that compass and gyro have parted.
 //!
 //! Invariants:
 //!
-//! - Revisions may come late, again and in any order; the highest of each alert counts.
+//! - Revisions may arrive late, repeatedly and in any order; the highest of each alert counts.
 //! - The alert that the agent reported last is the one that is open or over.
-//! - An analysis neither raises it nor changes its words.
+//! - An analysis neither raises it nor changes its text.
 
 use crate::adjustments;
 use crate::alerts::causes::{AgentReports, Facts, Source, evaluate};
+use crate::alerts::change::PendingChange;
 use crate::alerts::clearing::{ADJUSTED, NOT_JUDGED, OVER};
-use crate::alerts::publish::{PendingChange, publish_changes};
+use crate::alerts::publish::publish_changes;
 use crate::alerts::reconcile::reconcile;
 use crate::alerts::store;
 use binnacle_compass::time::Timestamp;
@@ -61,7 +62,7 @@ pub(super) async fn reconcile_reports(
     };
     let adjusted = adjustments::last_adjusted_at(tx, vessel, compass).await?;
     let is_before = adjusted.is_some_and(|adjusted| Time(last.at) < adjusted);
-    // No card from before an adjustment judges the compass after it; the gyro it does.
+    // A card from before an adjustment cannot judge the compass after it, but it can the gyro.
     let is_void = is_before && last.suspect() != Suspect::Gyro;
     let desired = if is_void {
         Vec::new()

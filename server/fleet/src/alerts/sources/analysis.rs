@@ -1,4 +1,4 @@
-//! Alerts that an analysis raises and clears, in the transaction that stores it.
+//! Source of alerts: an analysis, in the transaction that stores it.
 
 use super::agent_alerts::reconcile_reports;
 use crate::adjustments;
@@ -7,11 +7,11 @@ use crate::alerts::alert::KnownAlert;
 use crate::alerts::cause::Cause;
 use crate::alerts::causes::{Facts, Source, UnconfirmedAdjustment, evaluate, evaluate_analysis};
 use crate::alerts::clearing::ADJUSTED;
-use crate::alerts::limits::AlertLimits;
 use crate::alerts::publish::publish_changes;
 use crate::alerts::reconcile::reconcile;
 use crate::alerts::store;
 use crate::analysis::{self, Findings};
+use crate::settings::AlertLimits;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
 use binnacle_platform::events::Event;

@@ -1,12 +1,12 @@
-//! Two computers that send as one agent.
+//! Source of alerts: batches of two computers that run as one agent.
 //!
 //! Invariant: an agent that has sent in a new stream sends nothing new in an older one. A batch
-//! there is another computer's, with a copy of the first one's files.
+//! there is from another computer with a copy of the first one's files.
 
+use crate::agent_auth::Agent;
 use crate::alerts::causes::{Facts, Source, StreamConflict, evaluate};
 use crate::alerts::reconcile::reconcile_source;
 use crate::alerts::store;
-use crate::enrolment::Agent;
 use binnacle_platform::db::Tx;
 use binnacle_platform::error::Result;
 use binnacle_platform::events::Event;

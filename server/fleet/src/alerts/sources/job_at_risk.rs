@@ -1,4 +1,4 @@
-//! Adjustments agreed with a firm that no longer fit the schedule.
+//! Source of alerts: a schedule in which an agreed adjustment no longer fits.
 //!
 //! Invariant: they are raised and cleared in the transaction that stores the schedule.
 

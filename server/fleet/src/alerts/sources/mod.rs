@@ -1,4 +1,4 @@
-//! Sources of facts about causes: each brings the compass's alerts in line with them.
+//! Sources of alerts. Each reconciles a compass's alerts with facts of one kind.
 
 mod agent_alerts;
 mod analysis;

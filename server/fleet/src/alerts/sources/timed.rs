@@ -1,11 +1,11 @@
-//! Alerts that time alone raises and clears.
+//! Source of alerts: time alone.
 
 use super::agent_alerts::reconcile_reports;
 use crate::alerts::causes::{CAUSES, Ending, Facts, Silence, Source, evaluate};
-use crate::alerts::limits::AlertLimits;
 use crate::alerts::publish::publish_changes;
 use crate::alerts::reconcile::reconcile_source;
 use crate::alerts::store;
+use crate::settings::AlertLimits;
 use binnacle_platform::app::App;
 use binnacle_platform::error::Result;
 use binnacle_platform::time::Time;
@@ -68,7 +68,7 @@ pub async fn check_silence(app: &App) -> Result<()> {
     Ok(())
 }
 
-/// Ends the alerts that nothing has shown for the time of their row.
+/// Ends the alerts that nothing has shown for the time that their row states.
 async fn end_quiet(app: &App) -> Result<()> {
     let now: Time = app.clock.now().into();
     for row in &CAUSES {

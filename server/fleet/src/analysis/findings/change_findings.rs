@@ -1,11 +1,11 @@
-//! Changes, with their effect where the ship is now.
+//! Changes that an analysis found, with their effect at the ship's present place.
 //!
 //! Invariants:
 //!
 //! - A change that began an epoch, or ended when one began, names it.
-//! - Its size is of the place of the last sample where there are models on both sides of it,
-//!   otherwise of the place where it was found.
-//! - Ships mostly return to the same waters: those of the last weeks stand for those ahead.
+//! - Its size is for the place of the last sample where models exist on both sides of it, otherwise
+//!   for the place where it was found.
+//! - Ships mostly return to the same waters: those of the last weeks stand for those to come.
 
 use binnacle_compass::angle::{CompassHeading, wrap_180};
 use binnacle_compass::logbook::LogbookEntry;
@@ -16,18 +16,18 @@ use binnacle_compass::ship::EarthField;
 use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// Error of dates in the logbook, seconds: people write down when they noticed, or the plan.
+/// Error of dates in the logbook, seconds. People enter the time of noticing, or of the plan.
 const REPORTED_WITHIN_S: f64 = 2.0 * 86_400.0;
 /// Step of compass heading in the comparison of two models, degrees.
 const STEP_DEG: u32 = 5;
-/// Time of the waters that stand for those ahead, seconds.
+/// Period whose waters stand for those to come, seconds.
 const TRADE_S: f64 = 60.0 * 86_400.0;
 /// Interval between the places that are compared, seconds.
 const PLACES_S: f64 = 86_400.0;
 
 /// A change, with the particulars that alerts and the timeline need.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FoundChange {
+pub struct ChangeFinding {
     /// The change itself.
     #[serde(flatten)]
     pub change: Change,
@@ -44,7 +44,7 @@ pub struct FoundChange {
     /// none where it is not known.
     #[serde(default)]
     pub size_deg: Option<f64>,
-    /// Its effect on the waters of the last sixty days, which stand for those ahead.
+    /// Its effect on the waters of the last sixty days, which stand for those to come.
     #[serde(default)]
     pub size_ahead_deg: Option<f64>,
     /// Approximate place of the ship while a passing disturbance lasted.
@@ -53,20 +53,20 @@ pub struct FoundChange {
 }
 
 /// Returns the changes that an analysis found.
-pub(super) fn found_changes(analysis: &Analysis, logbook: &[LogbookEntry]) -> Vec<FoundChange> {
+pub(super) fn found_changes(analysis: &Analysis, logbook: &[LogbookEntry]) -> Vec<ChangeFinding> {
     let changes = analysis.changes.iter();
     changes
         .map(|change| found(change, analysis, logbook))
         .collect()
 }
 
-fn found(change: &Change, analysis: &Analysis, logbook: &[LogbookEntry]) -> FoundChange {
+fn found(change: &Change, analysis: &Analysis, logbook: &[LogbookEntry]) -> ChangeFinding {
     let epochs = &analysis.epochs;
     let begun_at = |time: Timestamp| epochs.iter().position(|epoch| epoch.from == Some(time));
     // Neither a disturbance nor a reference begins an epoch, even at the same time.
     let is_boundary = change.confirmed && change.cause.changes_deviation();
     let epoch = Some(change.from).filter(|_| is_boundary).and_then(begun_at);
-    let spoilt = Spoilt::by(change, analysis);
+    let disturbed = DisturbedSamples::by(change, analysis);
     let sides = epoch.and_then(|after| {
         let before = epochs.get(after.checked_sub(1)?)?.model.as_ref()?;
         Some((before, epochs[after].model.as_ref()?))
@@ -85,15 +85,15 @@ fn found(change: &Change, analysis: &Analysis, logbook: &[LogbookEntry]) -> Foun
             waters_ahead(analysis).filter_map(|earth| difference_deg(before, after, earth));
         differences.reduce(f64::max)
     });
-    FoundChange {
+    ChangeFinding {
         epoch,
         epoch_ended: change.ended.filter(|_| is_boundary).and_then(begun_at),
         expected: change.cause == Cause::AdjustmentOrRepair && is_reported(change, logbook),
         size_deg: size_here_deg
             .or(change.deviation_change_deg.map(f64::abs))
-            .or(spoilt.most_deg),
+            .or(disturbed.most_deg),
         size_ahead_deg,
-        position: spoilt.position,
+        position: disturbed.position,
         change: change.clone(),
     }
 }
@@ -142,28 +142,28 @@ fn difference_deg(before: &Model, after: &Model, earth: EarthField) -> Option<f6
     differences.reduce(f64::max)
 }
 
-/// Samples that a passing disturbance spoilt.
+/// Samples within a passing disturbance.
 #[derive(Default)]
-struct Spoilt {
+struct DisturbedSamples {
     position: Option<Position>,
     /// Their greatest departure from the model, degrees.
     most_deg: Option<f64>,
 }
 
-impl Spoilt {
-    fn by(change: &Change, analysis: &Analysis) -> Spoilt {
+impl DisturbedSamples {
+    fn by(change: &Change, analysis: &Analysis) -> DisturbedSamples {
         if !change.cause.is_transient() {
-            return Spoilt::default();
+            return DisturbedSamples::default();
         }
         let last = change.ended.or(analysis.data_until);
         let within = |time| change.from <= time && last.is_none_or(|last| time <= last);
-        let spoilt: Vec<_> = analysis
+        let disturbed: Vec<_> = analysis
             .samples
             .iter()
             .filter(|s| within(s.sample.time))
             .filter(|s| s.reason == Some(SampleReason::Disturbance) || change.is_weak_transient())
             .collect();
-        let departed = spoilt.iter().filter_map(|s| {
+        let departed = disturbed.iter().filter_map(|s| {
             let earth = EarthField {
                 h_nt: s.h_nt?,
                 z_nt: s.z_nt?,
@@ -175,9 +175,11 @@ impl Spoilt {
             let expected = model.deviation(s.sample.compass, earth).ok()?;
             Some(wrap_180(s.deviation_deg? - expected.deviation.degrees_east()).abs())
         });
-        Spoilt {
+        DisturbedSamples {
             most_deg: departed.reduce(f64::max),
-            position: spoilt.get(spoilt.len() / 2).map(|s| s.sample.position),
+            position: disturbed
+                .get(disturbed.len() / 2)
+                .map(|s| s.sample.position),
         }
     }
 }
@@ -190,7 +192,7 @@ mod tests {
     use binnacle_compass::sample::Sample;
     use binnacle_compass::settings::AnalysisSettings;
 
-    /// Of a ship on the meridian of Greenwich.
+    /// Returns a sample of a ship on the meridian of Greenwich.
     fn sample(time: &str, lat: f64) -> Sample {
         serde_json::from_value(serde_json::json!({
             "time": time, "lat": lat, "lon": 0.0, "compass_deg": 10.0, "gyro_deg": 12.0,

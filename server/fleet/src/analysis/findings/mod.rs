@@ -1,10 +1,10 @@
 //! Findings of one compass's analysis, as alerts, the timeline and the needs read them.
 //!
-//! Invariant: they are small enough to be stored beside the analysis, so that other limits
-//! make other alerts without another analysis.
+//! Invariant: they are small enough to be stored beside the analysis, so that changed limits change
+//! alerts without another analysis.
 
 mod change_findings;
 mod summary;
 
-pub use change_findings::FoundChange;
+pub use change_findings::ChangeFinding;
 pub use summary::{FailedLately, Findings};

@@ -1,8 +1,8 @@
 //! Summary of one compass's analysis.
 
-use super::change_findings::{FoundChange, found_changes};
-use crate::analysis::left_out::LeftOut;
-use crate::deviation::{self, Worst};
+use super::change_findings::{ChangeFinding, found_changes};
+use crate::deviation::{self, WorstHeading};
+use crate::models::LeftOut;
 use binnacle_compass::angle::wrap_180;
 use binnacle_compass::logbook::LogbookEntry;
 use binnacle_compass::result::{Analysis, Epoch, FitError, LastPlace, SampleDiagnostic};
@@ -21,7 +21,7 @@ pub struct Findings {
     /// The current epoch's first sample.
     pub epoch_data_from: Option<Timestamp>,
     /// The greatest deviation by the current epoch's model, at the last place.
-    pub worst: Option<Worst>,
+    pub worst: Option<WorstHeading>,
     /// The widest half of the 95 % band there, over all headings, degrees.
     pub widest_band95_deg: Option<f64>,
     /// Reason for which the current epoch has no model.
@@ -36,7 +36,7 @@ pub struct Findings {
     pub failed_lately: Option<FailedLately>,
     /// Changes of the ship's magnetism, real or apparent, in order of time.
     #[serde(default)]
-    pub changes: Vec<FoundChange>,
+    pub changes: Vec<ChangeFinding>,
     /// Effects of logbook entries on the samples, a sentence each.
     #[serde(default)]
     pub notices: Vec<String>,

@@ -1,9 +1,9 @@
-//! The curve beside the table, headings downwards, west to the left.
+//! Curve beside the table, with headings downwards and west to the left.
 
+use super::style::{GREY, LINE, RIGHT};
 use super::table::{Lines, line_name};
-use super::{GREY, LINE, RIGHT};
 use crate::card::contents::{Card, CardRow};
-use crate::deviation::Row;
+use crate::deviation::DeviationRow;
 use binnacle_drawing::words::east_west;
 use binnacle_drawing::{Pen, Point, Sheet, Style};
 
@@ -15,9 +15,9 @@ struct Across {
     most_deg: f64,
 }
 
-/// Draws it.
+/// Draws the curve.
 pub(super) fn draw(sheet: &mut Sheet, card: &Card, lines: &Lines) {
-    let curve: Vec<Row> = around(&card.curve);
+    let curve: Vec<DeviationRow> = around(&card.curve);
     let (step_deg, steps) = scale(&curve, &card.rows);
     let across = Across {
         most_deg: step_deg * f64::from(steps),
@@ -35,9 +35,9 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card, lines: &Lines) {
     legend(sheet, lines);
 }
 
-/// The curve from 0 to 360.
-fn around(curve: &[Row]) -> Vec<Row> {
-    let again = curve.first().map(|row| Row {
+/// Closes the curve from 0 to 360.
+fn around(curve: &[DeviationRow]) -> Vec<DeviationRow> {
+    let again = curve.first().map(|row| DeviationRow {
         compass_deg: 360.0,
         ..*row
     });
@@ -46,8 +46,8 @@ fn around(curve: &[Row]) -> Vec<Row> {
 
 /// Degrees from one line of the grid to the next, and how many to each side, so that all
 /// that was observed is in sight.
-fn scale(curve: &[Row], rows: &[CardRow]) -> (f64, u32) {
-    let reach = |row: &Row| row.deviation_deg.abs() + row.band95_deg.unwrap_or(0.0);
+fn scale(curve: &[DeviationRow], rows: &[CardRow]) -> (f64, u32) {
+    let reach = |row: &DeviationRow| row.deviation_deg.abs() + row.band95_deg.unwrap_or(0.0);
     let observed = rows.iter().filter_map(observed_deg).map(f64::abs);
     let most_deg = curve.iter().map(reach).chain(observed).fold(1.0, f64::max);
     let steps_deg = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
@@ -65,9 +65,9 @@ impl Across {
     }
 }
 
-fn band(sheet: &mut Sheet, curve: &[Row], lines: &Lines, across: &Across) {
+fn band(sheet: &mut Sheet, curve: &[DeviationRow], lines: &Lines, across: &Across) {
     let edge = |sign: f64| {
-        move |row: &Row| -> Point {
+        move |row: &DeviationRow| -> Point {
             let band_deg = row.band95_deg.unwrap_or(0.0);
             let x = across.x(row.deviation_deg + sign * band_deg);
             (x, lines.y(row.compass_deg))
@@ -108,12 +108,12 @@ fn grid(sheet: &mut Sheet, lines: &Lines, across: &Across, step_deg: f64, steps:
     }
 }
 
-/// Without the tenth where there is none.
+/// Formats degrees, without the tenth where it is zero.
 fn whole(degrees: f64) -> String {
     east_west(degrees).replace(".0°", "°")
 }
 
-/// The mean deviation observed near a heading.
+/// Returns the mean deviation observed near a heading.
 fn observed_deg(row: &CardRow) -> Option<f64> {
     Some(row.deviation_deg + row.residual_deg?)
 }
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn what_disagrees_most_is_within_the_chart() {
-        let curve = [Row {
+        let curve = [DeviationRow {
             compass_deg: 285.0,
             magnetic_deg: 284.9,
             deviation_deg: -0.1,

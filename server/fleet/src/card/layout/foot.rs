@@ -1,9 +1,8 @@
-//! The lower part: coefficients, the ship's state, what to know, who signs, and where
-//! it all comes from.
+//! Lower part of the sheet: coefficients, the ship's state, notes, signatures and the source.
 
-use super::{GREY, LEFT, RIGHT, UNKNOWN, draw_labelled, known};
-use crate::binnacles::in_words;
-use crate::card::contents::{Card, CargoAboard};
+use super::style::{GREY, LEFT, RIGHT, UNKNOWN, draw_labelled, known};
+use crate::binnacles::describe_setting;
+use crate::card::contents::{Card, MagneticCargo};
 use binnacle_compass::deviation::CoefficientsInDegrees;
 use binnacle_drawing::words::signed;
 use binnacle_drawing::{A4, Face, MARGIN, Sheet, Style, wrap};
@@ -14,7 +13,7 @@ const SECOND: f32 = 262.0;
 const SIGNATURES: f32 = A4.1 - MARGIN - 68.0;
 const NOTE_LINE: f32 = 9.4;
 
-/// Draws it below `top`.
+/// Draws the lower part below `top`.
 pub(super) fn draw(sheet: &mut Sheet, card: &Card, top: f32) {
     coefficients(sheet, card, top + 8.0);
     let below = state(sheet, card, top + 8.0).max(top + 80.0);
@@ -52,7 +51,7 @@ fn coefficients(sheet: &mut Sheet, card: &Card, top: f32) {
     sheet.text((LEFT + 6.0, top + 66.0), Style::plain(6.8).grey(GREY), says);
 }
 
-/// Answers with where the next thing begins.
+/// Draws the ship's state. Returns the lower edge.
 fn state(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
     let in_logbook = |time: Option<Time>| {
         time.map_or("none in the logbook".to_owned(), |time| {
@@ -116,8 +115,8 @@ fn next_due(card: &Card) -> String {
     format!("{}: {}{flags}", due.on, due.reason)
 }
 
-fn cargo(aboard: &[CargoAboard]) -> String {
-    let words: Vec<String> = aboard
+fn cargo(on_board: &[MagneticCargo]) -> String {
+    let words: Vec<String> = on_board
         .iter()
         .map(|cargo| {
             let what = cargo.cargo.as_deref().unwrap_or("of a kind not said");
@@ -130,14 +129,13 @@ fn cargo(aboard: &[CargoAboard]) -> String {
     }
 }
 
-/// Two beside each other, as many lines as they take; answers with where the next thing
-/// begins.
+/// Draws the correctors in pairs, each as many lines as it takes. Returns the lower edge.
 fn correctors(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
     let Some(found) = &card.correctors else {
         return top;
     };
     sheet.text((LEFT, top), Style::bold(8.0), "Correctors");
-    let all = in_words(&found.setting, found.shape);
+    let all = describe_setting(&found.setting, found.shape);
     all.chunks(2).fold(top + 11.0, |y, pair| {
         let columns = [(LEFT + 6.0, SECOND - 14.0), (SECOND, RIGHT)];
         let ends = pair
@@ -148,7 +146,7 @@ fn correctors(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
     })
 }
 
-/// As many as there is room for; the last line says how many more there are.
+/// Draws as many notes as fit. The last line counts those left out.
 fn notes(sheet: &mut Sheet, card: &Card, top: f32) {
     const SIZE: f32 = 7.5;
     let room = ((SIGNATURES - 14.0 - top) / NOTE_LINE) as usize;
@@ -178,7 +176,7 @@ fn notes(sheet: &mut Sheet, card: &Card, top: f32) {
     }
 }
 
-/// Blank: a person's pen fills them in.
+/// Draws blank lines for signatures.
 fn signatures(sheet: &mut Sheet) {
     sheet.rule((LEFT, SIGNATURES), (RIGHT, SIGNATURES), 0.4);
     let width = (RIGHT - LEFT - 3.0 * 14.0) / 4.0;
@@ -203,7 +201,7 @@ fn source(sheet: &mut Sheet, card: &Card) {
     let lines = if let Some(order) = model.foretold_by {
         [
             format!(
-                "{made}: foretold by work order {order} from {} samples of {} to {}.",
+                "{made}: predicted by work order {order} from {} samples of {} to {}.",
                 model.samples_used,
                 model.data_from.day(),
                 model.data_until.day()

@@ -1,6 +1,6 @@
-//! The upper part: what the sheet is, of which ship and compass, where and when.
+//! Upper part of the sheet: status, ship, compass, place and time.
 
-use super::{LEFT, RIGHT, fact, known};
+use super::style::{LEFT, RIGHT, draw_fact, known};
 use crate::card::contents::Card;
 use crate::compasses::Role;
 use binnacle_drawing::words::{east_west, latitude, longitude};
@@ -10,7 +10,7 @@ const FACT_LINE: f32 = 12.5;
 /// Left edge of the right column, and its width.
 const SECOND: f32 = 306.0;
 
-/// Draws it; answers with its lower edge.
+/// Draws the upper part. Returns its lower edge.
 pub(super) fn draw(sheet: &mut Sheet, card: &Card) -> f32 {
     sheet.text((LEFT, MARGIN + 20.0), Style::bold(20.0), "Deviation card");
     mark(sheet, card);
@@ -20,7 +20,7 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card) -> f32 {
     let column = |sheet: &mut Sheet, x: f32, room: f32, facts: &[(&str, String)]| {
         for (index, (label, value)) in facts.iter().enumerate() {
             let y = rule + 14.0 + FACT_LINE * index as f32;
-            fact(sheet, (x, y), label, value, room);
+            draw_fact(sheet, (x, y), label, value, room);
         }
     };
     column(sheet, LEFT, SECOND - LEFT - 12.0, &first);
@@ -32,11 +32,11 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card) -> f32 {
 
 /// Draws the card's status, so that nobody can overlook it.
 fn mark(sheet: &mut Sheet, card: &Card) {
-    let foretold = card.model.foretold_by.and(card.unverified_order);
+    let predicted_by = card.model.foretold_by.and(card.unverified_order);
     let (word, why) = match &card.verified {
-        None if foretold.is_some() => (
+        None if predicted_by.is_some() => (
             "PREDICTED",
-            "foretold from an adjustment at the berth; not verified at sea".to_owned(),
+            "predicted from an adjustment at the berth; not verified at sea".to_owned(),
         ),
         None => (
             "PREDICTED",
@@ -45,7 +45,7 @@ fn mark(sheet: &mut Sheet, card: &Card) {
         Some(by) => (
             "VERIFIED AT SEA",
             format!(
-                "{} headings to {} agree with what was foretold",
+                "{} headings to {} agree with the prediction",
                 by.headings,
                 by.until.day()
             ),
@@ -119,7 +119,7 @@ fn facts(card: &Card) -> (Facts, Facts) {
     (of_ship, of_compass)
 }
 
-/// A field model's name as its makers write it.
+/// Returns a field model's name as its makers write it.
 fn source(name: &str) -> String {
     name.to_uppercase().replace("IGRF", "IGRF-")
 }

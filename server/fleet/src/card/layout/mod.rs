@@ -1,24 +1,18 @@
-//! A card on a sheet of A4: what stands where.
+//! Layout of a card on a sheet of A4.
 //!
-//! What always holds: table and curve share their lines, so that a heading is read
-//! straight across; all that the card says of itself stands on the one sheet.
+//! Invariants: table and curve share their lines, so that a heading is read straight across. All
+//! statements of the card stand on the one sheet.
 
 mod chart;
 mod foot;
 mod head;
+mod style;
 mod table;
 
 use super::contents::Card;
-use binnacle_drawing::{A4, About, MARGIN, Point, Sheet, Style};
+use binnacle_drawing::{About, Sheet};
 
-const LEFT: f32 = MARGIN;
-const RIGHT: f32 = A4.0 - MARGIN;
-/// From one line of the table to the next.
-const LINE: f32 = 13.0;
-/// Grey of what is not the first thing to be read.
-const GREY: u8 = 90;
-
-/// The card's sheet.
+/// Draws the card's sheet.
 pub(super) fn sheet(card: &Card) -> Sheet {
     let mut sheet = Sheet::a4();
     let below_head = head::draw(&mut sheet, card);
@@ -42,44 +36,4 @@ pub(super) fn about(card: &Card) -> About {
         ),
         created: card.model.fitted_at.0,
     }
-}
-
-/// Smaller than this nobody reads.
-const SMALLEST: f32 = 6.0;
-
-/// A word in grey and what it says, in a room of its own.
-fn fact(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) {
-    const LABEL: f32 = 74.0;
-    let style = Style::plain(8.0);
-    sheet.text(at, style.grey(GREY), label);
-    let room = room - LABEL;
-    // What is long is set smaller before anything of it is left out.
-    let long = binnacle_drawing::width(value, style.face, style.size);
-    let size = (style.size * room / long).clamp(SMALLEST, style.size);
-    let value = binnacle_drawing::cut(value, style.face, size, room);
-    sheet.text((at.0 + LABEL, at.1), Style::plain(size), value);
-}
-
-/// Distance between two lines of labelled text.
-const LABELLED_STEP: f32 = 9.6;
-
-/// Draws labelled text on as many lines as it needs. Returns the position of the next line.
-fn draw_labelled(sheet: &mut Sheet, at: Point, label: &str, value: &str, room: f32) -> f32 {
-    const LABEL: f32 = 68.0;
-    let style = Style::plain(8.0);
-    sheet.text(at, style.grey(GREY), label);
-    let lines = binnacle_drawing::wrap(value, style.face, style.size, room - LABEL);
-    for (index, line) in lines.iter().enumerate() {
-        let y = at.1 + LABELLED_STEP * index as f32;
-        sheet.text((at.0 + LABEL, y), style, line.as_str());
-    }
-    at.1 + LABELLED_STEP * lines.len().max(1) as f32
-}
-
-/// Text for an unknown value.
-const UNKNOWN: &str = "not recorded";
-
-/// A value, or that there is none.
-fn known(value: Option<&str>) -> &str {
-    value.unwrap_or(UNKNOWN)
 }

@@ -1,6 +1,6 @@
-//! The table: deviation by compass heading.
+//! Table of deviations by compass heading.
 
-use super::{GREY, LEFT, LINE};
+use super::style::{GREY, LEFT, LINE};
 use crate::card::contents::{Card, CardRow};
 use binnacle_drawing::words::{east_west, heading, heading_to_a_tenth, signed};
 use binnacle_drawing::{Face, Pen, Sheet, Style};
@@ -23,18 +23,18 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// The height of a compass heading.
+    /// Returns the height of a compass heading.
     pub(super) fn y(&self, compass_deg: f64) -> f32 {
         self.top + LINE * (compass_deg / 15.0) as f32
     }
 
-    /// Below the last line.
+    /// Returns the height below the last line.
     pub(super) fn bottom(&self) -> f32 {
         self.y(360.0) + LINE / 2.0
     }
 }
 
-/// Draws it.
+/// Draws the table.
 pub(super) fn draw(sheet: &mut Sheet, card: &Card, lines: &Lines) {
     let small = Style::plain(7.0).grey(GREY).end();
     for (end, [first, second]) in ENDS.into_iter().zip(TITLES) {
@@ -60,7 +60,7 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card, lines: &Lines) {
     sheet.text((LEFT, y), Style::plain(7.0).grey(GREY), rule);
 }
 
-/// The heading that a line is of: north is 360 where it closes the circle.
+/// Names the heading of a line. North is 360 where it closes the circle.
 pub(super) fn line_name(compass_deg: f64) -> String {
     if compass_deg >= 360.0 {
         return "360°".to_owned();

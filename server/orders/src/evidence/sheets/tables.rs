@@ -6,7 +6,7 @@ use binnacle_adjustment::binnacle::{Binnacle, Setting, Shape};
 use binnacle_drawing::paper::{LEFT, Paper, SIZE, VALUE};
 use binnacle_drawing::words::{east_west, heading, heading_to_a_tenth, signed};
 use binnacle_drawing::{Style, cut};
-use binnacle_fleet::binnacles::in_words;
+use binnacle_fleet::binnacles::describe_setting;
 use serde_json::Value;
 
 /// Width of a column of figures.
@@ -26,8 +26,8 @@ pub(super) fn draw_correctors(paper: &mut Paper, record: &Value) -> anyhow::Resu
         "Binnacle",
         &format!("{} {}, no. {}", design.maker, design.model, binnacle.serial),
     );
-    let lines = in_words(&before, shape).into_iter();
-    for ((label, before), (_, after)) in lines.zip(in_words(&after, shape)) {
+    let lines = describe_setting(&before, shape).into_iter();
+    for ((label, before), (_, after)) in lines.zip(describe_setting(&after, shape)) {
         if before == after {
             paper.fact(label, &format!("{after}, as before"));
         } else {
@@ -59,9 +59,9 @@ pub(super) fn draw_settings_said(paper: &mut Paper, record: &Value) -> anyhow::R
         let before: Setting = serde_json::from_value(said["before"].clone())?;
         let after: Setting = serde_json::from_value(said["after"].clone())?;
         let shape = shape_of(&binnacle, [&after, &before]);
-        let lines = in_words(&before, shape).into_iter();
+        let lines = describe_setting(&before, shape).into_iter();
         let moved: Vec<String> = lines
-            .zip(in_words(&after, shape))
+            .zip(describe_setting(&after, shape))
             .filter(|(before, after)| before != after)
             .map(|((label, before), (_, after))| format!("{label}: {after} (before: {before})"))
             .collect();

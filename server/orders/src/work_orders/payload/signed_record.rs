@@ -80,7 +80,7 @@ impl SubmittedSignature {
     pub(crate) fn checked(&self, record_sha256: &str) -> Result<()> {
         let key = ed25519::key(&self.public_key)?;
         let record = ed25519::from_hex(record_sha256).unwrap_or_default();
-        let signature = ("signature", self.signature.as_str());
-        ed25519::must_be_signed(&key, signature, &record, "the record's SHA-256")
+        let called = "the record's SHA-256";
+        ed25519::must_be_signed(&key, "signature", &self.signature, &record, called)
     }
 }

@@ -5,8 +5,8 @@ use crate::alerts::causes::CAUSES;
 use crate::alerts::causes::change_rules::{Outcome, outcome};
 use crate::alerts::causes::evaluate::evaluate_changes;
 use crate::alerts::desired::DesiredAlert;
-use crate::alerts::limits::AlertLimits;
-use crate::analysis::{Findings, FoundChange};
+use crate::analysis::{ChangeFinding, Findings};
+use crate::settings::AlertLimits;
 use binnacle_compass::result::{Cause as Found, CauseProbability, Change};
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::severity::Severity;
@@ -16,9 +16,9 @@ fn at(text: &str) -> Timestamp {
     Timestamp::parse(text).unwrap()
 }
 
-fn found(cause: Found, size_deg: f64) -> FoundChange {
+fn found(cause: Found, size_deg: f64) -> ChangeFinding {
     let from = at("2026-11-18T12:00:00Z");
-    FoundChange {
+    ChangeFinding {
         change: Change {
             from,
             from_earliest: from,
@@ -46,14 +46,14 @@ fn found(cause: Found, size_deg: f64) -> FoundChange {
 }
 
 /// Returns the alerts after so many days at sea, with such a band by then.
-fn sailed(changes: Vec<FoundChange>, days: f64, band95_deg: Option<f64>) -> Vec<DesiredAlert> {
+fn sailed(changes: Vec<ChangeFinding>, days: f64, band95_deg: Option<f64>) -> Vec<DesiredAlert> {
     known_as(None, changes, days, band95_deg)
 }
 
 /// Returns the alerts where one of severity `was` is open of each cause.
 fn known_as(
     was: Option<Severity>,
-    changes: Vec<FoundChange>,
+    changes: Vec<ChangeFinding>,
     days: f64,
     band95_deg: Option<f64>,
 ) -> Vec<DesiredAlert> {
@@ -75,9 +75,9 @@ fn known_as(
 fn a_change_that_is_small_here_and_large_on_the_waters_ahead_is_as_bad_as_there() {
     let mut change = found(Found::LightningOrShock, 1.0);
     change.size_ahead_deg = Some(6.0);
-    let wanted = sailed(vec![change], 0.0, None);
-    assert_eq!(wanted[0].severity, Severity::Critical);
-    let summary = &wanted[0].summary;
+    let alerts = sailed(vec![change], 0.0, None);
+    assert_eq!(alerts[0].severity, Severity::Critical);
+    let summary = &alerts[0].summary;
     assert!(
         summary.contains("1.0° here, 6.0° on the waters"),
         "{summary}"
@@ -96,13 +96,13 @@ fn a_change_is_less_bad_only_once_it_is_well_below_what_made_it_so() {
         (Some(Warning), 1.4, Notice),
         (Some(Notice), 1.6, Notice),
     ] {
-        let wanted = known_as(
+        let alerts = known_as(
             was,
             vec![found(Found::LightningOrShock, size_deg)],
             0.0,
             None,
         );
-        assert_eq!(wanted[0].severity, is, "{was:?}, {size_deg}");
+        assert_eq!(alerts[0].severity, is, "{was:?}, {size_deg}");
     }
 }
 
@@ -113,10 +113,10 @@ fn a_change_is_as_bad_as_the_deviation_that_it_causes() {
         (3.0, Severity::Warning),
         (1.0, Severity::Notice),
     ] {
-        let wanted = sailed(vec![found(Found::LightningOrShock, size_deg)], 0.0, None);
-        assert_eq!(wanted[0].severity, severity, "{size_deg}");
-        assert_eq!(wanted[0].cause, Cause::LightningOrShock);
-        assert!(wanted[0].evidence.0[1].contains("lightning or a shock 90 %"));
+        let alerts = sailed(vec![found(Found::LightningOrShock, size_deg)], 0.0, None);
+        assert_eq!(alerts[0].severity, severity, "{size_deg}");
+        assert_eq!(alerts[0].cause, Cause::LightningOrShock);
+        assert!(alerts[0].evidence.0[1].contains("lightning or a shock 90 %"));
     }
     let passing = sailed(vec![found(Found::MagneticStorm, 8.0)], 0.0, None);
     assert_eq!(passing[0].severity, Severity::Warning);
@@ -127,12 +127,12 @@ fn a_change_is_as_bad_as_the_deviation_that_it_causes() {
 fn an_unconfirmed_change_says_so_and_trusts_no_card() {
     let mut unconfirmed = found(Found::Unknown, 8.0);
     unconfirmed.change.confirmed = false;
-    let wanted = sailed(vec![unconfirmed], 0.0, Some(1.0));
-    assert_eq!(wanted[0].severity, Severity::Warning);
-    assert!(wanted[0].summary.contains("not certain yet"), "{wanted:?}");
+    let alerts = sailed(vec![unconfirmed], 0.0, Some(1.0));
+    assert_eq!(alerts[0].severity, Severity::Warning);
+    assert!(alerts[0].summary.contains("not certain yet"), "{alerts:?}");
     assert!(
-        wanted[0].advice.contains("whether the card still holds"),
-        "{wanted:?}"
+        alerts[0].advice.contains("whether the card still holds"),
+        "{alerts:?}"
     );
 }
 
@@ -157,11 +157,11 @@ fn the_advice_follows_the_model_and_the_alert_ends_with_its_certainty() {
 fn a_change_that_became_calls_for_no_alert_and_clears_its_own() {
     let mut none = found(Found::LightningOrShock, 3.0);
     let since: Time = none.change.from.into();
-    let findings = |change: &FoundChange| Findings {
+    let findings = |change: &ChangeFinding| Findings {
         changes: vec![change.clone()],
         ..Findings::default()
     };
-    let of = |cause, change: &FoundChange| outcome(cause, since, &findings(change));
+    let of = |cause, change: &ChangeFinding| outcome(cause, since, &findings(change));
     let lightning = Cause::LightningOrShock;
     assert_eq!(of(lightning, &none), Some(Outcome::Learned));
     (none.change.confirmed, none.change.withdrawn) = (false, true);
@@ -176,7 +176,7 @@ fn a_change_that_became_calls_for_no_alert_and_clears_its_own() {
 fn only_what_ended_is_over() {
     let mut struck = found(Found::LightningOrShock, 3.0);
     let since: Time = struck.change.from.into();
-    let of = |cause, change: &FoundChange| {
+    let of = |cause, change: &ChangeFinding| {
         let changes = vec![change.clone()];
         outcome(
             cause,
@@ -202,8 +202,8 @@ fn an_earlier_change_is_an_alert_for_a_week_only() {
     loaded.change.from = at("2026-11-19T12:00:00Z");
     loaded.change.detected_at = at("2026-11-19T13:00:00Z");
     let causes = |days| -> Vec<Cause> {
-        let wanted = sailed(vec![struck.clone(), loaded.clone()], days, Some(4.0));
-        wanted.iter().map(|alert| alert.cause).collect()
+        let alerts = sailed(vec![struck.clone(), loaded.clone()], days, Some(4.0));
+        alerts.iter().map(|alert| alert.cause).collect()
     };
     assert_eq!(causes(1.0), [Cause::MagneticCargo, Cause::LightningOrShock]);
     assert_eq!(causes(8.0), [Cause::MagneticCargo]);
@@ -225,9 +225,9 @@ fn what_is_over_or_expected_is_no_alert_and_the_latest_speaks_for_all() {
     let mut second = first.clone();
     second.change.from = at("2026-11-19T12:00:00Z");
     let since = second.change.from.into();
-    let wanted = sailed(vec![first, second], 0.0, None);
-    assert_eq!(wanted.len(), 1);
-    assert_eq!(wanted[0].since, since);
+    let alerts = sailed(vec![first, second], 0.0, None);
+    assert_eq!(alerts.len(), 1);
+    assert_eq!(alerts[0].since, since);
 }
 
 #[test]
@@ -247,8 +247,8 @@ fn an_alert_was_about_the_change_nearest_to_its_date() {
     let mut renamed = first.clone();
     renamed.change.cause = Found::Unknown;
     for earlier in [first.clone(), renamed] {
-        let wanted = sailed(vec![earlier, storm.clone(), second.clone()], 0.0, None);
-        let struck = &wanted[0];
+        let alerts = sailed(vec![earlier, storm.clone(), second.clone()], 0.0, None);
+        let struck = &alerts[0];
         assert_eq!(struck.since, second.change.from.into());
         assert!(!struck.window.includes(after_first(3600.0)));
         assert!(struck.window.includes(after_first(80_000.0)));
@@ -261,29 +261,29 @@ fn a_second_fault_of_a_reference_is_another_alert() {
     first.change.ended = Some(at("2026-11-19T12:00:00Z"));
     let mut second = found(Found::ReferenceFault, 0.0);
     second.change.from = at("2026-11-21T12:00:00Z");
-    let wanted = sailed(vec![first, second], 0.1, Some(1.0));
-    assert_eq!(wanted.len(), 1);
-    assert!(!wanted[0].window.includes(at("2026-11-18T12:00:00Z").into()));
-    assert!(wanted[0].window.includes(at("2026-11-21T12:00:00Z").into()));
+    let alerts = sailed(vec![first, second], 0.1, Some(1.0));
+    assert_eq!(alerts.len(), 1);
+    assert!(!alerts[0].window.includes(at("2026-11-18T12:00:00Z").into()));
+    assert!(alerts[0].window.includes(at("2026-11-21T12:00:00Z").into()));
 }
 
 #[test]
 fn a_moved_zero_comes_with_advice() {
-    let wanted = sailed(vec![found(Found::Alignment, 3.0)], 0.1, Some(1.0));
-    assert_eq!(wanted[0].cause, Cause::Alignment);
-    assert!(wanted[0].summary.contains("the compass's zero moved"));
-    assert!(wanted[0].advice.contains("lubber line"));
-    assert!(wanted[0].advice.contains("No corrector"));
+    let alerts = sailed(vec![found(Found::Alignment, 3.0)], 0.1, Some(1.0));
+    assert_eq!(alerts[0].cause, Cause::Alignment);
+    assert!(alerts[0].summary.contains("the compass's zero moved"));
+    assert!(alerts[0].advice.contains("lubber line"));
+    assert!(alerts[0].advice.contains("No corrector"));
 }
 
 #[test]
-fn while_a_references_fault_is_open_the_compass_is_cleared_only_where_she_did_not_change() {
-    let advice = |hers: f64| {
+fn while_a_references_fault_is_open_the_compass_is_cleared_only_where_the_ship_did_not_change() {
+    let advice = |ship: f64| {
         let mut open = found(Found::ReferenceFault, 2.0);
         open.change.confirmed = false;
         open.change.causes.push(CauseProbability {
             cause: Found::LightningOrShock,
-            probability: hers,
+            probability: ship,
         });
         sailed(vec![open], 0.1, Some(1.0))[0].advice
     };

@@ -2,9 +2,9 @@
 
 use crate::alerts::cause::Cause;
 use crate::alerts::causes::{Facts, Silence, evaluate, evaluate_analysis};
-use crate::alerts::limits::AlertLimits;
 use crate::analysis::{FailedLately, Findings};
-use crate::deviation::Worst;
+use crate::deviation::WorstHeading;
+use crate::settings::AlertLimits;
 use binnacle_compass::time::Timestamp;
 use binnacle_platform::severity::Severity;
 use binnacle_platform::time::Time;
@@ -23,7 +23,7 @@ fn found() -> Findings {
 
 fn with_worst(deviation_deg: f64, band95_deg: f64) -> Findings {
     Findings {
-        worst: Some(Worst {
+        worst: Some(WorstHeading {
             compass_deg: 95.0,
             deviation_deg,
             band95_deg: Some(band95_deg),
@@ -34,8 +34,8 @@ fn with_worst(deviation_deg: f64, band95_deg: f64) -> Findings {
 }
 
 fn causes(findings: &Findings, open: &[(Cause, Severity)]) -> Vec<(Cause, Severity)> {
-    let wanted = evaluate_analysis(findings, &AlertLimits::default(), open);
-    wanted
+    let alerts = evaluate_analysis(findings, &AlertLimits::default(), open);
+    alerts
         .iter()
         .map(|alert| (alert.cause, alert.severity))
         .collect()
@@ -59,19 +59,19 @@ fn deviation_over_the_limit_is_as_bad_as_it_is_certain_and_large() {
         let findings = with_worst(deviation_deg, 1.0);
         assert_eq!(causes(&findings, &[]), expected, "{deviation_deg}");
     }
-    let wanted = evaluate_analysis(&with_worst(-6.1, 1.0), &AlertLimits::default(), &[]);
+    let alerts = evaluate_analysis(&with_worst(-6.1, 1.0), &AlertLimits::default(), &[]);
     assert!(
-        wanted[0].summary.contains("6.1° W on compass heading 095°"),
-        "{wanted:?}"
+        alerts[0].summary.contains("6.1° W on compass heading 095°"),
+        "{alerts:?}"
     );
 }
 
 #[test]
 fn an_open_alert_stays_until_the_figure_is_well_below_its_limit() {
     let open = [(Cause::DeviationOverLimit, Severity::Notice)];
-    let wanted = evaluate_analysis(&with_worst(-4.9, 1.0), &AlertLimits::default(), &open);
+    let alerts = evaluate_analysis(&with_worst(-4.9, 1.0), &AlertLimits::default(), &open);
     assert_eq!(
-        wanted[0].summary,
+        alerts[0].summary,
         "Deviation is 4.9° W on compass heading 095°: it was over the limit of 5° and has not \
          yet fallen to 4.5°."
     );
@@ -168,10 +168,10 @@ fn silence_is_an_alert_only_after_its_days() {
         }))
     };
     assert_eq!(silence("2026-11-19T23:00:00Z"), []);
-    let wanted = silence("2026-11-20T01:00:00Z");
-    assert_eq!(wanted.len(), 1);
+    let alerts = silence("2026-11-20T01:00:00Z");
+    assert_eq!(alerts.len(), 1);
     assert_eq!(
-        (wanted[0].cause, wanted[0].since),
+        (alerts[0].cause, alerts[0].since),
         (Cause::SilentAgent, last_upload)
     );
 }

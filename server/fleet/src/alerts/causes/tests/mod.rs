@@ -1,4 +1,4 @@
-//! The table of causes, and the alerts that its predicates call for.
+//! Tests of the table of causes, and of the alerts that its predicates raise.
 
 mod agent_reports;
 mod changes;
@@ -10,7 +10,7 @@ use crate::alerts::cause::Cause;
 use std::collections::BTreeSet;
 use utoipa::PartialSchema;
 
-/// All causes, as the OpenAPI document lists them.
+/// Returns all causes, as the OpenAPI document lists them.
 fn all() -> Vec<Cause> {
     let schema = serde_json::to_value(Cause::schema()).unwrap();
     let names = schema["enum"].as_array().unwrap().clone();

@@ -1,6 +1,6 @@
 //! CSV export of the audit log.
 
-use super::Line;
+use crate::audit::Line;
 use crate::error::{Error, Result};
 
 /// Column names, the same as in JSON.

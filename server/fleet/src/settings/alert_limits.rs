@@ -5,7 +5,7 @@ use binnacle_platform::http::degrees;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// Limits of a vessel's alerts. A flag state may ask for others: AMSA and the Marshall Islands
+/// Limits of a vessel's alerts. A flag state may require others: AMSA and the Marshall Islands
 /// (MN 2-011-32) have the compass adjusted above 5° on any heading.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(default)]

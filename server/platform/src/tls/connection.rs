@@ -1,8 +1,8 @@
-//! Connections that use few packets: each packet costs a ship forty bytes or more besides
-//! its content.
+//! TLS connections that use few packets: each packet costs forty bytes or more of headers
+//! over the satellite link.
 //!
-//! Invariants: nothing that a peer waits for is kept back, and a peer that is
-//! still there gets all that was written.
+//! Invariants: data that a peer waits for is never held back. A peer that is still connected
+//! receives everything that was written.
 
 use socket2::SockRef;
 use std::io::{self, IoSlice};
@@ -13,54 +13,54 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 use tokio_rustls::server::TlsStream;
 
-/// The first byte of an encrypted TLS record (RFC 8446, 5.1).
+/// First byte of an encrypted TLS record (RFC 8446, section 5.1).
 const ENCRYPTED: u8 = 23;
 
-/// TCP below TLS. The ticket for a next session, which nobody waits for, goes with the
-/// first answer instead of in a packet of its own.
+/// TCP connection below TLS. Nobody waits for the session ticket, so it is sent with the
+/// first response instead of in a packet of its own.
 #[derive(Debug)]
 pub(super) struct Tcp {
     stream: TcpStream,
     /// Data held back for the next write.
-    kept: Vec<u8>,
-    hands_shaken: bool,
+    held_back: Vec<u8>,
+    handshake_done: bool,
     /// True once data that the peer waits for has joined the data held back.
     joined: bool,
 }
 
 impl Tcp {
-    /// A connection just taken.
+    /// Wraps a connection that was just accepted.
     pub(super) fn new(stream: TcpStream) -> Tcp {
         let tcp = Tcp {
             stream,
-            kept: Vec::new(),
-            hands_shaken: false,
+            held_back: Vec::new(),
+            handshake_done: false,
             joined: false,
         };
-        tcp.acknowledge_with_answers();
+        tcp.acknowledge_with_response();
         tcp
     }
 
-    /// Keeps back nothing more, but what is kept goes with what is written next.
-    fn shaken(&mut self) {
-        self.hands_shaken = true;
-        self.acknowledge_with_answers();
+    /// Holds back no further data. Data held back so far is sent with the next write.
+    fn finish_handshake(&mut self) {
+        self.handshake_done = true;
+        self.acknowledge_with_response();
     }
 
-    /// Lets the acknowledgement of a hello or a request go with the answer to it. The system
-    /// resets this now and then; it only saves bytes.
-    fn acknowledge_with_answers(&self) {
+    /// Lets the acknowledgement of a hello or a request be sent with the response to it. The
+    /// system resets this option now and then; it only saves bytes.
+    fn acknowledge_with_response(&self) {
         #[cfg(target_os = "linux")]
         SockRef::from(&self.stream).set_tcp_quickack(false).ok();
     }
 
-    fn poll_send_kept(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        while !self.kept.is_empty() {
-            let sent = ready!(Pin::new(&mut self.stream).poll_write(cx, &self.kept))?;
+    fn poll_send_held_back(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        while !self.held_back.is_empty() {
+            let sent = ready!(Pin::new(&mut self.stream).poll_write(cx, &self.held_back))?;
             if sent == 0 {
                 return Poll::Ready(Err(io::ErrorKind::WriteZero.into()));
             }
-            self.kept.drain(..sent);
+            self.held_back.drain(..sent);
         }
         Poll::Ready(Ok(()))
     }
@@ -73,9 +73,9 @@ impl AsyncRead for Tcp {
         buffer: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
         let read = Pin::new(&mut self.stream).poll_read(cx, buffer);
-        if read.is_pending() && !self.hands_shaken {
-            // It was no ticket: the peer may be waiting for it.
-            ready!(self.poll_send_kept(cx))?;
+        if read.is_pending() && !self.handshake_done {
+            // It was not a ticket: the peer may be waiting for it.
+            ready!(self.poll_send_held_back(cx))?;
         }
         read
     }
@@ -85,26 +85,26 @@ impl AsyncWrite for Tcp {
     fn poll_write(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
-        octets: &[u8],
+        bytes: &[u8],
     ) -> Poll<io::Result<usize>> {
-        if !self.hands_shaken && octets.first() == Some(&ENCRYPTED) {
-            self.kept.extend_from_slice(octets);
-            return Poll::Ready(Ok(octets.len()));
+        if !self.handshake_done && bytes.first() == Some(&ENCRYPTED) {
+            self.held_back.extend_from_slice(bytes);
+            return Poll::Ready(Ok(bytes.len()));
         }
-        if self.joined || self.kept.is_empty() {
-            ready!(self.poll_send_kept(cx))?;
-            return Pin::new(&mut self.stream).poll_write(cx, octets);
+        if self.joined || self.held_back.is_empty() {
+            ready!(self.poll_send_held_back(cx))?;
+            return Pin::new(&mut self.stream).poll_write(cx, bytes);
         }
-        // In one packet, where it has room.
+        // In one packet, if it fits.
         self.joined = true;
-        self.kept.extend_from_slice(octets);
-        if let Poll::Ready(Err(error)) = self.poll_send_kept(cx) {
+        self.held_back.extend_from_slice(bytes);
+        if let Poll::Ready(Err(error)) = self.poll_send_held_back(cx) {
             return Poll::Ready(Err(error));
         }
-        Poll::Ready(Ok(octets.len()))
+        Poll::Ready(Ok(bytes.len()))
     }
 
-    // A hello and what follows it are several slices, and one packet.
+    // A server hello and the records after it are several slices, but one packet.
     fn poll_write_vectored(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
@@ -112,14 +112,14 @@ impl AsyncWrite for Tcp {
     ) -> Poll<io::Result<usize>> {
         let first = slices.iter().find(|slice| !slice.is_empty());
         let starts_clear = first.is_some_and(|slice| slice[0] != ENCRYPTED);
-        if self.kept.is_empty() && (self.hands_shaken || starts_clear) {
+        if self.held_back.is_empty() && (self.handshake_done || starts_clear) {
             return Pin::new(&mut self.stream).poll_write_vectored(cx, slices);
         }
-        let octets: Vec<u8> = slices
+        let bytes: Vec<u8> = slices
             .iter()
             .flat_map(|slice| slice.iter().copied())
             .collect();
-        self.poll_write(cx, &octets)
+        self.poll_write(cx, &bytes)
     }
 
     fn is_write_vectored(&self) -> bool {
@@ -128,37 +128,37 @@ impl AsyncWrite for Tcp {
 
     fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
         if self.joined {
-            ready!(self.poll_send_kept(cx))?;
+            ready!(self.poll_send_held_back(cx))?;
         }
         Pin::new(&mut self.stream).poll_flush(cx)
     }
 
     fn poll_shutdown(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        ready!(self.poll_send_kept(cx))?;
+        ready!(self.poll_send_held_back(cx))?;
         Pin::new(&mut self.stream).poll_shutdown(cx)
     }
 }
 
-/// A TLS connection that, after the peer has closed it, ends with one packet instead of five.
+/// TLS connection that ends with one packet instead of five after the peer has closed it.
 #[derive(Debug)]
-pub struct Line {
+pub struct TlsConnection {
     stream: TlsStream<Tcp>,
-    /// The peer has closed, so that it has had what it wanted.
-    peer_left: bool,
+    /// True once the peer has closed its end, so it has received what it wanted.
+    peer_closed: bool,
 }
 
-impl Line {
-    /// A connection with hands shaken.
-    pub(super) fn new(mut stream: TlsStream<Tcp>) -> Line {
-        stream.get_mut().0.shaken();
-        Line {
+impl TlsConnection {
+    /// Wraps a connection whose handshake is done.
+    pub(super) fn new(mut stream: TlsStream<Tcp>) -> TlsConnection {
+        stream.get_mut().0.finish_handshake();
+        TlsConnection {
             stream,
-            peer_left: false,
+            peer_closed: false,
         }
     }
 }
 
-impl AsyncRead for Line {
+impl AsyncRead for TlsConnection {
     fn poll_read(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
@@ -167,19 +167,19 @@ impl AsyncRead for Line {
         let before = buffer.filled().len();
         ready!(Pin::new(&mut self.stream).poll_read(cx, buffer))?;
         if buffer.remaining() > 0 && buffer.filled().len() == before {
-            self.peer_left = true;
+            self.peer_closed = true;
         }
         Poll::Ready(Ok(()))
     }
 }
 
-impl AsyncWrite for Line {
+impl AsyncWrite for TlsConnection {
     fn poll_write(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
-        octets: &[u8],
+        bytes: &[u8],
     ) -> Poll<io::Result<usize>> {
-        Pin::new(&mut self.stream).poll_write(cx, octets)
+        Pin::new(&mut self.stream).poll_write(cx, bytes)
     }
 
     fn poll_write_vectored(
@@ -199,8 +199,8 @@ impl AsyncWrite for Line {
     }
 
     fn poll_shutdown(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        if self.peer_left {
-            // A reset, when it is dropped: the peer has closed its end as well.
+        if self.peer_closed {
+            // Resets the connection when it is dropped: the peer has closed its end as well.
             let tcp = SockRef::from(&self.stream.get_ref().0.stream);
             return Poll::Ready(tcp.set_linger(Some(Duration::ZERO)));
         }

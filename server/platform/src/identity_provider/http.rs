@@ -1,35 +1,35 @@
-//! Requests to the provider.
+//! HTTP requests to the provider.
 //!
-//! Invariants: each ends within ten seconds; redirects are not followed; no more
-//! is read than a provider has to say; a provider with a certificate is asked for nothing
-//! without. The server's own admin named the provider, which may be within the network
-//! then; but one on the public internet cannot send requests into it.
+//! Invariants: each request ends within ten seconds, and redirects are not followed. The size
+//! of a response is limited. A provider on https is never asked without TLS. The server's admin
+//! configured the provider, so it may be inside the local network. A provider on the public
+//! internet cannot direct requests into that network.
 
-use crate::webhooks::{self, Reach, is_public};
+use crate::outbound::{self, Reach, is_public};
 use anyhow::{Context, bail, ensure};
 use axum::http::header::AUTHORIZATION;
 use openidconnect::{AsyncHttpClient, HttpRequest, HttpResponse};
 use reqwest::{Client, Url};
 use std::pin::Pin;
 
-/// Of a longer answer nothing is read: a hundred keys are a tenth of it.
-const MOST_BYTES: usize = 1 << 20;
+/// Longest accepted response, bytes: a hundred keys take a tenth of it.
+const MAX_BYTES: usize = 1 << 20;
 
 /// HTTP client for requests to the provider.
 #[derive(Clone)]
-pub(super) struct Http {
+pub(crate) struct Http {
     client: Client,
     reach: Reach,
     https_only: bool,
 }
 
-/// Reason for a missing answer.
+/// Reason for a missing response.
 #[derive(Debug, thiserror::Error)]
 #[error("{0:#}")]
-pub(super) struct NoAnswer(anyhow::Error);
+pub(crate) struct NoResponse(anyhow::Error);
 
 impl Http {
-    /// For the provider with this address.
+    /// Creates the client for the provider with this address.
     pub(super) async fn of(issuer: &str) -> anyhow::Result<Http> {
         let url = Url::parse(issuer).context("the issuer is not a URL")?;
         let host = url.host_str().context("the issuer has no host")?;
@@ -41,14 +41,14 @@ impl Http {
             Reach::Anywhere
         };
         Ok(Http {
-            client: webhooks::client(reach)?,
+            client: outbound::client(reach)?,
             reach,
             https_only: url.scheme() == "https",
         })
     }
 
-    async fn ask(&self, mut request: HttpRequest) -> anyhow::Result<HttpResponse> {
-        let url = webhooks::check_url(&request.uri().to_string(), self.reach)?;
+    async fn send(&self, mut request: HttpRequest) -> anyhow::Result<HttpResponse> {
+        let url = outbound::check_url(&request.uri().to_string(), self.reach)?;
         ensure!(
             !self.https_only || url.scheme() == "https",
             "the provider names an address without https"
@@ -58,15 +58,15 @@ impl Http {
         }
         let request = reqwest::Request::try_from(request)?;
         let sent = self.client.execute(request).await;
-        let mut answer = sent.map_err(reqwest::Error::without_url)?;
-        let mut response = axum::http::Response::builder().status(answer.status());
+        let mut received = sent.map_err(reqwest::Error::without_url)?;
+        let mut response = axum::http::Response::builder().status(received.status());
         if let Some(headers) = response.headers_mut() {
-            headers.clone_from(answer.headers());
+            headers.clone_from(received.headers());
         }
         let mut body = Vec::new();
-        while let Some(chunk) = answer.chunk().await? {
-            if body.len() + chunk.len() > MOST_BYTES {
-                bail!("the answer is longer than {MOST_BYTES} bytes");
+        while let Some(chunk) = received.chunk().await? {
+            if body.len() + chunk.len() > MAX_BYTES {
+                bail!("the response is longer than {MAX_BYTES} bytes");
             }
             body.extend_from_slice(&chunk);
         }
@@ -75,10 +75,10 @@ impl Http {
 }
 
 impl<'c> AsyncHttpClient<'c> for Http {
-    type Error = NoAnswer;
-    type Future = Pin<Box<dyn Future<Output = Result<HttpResponse, NoAnswer>> + Send + 'c>>;
+    type Error = NoResponse;
+    type Future = Pin<Box<dyn Future<Output = Result<HttpResponse, NoResponse>> + Send + 'c>>;
 
     fn call(&'c self, request: HttpRequest) -> Self::Future {
-        Box::pin(async move { self.ask(request).await.map_err(NoAnswer) })
+        Box::pin(async move { self.send(request).await.map_err(NoResponse) })
     }
 }

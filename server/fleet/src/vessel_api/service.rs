@@ -1,7 +1,7 @@
-//! A vessel goes out of service, or comes back.
+//! Transition of a vessel out of service, or back into it.
 
-use super::store::{Row, set_out_of_service};
-use crate::{alerts, analysis};
+use crate::vessels::{VesselRow, set_out_of_service};
+use crate::{alerts, analysis_queue};
 use binnacle_platform::db::{DomainEvent, Tx};
 use binnacle_platform::error::Result;
 use binnacle_platform::events::{self, Event};
@@ -31,7 +31,7 @@ impl DomainEvent for ServiceChanged {}
 pub(super) async fn set(
     tx: &mut Tx,
     operator: OperatorId,
-    vessel: &Row,
+    vessel: &VesselRow,
     in_service: bool,
     now: Time,
 ) -> Result<Vec<Event>> {
@@ -49,8 +49,8 @@ pub(super) async fn set(
     let mut events_out = vec![events::insert(tx, vessel.id, events::Kind::Need, now).await?];
     if in_service {
         set_out_of_service(tx, vessel.id, None).await?;
-        // It raises what alerts there were again, if they still are called for.
-        analysis::enqueue(tx, vessel.id, now, 0.0).await?;
+        // It raises again the alerts whose causes still hold.
+        analysis_queue::enqueue(tx, vessel.id, now, 0.0).await?;
         return Ok(events_out);
     }
     set_out_of_service(tx, vessel.id, Some(now)).await?;

@@ -1,19 +1,19 @@
-//! The agent as a caller: an extractor that a handler names in its arguments.
+//! Authentication of an agent by its token: an extractor that a handler names in its arguments.
 
-use super::store;
 use axum::extract::{FromRef, FromRequestParts};
 use axum::http::request::Parts;
 use binnacle_platform::access::bearer;
 use binnacle_platform::app::App;
 use binnacle_platform::audit::{Actor, RequestContext};
+use binnacle_platform::db::{Db, Result as DbResult, row};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::{AgentId, CompassId, VesselId};
 use binnacle_platform::secret;
 
-/// A ship's agent.
+/// A vessel's agent.
 #[derive(Clone, Copy, Debug, sqlx::FromRow)]
 pub struct Agent {
-    /// The ship.
+    /// The vessel.
     pub vessel_id: VesselId,
     /// The installation.
     pub agent_id: AgentId,
@@ -32,7 +32,7 @@ where
         let app = App::from_ref(state);
         let token = bearer(parts).ok_or(Error::Unauthenticated)?;
         let vessel = secret::vessel_of_token(token).ok_or(Error::Unauthenticated)?;
-        let agent = store::find_agent(&app.db, VesselId(vessel), &secret::hash(token))
+        let agent = find_agent(&app.db, VesselId(vessel), &secret::hash(token))
             .await?
             .ok_or(Error::Unauthenticated)?;
         RequestContext::of(parts)?.record_actor(&agent);
@@ -44,4 +44,17 @@ impl From<&Agent> for Actor {
     fn from(agent: &Agent) -> Actor {
         Actor::agent(agent.agent_id, agent.vessel_id)
     }
+}
+
+/// Finds the agent that holds a token.
+async fn find_agent(db: &Db, vessel: VesselId, token_hash: &[u8]) -> DbResult<Option<Agent>> {
+    row!(
+        db,
+        Agent,
+        "SELECT vessel_id, id AS agent_id, compass_id FROM agents
+         WHERE vessel_id = $1 AND token_hash = $2 AND revoked_at IS NULL
+         ORDER BY id",
+        vessel,
+        token_hash
+    )
 }

@@ -1,9 +1,10 @@
 //! API that reads the audit log.
 
-use super::store::{self, Selection};
-use super::{Filter, Line, csv};
+mod csv;
+
 use crate::access::Auditor;
 use crate::app::App;
+use crate::audit::{self, Filter, Line, Selection};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Page, Params, file, time};
 use crate::time::Time;
@@ -56,9 +57,9 @@ async fn list_audit(
     Params(filter): Params<Filter>,
     page: Page,
 ) -> Result<Json<AuditList>> {
-    let selection = Selection::read(auditor, filter)?;
+    let selection = read_selection(auditor, filter)?;
     let before = page.after_id()?;
-    let found = store::list(&app.db, &selection, before, page.fetch()).await?;
+    let found = audit::list(&app.db, &selection, before, page.fetch()).await?;
     let listed = page.cut(found, |line| line.id.to_string());
     Ok(Json(AuditList {
         items: listed.items,
@@ -76,32 +77,30 @@ async fn audit_csv(
     auditor: Auditor,
     Params(filter): Params<Filter>,
 ) -> Result<Response> {
-    let selection = Selection::read(auditor, filter)?;
+    let selection = read_selection(auditor, filter)?;
     let head = stream::iter([Ok(Bytes::from(csv::head()))]);
     let rest = stream::try_unfold((app, selection, Some(Uuid::max())), next_lines);
     let body = Body::from_stream(head.chain(rest));
     Ok(file("text/csv; charset=utf-8", "audit.csv", body))
 }
 
-impl Selection {
-    fn read(auditor: Auditor, filter: Filter) -> Result<Selection> {
-        // PostgreSQL accepts no NUL in a text, and no route has one.
-        if filter.route.iter().any(|route| route.contains('\0')) {
-            return Err(Error::Invalid {
-                field: "route",
-                detail: "has a control character".to_owned(),
-            });
-        }
-        let from = time("from", filter.from.as_deref())?.map(Time);
-        let to = time("to", filter.to.as_deref())?.map(Time);
-        Ok(Selection {
-            operator: auditor.operator(),
-            firm: auditor.firm(),
-            filter,
-            from,
-            to,
-        })
+fn read_selection(auditor: Auditor, filter: Filter) -> Result<Selection> {
+    // PostgreSQL accepts no NUL in a text, and no route has one.
+    if filter.route.iter().any(|route| route.contains('\0')) {
+        return Err(Error::Invalid {
+            field: "route",
+            detail: "has a control character".to_owned(),
+        });
     }
+    let from = time("from", filter.from.as_deref())?.map(Time);
+    let to = time("to", filter.to.as_deref())?.map(Time);
+    Ok(Selection {
+        operator: auditor.operator(),
+        firm: auditor.firm(),
+        filter,
+        from,
+        to,
+    })
 }
 
 type Rest = (App, Selection, Option<Uuid>);
@@ -111,14 +110,17 @@ async fn next_lines((app, selection, before): Rest) -> Result<Option<(Bytes, Res
         return Ok(None);
     };
     let lines = async {
-        let found = store::list(&app.db, &selection, Some(before), AT_A_TIME).await?;
+        let found = audit::list(&app.db, &selection, Some(before), AT_A_TIME).await?;
         let next = found.last().map(|line| line.id);
         Ok((Bytes::from(csv::lines(&found)?), next))
     };
     match lines.await {
         Ok((lines, next)) => Ok(Some((lines, (app, selection, next)))),
         Err(cause) => {
-            error!(error = format!("{cause:?}"), "an audit log was cut off");
+            error!(
+                error = format!("{cause:?}"),
+                "a download of the audit log was cut off"
+            );
             Err(cause)
         }
     }

@@ -1,16 +1,14 @@
-//! One's own sessions, and one's password.
+//! Sessions and password of the signed-in user.
 
-use super::store;
 use crate::access::Caller;
 use crate::app::App;
 use crate::audit::RequestContext;
 use crate::client_address::Origin;
-use crate::db::{self, Tx};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Listed, Page, Valid};
-use crate::ids::{SessionId, UserId};
+use crate::ids::SessionId;
 use crate::password;
-use crate::time::Time;
+use crate::session::{self, Session};
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
@@ -29,50 +27,27 @@ where
         .routes(routes!(change_password))
 }
 
-/// A time that you are signed in for.
-#[derive(Serialize, ToSchema, sqlx::FromRow)]
-pub(super) struct Session {
-    /// The session's id.
-    pub(super) id: SessionId,
-    /// Time of the sign-in.
-    created_at: Time,
-    /// Time of the last request, to ten minutes.
-    last_seen_at: Time,
-    /// Latest end of the session.
-    expires_at: Time,
-    /// Network address of the sign-in; empty if unknown.
-    #[schema(example = "198.51.100.7")]
-    address: String,
-    /// The browser's own name for itself (`User-Agent`).
-    user_agent: String,
-    /// By whose word it was opened; none if by your password.
-    #[schema(required, example = json!(null))]
-    provider: Option<String>,
-    /// True for the session of this request.
-    current: bool,
-}
-
-/// A page of sessions.
+/// Page of sessions.
 #[derive(Serialize, ToSchema)]
 struct SessionList {
-    /// In the order in which they were opened.
+    /// Sessions in the order in which they were opened.
     items: Vec<Session>,
-    /// `after` of the next page.
+    /// Value of `after` for the next page.
     #[schema(required)]
     next: Option<String>,
 }
 
-/// Another password.
+/// Password change.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(example = json!({
     "current": "seven gulls over the quay", "new": "a lantern astern at midnight"
 }))]
 struct ChangedPassword {
-    /// The one you sign in with now.
+    /// Current password.
     #[schema(format = Password)]
     current: String,
-    /// At least 12 characters; neither common nor easily guessed of you.
+    /// New password: at least 12 characters, neither common nor easily guessed.
     #[schema(format = Password)]
     new: String,
 }
@@ -87,7 +62,7 @@ async fn list_sessions(
 ) -> Result<Json<SessionList>> {
     let now = app.clock.now().into();
     let (user, idle_s) = (caller.user.user_id, app.idle_s());
-    let found = store::list(&app.db, user, now, idle_s, page.after_id()?, page.fetch()).await?;
+    let found = session::list(&app.db, user, now, idle_s, page.after_id()?, page.fetch()).await?;
     let Listed { mut items, next } = page.cut(found, |session| session.id.to_string());
     for session in &mut items {
         session.current = caller.session == Some(session.id);
@@ -105,7 +80,7 @@ async fn end_session(
     Id(id): Id<SessionId>,
 ) -> Result<StatusCode> {
     caller.must_not_only_read()?;
-    if !store::end(&request, caller.user.user_id, id).await? {
+    if !session::end(&request, caller.user.user_id, id).await? {
         return Err(Error::NotFound("session"));
     }
     Ok(StatusCode::NO_CONTENT)
@@ -117,14 +92,14 @@ async fn end_session(
 async fn end_other_sessions(request: RequestContext, caller: Caller) -> Result<StatusCode> {
     caller.must_not_only_read()?;
     let mut tx = request.begin().await?;
-    end_all(&mut tx, caller.user.user_id, caller.session).await?;
+    session::end_all(&mut tx, caller.user.user_id, caller.session).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
 /// Change your password
 ///
-/// All your other sessions end. API tokens go on.
+/// All your other sessions end. API tokens stay valid.
 #[utoipa::path(put, path = "/me/password", tag = "session", request_body = ChangedPassword,
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 422, body = Problem), (status = 429, body = Problem)))]
@@ -141,22 +116,17 @@ async fn change_password(
     let about = [&user.email, &user.name, company.unwrap_or(&user.name)];
     password::check("new", &change.new, &about.map(String::as_str))?;
     let is_the_same = change.new == change.current;
-    super::prove(&app, &request, user, &from, change.current).await?;
+    session::confirm_password(&app, &request, user, &from, change.current).await?;
     if is_the_same {
         return Err(Error::Invalid {
             field: "new",
-            detail: "is the password that you have".to_owned(),
+            detail: "is your current password".to_owned(),
         });
     }
-    let hash = password::hash(password::place(&app).await?, change.new).await?;
+    let hash = password::hash(password::acquire_permit(&app).await?, change.new).await?;
     let mut tx = request.begin().await?;
-    store::set_password(&mut tx, user.user_id, &hash).await?;
-    end_all(&mut tx, user.user_id, Some(session)).await?;
+    session::set_password(&mut tx, user.user_id, &hash).await?;
+    session::end_all(&mut tx, user.user_id, Some(session)).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
-}
-
-/// Ends all of a user's sessions but the one to be kept.
-pub async fn end_all(tx: &mut Tx, user: UserId, kept: Option<SessionId>) -> db::Result<()> {
-    store::end_all(tx, user, kept).await.map(drop)
 }

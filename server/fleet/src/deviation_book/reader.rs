@@ -1,6 +1,6 @@
-//! A book's entries from what is stored, a month of samples at a time.
+//! Reader of a book's entries, one month of stored samples at a time.
 
-use super::entry::{Ends, Entry, entries};
+use super::entry::{CardEnds, Entry, entries};
 use crate::adjustments::{self, CompletedOrder};
 use crate::analysis::{self, Chunk};
 use crate::logbook;
@@ -13,36 +13,36 @@ use binnacle_platform::time::Time;
 use std::collections::VecDeque;
 
 /// A compass's book over a range of time, being read.
-pub(super) struct Source {
+pub(super) struct BookReader {
     db: Db,
     vessel: VesselId,
     compass: CompassId,
     from: Option<Time>,
     to: Option<Time>,
-    ends: Ends,
+    ends: CardEnds,
     completed: Vec<CompletedOrder>,
     /// Chunks that are not yet read.
     left: VecDeque<Chunk>,
 }
 
-impl Source {
-    /// The entries from an instant on and before another.
+impl BookReader {
+    /// Opens the book for entries from one instant until before another.
     pub(super) async fn open(
         db: &Db,
         vessel: VesselId,
         compass: CompassId,
         from: Option<Time>,
         to: Option<Time>,
-    ) -> Result<Source> {
+    ) -> Result<BookReader> {
         let withdrawn = models::card_withdrawn(db, vessel, compass).await?;
         let logbook = logbook::of_compass(db, vessel, compass).await?;
         let work = logbook.iter().filter(|entry| entry.kind.ends_an_epoch());
-        let ends = Ends {
+        let ends = CardEnds {
             work: work.map(|entry| Time(entry.from)).collect(),
             withdrawn: withdrawn.map(|withdrawn| Time(withdrawn.since)),
         };
         let left = analysis::chunks_between(db, vessel, compass, from, to).await?;
-        Ok(Source {
+        Ok(BookReader {
             db: db.clone(),
             vessel,
             compass,
@@ -54,14 +54,14 @@ impl Source {
         })
     }
 
-    /// The entries of the next stretch, which may be none; none after the last.
+    /// Returns the entries of the next stretch, maybe empty; `None` after the last.
     pub(super) async fn next(&mut self) -> Result<Option<Vec<Entry>>> {
         let Some(chunk) = self.left.pop_front() else {
             return Ok(None);
         };
         let (db, vessel, compass) = (&self.db, self.vessel, self.compass);
         let text = analysis::chunk(db, vessel, compass, &chunk).await?;
-        let models = models::in_force(db, vessel, compass, chunk.from, chunk.to).await?;
+        let models = models::list_in_force(db, vessel, compass, chunk.from, chunk.to).await?;
         let (from, to, ends) = (self.from, self.to, self.ends.clone());
         let completed = self.completed.clone();
         let made = tokio::task::spawn_blocking(move || {
@@ -75,7 +75,7 @@ impl Source {
         Ok(Some(made.await??))
     }
 
-    /// At most so many entries, and whether that is all.
+    /// Reads up to `most` entries. Returns whether they are all.
     pub(super) async fn at_most(&mut self, most: usize) -> Result<(Vec<Entry>, bool)> {
         let mut found = Vec::new();
         while let Some(more) = self.next().await? {

@@ -1,21 +1,27 @@
-//! The queue of work.
+//! Queue of analysis jobs.
 //!
-//! What always holds: a job is run by one worker at a time, the one that holds its
-//! lease and renews it while it works; a lease that ends goes back to the queue; a job that failed
-//! [`MOST_ATTEMPTS`] times waits for a person as `dead`, until a later analysis of
-//! the vessel succeeds.
+//! Invariants:
+//!
+//! - One worker at a time runs a job: the one that holds its lease, and renews it while it works.
+//! - A job whose lease expires goes back to the queue.
+//! - A job that failed [`MOST_ATTEMPTS`] times waits for a person as `dead`, until a later
+//!   analysis of the vessel succeeds.
 
 use binnacle_compass::result::ESTIMATOR;
+use binnacle_platform::app::App;
 use binnacle_platform::db::{Connection, Db, Result, Tx, execute, rows};
 use binnacle_platform::ids::{JobId, VesselId};
 use binnacle_platform::time::Time;
+use std::time::{Duration, Instant};
 
-/// Attempts before a job is given up.
+/// Number of attempts before a job is given up.
 pub const MOST_ATTEMPTS: i64 = 5;
 /// Time without a heartbeat after which another worker may take a job. Short, so that a vessel need
 /// not wait long for the job of a process that was killed.
 const LEASE_S: f64 = 60.0;
 const FIRST_RETRY_S: f64 = 10.0;
+/// Interval between checks of the queue while a response waits for an analysis.
+const CHECK_EVERY: Duration = Duration::from_millis(100);
 
 /// A job that was claimed.
 #[derive(Clone, Copy, Debug, sqlx::FromRow)]
@@ -24,7 +30,7 @@ pub struct Job {
     pub vessel_id: VesselId,
     /// The job's id.
     pub id: JobId,
-    /// This one included; tells this lease from later ones.
+    /// Number of this attempt. It distinguishes this lease from later ones.
     pub attempts: i64,
 }
 
@@ -47,8 +53,8 @@ pub async fn enqueue(tx: &mut Tx, vessel: VesselId, now: Time, delay_s: f64) -> 
     Ok(())
 }
 
-/// Makes sure that every vessel last analysed by an estimator other than this
-/// program's will be analysed again; says how many there are.
+/// Makes sure that every vessel last analysed by an estimator other than this program's will be
+/// analysed again. Returns their number.
 pub async fn enqueue_outdated(db: &Db, now: Time) -> Result<usize> {
     let mut tx = db.begin().await?;
     let outdated = rows!(
@@ -65,7 +71,7 @@ pub async fn enqueue_outdated(db: &Db, now: Time) -> Result<usize> {
 }
 
 /// Tells whether a vessel's analysis is due or running.
-pub async fn is_under_way(db: &Db, vessel: VesselId, now: Time) -> Result<bool> {
+async fn is_under_way(db: &Db, vessel: VesselId, now: Time) -> Result<bool> {
     let found = rows!(
         db,
         (i64,),
@@ -77,6 +83,23 @@ pub async fn is_under_way(db: &Db, vessel: VesselId, now: Time) -> Result<bool> 
         now
     )?;
     Ok(!found.is_empty())
+}
+
+/// Waits until a vessel's samples are analysed, or until the time is over.
+///
+/// # Errors
+/// Fails when the database does.
+pub async fn wait_until_done(app: &App, vessel: VesselId, at_most: Duration) -> Result<()> {
+    let begun = Instant::now();
+    app.work.notify_one();
+    while begun.elapsed() < at_most
+        && !app.stopping.is_cancelled()
+        && is_under_way(&app.db, vessel, app.clock.now().into()).await?
+    {
+        // Another process may do the work.
+        tokio::time::sleep(CHECK_EVERY).await;
+    }
+    Ok(())
 }
 
 macro_rules! claim_sql {
@@ -99,7 +122,7 @@ macro_rules! claim_sql {
     };
 }
 
-/// Takes the job that has been due for longest.
+/// Claims the job that has been due for longest.
 pub async fn claim(db: &Db, now: Time) -> Result<Option<Job>> {
     // Asking first keeps an idle worker from taking SQLite's write lock.
     let due = rows!(
@@ -137,7 +160,7 @@ pub async fn claim(db: &Db, now: Time) -> Result<Option<Job>> {
     Ok(job)
 }
 
-/// Begins a job's lease anew, unless it was lost.
+/// Renews a job's lease, unless it was lost.
 pub async fn renew(db: &Db, job: Job, now: Time) -> Result<()> {
     let mut tx = db.begin().await?;
     execute!(
@@ -152,8 +175,8 @@ pub async fn renew(db: &Db, job: Job, now: Time) -> Result<()> {
     tx.commit().await
 }
 
-/// Removes a finished job, and those that died before it; `false` when the lease
-/// was lost meanwhile.
+/// Removes a finished job, and dead ones before it. Returns `false` when the lease was lost
+/// meanwhile.
 pub async fn finish(tx: &mut Tx, job: Job) -> Result<bool> {
     let held = execute!(
         &mut *tx,
@@ -174,10 +197,10 @@ pub async fn finish(tx: &mut Tx, job: Job) -> Result<bool> {
     Ok(true)
 }
 
-/// Puts a failed job back for later, or gives it up; says whether it was given up.
+/// Puts a failed job back for later, or gives it up. Returns `true` when it was given up.
 pub async fn fail(db: &Db, job: Job, error: &str, now: Time) -> Result<bool> {
     let mut tx = db.begin().await?;
-    // A job that came meanwhile does the same work.
+    // A job queued meanwhile does the same work.
     execute!(
         &mut tx,
         "DELETE FROM jobs

@@ -1,5 +1,5 @@
-//! The addresses that a webhook may reach: only public ones, so that nobody can make the
-//! server call hosts of its own network.
+//! Public addresses: the only ones that users may make the server call. Hosts of its own
+//! network must not be reachable through it.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 
@@ -16,7 +16,7 @@ pub fn is_public(address: IpAddr) -> bool {
 }
 
 fn is_public_v4(address: Ipv4Addr) -> bool {
-    let [a, b, c, _] = address.octets();
+    let [a, b, c, _] = u32::from(address).to_be_bytes();
     let special = matches!(
         (a, b, c),
         (0 | 10 | 127 | 224.., _, _)       // this network, private, loopback, multicast and up
@@ -33,7 +33,8 @@ fn is_public_v4(address: Ipv4Addr) -> bool {
     !special
 }
 
-/// Of global unicast 2000::/3 all but what carries other addresses or none.
+/// Checks for global unicast 2000::/3, without the ranges that embed other addresses or are
+/// reserved.
 fn is_public_v6(address: Ipv6Addr) -> bool {
     let [a, b, ..] = address.segments();
     let special = a == 0x2002                      // 6to4

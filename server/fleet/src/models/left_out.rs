@@ -1,6 +1,6 @@
-//! Samples that the logbook keeps out of the current epoch's model.
+//! Samples that the logbook excludes from the current epoch's model.
 //!
-//! An entry that nobody ended may keep out all of them.
+//! An entry without an end may exclude all of them.
 
 use binnacle_compass::result::{Analysis, SampleReason};
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! The designs that come with the product.
+//! Designs of binnacles that are built into the product.
 
 use super::schema::DesignSchema;
 use anyhow::Context;
@@ -81,5 +81,5 @@ async fn find_type(_: Caller, Id(name): Id<String>) -> Result<Json<Design>> {
 }
 
 fn design(text: &str) -> Result<Design> {
-    Ok(serde_json::from_str(text).context("a design that is shipped")?)
+    Ok(serde_json::from_str(text).context("a design that is built_in")?)
 }

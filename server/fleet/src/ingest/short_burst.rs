@@ -1,11 +1,13 @@
-//! Batches that came as short-burst messages, over whatever gateway.
+//! Import of batches that arrived as short-burst messages, through any gateway.
 //!
-//! They are stored as if the ship had sent them over an ordinary link, each frame in a
-//! transaction of its own: the same messages again, or the same batch over both links,
-//! change nothing. A message that cannot be read keeps no other back.
+//! Invariants:
+//!
+//! - They are stored like batches over an ordinary link, each frame in its own transaction.
+//!   Repeated messages, or the same batch over both links, change nothing.
+//! - An unreadable message does not hold back any other.
 
-use super::take;
-use crate::enrolment::Agent;
+use super::store_batch;
+use crate::agent_auth::Agent;
 use binnacle_platform::db::{Db, row};
 use binnacle_platform::error::{Error, Result};
 use binnacle_platform::ids::VesselId;
@@ -17,55 +19,55 @@ use uuid::Uuid;
 
 /// Result of an import of messages.
 #[derive(Debug, Default, Serialize)]
-pub struct Imported {
+pub struct ImportResult {
     /// Batches that were not there before.
     pub stored: usize,
     /// Batches that were there already.
     pub repeated: usize,
     /// Batches of which messages are missing.
-    pub incomplete: Vec<Incomplete>,
-    /// Messages, and the batches that they completed, that were not taken.
-    pub refused: Vec<Refused>,
+    pub incomplete: Vec<IncompleteBatch>,
+    /// Messages, and the batches that they completed, that were not received.
+    pub refused: Vec<RefusedMessage>,
     /// Acknowledgements for the ship, by stream.
     #[serde(skip)]
-    pub answers: Vec<(Uuid, Vec<u8>)>,
+    pub acknowledgements: Vec<(Uuid, Vec<u8>)>,
 }
 
 /// A batch of which messages are missing.
 #[derive(Debug, PartialEq, Eq, Serialize)]
-pub struct Incomplete {
+pub struct IncompleteBatch {
     /// Its number in its stream.
     pub seq: u64,
-    /// Messages that are there.
+    /// Number of its messages that are stored.
     pub messages: usize,
-    /// Messages that there are to be.
+    /// Number of its messages.
     pub of: usize,
 }
 
 /// Reason for which a message, or the batch that it completed, was refused.
 #[derive(Debug, PartialEq, Eq, Serialize)]
-pub struct Refused {
-    /// As the caller calls the message.
+pub struct RefusedMessage {
+    /// The caller's name for the message.
     pub message: String,
-    /// In one line.
+    /// The reason, in one line.
     pub problem: String,
 }
 
 /// Joins a vessel's messages, by name, and stores the batches.
 ///
 /// # Errors
-/// When the database cannot be used; what was stored by then stays.
-pub async fn import(
+/// Fails when the database does; batches stored by then stay.
+pub async fn import_messages(
     db: &Db,
     vessel: VesselId,
     messages: &[(String, Vec<u8>)],
     now: Time,
-) -> Result<Imported> {
-    let mut imported = Imported::default();
+) -> Result<ImportResult> {
+    let mut imported = ImportResult::default();
     let mut joiner = Joiner::default();
     let mut streams = BTreeSet::new();
     for (name, bytes) in messages {
-        let refuse = |problem: String| Refused {
+        let refuse = |problem: String| RefusedMessage {
             message: name.clone(),
             problem,
         };
@@ -89,12 +91,12 @@ pub async fn import(
     }
     imported.incomplete = joiner
         .incomplete()
-        .map(|(_, seq, messages, of)| Incomplete { seq, messages, of })
+        .map(|(_, seq, messages, of)| IncompleteBatch { seq, messages, of })
         .collect();
     for stream in streams {
         imported
-            .answers
-            .push((stream, answer(db, vessel, stream).await?));
+            .acknowledgements
+            .push((stream, acknowledgement(db, vessel, stream).await?));
     }
     Ok(imported)
 }
@@ -103,7 +105,7 @@ async fn store(db: &Db, vessel: VesselId, frame: &[u8], now: Time) -> Result<(Uu
     let stated =
         binnacle_wire::decode(frame).map_err(|error| Error::BadRequest(error.to_string()))?;
     // The same bounds as for a batch that came by its path.
-    let batch = super::read(frame, stated.stream, stated.seq)?;
+    let batch = super::decode_batch(frame, stated.stream, stated.seq)?;
     let mut tx = db.begin().await?;
     let agent = row!(
         in &mut tx,
@@ -114,12 +116,12 @@ async fn store(db: &Db, vessel: VesselId, frame: &[u8], now: Time) -> Result<(Uu
         batch.stream.0
     )?
     .ok_or(Error::NotFound("stream of this vessel"))?;
-    let taken = take(&mut tx, agent, &batch, frame, now, 0.0).await?;
+    let received = store_batch(&mut tx, agent, &batch, frame, now, 0.0).await?;
     tx.commit().await?;
-    Ok((batch.stream.0, taken.is_new))
+    Ok((batch.stream.0, received.is_new))
 }
 
-async fn answer(db: &Db, vessel: VesselId, stream: Uuid) -> Result<Vec<u8>> {
+async fn acknowledgement(db: &Db, vessel: VesselId, stream: Uuid) -> Result<Vec<u8>> {
     let (contiguous_seq,) = row!(
         db,
         (i64,),

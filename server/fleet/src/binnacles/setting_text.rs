@@ -1,9 +1,9 @@
-//! Text that describes the setting of a binnacle's correctors.
+//! Description of a binnacle's corrector setting as text.
 
 use binnacle_adjustment::binnacle::{Red, Setting, Shape, Side, Tray};
 
 /// Describes each corrector and its setting, a line for each possible kind.
-pub fn in_words(setting: &Setting, shape: Option<Shape>) -> [(&'static str, String); 5] {
+pub fn describe_setting(setting: &Setting, shape: Option<Shape>) -> [(&'static str, String); 5] {
     let pair = match shape {
         Some(Shape::Sphere) => "Spheres",
         Some(Shape::Box) => "Boxes",
@@ -120,7 +120,7 @@ mod tests {
             ),
             (Side::Aft, 0.0, "7 inch at 320 mm", "225 mm aft"),
         ] {
-            let words = in_words(&setting(side, slew_deg), Some(Shape::Sphere));
+            let words = describe_setting(&setting(side, slew_deg), Some(Shape::Sphere));
             assert_eq!((words[2].0, words[2].1.as_str()), ("Spheres", pair));
             assert_eq!(words[3].1, bar);
         }

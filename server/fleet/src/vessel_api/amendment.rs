@@ -1,6 +1,6 @@
-//! A change of what is written of a vessel.
+//! Amendment of a vessel's record.
 
-use super::{NewVessel, store};
+use crate::vessels::{NewVessel, VesselRow};
 use binnacle_platform::error::Result;
 use binnacle_platform::http::Amended;
 use serde::Deserialize;
@@ -46,8 +46,8 @@ pub(super) struct AmendmentSchema {
 }
 
 impl Amendment {
-    /// The vessel's particulars with what is to be changed.
-    pub(super) fn applied_to(self, vessel: store::Row) -> Result<NewVessel> {
+    /// Returns the vessel's particulars with the amendment applied.
+    pub(super) fn applied_to(self, vessel: VesselRow) -> Result<NewVessel> {
         let amended = NewVessel {
             name: self.name.unwrap_or(vessel.name),
             imo_number: self.imo_number.over(vessel.imo_number),

@@ -1,0 +1,125 @@
+//! API that lists, creates and revokes the API tokens of the signed-in user.
+
+use crate::access::Caller;
+use crate::app::App;
+use crate::audit::RequestContext;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Listed, Page, Valid};
+use crate::ids::TokenId;
+use crate::secret;
+use crate::time::Time;
+use crate::tokens::{self, PREFIX, Scope, Token};
+use axum::extract::{FromRef, State};
+use axum::http::StatusCode;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    OpenApiRouter::new()
+        .routes(routes!(list_tokens, create_token))
+        .routes(routes!(delete_token))
+}
+
+/// Token to be created.
+#[derive(Deserialize, ToSchema)]
+struct NewToken {
+    /// Purpose of the token.
+    #[schema(min_length = 1, max_length = 200)]
+    name: String,
+    /// Scope of the token.
+    scope: Scope,
+    /// Expiry time; one year from now by default.
+    expires_at: Option<Time>,
+}
+
+/// Newly created token.
+#[derive(Serialize, ToSchema)]
+struct MadeToken {
+    /// Token.
+    #[serde(flatten)]
+    about: Token,
+    /// Secret, to be sent as `Authorization: Bearer …`; never shown again.
+    token: String,
+}
+
+/// Page of tokens.
+#[derive(Serialize, ToSchema)]
+struct TokenList {
+    /// Tokens in the order in which they were created.
+    items: Vec<Token>,
+    /// Value of `after` for the next page.
+    #[schema(required)]
+    next: Option<String>,
+}
+
+/// List your API tokens
+#[utoipa::path(get, path = "/tokens", tag = "session", params(Page),
+    responses((status = 200, body = TokenList), (status = 401, body = Problem)))]
+async fn list_tokens(
+    State(app): State<App>,
+    caller: Caller,
+    page: Page,
+) -> Result<Json<TokenList>> {
+    let found = tokens::list(&app.db, caller.user.user_id, page.after_id()?, page.fetch()).await?;
+    let Listed { items, next } = page.cut(found, |token| token.id.to_string());
+    Ok(Json(TokenList { items, next }))
+}
+
+/// Create an API token
+#[utoipa::path(post, path = "/tokens", tag = "session", request_body = NewToken,
+    responses((status = 201, body = MadeToken), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 422, body = Problem)))]
+async fn create_token(
+    State(app): State<App>,
+    request: RequestContext,
+    caller: Caller,
+    Valid(new): Valid<NewToken>,
+) -> Result<(StatusCode, Json<MadeToken>)> {
+    // A leaked token must not create others that outlive it.
+    caller.must_be_signed_in()?;
+    caller.must_have_second_factor()?;
+    let name = crate::http::text("name", &new.name)?;
+    let now = app.clock.now();
+    let expires_at = new
+        .expires_at
+        .unwrap_or(Time(now.plus_seconds(365.0 * 86_400.0)));
+    if expires_at.0 <= now {
+        return Err(Error::Invalid {
+            field: "expires_at",
+            detail: format!("{} is in the past", expires_at.0),
+        });
+    }
+    let token = format!("{PREFIX}{}", secret::new_token());
+    let about = Token {
+        id: TokenId::new(),
+        name,
+        scope: new.scope,
+        expires_at,
+        created_at: now.into(),
+        last_used_at: None,
+    };
+    tokens::insert(&request, caller.user.user_id, &about, &secret::hash(&token)).await?;
+    Ok((StatusCode::CREATED, Json(MadeToken { about, token })))
+}
+
+/// Revoke an API token
+#[utoipa::path(delete, path = "/tokens/{id}", tag = "session", params(("id" = TokenId, Path)),
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
+              (status = 404, body = Problem)))]
+async fn delete_token(
+    request: RequestContext,
+    caller: Caller,
+    Id(id): Id<TokenId>,
+) -> Result<StatusCode> {
+    caller.must_not_only_read()?;
+    if !tokens::delete(&request, caller.user.user_id, id).await? {
+        return Err(Error::NotFound("token"));
+    }
+    Ok(StatusCode::NO_CONTENT)
+}
