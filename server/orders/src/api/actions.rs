@@ -129,8 +129,8 @@ pub(super) struct Closing {
     params(("id" = OrderId, Path), Key), request_body = Closing,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "Not before headings at sea have spoken, but for one \
-                             that was adjusted `without_verification`", body = Problem),
+              (status = 409, description = "The adjustment is not verified at sea, and the \
+                  request is not `without_verification`", body = Problem),
               (status = 422, body = Problem)))]
 pub(super) async fn close_work_order(
     Shared(app): Shared<App>,

@@ -172,7 +172,7 @@ fn refuse_moved_correctors(stored: &StoredOrder) -> Result<()> {
     responses((status = 200, body = OfferSchema), (status = 401, body = Problem),
               (status = 404, body = Problem),
               (status = 409, description = "There is no reading to plan from", body = Problem),
-              (status = 422, description = "There is no plan, and what would cure that", body = Problem)))]
+              (status = 422, description = "There is no plan; the refusals name the cures", body = Problem)))]
 async fn find_plan(
     Shared(app): Shared<App>,
     Shared(slots): Shared<CorrectorPlanSlots>,
@@ -194,7 +194,7 @@ async fn find_plan(
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "There is no reading to plan from", body = Problem),
-              (status = 422, description = "There is no plan, and what would cure that", body = Problem)))]
+              (status = 422, description = "There is no plan; the refusals name the cures", body = Problem)))]
 async fn choose_plan(
     Shared(app): Shared<App>,
     Shared(slots): Shared<CorrectorPlanSlots>,
@@ -233,7 +233,7 @@ async fn choose_plan(
     params(("id" = OrderId, Path), ("n" = u32, Path), Key), request_body = StepReading,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "It is not the step to do now", body = Problem),
+              (status = 409, description = "It is not the next step", body = Problem),
               (status = 422, body = Problem)))]
 async fn read_step(
     Shared(app): Shared<App>,

@@ -74,7 +74,7 @@ where
     params(("id" = OrderId, Path), Key), request_body = AgainSchema,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "Not before all steps are done, or nothing was moved", body = Problem),
+              (status = 409, description = "A step is not done, or nothing was moved", body = Problem),
               (status = 422, body = Problem)))]
 async fn read_field_again(
     Shared(app): Shared<App>,

@@ -217,7 +217,7 @@ async fn load_vessel(app: &App, stored: &StoredOrder) -> Result<VesselAndCompass
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "There is no record yet", body = Problem),
-              (status = 422, description = "It is not this key's", body = Problem)))]
+              (status = 422, description = "The signature is not by this key", body = Problem)))]
 async fn sign_record(
     Shared(app): Shared<App>,
     request: RequestContext,

@@ -121,7 +121,7 @@ async fn list_messages(
     params(("id" = OrderId, Path), Key), request_body = NewMessage,
     responses((status = 204), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "There is no such firm to write to", body = Problem),
+              (status = 409, description = "No such firm has an open offer or the order", body = Problem),
               (status = 422, body = Problem)))]
 async fn send_message(
     Shared(app): Shared<App>,

@@ -43,7 +43,7 @@ where
     params(("id" = OrderId, Path), Key), request_body = NewOffer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "It is offered already, or has begun", body = Problem),
+              (status = 409, description = "An offer is open, or the work has begun", body = Problem),
               (status = 422, body = Problem)))]
 async fn offer_work_order(
     Shared(app): Shared<App>,
@@ -89,7 +89,7 @@ async fn vessel_of(app: &App, tenant: Tenant, id: OrderId) -> Result<VesselId> {
     params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "There is nothing to accept, or not any more", body = Problem),
+              (status = 409, description = "There is nothing to accept, or no longer", body = Problem),
               (status = 422, body = Problem)))]
 async fn accept_work_order(
     Shared(app): Shared<App>,
@@ -122,7 +122,7 @@ async fn accept_work_order(
     params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 204), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "There is nothing to decline, or not any more", body = Problem),
+              (status = 409, description = "There is nothing to decline, or no longer", body = Problem),
               (status = 422, body = Problem)))]
 async fn decline_work_order(
     Shared(app): Shared<App>,
@@ -156,7 +156,7 @@ async fn decline_work_order(
     params(("id" = OrderId, Path), Key), request_body = Proposal,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "It is not offered to your firm, or not any more", body = Problem),
+              (status = 409, description = "Your firm has no open offer", body = Problem),
               (status = 422, body = Problem)))]
 async fn propose_terms(
     Shared(app): Shared<App>,

@@ -73,8 +73,8 @@ struct RetimeRequest {
     params(("id" = OrderId, Path), Key), request_body = RetimeRequest,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "No firm has it, the work has begun, she is not \
-                             alongside then, or the firm has no team left that day", body = Problem),
+              (status = 409, description = "No firm has it, the work has begun, the vessel is \
+                  not alongside then, or the firm has no team left that day", body = Problem),
               (status = 422, body = Problem)))]
 async fn propose_retime(
     Shared(app): Shared<App>,
@@ -127,8 +127,8 @@ async fn propose_retime(
     params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "Nothing is asked, or not any more, or the call has \
-                             moved meanwhile", body = Problem),
+              (status = 409, description = "No other time is proposed, or no longer, or the call \
+                  has moved meanwhile", body = Problem),
               (status = 422, body = Problem)))]
 async fn accept_retime(
     Shared(app): Shared<App>,
@@ -189,7 +189,7 @@ async fn accept_retime(
     params(("id" = OrderId, Path), Key), request_body = OfferAnswer,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "Nothing is asked, or not any more", body = Problem),
+              (status = 409, description = "No other time is proposed, or no longer", body = Problem),
               (status = 422, body = Problem)))]
 async fn decline_retime(
     Shared(app): Shared<App>,

@@ -135,7 +135,7 @@ async fn engage_firm(
     params(("id" = OperatorId, Path), ("firm" = FirmId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 404, body = Problem),
-              (status = 409, description = "It is asked for an order or has one", body = Problem)))]
+              (status = 409, description = "It has an open offer or an order", body = Problem)))]
 async fn dismiss_firm(
     request: RequestContext,
     admin: Platform,

@@ -199,7 +199,7 @@ pub async fn find_terms(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Resu
     params(("id" = FirmId, Path)), request_body = Terms,
     responses((status = 200, body = FirmWithTerms), (status = 401, body = Problem),
               (status = 403, body = Problem),
-              (status = 404, description = "Also when you do not work with it", body = Problem),
+              (status = 404, description = "Also when it does not work for you", body = Problem),
               (status = 422, body = Problem)))]
 async fn set_terms(
     State(app): State<App>,
