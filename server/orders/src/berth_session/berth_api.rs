@@ -342,11 +342,11 @@ async fn set_correctors(
     }
     let what = "correctors are set between the reading and the completion";
     stored.require_state(&[State::Measured, State::Adjusting], what)?;
-    let mut moved = corrector_move(&stored, report, app.clock.now().into())?;
-    moved.revised_strength = revise_strength(&slots, &stored.state(), &moved).await?;
-    moved.explains_reading = explains_second_reading(&slots, &stored.state(), &moved).await?;
+    let mut report = corrector_move(&stored, report, app.clock.now().into())?;
+    report.revised_strength = revise_strength(&slots, &stored.state(), &report).await?;
+    report.explains_reading = explains_second_reading(&slots, &stored.state(), &report).await?;
     if let Some(mut change) = update.begin(&stored).await? {
-        let content = OrderEvent::CorrectorSettings(Box::new(moved));
+        let content = OrderEvent::CorrectorSettings(Box::new(report));
         change.append(content).await?;
         change.commit().await?;
     }

@@ -78,14 +78,14 @@ impl SecondReading {
         self,
         plan_request: &PlanRequest,
         steps: &[CompletedStep],
-        looked_at: usize,
+        inspected_steps: usize,
         planned: bool,
     ) -> std::result::Result<(RecordedSecondReading, Option<Basis>), AdjustError> {
-        let again = self.read(plan_request, steps)?;
+        let check = self.read(plan_request, steps)?;
         let mut result = SecondReadingResult {
             verdict: SecondReadingVerdict::AsPlanned,
-            words: confirmation_text(steps, again.parts.len()),
-            parts: again.parts,
+            words: confirmation_text(steps, check.parts.len()),
+            parts: check.parts,
             step: None,
             setting: None,
             worst_residual_deg: None,
@@ -103,7 +103,7 @@ impl SecondReading {
             basis
         };
         let (mut prediction, mut basis_to_plan_from) = (None, None);
-        match again.verdict {
+        match check.verdict {
             Verdict::AsPlanned { updated } if planned => prediction = Some(*updated),
             Verdict::AsPlanned { updated } => {
                 result.verdict = SecondReadingVerdict::Replan;
@@ -135,16 +135,18 @@ impl SecondReading {
             } => {
                 result.verdict = SecondReadingVerdict::Slip;
                 result.words = slip_text(steps, step, slip);
-                result.step = u32::try_from(looked_at).ok().map(|before| before + step);
+                result.step = u32::try_from(inspected_steps)
+                    .ok()
+                    .map(|before| before + step);
                 result.setting = Some(setting);
             }
             Verdict::Unexplained {
                 misreadings: mistakes,
             } => {
                 result.verdict = SecondReadingVerdict::Unexplained;
-                result.words = unexplained_text(looked_at);
+                result.words = unexplained_text(inspected_steps);
                 result.could_be = mistakes.iter().map(ToString::to_string).collect();
-                if let Some(card) = again.card.filter(CardCheck::is_refused) {
+                if let Some(card) = check.card.filter(CardCheck::is_refused) {
                     result.words = card.summary();
                     result.could_be.extend(card.suspects());
                 }
@@ -154,13 +156,13 @@ impl SecondReading {
             .as_ref()
             .map(|updated| updated.worst_residual_deg);
         result.widest_band_deg = prediction.as_ref().map(|updated| updated.widest_band_deg);
-        let read = RecordedSecondReading {
+        let recorded = RecordedSecondReading {
             given: self.given,
             result,
             prediction,
             reading_to_plan_from: None,
         };
-        Ok((read, basis_to_plan_from))
+        Ok((recorded, basis_to_plan_from))
     }
 }
 
@@ -168,7 +170,7 @@ impl SecondReading {
 pub(crate) async fn explains_second_reading(
     slots: &CorrectorPlanSlots,
     state: &OrderState,
-    moved: &CorrectorMove,
+    report: &CorrectorMove,
 ) -> Result<bool> {
     let Some(contradiction) = state.contradicting_reading() else {
         return Ok(false);
@@ -176,14 +178,14 @@ pub(crate) async fn explains_second_reading(
     let mut before = state.clone();
     before.restore_first_reading();
     let mut plan_request = before.plan_request()?;
-    plan_request.moved_to = Some(moved.after.clone());
-    if let Some(basis_to_plan_from) = &moved.revised_strength {
-        plan_request.binnacle = basis_to_plan_from.binnacle.clone();
+    plan_request.moved_to = Some(report.after.clone());
+    if let Some(revised) = &report.revised_strength {
+        plan_request.binnacle = revised.binnacle.clone();
     }
     let second = SecondReading::new(contradiction.given.clone(), &plan_request)?;
-    let again = slots.run(move || second.read(&plan_request, &[])).await?;
+    let check = slots.run(move || second.read(&plan_request, &[])).await?;
     Ok(matches!(
-        again.verdict,
+        check.verdict,
         Verdict::AsPlanned { .. } | Verdict::Replan { .. }
     ))
 }
@@ -202,8 +204,8 @@ pub(crate) fn as_first_reading(basis: Basis, given: ReadingForm) -> Result<Box<R
     }))
 }
 
-fn unexplained_text(looked_at: usize) -> String {
-    let steps = match looked_at {
+fn unexplained_text(inspected_steps: usize) -> String {
+    let steps = match inspected_steps {
         0 => "one of its steps",
         _ => "a step that nobody has inspected since",
     };

@@ -101,10 +101,10 @@ async fn read_field_again(
     require_after_last_step(&stored, form.at.into())?;
     require_vertical_part(&state, &form)?;
     // A slip is only suspected in steps that nobody has inspected since.
-    let looked_at = state.inspected_steps;
-    let steps = state.steps[looked_at..].to_vec();
+    let inspected_steps = state.inspected_steps;
+    let steps = state.steps[inspected_steps..].to_vec();
     let planned = state.plan.is_some();
-    let judge = move || second.judge(&plan_request, &steps, looked_at, planned);
+    let judge = move || second.judge(&plan_request, &steps, inspected_steps, planned);
     let (mut judged, basis) = slots.run(judge).await?;
     judged.reading_to_plan_from = basis
         .map(|basis| as_first_reading(basis, form))

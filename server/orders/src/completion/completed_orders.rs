@@ -79,11 +79,13 @@ pub async fn completed_orders(
         let stored = store::find(db, Tenant::Operator(operator), order).await?;
         let state = stored.state();
         let agreed_eur = state.offers.holder().and_then(Offer::fee);
-        let verified = state.verification.is_some_and(|said| said.has_passed());
+        let has_passed_at_sea = state
+            .verification
+            .is_some_and(|verification| verification.has_passed());
         let summary = stored.summary;
         let disproved = match summary.state {
             State::Failed => true,
-            State::Closed => !verified,
+            State::Closed => !has_passed_at_sea,
             _ => false,
         };
         let Some(completed_at) = summary.completed_at else {

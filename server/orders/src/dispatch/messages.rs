@@ -2,7 +2,7 @@
 //!
 //! What always holds: a message is an entry of the order's log; no other firm reads it.
 
-use crate::dispatch::offer_requests::{message, require_own_firm};
+use crate::dispatch::offer_requests::{checked_message, require_own_firm};
 use crate::work_orders::events::{MessageSent, OrderEvent};
 use crate::work_orders::offers::{Offer, OfferState, Offers};
 use crate::work_orders::payload::exchange::Exchange;
@@ -90,21 +90,21 @@ async fn list_messages(
 ) -> Result<Json<MessageList>> {
     let after = page.after_number()?.unwrap_or(0);
     let stored = store::find(&app.db, reader.tenant, id).await?;
-    let mine = |firm: FirmId| reader.tenant.firm().is_none_or(|mine| mine == firm);
+    let sees = |firm: FirmId| reader.tenant.firm().is_none_or(|own| own == firm);
     let sent = stored.log.into_iter().filter_map(|entry| {
-        let said = match entry.content {
+        let exchange = match entry.content {
             OrderEvent::Message(message) => message.0,
             OrderEvent::CallMoved(moved) => moved.exchange,
             _ => return None,
         };
-        (entry.seq > after && mine(said.firm.firm_id)).then(|| Message {
+        (entry.seq > after && sees(exchange.firm.firm_id)).then(|| Message {
             seq: entry.seq,
             at: entry.at,
             by: entry.author.name,
             from_firm: entry.author.firm_id.is_some(),
-            firm_id: said.firm.firm_id,
-            firm_name: said.firm.firm_name,
-            text: said.text.unwrap_or_default(),
+            firm_id: exchange.firm.firm_id,
+            firm_name: exchange.firm.firm_name,
+            text: exchange.text.unwrap_or_default(),
         })
     });
     let listed = page.cut(sent.collect(), |message: &Message| message.seq.to_string());
@@ -133,7 +133,7 @@ async fn send_message(
 ) -> Result<StatusCode> {
     let update = prepare_update(&app, request, writer, id, key, "message", &new)?;
     require_own_firm(writer.tenant, new.firm_id)?;
-    let text = message(&new.text)?;
+    let text = checked_message(&new.text)?;
     let summary = store::find_summary(&app.db, writer.tenant, id).await?;
     if summary.state.is_over() {
         return Err(Error::WrongState(
@@ -142,12 +142,12 @@ async fn send_message(
     }
     if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
         let offers = change.stored.state().offers;
-        let said = Exchange {
+        let exchange = Exchange {
             text: Some(text),
             ..Exchange::with(addressee(&offers, writer.tenant, new.firm_id)?.firm())
         };
         change
-            .append(OrderEvent::Message(MessageSent(said)))
+            .append(OrderEvent::Message(MessageSent(exchange)))
             .await?;
         change.commit().await?;
     }

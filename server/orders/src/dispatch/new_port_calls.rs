@@ -31,7 +31,7 @@ pub async fn attach_new_calls(
         return Ok(events);
     }
     for order in port_call_changes::under_way(tx, vessel).await? {
-        if !order.is_adrift {
+        if !order.is_unlinked {
             continue;
         }
         let Some((port, lost)) = port_and_lost_call(tx, vessel, order.id).await? else {
@@ -46,14 +46,14 @@ pub async fn attach_new_calls(
         };
         call_links::link(tx, vessel, order.id, *id).await?;
         if let Some(lost) = lost {
-            let moving = CallUpdate {
+            let update = CallUpdate {
                 call_id: lost.call_id,
                 then_id: *id,
                 was: lost.is.unwrap_or(lost.was),
                 is: Some(is.clone()),
             };
             events.extend(
-                port_call_changes::announce_update(tx, vessel, order.id, &moving, by, now).await?,
+                port_call_changes::announce_update(tx, vessel, order.id, &update, by, now).await?,
             );
         }
     }

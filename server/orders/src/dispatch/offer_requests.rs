@@ -250,19 +250,20 @@ impl Boarding {
 }
 
 /// Validates the text of a message, which may have several lines.
-pub(crate) fn message(said: &str) -> Result<String> {
-    let said = said.trim();
-    if said.chars().any(|c| is_control(c) && c != '\n') || said.chars().count() > MAX_MESSAGE {
+pub(crate) fn checked_message(message: &str) -> Result<String> {
+    let message = message.trim();
+    if message.chars().any(|c| is_control(c) && c != '\n') || message.chars().count() > MAX_MESSAGE
+    {
         return Err(Error::Invalid {
             field: "text",
             detail: format!("has control characters, or more than {MAX_MESSAGE} characters"),
         });
     }
     // Blank text is refused as elsewhere.
-    if said.is_empty() {
-        return text("text", said);
+    if message.is_empty() {
+        return text("text", message);
     }
-    Ok(said.to_owned())
+    Ok(message.to_owned())
 }
 
 /// Offers an order, and sends the first offers.

@@ -36,7 +36,7 @@ pub(crate) struct AffectedOrder {
     pub(crate) planned_at: Time,
     call_id: Option<CallId>,
     /// True without a link to a valid call.
-    pub(crate) is_adrift: bool,
+    pub(crate) is_unlinked: bool,
 }
 
 /// Announces changes of calls of one vessel, whose row is locked. Returns the live events, to be
@@ -47,22 +47,22 @@ pub(crate) struct AffectedOrder {
 pub async fn announce_call_updates(
     tx: &mut Tx,
     vessel: VesselId,
-    moving: &[CallUpdate],
+    updates: &[CallUpdate],
     by: &str,
     now: Time,
 ) -> Result<Vec<Event>> {
-    if moving.is_empty() {
+    if updates.is_empty() {
         return Ok(Vec::new());
     }
     let mut events = Vec::new();
     for order in under_way(tx, vessel).await? {
-        let at = |one: &&CallUpdate| {
-            let is_then = one.was.eta <= order.planned_at && order.planned_at <= one.was.etd;
-            order.call_id == Some(one.call_id) || order.is_adrift && is_then
+        let at = |update: &&CallUpdate| {
+            let is_then = update.was.eta <= order.planned_at && order.planned_at <= update.was.etd;
+            order.call_id == Some(update.call_id) || order.is_unlinked && is_then
         };
-        if let Some(one) = moving.iter().find(at) {
-            call_links::link(tx, vessel, order.id, one.then_id).await?;
-            events.extend(announce_update(tx, vessel, order.id, one, by, now).await?);
+        if let Some(update) = updates.iter().find(at) {
+            call_links::link(tx, vessel, order.id, update.then_id).await?;
+            events.extend(announce_update(tx, vessel, order.id, update, by, now).await?);
         }
     }
     Ok(events)
@@ -84,7 +84,7 @@ pub(crate) async fn under_way(tx: &mut Tx, vessel: VesselId) -> Result<Vec<Affec
         AffectedOrder,
         "SELECT o.id, o.planned_at, l.call_id,
                 CASE WHEN c.id IS NULL OR c.withdrawn_at IS NOT NULL THEN TRUE ELSE FALSE END
-                    AS is_adrift
+                    AS is_unlinked
          FROM work_orders o
          LEFT JOIN schedule_orders l ON l.vessel_id = o.vessel_id AND l.order_id = o.id
          LEFT JOIN port_calls c ON c.vessel_id = l.vessel_id AND c.id = l.call_id
@@ -99,7 +99,7 @@ pub(crate) async fn announce_update(
     tx: &mut Tx,
     vessel: VesselId,
     order: OrderId,
-    moving: &CallUpdate,
+    update: &CallUpdate,
     by: &str,
     now: Time,
 ) -> Result<Vec<Event>> {
@@ -107,16 +107,16 @@ pub(crate) async fn announce_update(
     let state = stored.state();
     let before = OrderBefore::from_order(&stored);
     // The order's port is that of its first known call.
-    let port = state.port.as_ref().unwrap_or(&moving.was.port);
+    let port = state.port.as_ref().unwrap_or(&update.was.port);
     let planned_at = stored.summary.planned_at;
-    let fit = moving
+    let fit = update
         .is
         .as_ref()
         .map_or(CallFit::NoCall, |is| is.fit(port, planned_at));
     let call = CallChange {
-        call_id: moving.then_id,
-        was: moving.was.clone(),
-        is: moving.is.clone(),
+        call_id: update.then_id,
+        was: update.was.clone(),
+        is: update.is.clone(),
         fit,
         by: by.to_owned(),
     };

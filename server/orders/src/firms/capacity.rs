@@ -188,12 +188,12 @@ pub async fn require_capacity(
 ) -> Result<()> {
     // Other bookings of the firm wait.
     execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
-    let said = store::list_terms(tx, firm).await?;
-    let said: Vec<(OperatorId, Terms)> = said
+    let all_terms = store::list_terms(tx, firm).await?;
+    let all_terms: Vec<(OperatorId, Terms)> = all_terms
         .into_iter()
         .map(|(operator, text)| Ok((operator, serde_json::from_str(&text)?)))
         .collect::<Result<_>>()?;
-    if said.is_empty() {
+    if all_terms.is_empty() {
         return Ok(());
     }
     let (from, to) = (
@@ -209,13 +209,13 @@ pub async fn require_capacity(
         to,
         visit.vessel
     )?;
-    let mine = said
+    let own = all_terms
         .iter()
         .find(|(operator, _)| *operator == visit.operator);
     // Times and vessels are the operator's own record of the firm: they do not bind the firm
     // itself.
     if requester == Requester::Operator
-        && let Some((_, terms)) = mine
+        && let Some((_, terms)) = own
     {
         require_suitable_firm(tx, firm_name, terms, visit).await?;
     }
@@ -226,19 +226,19 @@ pub async fn require_capacity(
         one.is_taken || requester == Requester::Operator && one.operator_id == visit.operator
     };
     // Each operator records the teams that work for it: the largest number counts as all.
-    let most = |figure: fn(&Terms) -> u32| said.iter().map(|(_, terms)| figure(terms)).max();
-    let all = (
+    let most = |figure: fn(&Terms) -> u32| all_terms.iter().map(|(_, terms)| figure(terms)).max();
+    let largest = (
         most(|terms| terms.teams),
         most(|terms| terms.jobs_a_team_day),
     );
-    let mine = mine.map(|(_, terms)| (terms.teams, terms.jobs_a_team_day));
+    let own = own.map(|(_, terms)| (terms.teams, terms.jobs_a_team_day));
     let needed = |whose: &dyn Fn(&Booking) -> bool, jobs: u32| {
         let ships = others.iter().filter(|one| counts(one) && whose(one));
         let ships = ships.map(|one| (place(&one.port), one.vessel_id));
         teams(ships.chain([there.clone()]), jobs)
     };
-    let is_full = needed(&|_| true, all.1.unwrap_or(1)) > all.0.unwrap_or(0)
-        || mine.is_some_and(|(teams, jobs)| {
+    let is_full = needed(&|_| true, largest.1.unwrap_or(1)) > largest.0.unwrap_or(0)
+        || own.is_some_and(|(teams, jobs)| {
             needed(&|one| one.operator_id == visit.operator, jobs) > teams
         });
     if !is_full {
@@ -246,10 +246,10 @@ pub async fn require_capacity(
     }
     Err(Error::WrongState(match requester {
         Requester::Operator => {
-            let mine = others
+            let own = others
                 .iter()
                 .filter(|one| counts(one) && one.operator_id == visit.operator);
-            let mine: Vec<String> = mine
+            let own: Vec<String> = own
                 .map(|one| {
                     let Booking {
                         order_id,
@@ -260,10 +260,10 @@ pub async fn require_capacity(
                     format!("work order {order_id} of {vessel_name} at {port}")
                 })
                 .collect();
-            let holding = if mine.is_empty() {
+            let holding = if own.is_empty() {
                 String::new()
             } else {
-                format!(": you have {}", mine.join(", "))
+                format!(": you have {}", own.join(", "))
             };
             format!("{firm_name} has no team left on {that_day}{holding}")
         }

@@ -80,9 +80,15 @@ struct NewFirmKey {
 impl NewFirmKey {
     fn checked(self, firm: FirmId) -> Result<NewFirmKey> {
         let key = ed25519::key(&self.public_key)?;
-        let said = format!("binnacle firm key {firm}");
-        let called = format!("{said:?}");
-        ed25519::must_be_signed(&key, "proof", &self.proof, said.as_bytes(), &called)?;
+        let statement = format!("binnacle firm key {firm}");
+        let name_of_statement = format!("{statement:?}");
+        ed25519::must_be_signed(
+            &key,
+            "proof",
+            &self.proof,
+            statement.as_bytes(),
+            &name_of_statement,
+        )?;
         Ok(NewFirmKey {
             name: text("name", &self.name)?,
             public_key: self.public_key.to_ascii_lowercase(),

@@ -185,9 +185,9 @@ pub async fn of_operator(
 
 /// Returns the terms of a firm for an operator, if any.
 pub async fn find_terms(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<Terms>> {
-    let said = store::list_terms(tx, firm).await?;
-    let said = said.into_iter().find(|(whose, _)| *whose == operator);
-    let terms = said.map(|(_, text)| serde_json::from_str(&text));
+    let stored = store::list_terms(tx, firm).await?;
+    let stored = stored.into_iter().find(|(whose, _)| *whose == operator);
+    let terms = stored.map(|(_, text)| serde_json::from_str(&text));
     Ok(terms.transpose()?)
 }
 

@@ -66,7 +66,7 @@ pub(crate) async fn publish_changes(
     let by = author(&new);
     let notices = once.iter().filter_map(|entry| {
         let exchange = entry.content.event().exchange();
-        let offer_before = exchange.and_then(|said| before.offer_state(said.firm.firm_id));
+        let offer_before = exchange.and_then(|exchange| before.offer_state(exchange.firm.firm_id));
         notification_text::for_operator(summary, entry, offer_before)
     });
     let published = NoticesPublished {
@@ -186,15 +186,15 @@ fn author(new: &[&Entry]) -> Option<UserId> {
 /// Returns the webhook message of an entry.
 fn entry_message(kind: Kind, summary: &Summary, entry: &Entry, now: Time) -> Message {
     let event = entry.content.event();
-    let said = event.exchange();
+    let exchange = event.exchange();
     let name = serde_json::to_value(&entry.content).ok();
     let name = name.and_then(|value| value.get("kind").cloned());
     let entry = json!({
         "seq": entry.seq, "kind": name, "at": entry.at, "by": entry.author.name,
-        "firm_id": said.map(|said| said.firm.firm_id),
-        "fee_eur": said.and_then(|said| said.fee_eur),
-        "terms": said.and_then(|said| said.terms.as_ref()),
-        "text": said.and_then(|said| said.text.as_ref()),
+        "firm_id": exchange.map(|exchange| exchange.firm.firm_id),
+        "fee_eur": exchange.and_then(|exchange| exchange.fee_eur),
+        "terms": exchange.and_then(|exchange| exchange.terms.as_ref()),
+        "text": exchange.and_then(|exchange| exchange.text.as_ref()),
         "call": event.call_change(),
     });
     message_with_entry(kind, summary, &entry, now)

@@ -108,8 +108,8 @@ impl Summary {
         }
     }
     /// Takes over the agreed time and berth.
-    pub(crate) fn apply_terms(&mut self, said: &Exchange) {
-        if let Some(terms) = &said.terms {
+    pub(crate) fn apply_terms(&mut self, exchange: &Exchange) {
+        if let Some(terms) = &exchange.terms {
             self.planned_at = terms.planned_at;
             self.berth = terms.berth.clone().or(self.berth.take());
         }

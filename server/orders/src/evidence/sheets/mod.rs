@@ -42,7 +42,7 @@ fn draw(text: &str) -> anyhow::Result<(Vec<Sheet>, About)> {
     tables::draw_correctors(&mut paper, &record)?;
     draw_plan(&mut paper, &record);
     tables::draw_steps(&mut paper, &record);
-    tables::draw_settings_said(&mut paper, &record)?;
+    tables::draw_reported_settings(&mut paper, &record)?;
     tables::draw_second_readings(&mut paper, &record);
     tables::draw_predicted(&mut paper, &record);
     tables::draw_parameters(&mut paper, &record);
@@ -95,8 +95,8 @@ fn join_nonempty(parts: &[String]) -> String {
 
 fn draw_head(paper: &mut Paper, record: &Value) {
     paper.put(LEFT, Style::bold(18.0), "Adjustment record");
-    let says = "PREDICTED – NOT A CERTIFICATE";
-    paper.put(RIGHT, Style::bold(11.0).end(), says);
+    let text = "PREDICTED – NOT A CERTIFICATE";
+    paper.put(RIGHT, Style::bold(11.0).end(), text);
     paper.down(20.0);
     let (vessel, compass) = (&record["vessel"], &record["compass"]);
     let numbered = |label: &str, value: &Value| match word(value).as_str() {
@@ -282,13 +282,13 @@ fn draw_plan(paper: &mut Paper, record: &Value) {
 fn step_counts(record: &Value) -> String {
     let steps = record["steps_as_read"].as_array().into_iter().flatten();
     let (moved, read): (Vec<&Value>, Vec<&Value>) = steps.partition(|step| step["moved"] == true);
-    let said = |steps: usize| match steps {
+    let count = |steps: usize| match steps {
         1 => "1 step".to_owned(),
         steps => format!("{steps} steps"),
     };
     match (moved.len(), read.len()) {
-        (moved, 0) => said(moved),
-        (moved, read) => format!("{}, {moved} of which moved correctors", said(moved + read)),
+        (moved, 0) => count(moved),
+        (moved, read) => format!("{}, {moved} of which moved correctors", count(moved + read)),
     }
 }
 
@@ -304,8 +304,8 @@ fn draw_photos(paper: &mut Paper, record: &Value) {
             none if none.is_empty() => "without caption".to_owned(),
             words => words,
         };
-        let says = format!("{caption}; SHA-256 {}", word(&photo["sha256"]));
-        paper.fact(&format!("{}", index + 1), &says);
+        let text = format!("{caption}; SHA-256 {}", word(&photo["sha256"]));
+        paper.fact(&format!("{}", index + 1), &text);
     }
 }
 

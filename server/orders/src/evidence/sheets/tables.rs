@@ -48,16 +48,16 @@ fn shape_of(binnacle: &Binnacle, settings: [&Setting; 2]) -> Option<Shape> {
 }
 
 /// Reported corrector settings, beside the steps.
-pub(super) fn draw_settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
+pub(super) fn draw_reported_settings(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
     let binnacle: Binnacle = serde_json::from_value(record["binnacle_after"].clone())?;
-    let said = record["settings_as_said"].as_array().into_iter().flatten();
-    for (index, said) in said.enumerate() {
+    let reports = record["settings_as_said"].as_array().into_iter().flatten();
+    for (index, report) in reports.enumerate() {
         paper.room_for(3);
         if index == 0 {
             paper.title("Correctors, as reported");
         }
-        let before: Setting = serde_json::from_value(said["before"].clone())?;
-        let after: Setting = serde_json::from_value(said["after"].clone())?;
+        let before: Setting = serde_json::from_value(report["before"].clone())?;
+        let after: Setting = serde_json::from_value(report["after"].clone())?;
         let shape = shape_of(&binnacle, [&after, &before]);
         let lines = describe_setting(&before, shape).into_iter();
         let moved: Vec<String> = lines
@@ -70,12 +70,12 @@ pub(super) fn draw_settings_said(paper: &mut Paper, record: &Value) -> anyhow::R
         } else {
             moved.join("; ")
         };
-        let note = match word(&said["note"]) {
+        let note = match word(&report["note"]) {
             none if none.is_empty() => String::new(),
             note => format!(" “{note}”"),
         };
-        let says = format!("received {}: {stands}{note}", minute(&said["at"]));
-        paper.lines(LEFT, Style::plain(SIZE), &says);
+        let text = format!("received {}: {stands}{note}", minute(&report["at"]));
+        paper.lines(LEFT, Style::plain(SIZE), &text);
     }
     Ok(())
 }
@@ -89,21 +89,21 @@ pub(super) fn draw_steps(paper: &mut Paper, record: &Value) {
     }
     // Each plan numbers its steps from one; the sheet numbers them continuously.
     for (index, step) in steps.into_iter().flatten().enumerate() {
-        let said = &step["said"];
-        let turned =
-            (number(&said["after_deg"]) - number(&said["before_deg"]) + 540.0).rem_euclid(360.0);
+        let result = &step["said"];
+        let turned = (number(&result["after_deg"]) - number(&result["before_deg"]) + 540.0)
+            .rem_euclid(360.0);
         paper.room_for(3);
         let words = format!("{}. {}", index + 1, word(&step["words"]));
         paper.lines(LEFT, Style::plain(SIZE), &words);
         let showed = format!(
             "received {}: compass {} to {}, turned {}, expected {} within {:.1}°: {}",
             minute(&step["at"]),
-            heading_to_a_tenth(number(&said["before_deg"])),
-            heading_to_a_tenth(number(&said["after_deg"])),
+            heading_to_a_tenth(number(&result["before_deg"])),
+            heading_to_a_tenth(number(&result["after_deg"])),
             signed(turned - 180.0),
-            signed(number(&said["expected_change_deg"])),
-            number(&said["tolerance_deg"]),
-            word(&said["words"])
+            signed(number(&result["expected_change_deg"])),
+            number(&result["tolerance_deg"]),
+            word(&result["words"])
         );
         paper.lines(LEFT + 12.0, Style::plain(SIZE).grey(60), &showed);
     }
@@ -118,8 +118,8 @@ pub(super) fn draw_second_readings(paper: &mut Paper, record: &Value) {
         if index == 0 {
             paper.title("The magnetometer after the steps");
         }
-        let said = &reading["said"];
-        let parts = said["parts"].as_array().into_iter().flatten();
+        let result = &reading["said"];
+        let parts = result["parts"].as_array().into_iter().flatten();
         let parts = parts.zip(["forward", "to starboard", "down"]);
         let microtesla = |value: &Value| format!("{:.2}", number(value) / 1e3);
         let parts: Vec<String> = parts
@@ -135,14 +135,14 @@ pub(super) fn draw_second_readings(paper: &mut Paper, record: &Value) {
             })
             .collect();
         let given = &reading["given"];
-        let mut says = format!("{}: {}", minute(&given["at"]), word(&said["words"]));
-        let could_be = said["could_be"].as_array().into_iter().flatten();
+        let mut text = format!("{}: {}", minute(&given["at"]), word(&result["words"]));
+        let could_be = result["could_be"].as_array().into_iter().flatten();
         let could_be: Vec<String> = could_be.map(word).collect();
         if !could_be.is_empty() {
-            says += "; it could be that ";
-            says += &could_be.join(", or that ");
+            text += "; it could be that ";
+            text += &could_be.join(", or that ");
         }
-        paper.lines(LEFT, Style::plain(SIZE), &says);
+        paper.lines(LEFT, Style::plain(SIZE), &text);
         let mut figures = parts;
         for (name, what) in [
             ("heading_true_deg", "heading true"),
@@ -258,6 +258,6 @@ pub(super) fn draw_parameters(paper: &mut Paper, record: &Value) {
             .collect();
         paper.row(Style::plain(SIZE), label, &cells);
     }
-    let says = "The full covariance is in record.json.";
-    paper.lines(LEFT, Style::plain(7.0).grey(90), says);
+    let text = "The full covariance is in record.json.";
+    paper.lines(LEFT, Style::plain(7.0).grey(90), text);
 }
